@@ -17,7 +17,7 @@ from sysmlc.logic import domains
 from sysmlc.logic.contract import Class
 from sysmlc.logic.evaluate import violation
 from sysmlc.logic.machines import interpreter as step
-from sysmlc.logic.machines.derivation import derive
+from sysmlc.logic.machines.derivation import derive_contract
 from sysmlc.logic.machines.reader import read_machine
 
 STEPS = 7
@@ -27,7 +27,7 @@ def _derived(graph, element):
     sink = Sink()
     machine = read_machine(graph, element, sink)
     assume(machine is not None)
-    contract = derive(graph, machine, "P::C", sink)
+    contract = derive_contract(graph, machine, "P::C", sink)
     assume(contract is not None)
     return machine, contract
 
@@ -35,17 +35,17 @@ def _derived(graph, element):
 def _inputs(data, machine):
     return {
         v.name: data.draw(st.sampled_from(domains.values(v.domain)))
-        for v in step.inputs_of(machine)
+        for v in step.list_inputs(machine)
     }
 
 
 def _trace(data, machine):
-    starts = step.initial(machine, _inputs(data, machine))
+    starts = step.initial_steps(machine, _inputs(data, machine))
     assume(starts)
     trace = [data.draw(st.sampled_from(starts))]
     while len(trace) < STEPS:
         trace.append(
-            data.draw(st.sampled_from(step.successors(machine, trace[-1], _inputs(data, machine))))
+            data.draw(st.sampled_from(step.next_steps(machine, trace[-1], _inputs(data, machine))))
         )
     return trace
 
@@ -64,7 +64,7 @@ def _mutations(machine, valuation):
 
 
 def _inputs_in(machine, valuation):
-    return {v.name: valuation[v.name] for v in step.inputs_of(machine)}
+    return {v.name: valuation[v.name] for v in step.list_inputs(machine)}
 
 
 _quiet = settings(
@@ -86,7 +86,7 @@ def test_formulas_allow_exactly_the_steps_of_the_interpreter(model, data):
     assert _breaks(contract, trace, Class.INIT, Class.SAFETY) == []
     for now, following in pairwise(trace):
         for mutant in _mutations(machine, following):
-            legal = mutant in step.successors(machine, now, _inputs_in(machine, mutant))
+            legal = mutant in step.next_steps(machine, now, _inputs_in(machine, mutant))
             broken = _breaks(contract, [now, mutant], Class.SAFETY)
             assert legal == (not broken), (now, mutant, broken)
 
@@ -97,6 +97,6 @@ def test_formulas_allow_exactly_the_first_steps_of_the_interpreter(model, data):
     machine, contract = _derived(*model)
     first = _trace(data, machine)[0]
     for mutant in [first, *_mutations(machine, first)]:
-        legal = mutant in step.initial(machine, _inputs_in(machine, mutant))
+        legal = mutant in step.initial_steps(machine, _inputs_in(machine, mutant))
         broken = _breaks(contract, [mutant], Class.INIT, Class.SAFETY)
         assert legal == (not broken), (mutant, broken)

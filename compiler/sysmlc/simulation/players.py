@@ -166,7 +166,7 @@ class MachinePlayer(Struct, frozen=True, dict=True):
     def pulses(self) -> frozenset[str]:
         return frozenset(
             variable.name
-            for variable in step.inputs_of(self.machine)
+            for variable in step.list_inputs(self.machine)
             if not self._is_lasting(variable)
         )
 
@@ -175,9 +175,9 @@ class MachinePlayer(Struct, frozen=True, dict=True):
         return element is not None and element.kind in _LASTING
 
     def initial(self, inputs: Mapping[str, Literal]) -> list[Valuation]:
-        return step.initial(self.machine, inputs)
+        return step.initial_steps(self.machine, inputs)
 
     def successors(
         self, now: Mapping[str, Literal], inputs: Mapping[str, Literal]
     ) -> list[Valuation]:
-        return step.successors(self.machine, now, inputs)
+        return step.next_steps(self.machine, now, inputs)

@@ -20,7 +20,7 @@ from sysmlc.logic.composition.structure import (
 )
 from sysmlc.logic.contract import Contract, Owner
 from sysmlc.logic.expressions.context import variables_of
-from sysmlc.logic.machines.reader import context_classifier
+from sysmlc.logic.machines.reader import find_context_classifier
 from sysmlc.logic.requirements.statements import definition_of
 from sysmlc.support.disjoint_sets import DisjointSets
 
@@ -128,7 +128,7 @@ def _member(
 ) -> Member:
     origin = block.graph[contract.origin]
     if origin.kind in query.BEHAVIORS and origin is not element:
-        around = context_classifier(block.graph, origin)
+        around = find_context_classifier(block.graph, origin)
         variables = variables_of(block.graph, around, origin)
     elif origin.kind is Kind.OPERATION:
         variables = variables_of(block.graph, definition_of(block.graph, origin))
@@ -149,7 +149,7 @@ def _with_shared(block: Block, around: Element, path: str, member: Member) -> Me
     if drawn.kind is not Kind.ACTIVITY:
         return member
     family = (around, *query.generals(graph, around))
-    context = context_classifier(graph, drawn)
+    context = find_context_classifier(graph, drawn)
     known = {one.name for one in member.contract.variables} - set(member.features.values())
     names = variables_of(graph, context) if context in family else {}
     found = {name: variable for name, variable in names.items() if variable in known}

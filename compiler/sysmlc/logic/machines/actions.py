@@ -1,4 +1,4 @@
-"""Features that a state machine writes and others write, too: its contract does not follow them."""
+"""Guards, effects and change conditions of a state machine, read in the context of its owner."""
 
 from dataclasses import dataclass, field
 
@@ -49,15 +49,15 @@ SHARED = rule(
 
 
 class Sharing(Struct, frozen=True):
-    """Who else writes what a state machine writes."""
+    """Finds writers other than the state machine of a feature that the machine writes."""
 
     graph: Graph
     machine: Element
     writers: Writers | None = None
     """None: it alone is looked at."""
 
-    def other(self, feature: Element) -> Element | None:
-        """What writes the feature beside the machine."""
+    def find_other_writer(self, feature: Element) -> Element | None:
+        """Return a behaviour outside the machine that writes *feature*."""
         return None if self.writers is None else self.writers.beside(feature, self.machine)
 
 
@@ -101,7 +101,7 @@ OPAQUE_EFFECT = rule(
     Severity.INFO,
     "'{text}' is no assignment, call or send; the contract shows it as output '{variable}'",
 )
-RULE_OF = {
+RULE_OF_FAULT = {
     Fault.UNKNOWN: UNKNOWN_NAME,
     Fault.TYPE: TYPE_MISMATCH,
     Fault.OUTSIDE: OUT_OF_DOMAIN,
@@ -110,8 +110,10 @@ RULE_OF = {
 
 
 @dataclass(slots=True)
-class Reading:
-    """What is collected while a state machine is read."""
+class ReadingContext:
+    """State collected while a state machine is read: auxiliary variables, and which features are
+    read and assigned.
+    """
 
     graph: Graph
     sink: Sink
@@ -119,53 +121,53 @@ class Reading:
     names: Names
     tick_seconds: float
     sharing: Sharing
-    made: dict[str, Variable] = field(default_factory=dict)
+    auxiliary: dict[str, Variable] = field(default_factory=dict)
     """Variables beside the properties, by what they stand for."""
-    used: dict[str, None] = field(default_factory=dict)
-    assigned: dict[str, None] = field(default_factory=dict)
-    outputs: dict[str, None] = field(default_factory=dict)
+    read_variables: dict[str, None] = field(default_factory=dict)
+    assigned_variables: dict[str, None] = field(default_factory=dict)
+    output_names: dict[str, None] = field(default_factory=dict)
 
-    def scope(self, name: str) -> Symbol | None:
-        """What a name in an expression stands for."""
+    def find_symbol(self, name: str) -> Symbol | None:
+        """Return the symbol that *name* stands for in an expression."""
         feature = self.context.features.get(name)
         if feature is not None:
             if feature.constant and feature.default is not None:
                 return Symbol(f.const(feature.default), feature.domain)
             return Symbol(f.var(feature.variable), feature.domain)
-        for variable in self.made.values():
+        for variable in self.auxiliary.values():
             if variable.name == name:
                 return Symbol(f.var(name), variable.domain)
         return literal_of(self.context, name)
 
-    def make(self, key: str, name: str, owner: Owner, domain: Domain, origin: str) -> str:
-        """The name of the variable that stands for ``key``, made when it is asked for first."""
-        if key not in self.made:
-            self.made[key] = Variable(self.names.new(name), owner, domain, origin)
-        return self.made[key].name
+    def variable_for(self, key: str, name: str, owner: Owner, domain: Domain, origin: str) -> str:
+        """Return the variable that stands for *key*; create it on first use."""
+        if key not in self.auxiliary:
+            self.auxiliary[key] = Variable(self.names.new(name), owner, domain, origin)
+        return self.auxiliary[key].name
 
-    def told(self, key: str, name: str, origin: str) -> str:
-        """A Boolean that the environment decides."""
-        return self.make(key, name, Owner.ENVIRONMENT, BooleanDomain(), origin)
+    def input_for(self, key: str, name: str, origin: str) -> str:
+        """Return the name of the Boolean input that stands for *key*."""
+        return self.variable_for(key, name, Owner.ENVIRONMENT, BooleanDomain(), origin)
 
-    def output(self, key: str, name: str, origin: str) -> str:
-        """A Boolean output."""
-        made = self.make(key, name, Owner.SYSTEM, BooleanDomain(), origin)
-        self.outputs[made] = None
-        return made
+    def output_for(self, key: str, name: str, origin: str) -> str:
+        """Return the name of the Boolean output that stands for *key*."""
+        output = self.variable_for(key, name, Owner.SYSTEM, BooleanDomain(), origin)
+        self.output_names[output] = None
+        return output
 
-    def note_use(self, expression: Expression) -> None:
-        """Remember the variables of the context that the expression reads."""
-        for part in walk(expression):
+    def record_reads(self, expression: Expression) -> None:
+        """Record the features that the expression reads."""
+        for part in walk_expression(expression):
             name = name_of(part)
             feature = self.context.features.get(name) if name else None
             if feature is not None:
-                self.used[feature.variable] = None
+                self.read_variables[feature.variable] = None
                 note_range(self.graph, feature, self.sink)
 
 
-def walk(expression: Expression) -> list[Expression]:
-    """The expression and all parts of it."""
-    found = [expression]
+def walk_expression(expression: Expression) -> list[Expression]:
+    """Return the expression and all its subexpressions."""
+    parts = [expression]
     for slot in (
         "base",
         "function",
@@ -177,34 +179,45 @@ def walk(expression: Expression) -> list[Expression]:
         "otherwise",
         "index",
     ):
-        part = getattr(expression, slot, None)
-        if part is not None and not isinstance(part, str):
-            found += walk(part)
+        operand = getattr(expression, slot, None)
+        if operand is not None and not isinstance(operand, str):
+            parts += walk_expression(operand)
     for arg in getattr(expression, "args", ()):
-        found += walk(arg)
-    return found
+        parts += walk_expression(arg)
+    return parts
 
 
-def read_condition(reading: Reading, text: str, what: str, element: Element) -> Expression:
-    """A condition; what has no meaning becomes the name of a Boolean of the environment."""
+def read_condition(reading: ReadingContext, text: str, what: str, element: Element) -> Expression:
+    """Return the expression in *text*; replace one without meaning by a Boolean input and report
+    it.
+    """
     try:
         expression = parse_expression(text)
-        condition(expression, reading.scope)
+        condition(expression, reading.find_symbol)
     except ExpressionError as error:
-        return _give_up(reading, NOT_UNDERSTOOD, text, what, element, str(error), "")
+        return _replace_by_input(reading, NOT_UNDERSTOOD, text, what, element, str(error), "")
     except ElaborationError as error:
-        broken = RULE_OF[error.fault]
-        return _give_up(reading, broken, text, what, element, str(error), error.name)
-    reading.note_use(expression)
+        rule = RULE_OF_FAULT[error.fault]
+        return _replace_by_input(reading, rule, text, what, element, str(error), error.name)
+    reading.record_reads(expression)
     return expression
 
 
-def _give_up(
-    reading: Reading, broken: Rule, text: str, what: str, element: Element, reason: str, name: str
+def _replace_by_input(
+    reading: ReadingContext,
+    rule: Rule,
+    text: str,
+    what: str,
+    element: Element,
+    reason: str,
+    name: str,
 ) -> Expression:
-    variable = reading.told(f"condition {text}", text or what, element.id)
+    """Report why the condition has no meaning and return the name of the Boolean input that
+    replaces it.
+    """
+    variable = reading.input_for(f"condition {text}", text or what, element.id)
     reading.sink.report(
-        broken,
+        rule,
         reading.graph.subject(element),
         what=what,
         text=text,
@@ -219,88 +232,97 @@ def _give_up(
 # -- effects -----------------------------------------------------------------------------------
 
 
-def read_behaviours(reading: Reading, element: Element, edge: Edge) -> tuple[Action, ...]:
-    """What the behaviours at the end of these edges do, in order."""
-    found: list[Action] = []
+def read_behaviours(reading: ReadingContext, element: Element, edge: Edge) -> tuple[Action, ...]:
+    """Return the actions of the behaviours at the targets of *edge*, in order."""
+    actions: list[Action] = []
     for behaviour in reading.graph.targets(element, edge):
-        found += _behaviour(reading, behaviour, edge)
-    return tuple(found)
+        actions += _read_behaviour(reading, behaviour, edge)
+    return tuple(actions)
 
 
-def _behaviour(reading: Reading, behaviour: Element, edge: Edge) -> list[Action]:
+def _read_behaviour(reading: ReadingContext, behaviour: Element, edge: Edge) -> list[Action]:
     body = behaviour.attrs.get("body")
     if not isinstance(body, str) or not body.strip():
         name = behaviour.name or f"{edge}_{(reading.graph.owner(behaviour) or behaviour).name}"
         return [
-            Raise(reading.output(f"behaviour {behaviour.id}", name, behaviour.id), behaviour.id)
+            Raise(reading.output_for(f"behaviour {behaviour.id}", name, behaviour.id), behaviour.id)
         ]
     try:
         statements = parse_effect(body)
     except ExpressionError:
-        return [_opaque(reading, body, behaviour)]
+        return [_read_opaque_effect(reading, body, behaviour)]
     texts = [body] if len(statements) == 1 else map(print_statement, statements)
-    both = zip(statements, texts, strict=True)
-    return [_action(reading, statement, text, behaviour) for statement, text in both]
+    pairs = zip(statements, texts, strict=True)
+    return [_read_statement(reading, statement, text, behaviour) for statement, text in pairs]
 
 
-def _opaque(reading: Reading, text: str, behaviour: Element) -> Raise:
-    output = _shown(reading, text, behaviour)
+def _read_opaque_effect(reading: ReadingContext, text: str, behaviour: Element) -> Raise:
+    """Report an effect that is not in the expression grammar and return its output."""
+    output = _effect_output(reading, text, behaviour)
     subject = reading.graph.subject(behaviour)
     reading.sink.report(OPAQUE_EFFECT, subject, text=text.strip(), variable=output)
     return Raise(output, behaviour.id)
 
 
-def _shown(reading: Reading, text: str, behaviour: Element) -> str:
-    """The output that tells that something was done."""
-    return reading.output(f"done {text.strip()}", text, behaviour.id)
+def _effect_output(reading: ReadingContext, text: str, behaviour: Element) -> str:
+    """Return the output that is true when the effect is done."""
+    return reading.output_for(f"done {text.strip()}", text, behaviour.id)
 
 
-def _is_shared(reading: Reading, feature: Feature, text: str, behaviour: Element) -> bool:
-    """Whether others write a feature, too; that is reported."""
-    other = reading.sharing.other(feature.element)
-    if other is not None:
+def _has_other_writer(
+    reading: ReadingContext, feature: Feature, text: str, behaviour: Element
+) -> bool:
+    """Return whether another behaviour writes *feature*; report it."""
+    writer = reading.sharing.find_other_writer(feature.element)
+    if writer is not None:
         reading.sink.report(
             SHARED,
             reading.graph.subject(behaviour),
             machine=reading.sharing.machine.name,
             name=feature.element.name,
             text=text.strip(),
-            variable=_shown(reading, text, behaviour),
-            writer=called(reading.graph, other),
+            variable=_effect_output(reading, text, behaviour),
+            writer=called(reading.graph, writer),
         )
-    return other is not None
+    return writer is not None
 
 
-def _action(reading: Reading, statement: Statement, text: str, behaviour: Element) -> Action:
+def _read_statement(
+    reading: ReadingContext, statement: Statement, text: str, behaviour: Element
+) -> Action:
     match statement:
         case Assignment():
-            return _assignment(reading, statement, text, behaviour)
+            return _read_assignment(reading, statement, text, behaviour)
         case Send(signal):
             name = signal.path[-1]
-            return Raise(reading.output(f"send {name}", f"send_{name}", behaviour.id), behaviour.id)
+            return Raise(
+                reading.output_for(f"send {name}", f"send_{name}", behaviour.id), behaviour.id
+            )
         case Invocation(call):
             name = dotted(getattr(call, "function", call)) or print_expression(call)
-            return Raise(reading.output(f"done {name}", name, behaviour.id), behaviour.id)
+            return Raise(reading.output_for(f"done {name}", name, behaviour.id), behaviour.id)
 
 
-def _assignment(reading: Reading, statement: Assignment, text: str, behaviour: Element) -> Action:
+def _read_assignment(
+    reading: ReadingContext, statement: Assignment, text: str, behaviour: Element
+) -> Action:
     name = name_of(statement.target) or print_expression(statement.target)
     feature = reading.context.features.get(name)
     subject = reading.graph.subject(behaviour)
     context = reading.context.name or "the context"
     if feature is None or feature.domain is None or feature.constant:
         reading.sink.report(NOT_ASSIGNABLE, subject, text=text, name=name, context=context)
-        return _opaque(reading, text, behaviour)
-    if _is_shared(reading, feature, text, behaviour):
-        return Raise(_shown(reading, text, behaviour), behaviour.id)
+        return _read_opaque_effect(reading, text, behaviour)
+    if _has_other_writer(reading, feature, text, behaviour):
+        return Raise(_effect_output(reading, text, behaviour), behaviour.id)
     try:
-        value = meaning(statement.value, reading.scope, feature.domain)
+        value = meaning(statement.value, reading.find_symbol, feature.domain)
         check_assignable(value.domain, feature.domain, statement.value)
     except ElaborationError as error:
         if error.fault is Fault.UNSUPPORTED:
-            return _opaque(reading, text, behaviour)
+            return _read_opaque_effect(reading, text, behaviour)
         reading.sink.report(
-            RULE_OF[error.fault],
+            RULE_OF_FAULT[error.fault],
             subject,
             what="effect",
             text=text,
@@ -308,24 +330,24 @@ def _assignment(reading: Reading, statement: Assignment, text: str, behaviour: E
             name=error.name,
             context=context,
         )
-        return _opaque(reading, text, behaviour)
-    reading.note_use(statement.value)
-    reading.assigned[feature.variable] = None
+        return _read_opaque_effect(reading, text, behaviour)
+    reading.record_reads(statement.value)
+    reading.assigned_variables[feature.variable] = None
     note_range(reading.graph, feature, reading.sink)
     return Assign(feature.variable, statement.value, behaviour.id)
 
 
-def check_assignable(found: Domain, wanted: Domain, value: Expression) -> None:
-    """Raises ElaborationError when no value of the one domain is one of the other."""
+def check_assignable(value_domain: Domain, target_domain: Domain, value: Expression) -> None:
+    """Raise ElaborationError if no value of the first domain belongs to the second."""
     text = print_expression(value)
-    if type(found) is not type(wanted):
-        message = f"'{text}' is {describe(found)}, not {describe(wanted)}"
+    if type(value_domain) is not type(target_domain):
+        message = f"'{text}' is {describe(value_domain)}, not {describe(target_domain)}"
         raise ElaborationError(Fault.TYPE, message, text, value.offset)
-    if isinstance(found, EnumerationDomain) and found != wanted:
-        message = f"'{text}' is one of {describe(found)}, not of {describe(wanted)}"
+    if isinstance(value_domain, EnumerationDomain) and value_domain != target_domain:
+        message = f"'{text}' is one of {describe(value_domain)}, not of {describe(target_domain)}"
         raise ElaborationError(Fault.TYPE, message, text, value.offset)
-    lows = getattr(found, "low", 0), getattr(wanted, "low", 0)
-    highs = getattr(found, "high", 0), getattr(wanted, "high", 0)
-    if lows[0] > highs[1] or highs[0] < lows[1]:
-        message = f"{text} is outside {describe(wanted)}"
+    lower_bounds = getattr(value_domain, "low", 0), getattr(target_domain, "low", 0)
+    upper_bounds = getattr(value_domain, "high", 0), getattr(target_domain, "high", 0)
+    if lower_bounds[0] > upper_bounds[1] or upper_bounds[0] < lower_bounds[1]:
+        message = f"{text} is outside {describe(target_domain)}"
         raise ElaborationError(Fault.OUTSIDE, message, text, value.offset)

@@ -18,7 +18,7 @@ from sysmlc.logic.evaluate import evaluation
 from sysmlc.logic.expressions.elaborate import Scope, condition
 from sysmlc.logic.expressions.expression import Expression, name_of
 from sysmlc.logic.formula import Formula
-from sysmlc.logic.machines.actions import walk
+from sysmlc.logic.machines.actions import walk_expression
 from sysmlc.logic.machines.machine import (
     Action,
     AfterTicks,
@@ -29,7 +29,7 @@ from sysmlc.logic.machines.machine import (
     Vertex,
     element_id,
 )
-from sysmlc.logic.machines.well_formedness import common_state, segments
+from sysmlc.logic.machines.well_formedness import collect_segments, find_common_state
 
 _LIMIT = 4096
 """Valuations tried to see whether two guards exclude one another; more count as possible."""
@@ -90,8 +90,8 @@ def may_compete(
         return False
     is_state = vertex.kind == "state"
     return any(
-        (not is_state or coincide(one, other)) and comparison.are_compatible(one, other)
-        for one, other in combinations(outgoing, 2)
+        (not is_state or can_coincide(left, right)) and comparison.are_compatible(left, right)
+        for left, right in combinations(outgoing, 2)
     )
 
 
@@ -100,27 +100,40 @@ def have_common_cause(
 ) -> bool:
     """Return whether two of the transitions can be enabled by one and the same occurrence."""
     return any(
-        (vertex.kind != "state" or _have_same_trigger(one, other))
-        and comparison.are_compatible(one, other)
-        for one, other in combinations(outgoing, 2)
+        (vertex.kind != "state" or _have_equal_trigger(left, right))
+        and comparison.are_compatible(left, right)
+        for left, right in combinations(outgoing, 2)
     )
 
 
-def _have_same_trigger(one: Transition, other: Transition) -> bool:
-    if not one.occurrences or not other.occurrences:
-        return not one.occurrences and not other.occurrences
-    pairs = [(left, right) for left in one.occurrences for right in other.occurrences]
-    return any(type(a) is type(b) and _same_step(a, b) for a, b in pairs)
+def _have_equal_trigger(left_transition: Transition, right_transition: Transition) -> bool:
+    """Return whether both transitions can be triggered by one and the same occurrence."""
+    if not left_transition.occurrences or not right_transition.occurrences:
+        return not left_transition.occurrences and not right_transition.occurrences
+    pairs = [
+        (left, right)
+        for left in left_transition.occurrences
+        for right in right_transition.occurrences
+    ]
+    return any(type(a) is type(b) and _can_share_step(a, b) for a, b in pairs)
 
 
-def coincide(one: Transition, other: Transition) -> bool:
-    """Whether both can have an occurrence in one step; completion goes before the rest."""
-    if not one.occurrences or not other.occurrences:
-        return not one.occurrences and not other.occurrences
-    return any(_same_step(left, right) for left in one.occurrences for right in other.occurrences)
+def can_coincide(left_transition: Transition, right_transition: Transition) -> bool:
+    """Return whether occurrences of both transitions can fall into one step, for one source.
+
+    A completion transition and a triggered transition never compete: the completion goes first.
+    """
+    if not left_transition.occurrences or not right_transition.occurrences:
+        return not left_transition.occurrences and not right_transition.occurrences
+    return any(
+        _can_share_step(left, right)
+        for left in left_transition.occurrences
+        for right in right_transition.occurrences
+    )
 
 
-def _same_step(left: object, right: object) -> bool:
+def _can_share_step(left: object, right: object) -> bool:
+    """Return whether two occurrences can fall into one step."""
     if isinstance(left, OnEvent) and isinstance(right, OnEvent):
         return left.literal is None or right.literal is None or left.literal == right.literal
     if isinstance(left, AfterTicks) and isinstance(right, AfterTicks):
@@ -128,20 +141,23 @@ def _same_step(left: object, right: object) -> bool:
     return True
 
 
-def simultaneous(one: Transition, other: Transition) -> bool:
-    """As ``coincide``, for sources that can be active at the same time."""
-    if not one.occurrences or not other.occurrences:
+def can_be_simultaneous(left: Transition, right: Transition) -> bool:
+    """Return whether both transitions can be triggered in one step, for sources that can be
+    active at once.
+    """
+    if not left.occurrences or not right.occurrences:
         return True
-    events = [
+    other_occurrences = [
         occurrence
-        for occurrence in (*one.occurrences, *other.occurrences)
+        for occurrence in (*left.occurrences, *right.occurrences)
         if not isinstance(occurrence, OnEvent)
     ]
-    return bool(events) or coincide(one, other)
+    return bool(other_occurrences) or can_coincide(left, right)
 
 
 def _find_domains(source: Expression, scope: Scope) -> Iterator[tuple[str, Domain]]:
-    for part in walk(source):
+    """Yield the variables in the expression with their domains."""
+    for part in walk_expression(source):
         name = name_of(part)
         symbol = None if name is None else scope(name)
         if symbol is not None and symbol.domain is not None:
@@ -169,79 +185,106 @@ CROSSING = rule(
 # -- orthogonal regions ------------------------------------------------------------------------
 
 
-def is_undisturbed(graph: Graph, machine: Machine, comparison: GuardComparison, sink: Sink) -> bool:
+def are_regions_independent(
+    graph: Graph, machine: Machine, comparison: GuardComparison, sink: Sink
+) -> bool:
     """Return whether orthogonal regions react independently; report the transitions if not."""
     is_orthogonal = len(machine.top) > 1 or any(
-        len(one.regions) > 1 for one in machine.vertices.values()
+        len(vertex.regions) > 1 for vertex in machine.vertices.values()
     )
     if not is_orthogonal:
         return True
-    races = _races(graph, machine, comparison, sink)
-    return not [*races, *_crossings(graph, machine, comparison, sink)]
+    races = _report_races(graph, machine, comparison, sink)
+    return not [*races, *_report_crossings(graph, machine, comparison, sink)]
 
 
 def _orthogonal_pairs(machine: Machine) -> Iterator[tuple[Transition, Transition, str]]:
-    """Pairs whose sources can be active at once, with the state above both (or empty)."""
-    sources = [one for one in machine.transitions() if machine.vertices[one.source].kind == "state"]
-    for one, other in combinations(sources, 2):
-        common = _common_state(machine, one, other)
-        if common is not None and simultaneous(one, other):
-            yield one, other, common
+    """Yield pairs of transitions whose sources can be active at once.
+
+    Each pair comes with the state that contains both sources; the state is empty for regions of the
+    machine.
+    """
+    transitions = [
+        transition
+        for transition in machine.list_transitions()
+        if machine.vertices[transition.source].kind == "state"
+    ]
+    for left, right in combinations(transitions, 2):
+        state = _common_state_of_sources(machine, left, right)
+        if state is not None and can_be_simultaneous(left, right):
+            yield left, right, state
 
 
-def _common_state(machine: Machine, one: Transition, other: Transition) -> str | None:
-    """The state in different regions of which all their sources lie, None when there is none."""
-    found = [common_state(machine, a, b) for a in one.sources for b in other.sources]
-    return None if None in found else found[0]
+def _common_state_of_sources(machine: Machine, left: Transition, right: Transition) -> str | None:
+    """Return the state in different regions of which all sources of both lie, or None."""
+    states = [find_common_state(machine, a, b) for a in left.sources for b in right.sources]
+    return None if None in states else states[0]
 
 
-def _races(
+def _report_races(
     graph: Graph, machine: Machine, comparison: GuardComparison, sink: Sink
 ) -> Iterator[str]:
-    assigned = {one.id: _touched(machine, one) for one in machine.transitions()}
-    for one, other, _ in _orthogonal_pairs(machine):
-        shared = [variable for variable in assigned[one.id] if variable in assigned[other.id]]
-        if shared and comparison.are_compatible(one, other):
-            subject = graph.subject(graph[element_id(one.id)])
-            sink.report(RACE, subject, first=one.words, second=other.words, variable=shared[0])
-            yield one.id
+    """Report pairs that can assign one property in one step. Yield the ids of the first
+    transitions.
+    """
+    assigned = {
+        transition.id: _list_assigned(machine, transition)
+        for transition in machine.list_transitions()
+    }
+    for left, right, _ in _orthogonal_pairs(machine):
+        variables = [variable for variable in assigned[left.id] if variable in assigned[right.id]]
+        if variables and comparison.are_compatible(left, right):
+            subject = graph.subject(graph[element_id(left.id)])
+            sink.report(RACE, subject, first=left.words, second=right.words, variable=variables[0])
+            yield left.id
 
 
-def _touched(machine: Machine, transition: Transition) -> dict[str, None]:
-    """Properties that may be assigned when the transition is taken; no less, maybe more."""
-    ways = segments(machine, transition)
-    actions = [action for one in ways for action in one.effect]
-    changed = {machine.main_region(one) for one in ways}
-    for state in machine.states():
-        if not changed.isdisjoint(machine.around(state.id)):
+def _list_assigned(machine: Machine, transition: Transition) -> dict[str, None]:
+    """Return the properties that the compound transition may assign; the result may contain too
+    many.
+    """
+    segments = collect_segments(machine, transition)
+    actions = [action for segment in segments for action in segment.effect]
+    regions = {machine.find_main_region(segment) for segment in segments}
+    for state in machine.list_states():
+        if not regions.isdisjoint(machine.list_enclosing_regions(state.id)):
             actions += [*state.entry, *state.exit]
-            actions += _on_start(machine, state.regions)
+            actions += _list_initial_effects(machine, state.regions)
     return dict.fromkeys(action.variable for action in actions if isinstance(action, Assign))
 
 
-def _on_start(machine: Machine, regions: tuple[str, ...]) -> list[Action]:
-    starts = [machine.regions[one].initial for one in regions]
-    begun = [one for start in starts for one in machine.outgoing.get(start, ())]
-    return [action for one in begun for each in segments(machine, one) for action in each.effect]
+def _list_initial_effects(machine: Machine, regions: tuple[str, ...]) -> list[Action]:
+    """List the effects of the initial transitions of *regions*."""
+    initials = [machine.regions[item].initial for item in regions]
+    transitions = [item for start in initials for item in machine.outgoing.get(start, ())]
+    return [
+        action
+        for item in transitions
+        for segment in collect_segments(machine, item)
+        for action in segment.effect
+    ]
 
 
-def _crossings(
+def _report_crossings(
     graph: Graph, machine: Machine, comparison: GuardComparison, sink: Sink
 ) -> Iterator[str]:
-    for one, other, state in _orthogonal_pairs(machine):
-        for leaver, stayer in ((one, other), (other, one)):
-            if _leaves(machine, leaver, state) and comparison.are_compatible(one, other):
+    """Report exits from an orthogonal state that compete with a transition in another region.
+    Yield their ids.
+    """
+    for left, right, state in _orthogonal_pairs(machine):
+        for leaver, stayer in ((left, right), (right, left)):
+            if _can_leave(machine, leaver, state) and comparison.are_compatible(left, right):
                 subject = graph.subject(graph[element_id(leaver.id)])
                 sink.report(CROSSING, subject, first=leaver.words, second=stayer.words)
                 yield leaver.id
 
 
-def _leaves(machine: Machine, transition: Transition, state: str) -> bool:
-    """Whether taking the transition can leave the state, that is, change what is around it."""
+def _can_leave(machine: Machine, transition: Transition, state: str) -> bool:
+    """Return whether the transition can leave *state*."""
     if not state or transition.kind == "internal":
         return False
-    changed = [machine.main_region(one) for one in segments(machine, transition)]
-    owners = [machine.regions[region].state for region in changed if region]
+    regions = [machine.find_main_region(one) for one in collect_segments(machine, transition)]
+    owners = [machine.regions[region].state for region in regions if region]
     return any(
         owner != state and not (owner and machine.contains(state, owner)) for owner in owners
     )
@@ -264,33 +307,39 @@ OVERRIDDEN = rule(
 # -- nested states -----------------------------------------------------------------------------
 
 
-def report_overrides(
+def report_lost_events(
     graph: Graph, machine: Machine, comparison: GuardComparison, sink: Sink
 ) -> None:
-    """Report each transition whose event can be passed over without a trace."""
-    for outer in machine.transitions():
-        inner = list(_before(machine, outer, comparison))
+    """Report each transition whose event is lost if an inner transition is taken in the same
+    step.
+    """
+    for outer in machine.list_transitions():
+        inner = list(_find_preempting(machine, outer, comparison))
         if inner:
-            named = ", ".join(f"'{one.words}'" for one in inner)
+            names = ", ".join(f"'{transition.words}'" for transition in inner)
             subject = graph.subject(graph[element_id(outer.id)])
-            sink.report(OVERRIDDEN, subject, transition=f"'{outer.words}'", inner=named)
+            sink.report(OVERRIDDEN, subject, transition=f"'{outer.words}'", inner=names)
 
 
-def _before(
+def _find_preempting(
     machine: Machine, outer: Transition, comparison: GuardComparison
 ) -> Iterator[Transition]:
-    """Transitions from inside its source that can come in one step with what triggers it.
+    """Yield transitions inside the source of *outer* that can be taken in the step of its trigger.
 
-    Of two events only one comes in a step; times and changes come with anything.
+    A step has only one event, but times and changes can coincide with any other occurrence.
     """
-    waits_for_event = any(isinstance(one, OnEvent) for one in outer.occurrences)
-    waits_for_more = not all(isinstance(one, OnEvent) for one in outer.occurrences)
-    for inner in machine.transitions():
+    waits_for_event = any(isinstance(occurrence, OnEvent) for occurrence in outer.occurrences)
+    has_other_occurrence = not all(
+        isinstance(occurrence, OnEvent) for occurrence in outer.occurrences
+    )
+    for inner in machine.list_transitions():
         source = machine.vertices[inner.source]
         if source.kind != "state" or not machine.contains(outer.source, inner.source):
             continue
-        without_event = [one for one in inner.occurrences if not isinstance(one, OnEvent)]
-        is_unasked = bool(without_event) or not inner.occurrences
-        can_meet = waits_for_more or (waits_for_event and is_unasked)
+        other_occurrences = [
+            occurrence for occurrence in inner.occurrences if not isinstance(occurrence, OnEvent)
+        ]
+        needs_no_event = bool(other_occurrences) or not inner.occurrences
+        can_meet = has_other_occurrence or (waits_for_event and needs_no_event)
         if can_meet and comparison.are_compatible(outer, inner):
             yield inner

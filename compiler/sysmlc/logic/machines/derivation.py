@@ -1,7 +1,7 @@
-"""Contracts of state machines, derived from the drawing (design, section 7).
+"""Contracts of state machines, derived from the diagram.
 
-``step`` says what a step is; each conjunct here says one thing about it. The reaction to a
-step is seen in the next, so that guarantees prime what the system decides.
+``interpreter`` defines what a step is; each conjunct states one fact about it. The reaction to a
+step becomes visible in the next one, so guarantees prime the variables of the system.
 """
 
 from collections.abc import Callable, Iterator
@@ -18,7 +18,7 @@ from sysmlc.logic.contract import (
 )
 from sysmlc.logic.expressions.elaborate import condition
 from sysmlc.logic.formula import Const, Formula, Op
-from sysmlc.logic.machines import descriptions as words
+from sysmlc.logic.machines import descriptions as texts
 from sysmlc.logic.machines.machine import (
     INACTIVE,
     NO_EVENT,
@@ -27,26 +27,38 @@ from sysmlc.logic.machines.machine import (
     Vertex,
     element_id,
 )
-from sysmlc.logic.machines.moves import Derivation, Move, active, explore, is_picked
+from sysmlc.logic.machines.moves import (
+    Exploration,
+    Move,
+    explore_machine,
+    is_active_formula,
+    is_chosen_formula,
+)
 from sysmlc.logic.machines.paths import Path
 from sysmlc.logic.simplify import is_satisfiable, tidy
 
 _Touches = Callable[[Path, str], bool]
 
 
-def derive(graph: Graph, machine: Machine, component: str, sink: Sink) -> Contract | None:
-    """The contract of a state machine; None, reported, when it would be too large."""
-    work = explore(graph, machine, sink)
-    if work is None:
+def derive_contract(graph: Graph, machine: Machine, component: str, sink: Sink) -> Contract | None:
+    """Return the contract of a state machine, or None if it would be too large, which is
+    reported.
+    """
+    exploration = explore_machine(graph, machine, sink)
+    if exploration is None:
         return None
-    assumptions = tuple(_assumptions(work))
+    assumptions = tuple(_derive_assumptions(exploration))
     guarantees = (
-        *_initial(work),
-        *(c for move in work.moves for c in _transition(work, move)),
-        *_choices(work),
-        *_frames(work),
-        *_clocks(work),
-        *_derived_values(work),
+        *_derive_start(exploration),
+        *(
+            conjunct
+            for move in exploration.moves
+            for conjunct in _derive_transition(exploration, move)
+        ),
+        *_derive_choices(exploration),
+        *_derive_frames(exploration),
+        *_derive_clocks(exploration),
+        *_derive_memories(exploration),
     )
     return Contract(component, machine.id, machine.variables, assumptions, guarantees)
 
@@ -54,135 +66,163 @@ def derive(graph: Graph, machine: Machine, component: str, sink: Sink) -> Contra
 # -- initial states ----------------------------------------------------------------------------
 
 
-def _initial(work: Derivation) -> Iterator[Conjunct]:
-    rows = [_start_row(work, path) for path in work.starts]
-    if not rows:
-        origin = work.machine.id
+def _derive_start(exploration: Exploration) -> Iterator[Conjunct]:
+    """Yield the initial conditions: facts common to all initial paths one by one, then their
+    alternatives.
+    """
+    alternatives = [_initial_facts(exploration, path) for path in exploration.starts]
+    if not alternatives:
+        origin = exploration.machine.id
         yield Conjunct(f.FALSE, Class.INIT, origin, "No initial transition can be taken.")
         return
-    for name in rows[0]:
-        if all(row[name] == rows[0][name] for row in rows) and rows[0][name] != f.TRUE:
-            origin = _origin(work, name)
-            yield Conjunct(rows[0][name], Class.INIT, origin, words.initial(rows[0][name]))
-    yield from _alternative_starts(work, rows)
+    for name in alternatives[0]:
+        if (
+            all(facts[name] == alternatives[0][name] for facts in alternatives)
+            and alternatives[0][name] != f.TRUE
+        ):
+            origin = _origin_of(exploration, name)
+            yield Conjunct(
+                alternatives[0][name],
+                Class.INIT,
+                origin,
+                texts.describe_start(alternatives[0][name]),
+            )
+    yield from _derive_start_alternatives(exploration, alternatives)
 
 
-def _alternative_starts(work: Derivation, rows: list[dict[str, Formula]]) -> Iterator[Conjunct]:
-    differing = [name for name in rows[0] if any(row[name] != rows[0][name] for row in rows)]
-    ways = [
-        f.both(path.when, *(row[name] for name in differing))
-        for path, row in zip(work.starts, rows, strict=True)
+def _derive_start_alternatives(
+    exploration: Exploration, alternatives: list[dict[str, Formula]]
+) -> Iterator[Conjunct]:
+    """Yield the disjunction over the initial paths of the facts in which they differ."""
+    differing = [
+        name
+        for name in alternatives[0]
+        if any(facts[name] != alternatives[0][name] for facts in alternatives)
     ]
-    formula = f.either(*ways)
+    formulas = [
+        f.both(path.when, *(facts[name] for name in differing))
+        for path, facts in zip(exploration.starts, alternatives, strict=True)
+    ]
+    formula = f.either(*formulas)
     if formula != f.TRUE:
-        yield Conjunct(formula, Class.INIT, work.machine.id, words.INITIAL_WAYS)
+        yield Conjunct(formula, Class.INIT, exploration.machine.id, texts.INITIAL_ALTERNATIVES)
 
 
-def _start_row(work: Derivation, path: Path) -> dict[str, Formula]:
-    """What the first step says of each variable on one path."""
-    machine = work.machine
-    row: dict[str, Formula] = {}
+def _initial_facts(exploration: Exploration, path: Path) -> dict[str, Formula]:
+    """Return, by variable, what holds in the first step on one initial path."""
+    machine = exploration.machine
+    facts: dict[str, Formula] = {}
     for region in machine.regions.values():
         literal = path.entered.get(region.variable, INACTIVE)
-        row[region.variable] = f.eq(f.var(region.variable), Const(literal))
+        facts[region.variable] = f.eq(f.var(region.variable), Const(literal))
         if region.memory:
-            row[region.memory] = f.eq(f.var(region.memory), Const(INACTIVE))
+            facts[region.memory] = f.eq(f.var(region.memory), Const(INACTIVE))
     for name in machine.assigned:
-        row[name] = _start_value(work, path, name)
+        facts[name] = _initial_value_fact(exploration, path, name)
     for name in machine.outputs:
-        row[name] = f.var(name) if name in path.raised else f.negate(f.var(name))
+        facts[name] = f.var(name) if name in path.raised else f.negate(f.var(name))
     for state in machine.vertices.values():
         if state.pick:
             literal = path.picked.get(state.pick, NO_EVENT)
-            row[state.pick] = f.eq(f.var(state.pick), Const(literal))
+            facts[state.pick] = f.eq(f.var(state.pick), Const(literal))
         if state.timer:
-            row[state.timer] = f.eq(f.var(state.timer), Const(0))
+            facts[state.timer] = f.eq(f.var(state.timer), Const(0))
     for name, expression in machine.memories.items():
-        row[name] = f.iff(f.var(name), condition(expression, machine.scope))
-    return row
+        facts[name] = f.iff(f.var(name), condition(expression, machine.scope))
+    return facts
 
 
-def _start_value(work: Derivation, path: Path, name: str) -> Formula:
+def _initial_value_fact(exploration: Exploration, path: Path, name: str) -> Formula:
     value = path.values.get(name)
-    return f.TRUE if value is None else _equal(work, name, value, is_primed=False)
+    return f.TRUE if value is None else _equality(exploration, name, value, is_primed=False)
 
 
-def _equal(work: Derivation, name: str, value: Formula, is_primed: bool) -> Formula:
+def _equality(exploration: Exploration, name: str, value: Formula, is_primed: bool) -> Formula:
     variable = f.primed(f.var(name)) if is_primed else f.var(name)
     if isinstance(value, Const) and isinstance(value.value, bool):
         return variable if value.value else f.negate(variable)
-    if _is_boolean(work, name):
+    if _is_boolean(exploration, name):
         return f.iff(variable, value)
     return f.eq(variable, value)
 
 
-def _is_boolean(work: Derivation, name: str) -> bool:
-    return isinstance(work.domains[name], BooleanDomain)
+def _is_boolean(exploration: Exploration, name: str) -> bool:
+    return isinstance(exploration.domains[name], BooleanDomain)
 
 
-def _origin(work: Derivation, name: str) -> str:
-    return work.machine.variable(name).origin or work.machine.id
+def _origin_of(exploration: Exploration, name: str) -> str:
+    return exploration.machine.find_variable(name).origin or exploration.machine.id
 
 
 # -- transitions -------------------------------------------------------------------------------
 
 
-def _transition(work: Derivation, move: Move) -> Iterator[Conjunct]:
+def _derive_transition(exploration: Exploration, move: Move) -> Iterator[Conjunct]:
+    """Yield one conjunct for each path of a transition, and one that it takes some path."""
     origin = element_id(move.transition.id)
     for path in move.paths:
-        chosen = [is_picked(p, literal) for p, literal in _passed_picks(work, move, path)]
-        taken = tidy(f.both(move.fires, path.when, *chosen), work.domains)
-        formula = f.implies(taken, f.both(*_effects(work, path)))
+        choices = [
+            is_chosen_formula(pick, literal)
+            for pick, literal in _choices_on_path(exploration, move, path)
+        ]
+        taken = tidy(f.both(move.fires, path.when, *choices), exploration.domains)
+        formula = f.implies(taken, f.both(*_effect_formulas(exploration, path)))
         if formula != f.TRUE:
-            way = tidy(path.when, work.domains, _conjuncts(move.fires))
-            first = [one.transition for one in _overtaking(work, move, path)]
-            text = words.transition(work.machine, move.transition, path, way, first)
+            branch = tidy(path.when, exploration.domains, _conjuncts(move.fires))
+            preempting = [item.transition for item in _find_overtaking(exploration, move, path)]
+            text = texts.describe_transition(
+                exploration.machine, move.transition, path, branch, preempting
+            )
             yield Conjunct(formula, Class.SAFETY, origin, text)
-    if any(list(_passed_picks(work, move, path)) for path in move.paths):
-        ways = [
-            f.both(path.when, *(is_picked(*p) for p in _passed_picks(work, move, path)))
+    if any(list(_choices_on_path(exploration, move, path)) for path in move.paths):
+        branches = [
+            f.both(
+                path.when,
+                *(is_chosen_formula(*pick) for pick in _choices_on_path(exploration, move, path)),
+            )
             for path in move.paths
         ]
-        formula = f.implies(move.fires, f.either(*ways))
-        yield Conjunct(formula, Class.SAFETY, origin, words.some_way(move.transition))
+        formula = f.implies(move.fires, f.either(*branches))
+        yield Conjunct(formula, Class.SAFETY, origin, texts.describe_branches(move.transition))
 
 
-def _overtaking(work: Derivation, move: Move, path: Path) -> Iterator[Move]:
-    """What may be taken first where the transition could be taken along the path."""
+def _find_overtaking(exploration: Exploration, move: Move, path: Path) -> Iterator[Move]:
+    """Yield the moves that may preempt the transition where *path* is feasible."""
     for other in move.before:
-        if is_satisfiable(f.both(move.enabled, path.when, other.enabled), work.domains):
+        if is_satisfiable(f.both(move.enabled, path.when, other.enabled), exploration.domains):
             yield other
 
 
-def _passed_picks(work: Derivation, move: Move, path: Path) -> Iterator[tuple[str, str]]:
-    """Choices made at pseudostates on the way."""
-    own = work.machine.vertices[move.transition.source].pick
-    yield from ((pick, literal) for pick, literal in path.picked.items() if pick != own)
+def _choices_on_path(exploration: Exploration, move: Move, path: Path) -> Iterator[tuple[str, str]]:
+    """Yield the choices made at pseudostates on the path."""
+    source_pick = exploration.machine.vertices[move.transition.source].pick
+    yield from ((pick, literal) for pick, literal in path.picked.items() if pick != source_pick)
 
 
-def _effects(work: Derivation, path: Path) -> Iterator[Formula]:
+def _effect_formulas(exploration: Exploration, path: Path) -> Iterator[Formula]:
+    """Yield what holds in the next step when the path is taken."""
     for variable, literal in path.entered.items():
         yield f.primed(f.eq(f.var(variable), Const(literal)))
     for name, value in path.values.items():
-        yield _equal(work, name, value, is_primed=True)
+        yield _equality(exploration, name, value, is_primed=True)
     for name in path.raised:
         yield f.primed(f.var(name))
 
 
-def _choices(work: Derivation) -> Iterator[Conjunct]:
-    """A state with competing transitions takes one of those that can be taken."""
-    machine = work.machine
-    for state in machine.states():
+def _derive_choices(exploration: Exploration) -> Iterator[Conjunct]:
+    """Yield that a state with competing transitions takes one of those that are enabled."""
+    machine = exploration.machine
+    for state in machine.list_states():
         if not state.pick:
             continue
-        moves = [move for move in work.moves if move.transition.source == state.id]
-        eligible = [
-            f.both(*(part for part in _conjuncts(move.fires) if not _is_prime(part)))
+        moves = [move for move in exploration.moves if move.transition.source == state.id]
+        eligibility = [
+            f.both(*(conjunct for conjunct in _conjuncts(move.fires) if not _has_primes(conjunct)))
             for move in moves
         ]
-        formula = f.implies(f.either(*eligible), f.either(*(move.fires for move in moves)))
+        formula = f.implies(f.either(*eligibility), f.either(*(move.fires for move in moves)))
         origin = element_id(state.id)
-        yield Conjunct(formula, Class.SAFETY, origin, words.choice(machine, state))
+        yield Conjunct(formula, Class.SAFETY, origin, texts.describe_choice(machine, state))
 
 
 def _conjuncts(formula: Formula) -> tuple[Formula, ...]:
@@ -190,120 +230,148 @@ def _conjuncts(formula: Formula) -> tuple[Formula, ...]:
     return formula.args if is_and and isinstance(formula, f.Apply) else (formula,)
 
 
-def _is_prime(formula: Formula) -> bool:
-    return any(one.primed for one in f.variables(formula))
+def _has_primes(formula: Formula) -> bool:
+    return any(variable.primed for variable in f.variables(formula))
 
 
 # -- frames ------------------------------------------------------------------------------------
 
 
-def _frames(work: Derivation) -> Iterator[Conjunct]:
-    machine = work.machine
+def _derive_frames(exploration: Exploration) -> Iterator[Conjunct]:
+    machine = exploration.machine
     for region in machine.regions.values():
-        yield _frame(work, region.variable, lambda path, name: name in path.entered)
+        yield _derive_frame(exploration, region.variable, lambda path, name: name in path.entered)
     for name in machine.assigned:
-        yield _frame(work, name, lambda path, name: name in path.values)
+        yield _derive_frame(exploration, name, lambda path, name: name in path.values)
     for name in machine.outputs:
-        yield _frame(work, name, lambda path, name: name in path.raised)
+        yield _derive_frame(exploration, name, lambda path, name: name in path.raised)
     for vertex in machine.vertices.values():
         if vertex.pick:
-            yield _frame(work, vertex.pick, lambda path, name: name in path.picked)
+            yield _derive_frame(exploration, vertex.pick, lambda path, name: name in path.picked)
 
 
-def _frame(work: Derivation, name: str, touches: _Touches) -> Conjunct:
-    """What no transition changes keeps its value; what none does is not done."""
-    changes = [change for move in work.moves for change in _changes(work, move, name, touches)]
-    formula = f.either(*changes, _rest(work, name))
+def _derive_frame(exploration: Exploration, name: str, touches: _Touches) -> Conjunct:
+    """Return the frame condition of a variable: it keeps its value, or its neutral value, unless
+    a move changes it.
+    """
+    changes = [
+        change
+        for move in exploration.moves
+        for change in _change_conditions(exploration, move, name, touches)
+    ]
+    formula = f.either(*changes, _frame_formula(exploration, name))
     if changes:
-        formula = f.implies(f.negate(f.either(*changes)), _rest(work, name))
-    return Conjunct(formula, Class.SAFETY, _origin(work, name), words.frame(work.machine, name))
+        formula = f.implies(f.negate(f.either(*changes)), _frame_formula(exploration, name))
+    return Conjunct(
+        formula,
+        Class.SAFETY,
+        _origin_of(exploration, name),
+        texts.describe_frame(exploration.machine, name),
+    )
 
 
-def _rest(work: Derivation, name: str) -> Formula:
-    machine = work.machine
+def _frame_formula(exploration: Exploration, name: str) -> Formula:
+    """Return what holds in the next step if no move changes the variable."""
+    machine = exploration.machine
     if name in machine.outputs:
         return f.negate(f.primed(f.var(name)))
     if any(vertex.pick == name for vertex in machine.vertices.values()):
         return f.primed(f.eq(f.var(name), Const(NO_EVENT)))
-    return _equal(work, name, f.var(name), is_primed=True)
+    return _equality(exploration, name, f.var(name), is_primed=True)
 
 
-def _changes(work: Derivation, move: Move, name: str, touches: _Touches) -> Iterator[Formula]:
+def _change_conditions(
+    exploration: Exploration, move: Move, name: str, touches: _Touches
+) -> Iterator[Formula]:
+    """Yield the conditions under which the move changes the variable."""
     touching = [path for path in move.paths if touches(path, name)]
     if touching and len(touching) == len(move.paths):
         yield move.fires
         return
     for path in touching:
-        picks = [is_picked(*pick) for pick in _passed_picks(work, move, path)]
-        yield tidy(f.both(move.fires, path.when, *picks), work.domains)
+        choices = [is_chosen_formula(*pick) for pick in _choices_on_path(exploration, move, path)]
+        yield tidy(f.both(move.fires, path.when, *choices), exploration.domains)
 
 
 # -- clocks, memories, activities --------------------------------------------------------------
 
 
-def _clocks(work: Derivation) -> Iterator[Conjunct]:
-    for state in work.machine.states():
+def _derive_clocks(exploration: Exploration) -> Iterator[Conjunct]:
+    """Yield the behaviour of the timers: count while the state stays active, stop at the bound,
+    else 0.
+    """
+    for state in exploration.machine.list_states():
         if not state.timer:
             continue
-        clock, stays = f.var(state.timer), _stays(work, state)
-        bound = work.domains[state.timer]
+        clock, stay = f.var(state.timer), _stay_condition(exploration, state)
+        bound = exploration.domains[state.timer]
         assert isinstance(bound, IntegerDomain)
-        below = f.compare(Op.LT, clock, Const(bound.high))
-        after = f.compare(Op.ADD, clock, Const(1))
-        full = f.eq(clock, Const(bound.high))
-        rows = (
-            (f.both(stays, below), f.eq(f.primed(clock), after), words.CLOCK_RUNS),
-            (f.both(stays, full), f.eq(f.primed(clock), Const(bound.high)), words.CLOCK_STOPS),
-            (f.negate(stays), f.eq(f.primed(clock), Const(0)), words.CLOCK_RESETS),
+        is_below = f.compare(Op.LT, clock, Const(bound.high))
+        incremented = f.compare(Op.ADD, clock, Const(1))
+        is_full = f.eq(clock, Const(bound.high))
+        cases = (
+            (f.both(stay, is_below), f.eq(f.primed(clock), incremented), texts.CLOCK_RUNS),
+            (f.both(stay, is_full), f.eq(f.primed(clock), Const(bound.high)), texts.CLOCK_STOPS),
+            (f.negate(stay), f.eq(f.primed(clock), Const(0)), texts.CLOCK_RESETS),
         )
-        for when, then, text in rows:
+        for case, update, text in cases:
             text = text.format(clock=state.timer, state=state.literal)
-            formula = tidy(f.implies(when, then), work.domains)
+            formula = tidy(f.implies(case, update), exploration.domains)
             yield Conjunct(formula, Class.SAFETY, element_id(state.id), text)
 
 
-def _stays(work: Derivation, state: Vertex) -> Formula:
-    leaving = [
+def _stay_condition(exploration: Exploration, state: Vertex) -> Formula:
+    """Return the condition that a state is active and not left in this step."""
+    exits = [
         change
-        for move in work.moves
-        for change in _changes(work, move, state.id, lambda path, id: id in path.left)
+        for move in exploration.moves
+        for change in _change_conditions(
+            exploration, move, state.id, lambda path, id: id in path.left
+        )
     ]
-    stays = f.both(active(work.machine, state.id), *(f.negate(one) for one in leaving))
-    return tidy(stays, work.domains)
+    formula = f.both(
+        is_active_formula(exploration.machine, state.id),
+        *(f.negate(condition) for condition in exits),
+    )
+    return tidy(formula, exploration.domains)
 
 
-def _derived_values(work: Derivation) -> Iterator[Conjunct]:
-    machine = work.machine
+def _derive_memories(exploration: Exploration) -> Iterator[Conjunct]:
+    """Yield the values of memories, history variables and do behaviours."""
+    machine = exploration.machine
     for name, expression in machine.memories.items():
         truth = condition(expression, machine.scope)
         formula = f.iff(f.primed(f.var(name)), truth)
-        yield Conjunct(formula, Class.SAFETY, _origin(work, name), words.memory(name, truth))
+        yield Conjunct(
+            formula, Class.SAFETY, _origin_of(exploration, name), texts.describe_memory(name, truth)
+        )
     for region in machine.regions.values():
         if region.memory:
-            yield from _history(work, region)
-    for state in machine.states():
+            yield from _derive_history(exploration, region)
+    for state in machine.list_states():
         if state.do:
-            formula = f.iff(f.var(state.do), active(machine, state.id))
-            text = words.activity(state)
-            yield Conjunct(formula, Class.SAFETY, _origin(work, state.do), text)
+            formula = f.iff(f.var(state.do), is_active_formula(machine, state.id))
+            text = texts.describe_do_behaviour(state)
+            yield Conjunct(formula, Class.SAFETY, _origin_of(exploration, state.do), text)
 
 
-def _history(work: Derivation, region: Region) -> Iterator[Conjunct]:
-    """What a region was when it was last active."""
-    origin, after = _origin(work, region.memory), f.primed(f.var(region.memory))
-    is_off = f.eq(f.var(region.variable), Const(INACTIVE))
-    state = work.machine.vertices[region.state].literal
-    now = f.implies(f.negate(is_off), f.eq(after, f.var(region.variable)))
-    text = words.REMEMBERS.format(memory=region.memory, region=region.variable)
-    yield Conjunct(tidy(now, work.domains), Class.SAFETY, origin, text)
-    kept = f.implies(is_off, f.eq(after, f.var(region.memory)))
-    text = words.KEEPS.format(memory=region.memory, state=state)
-    yield Conjunct(kept, Class.SAFETY, origin, text)
+def _derive_history(exploration: Exploration, region: Region) -> Iterator[Conjunct]:
+    """Yield how the variable behind a history pseudostate is updated and kept."""
+    origin, next_memory = _origin_of(exploration, region.memory), f.primed(f.var(region.memory))
+    is_inactive = f.eq(f.var(region.variable), Const(INACTIVE))
+    state = exploration.machine.vertices[region.state].literal
+    update = f.implies(f.negate(is_inactive), f.eq(next_memory, f.var(region.variable)))
+    text = texts.UPDATES_MEMORY.format(memory=region.memory, region=region.variable)
+    yield Conjunct(tidy(update, exploration.domains), Class.SAFETY, origin, text)
+    frame = f.implies(is_inactive, f.eq(next_memory, f.var(region.memory)))
+    text = texts.KEEPS_MEMORY.format(memory=region.memory, state=state)
+    yield Conjunct(frame, Class.SAFETY, origin, text)
 
 
-def _assumptions(work: Derivation) -> Iterator[Conjunct]:
-    for state in work.machine.states():
+def _derive_assumptions(exploration: Exploration) -> Iterator[Conjunct]:
+    """Yield that each do behaviour ends again and again."""
+    for state in exploration.machine.list_states():
         if state.done:
             formula = f.either(f.negate(f.var(state.do)), f.var(state.done))
             origin = element_id(state.id)
-            yield Conjunct(formula, Class.LIVENESS, origin, words.ends(state))
+            yield Conjunct(formula, Class.LIVENESS, origin, texts.describe_end(state))

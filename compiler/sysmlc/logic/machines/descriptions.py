@@ -1,4 +1,4 @@
-"""What the conjuncts of a state machine's contract say, in the modeller's words."""
+"""Texts of the conjuncts in the contract of a state machine."""
 
 from collections.abc import Sequence
 
@@ -9,10 +9,10 @@ from sysmlc.logic.machines.machine import (
     Machine,
     Occurrence,
     OnEvent,
+    OnInput,
     OnRise,
     Transition,
     Vertex,
-    WhenTold,
 )
 from sysmlc.logic.machines.paths import Path
 from sysmlc.logic.printing import print_formula, print_literal
@@ -20,34 +20,46 @@ from sysmlc.logic.printing import print_formula, print_literal
 CLOCK_RUNS = "'{clock}' counts the steps that '{state}' has been active."
 CLOCK_STOPS = "'{clock}' stops counting when no transition waits for more."
 CLOCK_RESETS = "'{clock}' is 0 when '{state}' is entered and while it is not active."
-REMEMBERS = "'{memory}' says what '{region}' was, one step later."
-KEEPS = "'{memory}' keeps what it says while '{state}' is not active: history leads back to it."
-INITIAL_WAYS = "The initial transition is taken on one of the ways that are open."
+UPDATES_MEMORY = "'{memory}' says what '{region}' was, one step later."
+KEEPS_MEMORY = (
+    "'{memory}' keeps what it says while '{state}' is not active: history leads back to it."
+)
+INITIAL_ALTERNATIVES = "The initial transition is taken on one of the ways that are open."
 
 
-def name_transition(one: Transition) -> str:
-    """The transition as diagnostics name it."""
-    return f"transition '{one.words}'"
+def name_transition(transition: Transition) -> str:
+    """Return the transition as diagnostics name it."""
+    return f"transition '{transition.words}'"
 
 
-def transition(
-    machine: Machine, one: Transition, path: Path, way: Formula, first: Sequence[Transition] = ()
+def describe_transition(
+    machine: Machine,
+    transition: Transition,
+    path: Path,
+    condition: Formula,
+    preempting: Sequence[Transition] = (),
 ) -> str:
-    """What taking the transition on this path means; ``way`` is what tells it from others,
-    ``first`` are transitions that are taken instead where they can be.
+    """Describe what happens when the transition is taken on *path*.
+
+    *condition* distinguishes the path from the others; *preempting* are the transitions
+    that preempt this one.
     """
-    source = "' and '".join(machine.vertices[each].literal for each in one.sources)
-    reasons = " or ".join(_occurrence(each) for each in one.occurrences)
-    when = reasons or (f"'{source}' are complete" if one.also else f"'{source}' is complete")
-    guard = [] if one.guard is None else [f"[{_shown(one.guard)}]"]
-    chosen = [] if way == TRUE else [print_formula(way)]
-    conditions = " and ".join([when, *guard, *chosen])
-    names = " or ".join(dict.fromkeys(name_transition(each) for each in first))
-    unless = f", unless {names} goes first" if names else ""
-    return f"In '{source}', when {conditions}{unless}: {_outcome(machine, one, path)}."
+    source = "' and '".join(machine.vertices[source_id].literal for source_id in transition.sources)
+    reasons = " or ".join(_describe_occurrence(occurrence) for occurrence in transition.occurrences)
+    when = reasons or (
+        f"'{source}' are complete" if transition.join_partners else f"'{source}' is complete"
+    )
+    guards = [] if transition.guard is None else [f"[{_print_expression(transition.guard)}]"]
+    branch_conditions = [] if condition == TRUE else [print_formula(condition)]
+    conditions = " and ".join([when, *guards, *branch_conditions])
+    preempting_names = " or ".join(dict.fromkeys(name_transition(other) for other in preempting))
+    unless = f", unless {preempting_names} goes first" if preempting_names else ""
+    return (
+        f"In '{source}', when {conditions}{unless}: {_describe_outcome(machine, transition, path)}."
+    )
 
 
-def _occurrence(occurrence: Occurrence) -> str:
+def _describe_occurrence(occurrence: Occurrence) -> str:
     match occurrence:
         case OnEvent(None):
             return "any event occurs"
@@ -56,54 +68,54 @@ def _occurrence(occurrence: Occurrence) -> str:
         case AfterTicks(count):
             return f"{count} step{'s' * (count != 1)} have passed since it was entered"
         case OnRise(_, condition):
-            return f"'{_shown(condition)}' becomes true"
-        case WhenTold(variable):
+            return f"'{_print_expression(condition)}' becomes true"
+        case OnInput(variable):
             return f"'{variable}' is reported"
 
 
-def _shown(expression: Expression) -> str:
+def _print_expression(expression: Expression) -> str:
     return dotted(expression) or print_expression(expression)
 
 
-def _outcome(machine: Machine, one: Transition, path: Path) -> str:
-    parts = [_next_state(machine, one, path)]
-    parts += [f"'{name}' becomes {_value(value)}" for name, value in path.values.items()]
+def _describe_outcome(machine: Machine, transition: Transition, path: Path) -> str:
+    parts = [_describe_next_state(machine, transition, path)]
+    parts += [f"'{name}' becomes {_print_value(value)}" for name, value in path.values.items()]
     parts += [f"'{name}' is done" for name in path.raised]
     return ", ".join(part for part in parts if part) or "nothing else happens"
 
 
-def _next_state(machine: Machine, one: Transition, path: Path) -> str:
-    reached = [literal for literal in path.entered.values() if literal != "inactive"]
-    if one.kind == "internal":
+def _describe_next_state(machine: Machine, transition: Transition, path: Path) -> str:
+    literals = [literal for literal in path.entered.values() if literal != "inactive"]
+    if transition.kind == "internal":
         return "the state stays"
-    source = machine.vertices[one.source].literal
-    if reached == [source]:
+    source = machine.vertices[transition.source].literal
+    if literals == [source]:
         return f"'{source}' is left and entered again"
-    return "the next state is " + " with ".join(f"'{literal}'" for literal in reached)
+    return "the next state is " + " with ".join(f"'{literal}'" for literal in literals)
 
 
-def _value(value: Formula) -> str:
+def _print_value(value: Formula) -> str:
     return print_literal(value.value) if isinstance(value, Const) else print_formula(value)
 
 
-def some_way(one: Transition) -> str:
-    """A transition that passes a choice takes one of its open branches."""
-    return f"Transition '{one.words}' takes one of the branches that are open."
+def describe_branches(transition: Transition) -> str:
+    """Describe that a transition through a choice takes one of the open branches."""
+    return f"Transition '{transition.words}' takes one of the branches that are open."
 
 
-def choice(machine: Machine, state: Vertex) -> str:
-    """A state with competing transitions takes one of them."""
-    named = ", ".join(f"'{one.words}'" for one in machine.outgoing[state.id])
-    return f"When several of {named} can be taken, '{state.pick}' says which one is."
+def describe_choice(machine: Machine, state: Vertex) -> str:
+    """Describe that a state with competing transitions takes one of them."""
+    names = ", ".join(f"'{transition.words}'" for transition in machine.outgoing[state.id])
+    return f"When several of {names} can be taken, '{state.pick}' says which one is."
 
 
-def initial(formula: Formula) -> str:
-    """One fact about the first step."""
+def describe_start(formula: Formula) -> str:
+    """Describe one condition on the first step."""
     return f"At the start: {print_formula(formula)}."
 
 
-def frame(machine: Machine, name: str) -> str:
-    """What happens to a variable when no transition touches it."""
+def describe_frame(machine: Machine, name: str) -> str:
+    """Describe the frame condition of a variable."""
     if name in machine.outputs:
         return f"'{name}' is done only by the transitions and states that name it."
     if any(vertex.pick == name for vertex in machine.vertices.values()):
@@ -111,16 +123,16 @@ def frame(machine: Machine, name: str) -> str:
     return f"'{name}' changes only by transitions that change it."
 
 
-def memory(name: str, truth: Formula) -> str:
-    """A memory holds a condition of the step before."""
+def describe_memory(name: str, truth: Formula) -> str:
+    """Describe that a memory stores the truth of a condition in the step before."""
     return f"'{name}' says whether {print_formula(truth)} held in the step before."
 
 
-def activity(state: Vertex) -> str:
-    """The do behaviour of a state."""
+def describe_do_behaviour(state: Vertex) -> str:
+    """Describe when the do behaviour of a state runs."""
     return f"'{state.do}' is done exactly while '{state.literal}' is active."
 
 
-def ends(state: Vertex) -> str:
-    """The assumption that a do behaviour ends."""
+def describe_end(state: Vertex) -> str:
+    """Describe the assumption that a do behaviour ends."""
     return f"'{state.do}' does not go on for ever: '{state.done}' is reported again and again."

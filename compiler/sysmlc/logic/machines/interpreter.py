@@ -1,29 +1,31 @@
-"""Reference interpreter of state machines: what one step of a diagram is.
+"""Reference interpreter of state machines; this docstring defines what one step is.
 
-It runs what is drawn and knows nothing of formulas: it is the judge of the derivation.
-A trace is a list of valuations. The reaction to the inputs of one step is seen in the next:
+The interpreter executes the diagram and reads no formulas, so that tests can compare the derived
+contracts with it. A trace is a list of valuations. The reaction to the inputs of one step is
+visible in the next step:
 
-- In a step the environment gives at most one event (``event``), the values of the properties
+- In a step the environment provides at most one event (``event``), the values of the properties
   that the machine does not assign, and the Booleans that only it knows. All occurrences of a
   step (event, time, rising condition, completion) are simultaneous.
-- A transition is enabled when its source is active, one of its triggers occurs, its guard is
-  true, and its way through pseudostates ends in a state. A completion transition is enabled
-  while its source is complete: inner regions in final states, do behaviour done; it goes
+- A transition is enabled if its source is active, one of its triggers occurs, its guard is
+  true, and its path through pseudostates ends in a state. A completion transition is enabled
+  while its source is complete: inner regions in final states, do behaviour finished. It goes
   before the triggered transitions of the same source. Inner transitions go before outer ones;
   orthogonal regions react independently, each reading the values before the step.
-- Taking a transition runs exit behaviours (innermost first), effects, entry behaviours
-  (outermost first) in sequence, for each transition on the way: a state is left when the way
-  leads out of it, and entered when it leads in. Regions of entered states to which no way leads
-  start by themselves. Guards behind a choice read the values reached there, other guards those
-  before the transition. Values that would leave a range stop at its bound.
-- All transitions that leave a fork are taken, in their order. Those that lead to a join are one
-  transition: enabled when all their sources are complete and nothing inside them is enabled.
-- A history pseudostate leads to the state that its region was in when it was last active, a
-  deep one to all that was active in it; where it never was, or was in a final state, its own
-  transition is taken, else the region starts by itself.
-- An event that enables nothing is lost. So is one that comes with a completion.
+- Taking a transition runs exit behaviours (innermost first), effects and entry behaviours
+  (outermost first) in sequence, for each transition on the path: a state is left if the path
+  leads out of it, and entered if it leads in. Regions of entered states that the path does not
+  enter start with their initial transitions. Guards behind a choice read the values reached
+  there, other guards the values before the transition. A value outside a range is clamped.
+- All transitions that leave a fork are taken, in their order. The transitions that lead to a
+  join are one transition: it is enabled if all their sources are complete and nothing inside
+  the sources is enabled.
+- A history pseudostate leads to the state in which its region was last active; deep history
+  restores all states inside it too. If the region was never active, or ended in a final state,
+  the pseudostate's own transition is taken, else the region starts.
+- An event that enables nothing is lost. So is an event that coincides with a completion.
 
-UML 2.5.1 clauses 14.2.3.8 and 14.2.3.9; one step a run to completion.
+UML 2.5.1 clauses 14.2.3.8 and 14.2.3.9; a step is a run-to-completion step.
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -39,197 +41,248 @@ from sysmlc.logic.machines.machine import (
     Machine,
     Occurrence,
     OnEvent,
+    OnInput,
     OnRise,
     Vertex,
-    WhenTold,
 )
 from sysmlc.logic.machines.reaction import (
-    Run,
-    active_in,
-    begin,
-    bounded,
-    fill,
+    Reaction,
+    clamp,
+    evaluate_expression,
+    find_active_vertices,
     is_active,
-    last_of,
-    take,
-    value_of,
+    last_literal,
+    start_open_regions,
+    start_region,
+    take_transition,
 )
 
 Valuation = dict[str, Literal]
 
 
-def inputs_of(machine: Machine) -> list[Variable]:
-    """The variables that the environment decides."""
-    return [one for one in machine.variables if one.owner is Owner.ENVIRONMENT]
+def list_inputs(machine: Machine) -> list[Variable]:
+    """List the variables that the environment decides."""
+    return [variable for variable in machine.variables if variable.owner is Owner.ENVIRONMENT]
 
 
-def initial(machine: Machine, inputs: Mapping[str, Literal]) -> list[Valuation]:
-    """All first steps with these inputs: the initial states entered.
+def initial_steps(machine: Machine, inputs: Mapping[str, Literal]) -> list[Valuation]:
+    """Return all first steps with these inputs: the initial states are entered.
 
-    A property without default value starts with any value of its domain.
+    A property without a default starts with any value of its domain.
     """
-    found: list[Valuation] = []
-    for start in _starts(machine, inputs):
-        before = _inactive(machine) | start
-        runs = [Run(before)]
+    valuations: list[Valuation] = []
+    for start in _initial_valuations(machine, inputs):
+        before = _inactive_regions(machine) | start
+        runs = [Reaction(before)]
         for region in machine.top:
-            begun = [after for run in runs for after in begin(machine, run, None, region)]
-            runs = [after for run in begun for after in fill(machine, run, None)]
-        found += [_settle(machine, before, run, inputs, first=True) for run in runs]
-    return _distinct(found)
+            started = [
+                after
+                for reaction in runs
+                for after in start_region(machine, reaction, None, region)
+            ]
+            runs = [
+                after
+                for reaction in started
+                for after in start_open_regions(machine, reaction, None)
+            ]
+        valuations += [
+            _complete_valuation(machine, before, reaction, inputs, is_first=True)
+            for reaction in runs
+        ]
+    return _drop_duplicates(valuations)
 
 
-def successors(
+def next_steps(
     machine: Machine, now: Mapping[str, Literal], inputs: Mapping[str, Literal]
 ) -> list[Valuation]:
-    """All steps that may follow ``now`` when the next step has these inputs."""
-    runs = [_settle(machine, now, run, inputs, first=False) for run in _reactions(machine, now)]
-    return _distinct(runs)
+    """Return all steps that may follow *now* if the next step has the given inputs."""
+    valuations = [
+        _complete_valuation(machine, now, reaction, inputs, is_first=False)
+        for reaction in _list_reactions(machine, now)
+    ]
+    return _drop_duplicates(valuations)
 
 
-def run(
+def run_trace(
     machine: Machine,
     inputs: Sequence[Mapping[str, Literal]],
     choose: Callable[[list[Valuation]], Valuation] = lambda options: options[0],
 ) -> list[Valuation]:
-    """One trace over the inputs; ``choose`` decides what the diagram leaves open."""
-    trace = [choose(initial(machine, inputs[0]))] if inputs else []
+    """Return one trace over the inputs; *choose* selects among the steps that the diagram
+    allows.
+    """
+    trace = [choose(initial_steps(machine, inputs[0]))] if inputs else []
     for following in inputs[1:]:
-        trace.append(choose(successors(machine, trace[-1], following)))
+        trace.append(choose(next_steps(machine, trace[-1], following)))
     return trace
 
 
 # -- before and after --------------------------------------------------------------------------
 
 
-def _starts(machine: Machine, inputs: Mapping[str, Literal]) -> Iterator[Valuation]:
-    open_names = [name for name in machine.assigned if name not in machine.initial]
-    choices = [values(machine.variable(name).domain) for name in open_names]
+def _initial_valuations(machine: Machine, inputs: Mapping[str, Literal]) -> Iterator[Valuation]:
+    unset_names = [name for name in machine.assigned if name not in machine.initial]
+    choices = [values(machine.find_variable(name).domain) for name in unset_names]
     for row in product(*choices):
-        yield {**inputs, **machine.initial, **dict(zip(open_names, row, strict=True))}
+        yield {**inputs, **machine.initial, **dict(zip(unset_names, row, strict=True))}
 
 
-def _inactive(machine: Machine) -> Valuation:
+def _inactive_regions(machine: Machine) -> Valuation:
     return {region.variable: INACTIVE for region in machine.regions.values()}
 
 
-def _settle(
+def _complete_valuation(
     machine: Machine,
     now: Mapping[str, Literal],
-    run: Run,
+    reaction: Reaction,
     inputs: Mapping[str, Literal],
-    first: bool,
+    is_first: bool,
 ) -> Valuation:
-    """The valuation after a reaction, with outputs, choices, timers and memories."""
+    """Return the valuation after a reaction, with outputs, choices, timers and memories."""
     names = [region.variable for region in machine.regions.values()] + list(machine.assigned)
-    after: Valuation = {**inputs, **{name: run.store[name] for name in names}}
-    after |= {name: name in run.raised for name in machine.outputs}
+    after: Valuation = {**inputs, **{name: reaction.store[name] for name in names}}
+    after |= {name: name in reaction.raised for name in machine.outputs}
     for state in machine.vertices.values():
         if state.pick:
-            after[state.pick] = run.picked.get(state.pick, NO_EVENT)
+            after[state.pick] = reaction.picked.get(state.pick, NO_EVENT)
         if state.do:
             after[state.do] = is_active(machine, after, state.id)
         if state.timer:
-            after[state.timer] = 0 if first else _ticks(machine, now, after, run, state)
+            after[state.timer] = (
+                0 if is_first else _count_ticks(machine, now, after, reaction, state)
+            )
     for name, condition in machine.memories.items():
-        after[name] = bool(value_of(machine, condition, after if first else now))
+        after[name] = bool(evaluate_expression(machine, condition, after if is_first else now))
     for region in machine.regions.values():
         if region.memory:
-            after[region.memory] = INACTIVE if first else last_of(now, region)
+            after[region.memory] = INACTIVE if is_first else last_literal(now, region)
     return after
 
 
-def _ticks(
+def _count_ticks(
     machine: Machine,
     now: Mapping[str, Literal],
     after: Mapping[str, Literal],
-    run: Run,
+    reaction: Reaction,
     state: Vertex,
 ) -> int:
-    stays = is_active(machine, now, state.id) and state.id not in run.left
-    if not stays or not is_active(machine, after, state.id):
+    """Return the value of the timer of *state* after the reaction."""
+    has_stayed = is_active(machine, now, state.id) and state.id not in reaction.left
+    if not has_stayed or not is_active(machine, after, state.id):
         return 0
-    domain = machine.variable(state.timer).domain
-    return bounded(int(now[state.timer]) + 1, domain) if isinstance(domain, IntegerDomain) else 0
+    domain = machine.find_variable(state.timer).domain
+    return clamp(int(now[state.timer]) + 1, domain) if isinstance(domain, IntegerDomain) else 0
 
 
-def _distinct(found: list[Valuation]) -> list[Valuation]:
-    kept: list[Valuation] = []
-    for one in found:
-        if one not in kept:
-            kept.append(one)
-    return kept
+def _drop_duplicates(valuations: list[Valuation]) -> list[Valuation]:
+    distinct: list[Valuation] = []
+    for valuation in valuations:
+        if valuation not in distinct:
+            distinct.append(valuation)
+    return distinct
 
 
 # -- which transitions -------------------------------------------------------------------------
 
 
-def _reactions(machine: Machine, now: Mapping[str, Literal]) -> list[Run]:
+def _list_reactions(machine: Machine, now: Mapping[str, Literal]) -> list[Reaction]:
+    """Return the combinations of reactions of all active states; orthogonal regions react
+    together.
+    """
     enabled = {
         state.id: options
-        for state in machine.states()
+        for state in machine.list_states()
         if is_active(machine, now, state.id)
-        for options in [_options(machine, now, state)]
+        for options in [_list_options(machine, now, state)]
         if options
     }
-    _let_join(machine, now, enabled)
-    sources = [one for one in enabled if not any(machine.contains(one, other) for other in enabled)]
-    combined = [Run(now)]
+    _apply_joins(machine, now, enabled)
+    sources = [
+        source
+        for source in enabled
+        if not any(machine.contains(source, outer) for outer in enabled)
+    ]
+    combined = [Reaction(now)]
     for source in sources:
-        combined = [_merge(now, one, two) for one in combined for two in enabled[source]]
+        combined = [
+            _merge_reactions(now, reaction, option)
+            for reaction in combined
+            for option in enabled[source]
+        ]
     return combined
 
 
-def _let_join(machine: Machine, now: Mapping[str, Literal], enabled: dict[str, list[Run]]) -> None:
-    """What is joined goes before what else leaves its sources and the states around them."""
-    joined = [one for one in machine.transitions() if one.also]
-    for one in sorted(joined, key=lambda each: -len(machine.above(each.source))):
-        states = [machine.vertices[source] for source in one.sources]
+def _apply_joins(
+    machine: Machine, now: Mapping[str, Literal], enabled: dict[str, list[Reaction]]
+) -> None:
+    """Add the enabled joins to *enabled*.
+
+    A join goes before other transitions that leave its sources or the states around them.
+    """
+    joins = [join for join in machine.list_transitions() if join.join_partners]
+    for join in sorted(joins, key=lambda join: -len(machine.list_enclosing_states(join.source))):
+        states = [machine.vertices[source] for source in join.sources]
         is_ready = all(
             is_active(machine, now, state.id) and _is_complete(machine, now, state)
             for state in states
         )
-        inside = [o for o in enabled for state in states if machine.contains(state.id, o)]
-        runs = take(machine, now, one) if is_ready and not inside else []
-        if runs:
-            later = {each for s in one.sources for each in (s, *machine.above(s))}
-            for each in later.intersection(enabled):
-                del enabled[each]
-            enabled[one.source] = runs
+        inner_sources = [
+            inner for inner in enabled for state in states if machine.contains(state.id, inner)
+        ]
+        options = take_transition(machine, now, join) if is_ready and not inner_sources else []
+        if options:
+            overridden = {
+                state_id
+                for source in join.sources
+                for state_id in (source, *machine.list_enclosing_states(source))
+            }
+            for state_id in overridden.intersection(enabled):
+                del enabled[state_id]
+            enabled[join.source] = options
 
 
-def _merge(before: Mapping[str, Literal], one: Run, two: Run) -> Run:
-    changed = {name: value for name, value in two.store.items() if value != before[name]}
-    return Run(
-        {**one.store, **changed},
-        one.raised | two.raised,
-        {**one.picked, **two.picked},
-        one.left | two.left,
+def _merge_reactions(before: Mapping[str, Literal], left: Reaction, right: Reaction) -> Reaction:
+    changed = {name: value for name, value in right.store.items() if value != before[name]}
+    return Reaction(
+        {**left.store, **changed},
+        left.raised | right.raised,
+        {**left.picked, **right.picked},
+        left.left | right.left,
     )
 
 
-def _options(machine: Machine, now: Mapping[str, Literal], state: Vertex) -> list[Run]:
-    """All ways to take a transition that leaves the state."""
-    outgoing = [one for one in machine.outgoing.get(state.id, ()) if not one.also]
-    completing = [one for one in outgoing if not one.occurrences]
+def _list_options(machine: Machine, now: Mapping[str, Literal], state: Vertex) -> list[Reaction]:
+    """Return all ways to take a transition that leaves the state."""
+    outgoing = [
+        transition
+        for transition in machine.outgoing.get(state.id, ())
+        if not transition.join_partners
+    ]
+    completing = [transition for transition in outgoing if not transition.occurrences]
     if _is_complete(machine, now, state):
-        found = [run for one in completing for run in take(machine, now, one)]
-        if found:
-            return found
-    triggered = [one for one in outgoing if _occurs(machine, now, state, one.occurrences)]
-    return [run for one in triggered for run in take(machine, now, one)]
+        runs = [
+            run for transition in completing for run in take_transition(machine, now, transition)
+        ]
+        if runs:
+            return runs
+    triggered = [
+        transition
+        for transition in outgoing
+        if _has_occurrence(machine, now, state, transition.occurrences)
+    ]
+    return [run for transition in triggered for run in take_transition(machine, now, transition)]
 
 
 def _is_complete(machine: Machine, now: Mapping[str, Literal], state: Vertex) -> bool:
-    ended = not state.done or bool(now[state.done])
-    return ended and all(_is_final(machine, now, region) for region in state.regions)
+    has_ended = not state.done or bool(now[state.done])
+    return has_ended and all(_is_final(machine, now, region) for region in state.regions)
 
 
 def _is_final(machine: Machine, now: Mapping[str, Literal], region: str) -> bool:
-    return any(one.kind == "final" for one in active_in(machine, now, region))
+    return any(vertex.kind == "final" for vertex in find_active_vertices(machine, now, region))
 
 
-def _occurs(
+def _has_occurrence(
     machine: Machine,
     now: Mapping[str, Literal],
     state: Vertex,
@@ -244,8 +297,8 @@ def _occurs(
             case AfterTicks(count):
                 happens = now[state.timer] == count - 1
             case OnRise(memory, condition):
-                happens = bool(value_of(machine, condition, now)) and not now[memory]
-            case WhenTold(variable):
+                happens = bool(evaluate_expression(machine, condition, now)) and not now[memory]
+            case OnInput(variable):
                 happens = bool(now[variable])
         if happens:
             return True

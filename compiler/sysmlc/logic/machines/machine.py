@@ -1,6 +1,7 @@
-"""A state machine as values: what the derivation and the interpreter both start from.
+"""A state machine as plain values, the common input of the derivation and the interpreter.
 
-It says what is drawn, with names for variables; it does not say what a step is.
+The values describe the diagram and name the variables of the contract. What happens in a step is
+defined by ``interpreter``.
 """
 
 from msgspec import Struct, field
@@ -15,18 +16,20 @@ NO_EVENT = "none"
 INACTIVE = "inactive"
 """Literal of an inner region whose state is not active."""
 HISTORIES = ("shallow-history", "deep-history")
-_WITHIN = "\x1f"
+_SUBMACHINE_SEPARATOR = "\x1f"
 """Between the id of a submachine state and ids of what it has of its submachine."""
 
 
-def id_within(state: str, id: str) -> str:
-    """The id that an element of a submachine has within a state that is such a submachine."""
-    return f"{state}{_WITHIN}{id}" if state else id
+def submachine_id(state: str, id: str) -> str:
+    """Return the id of an element of a submachine inside the state *state* that uses the
+    submachine.
+    """
+    return f"{state}{_SUBMACHINE_SEPARATOR}{id}" if state else id
 
 
 def element_id(id: str) -> str:
-    """The id of the element that is drawn, of a vertex, region or transition."""
-    return id.rpartition(_WITHIN)[2]
+    """Return the id of the drawn element behind the id of a vertex, region or transition."""
+    return id.rpartition(_SUBMACHINE_SEPARATOR)[2]
 
 
 class Assign(Struct, frozen=True):
@@ -38,7 +41,7 @@ class Assign(Struct, frozen=True):
 
 
 class Raise(Struct, frozen=True):
-    """Something done that has no meaning in the model: an output proposition."""
+    """An action without meaning in the model, shown as an output that is true when it is done."""
 
     output: str
     origin: str
@@ -48,7 +51,7 @@ Action = Assign | Raise
 
 
 class OnEvent(Struct, frozen=True):
-    """The environment's event; None stands for any event."""
+    """An event of the environment; None matches any event."""
 
     literal: str | None
 
@@ -60,25 +63,27 @@ class AfterTicks(Struct, frozen=True):
 
 
 class OnRise(Struct, frozen=True):
-    """A condition that was false in the step before is true; ``memory`` holds what it was."""
+    """A condition is true and was false in the step before; ``memory`` is the variable that stores
+    its last value.
+    """
 
     memory: str
     condition: Expression
 
 
-class WhenTold(Struct, frozen=True):
+class OnInput(Struct, frozen=True):
     """An occurrence that only the environment knows, as a Boolean input."""
 
     variable: str
 
 
-Occurrence = OnEvent | AfterTicks | OnRise | WhenTold
+Occurrence = OnEvent | AfterTicks | OnRise | OnInput
 
 
 class Transition(Struct, frozen=True):
-    """A transition; without occurrences it is a completion transition (of a state).
+    """A transition; one without occurrences that leaves a state is a completion transition.
 
-    ``also`` are the other transitions that lead to the join that it leads to: they are taken
+    ``join_partners`` are the other transitions that lead to the same join. All of them are taken
     together, when all their sources are complete.
     """
 
@@ -91,21 +96,21 @@ class Transition(Struct, frozen=True):
     occurrences: tuple[Occurrence, ...]
     guard: Expression | None
     effect: tuple[Action, ...]
-    also: tuple["Transition", ...] = ()
+    join_partners: tuple["Transition", ...] = ()
 
     @property
     def sources(self) -> tuple[str, ...]:
-        """The vertices that it leaves."""
-        return self.source, *(one.source for one in self.also)
+        """The vertices that the transition and its join partners leave."""
+        return self.source, *(partner.source for partner in self.join_partners)
 
 
 class Vertex(Struct, frozen=True):
     """A state, final state or pseudostate.
 
-    ``do`` is the output that holds while the state is active, ``done`` the input that says
-    its end; ``timer`` counts the steps that the state has been active; ``pick`` says which of
-    several enabled outgoing transitions was taken. Empty names: there is no such variable.
-    ``border`` is the state that an entry or exit point belongs to.
+    ``do`` is the output that holds while the state is active, ``done`` the input that reports the
+    end of the do behaviour, ``timer`` counts the steps that the state has been active, and ``pick``
+    names the enabled outgoing transition that was taken. An empty name means that there is no such
+    variable. ``border`` is the state that owns an entry or exit point.
     """
 
     id: str
@@ -123,15 +128,15 @@ class Vertex(Struct, frozen=True):
 
     @property
     def is_stable(self) -> bool:
-        """Whether a step may end in it."""
+        """Whether a step may end in the vertex."""
         return self.kind in ("state", "final")
 
 
 class Region(Struct, frozen=True):
-    """A region: its variable has the names of its states, and ``inactive`` when it is nested.
+    """A region and its variable, whose literals are the names of its states.
 
-    ``memory`` is the variable that has what it was before it became inactive, where history is
-    asked for.
+    The variable of a nested region has the literal ``inactive`` too. ``memory`` is the variable
+    that stores the last active state for a history pseudostate.
     """
 
     id: str
@@ -144,7 +149,7 @@ class Region(Struct, frozen=True):
 
 
 class Machine(Struct, frozen=True):
-    """A state machine in its context."""
+    """A state machine with the variables of its contract."""
 
     id: str
     name: str
@@ -160,71 +165,87 @@ class Machine(Struct, frozen=True):
     assigned: tuple[str, ...] = ()
     memories: dict[str, Expression] = field(default_factory=dict)
 
-    def variable(self, name: str) -> Variable:
-        """The variable of this name."""
-        return next(one for one in self.variables if one.name == name)
+    def find_variable(self, name: str) -> Variable:
+        """Return the variable called *name*."""
+        return next(variable for variable in self.variables if variable.name == name)
 
-    def states(self) -> list[Vertex]:
-        """All states, in order."""
-        return [one for one in self.vertices.values() if one.kind == "state"]
+    def list_states(self) -> list[Vertex]:
+        """List all states in order."""
+        return [vertex for vertex in self.vertices.values() if vertex.kind == "state"]
 
-    def transitions(self) -> list[Transition]:
-        """All transitions, source by source."""
-        return [one for group in self.outgoing.values() for one in group]
+    def list_transitions(self) -> list[Transition]:
+        """List all transitions, grouped by source."""
+        return [transition for group in self.outgoing.values() for transition in group]
 
-    def above(self, vertex: str) -> list[str]:
-        """The states that contain the vertex, innermost first; also those on whose border it is."""
-        one = self.vertices[vertex]
-        found = [one.border] if one.border else []
-        region = one.region
+    def list_enclosing_states(self, vertex: str) -> list[str]:
+        """List the states that contain *vertex*, innermost first.
+
+        The state on whose border an entry or exit point lies counts as containing it.
+        """
+        start = self.vertices[vertex]
+        states = [start.border] if start.border else []
+        region = start.region
         while region and self.regions[region].state:
-            found.append(self.regions[region].state)
-            region = self.vertices[found[-1]].region
-        return found
+            states.append(self.regions[region].state)
+            region = self.vertices[states[-1]].region
+        return states
 
     def contains(self, state: str, vertex: str) -> bool:
-        """Whether the vertex lies strictly inside the state."""
-        return bool(self.vertices[state].regions) and state in self.above(vertex)
+        """Return whether *vertex* lies strictly inside *state*."""
+        return bool(self.vertices[state].regions) and state in self.list_enclosing_states(vertex)
 
-    def around(self, vertex: str) -> list[str]:
-        """The regions that contain the vertex, innermost first."""
-        found = [self.vertices[one].region for one in [vertex, *self.above(vertex)]]
-        return list(dict.fromkeys(found))
+    def list_enclosing_regions(self, vertex: str) -> list[str]:
+        """List the regions that contain *vertex*, innermost first."""
+        regions = [
+            self.vertices[inner].region for inner in [vertex, *self.list_enclosing_states(vertex)]
+        ]
+        return list(dict.fromkeys(regions))
 
-    def is_split(self, vertex: str) -> bool:
-        """Whether all transitions that leave it are taken together, into regions of their own.
+    def has_concurrent_exits(self, vertex: str) -> bool:
+        """Return whether all transitions that leave *vertex* are taken together.
 
-        Those of a fork, and of an entry point of an orthogonal state (UML 2.5.1, 14.2.3.7).
+        That holds for a fork, and for an entry point of an orthogonal state whose transitions lead
+        to different regions of the state (UML 2.5.1, 14.2.3.7).
         """
-        one, outgoing = self.vertices[vertex], self.outgoing.get(vertex, ())
-        if one.kind == "entry-point" and len(outgoing) > 1:
-            own = self.vertices[one.border].regions if one.border else ()
-            into = [
-                region for each in outgoing for region in self.around(each.target) if region in own
+        start, outgoing = self.vertices[vertex], self.outgoing.get(vertex, ())
+        if start.kind == "entry-point" and len(outgoing) > 1:
+            border_regions = self.vertices[start.border].regions if start.border else ()
+            entered = [
+                region
+                for transition in outgoing
+                for region in self.list_enclosing_regions(transition.target)
+                if region in border_regions
             ]
-            return len(set(into)) == len(outgoing)
-        return one.kind == "fork"
+            return len(set(entered)) == len(outgoing)
+        return start.kind == "fork"
 
-    def main_region(self, one: Transition) -> str | None:
-        """The region that a transition changes: what is active in it is left, then the way to
-        the target is entered. Empty for an internal transition, None when there is none.
+    def find_main_region(self, transition: Transition) -> str | None:
+        """Return the region that *transition* changes.
 
-        UML 2.5.1 clauses 14.2.3.8.1 and 14.2.3.9.5: the least region that contains source and
-        target; a local transition to inside its source does not leave the source. An exit point
-        is reached without leaving its state, an entry point when its state is entered.
+        The active states of that region are left, then the states on the way to the target are
+        entered. The result is empty for an internal transition and None if no region contains both
+        ends.
+
+        It is the least region that contains source and target (UML 2.5.1, 14.2.3.8.1 and
+        14.2.3.9.5). A local transition to a vertex inside its source does not leave the source. An
+        exit point is reached without leaving its state; an entry point is reached when its state is
+        entered.
         """
-        if one.kind == "internal":
+        if transition.kind == "internal":
             return ""
-        start, end = self.vertices[one.source], self.vertices[one.target]
+        start, end = self.vertices[transition.source], self.vertices[transition.target]
         if start.region == end.region and not start.border and not end.border:
             return start.region
-        around, inside = self.around(one.source), self.around(one.target)
+        source_regions, target_regions = (
+            self.list_enclosing_regions(transition.source),
+            self.list_enclosing_regions(transition.target),
+        )
         if start.kind == "entry-point" and start.border:
-            own = self.vertices[start.border].regions
-            return next((region for region in inside if region in own), None)
-        if end.kind == "exit-point" and end.border in self.above(one.source):
-            own = self.vertices[end.border].regions
-            return next((region for region in around if region in own), None)
-        if one.kind == "local" and self.contains(one.source, one.target):
-            return next(region for region in inside if region in start.regions)
-        return next((region for region in around if region in inside), None)
+            border_regions = self.vertices[start.border].regions
+            return next((region for region in target_regions if region in border_regions), None)
+        if end.kind == "exit-point" and end.border in self.list_enclosing_states(transition.source):
+            border_regions = self.vertices[end.border].regions
+            return next((region for region in source_regions if region in border_regions), None)
+        if transition.kind == "local" and self.contains(transition.source, transition.target):
+            return next(region for region in target_regions if region in start.regions)
+        return next((region for region in source_regions if region in target_regions), None)

@@ -1,7 +1,8 @@
-"""Which transitions of a state machine are taken, as conditions over one step.
+"""Moves: the transitions of a state machine with the conditions under which they are taken.
 
-Enabled by occurrence, guard and an open way through pseudostates; inner before outer,
-completion before triggers; chosen where several compete.
+A transition is enabled by its occurrences, its guard, and a feasible path through pseudostates.
+Inner transitions go before outer ones, and completion before triggers. If several transitions of a
+state are enabled, its choice variable says which one is taken.
 """
 
 from collections.abc import Iterator, Mapping
@@ -18,21 +19,21 @@ from sysmlc.logic.contract import (
 from sysmlc.logic.domains import valuations
 from sysmlc.logic.expressions.elaborate import condition
 from sysmlc.logic.formula import Const, Formula, Op
-from sysmlc.logic.machines import descriptions as words
-from sysmlc.logic.machines.conflicts import simultaneous
+from sysmlc.logic.machines import descriptions as texts
+from sysmlc.logic.machines.conflicts import can_be_simultaneous
 from sysmlc.logic.machines.machine import (
     NO_EVENT,
     AfterTicks,
     Machine,
     Occurrence,
     OnEvent,
+    OnInput,
     OnRise,
     Transition,
     Vertex,
-    WhenTold,
     element_id,
 )
-from sysmlc.logic.machines.paths import LIMIT, Explorer, Path, TooManyPaths
+from sysmlc.logic.machines.paths import MAX_PATHS, Path, PathExplorer, TooManyPathsError
 from sysmlc.logic.simplify import simplified, tidy
 
 SATURATES = rule(
@@ -61,7 +62,9 @@ TOO_LARGE = rule(
 
 
 class Move(Struct, frozen=True):
-    """A transition with its paths and the condition under which it is taken."""
+    """A transition with its paths and the condition under which it is taken; ``before`` are the
+    moves that preempt it.
+    """
 
     transition: Transition
     paths: tuple[Path, ...]
@@ -71,133 +74,170 @@ class Move(Struct, frozen=True):
     """What goes first where both are enabled."""
 
 
-class Derivation(Struct, frozen=True):
+class Exploration(Struct, frozen=True):
+    """All moves and initial paths of a machine, the input of the derivation."""
+
     machine: Machine
     domains: Mapping[str, Domain]
     moves: tuple[Move, ...]
     starts: tuple[Path, ...]
 
 
-def explore(graph: Graph, machine: Machine, sink: Sink) -> Derivation | None:
-    domains = {one.name: one.domain for one in machine.variables}
-    explorer = Explorer(machine, domains)
-    found: list[Move] = []
-    for one in machine.transitions():
-        if machine.vertices[one.source].kind != "state":
+def explore_machine(graph: Graph, machine: Machine, sink: Sink) -> Exploration | None:
+    """Explore all transitions; return None, after reporting it, if a transition has too many
+    paths.
+    """
+    domains = {transition.name: transition.domain for transition in machine.variables}
+    explorer = PathExplorer(machine, domains)
+    moves: list[Move] = []
+    for transition in machine.list_transitions():
+        if machine.vertices[transition.source].kind != "state":
             continue
         try:
-            paths = explorer.transition(one)
-        except TooManyPaths:
-            _give_up(graph, one.id, words.name_transition(one), sink)
+            paths = explorer.explore_transition(transition)
+        except TooManyPathsError:
+            _give_up(graph, transition.id, texts.name_transition(transition), sink)
             return None
-        found.append(Move(one, tuple(paths), _enabled(machine, domains, one, paths)))
-        _report(graph, machine, domains, one, paths, sink)
-    found = _joined(machine, domains, found)
-    moves = tuple(_ordered(machine, domains, move, found) for move in found)
+        moves.append(
+            Move(transition, tuple(paths), _enabling_condition(machine, domains, transition, paths))
+        )
+        _report_faults(graph, machine, domains, transition, paths, sink)
+    moves = _enable_joins(machine, domains, moves)
+    ordered_moves = tuple(_add_firing_condition(machine, domains, move, moves) for move in moves)
     try:
-        starts = tuple(_starts(machine, domains, explorer))
-    except TooManyPaths:
+        starts = tuple(_explore_starts(machine, domains, explorer))
+    except TooManyPathsError:
         _give_up(graph, machine.id, f"the start of '{machine.name}'", sink)
         return None
-    return Derivation(machine, domains, moves, starts)
+    return Exploration(machine, domains, ordered_moves, starts)
 
 
-def _ordered(
+def _add_firing_condition(
     machine: Machine, domains: Mapping[str, Domain], move: Move, moves: list[Move]
 ) -> Move:
-    fires = tidy(_fires(machine, move, moves), domains)
-    return replace(move, fires=fires, before=tuple(_before(machine, move, moves)))
+    fires = tidy(_firing_condition(machine, move, moves), domains)
+    return replace(move, fires=fires, before=tuple(_find_preempting(machine, move, moves)))
 
 
-def _joined(machine: Machine, domains: Mapping[str, Domain], moves: list[Move]) -> list[Move]:
-    """The moves; of those that a join makes one, what goes before them is part of them."""
-    if not any(move.transition.also for move in moves):
+def _enable_joins(machine: Machine, domains: Mapping[str, Domain], moves: list[Move]) -> list[Move]:
+    """Strengthen the enabling condition of each join: nothing inside its sources is enabled.
+
+    Inner joins come first, because the condition of an outer join depends on them.
+    """
+    if not any(move.transition.join_partners for move in moves):
         return moves
-    found = {move.transition.id: move for move in moves}
-    joined = [move for move in moves if move.transition.also]
-    for move in sorted(joined, key=lambda one: -len(machine.above(one.transition.source))):
-        inner = [one.enabled for one in found.values() if _is_inside(machine, one, move)]
+    moves_by_id = {move.transition.id: move for move in moves}
+    joins = [move for move in moves if move.transition.join_partners]
+    for move in sorted(
+        joins,
+        key=lambda inner_move: -len(machine.list_enclosing_states(inner_move.transition.source)),
+    ):
+        inner = [
+            inner_move.enabled
+            for inner_move in moves_by_id.values()
+            if _leaves_inner_state(machine, inner_move, move)
+        ]
         enabled = tidy(f.both(move.enabled, *map(f.negate, inner)), domains)
-        found[move.transition.id] = replace(move, enabled=enabled)
-    return list(found.values())
+        moves_by_id[move.transition.id] = replace(move, enabled=enabled)
+    return list(moves_by_id.values())
 
 
-def _is_inside(machine: Machine, one: Move, other: Move) -> bool:
-    """Whether the first leaves a state inside one that the other leaves."""
-    if not other.transition.also and not machine.vertices[other.transition.source].regions:
+def _leaves_inner_state(machine: Machine, inner_move: Move, outer_move: Move) -> bool:
+    """Return whether the first move leaves a state inside a source of the second."""
+    if (
+        not outer_move.transition.join_partners
+        and not machine.vertices[outer_move.transition.source].regions
+    ):
         return False
     return any(
         machine.contains(outer, inner)
-        for outer in other.transition.sources
-        for inner in one.transition.sources
+        for outer in outer_move.transition.sources
+        for inner in inner_move.transition.sources
     )
 
 
 def _give_up(graph: Graph, id: str, named: str, sink: Sink) -> None:
-    sink.report(TOO_LARGE, graph.subject(graph[element_id(id)]), transition=named, limit=LIMIT)
+    sink.report(TOO_LARGE, graph.subject(graph[element_id(id)]), transition=named, limit=MAX_PATHS)
 
 
-def _starts(machine: Machine, domains: Mapping[str, Domain], explorer: Explorer) -> Iterator[Path]:
-    """Paths into the initial states; a property without default that they read is tried with
-    each of its values."""
-    given = {name: Const(value) for name, value in machine.initial.items()}
-    paths = explorer.start(given)
-    read = {one for path in paths for one in _read_at_start(path)}
-    unknown = {n: domains[n] for n in machine.assigned if n in read and n not in given}
+def _explore_starts(
+    machine: Machine, domains: Mapping[str, Domain], explorer: PathExplorer
+) -> Iterator[Path]:
+    """Yield the paths into the initial states.
+
+    A property without a default that these paths read is tried with each of its values.
+    """
+    defaults = {name: Const(value) for name, value in machine.initial.items()}
+    paths = explorer.explore_start(defaults)
+    read_variables = {name for path in paths for name in _list_read_variables(path)}
+    unknown = {
+        name: domains[name]
+        for name in machine.assigned
+        if name in read_variables and name not in defaults
+    }
     for values in valuations(unknown):
-        chosen = {name: Const(value) for name, value in values.items()}
-        yield from explorer.start(given | chosen)
+        constants = {name: Const(value) for name, value in values.items()}
+        yield from explorer.explore_start(defaults | constants)
 
 
-def _read_at_start(path: Path) -> Iterator[str]:
+def _list_read_variables(path: Path) -> Iterator[str]:
+    """Yield the names of the variables that the path reads."""
     for formula in (path.branch, path.case, *path.values.values()):
-        yield from (one.name for one in f.variables(formula))
+        yield from (variable.name for variable in f.variables(formula))
 
 
-def _enabled(
-    machine: Machine, domains: Mapping[str, Domain], one: Transition, paths: list[Path]
+def _enabling_condition(
+    machine: Machine, domains: Mapping[str, Domain], transition: Transition, paths: list[Path]
 ) -> Formula:
-    occurs = _occurrence(machine, one)
-    way = _way(machine, domains, one, paths)
-    leaving = (active(machine, source) for source in one.sources)
-    return tidy(f.both(*leaving, occurs, way), domains)
+    """Return the condition that the sources are active, a trigger occurs, and a path is
+    feasible.
+    """
+    occurs = _occurrence_condition(machine, transition)
+    path_condition = _path_condition(machine, domains, transition, paths)
+    active_sources = (is_active_formula(machine, source) for source in transition.sources)
+    return tidy(f.both(*active_sources, occurs, path_condition), domains)
 
 
-def _way(
-    machine: Machine, domains: Mapping[str, Domain], one: Transition, paths: list[Path]
+def _path_condition(
+    machine: Machine, domains: Mapping[str, Domain], transition: Transition, paths: list[Path]
 ) -> Formula:
-    """Some way through the pseudostates is open; the guard alone when it opens one always."""
-    guard = f.TRUE if one.guard is None else condition(one.guard, machine.scope)
-    way = f.either(*(path.when for path in paths))
-    if way == guard:
+    """Return the condition that some path is feasible; the guard alone if it implies that."""
+    guard = f.TRUE if transition.guard is None else condition(transition.guard, machine.scope)
+    condition_of_paths = f.either(*(path.when for path in paths))
+    if condition_of_paths == guard:
         return simplified(guard, domains)
-    always_open = simplified(f.implies(guard, way), domains) == f.TRUE
-    return simplified(guard if always_open else way, domains)
+    is_always_open = simplified(f.implies(guard, condition_of_paths), domains) == f.TRUE
+    return simplified(guard if is_always_open else condition_of_paths, domains)
 
 
-def active(machine: Machine, vertex: str) -> Formula:
-    """The vertex is the state of its region."""
-    one = machine.vertices[vertex]
-    return f.eq(f.var(machine.regions[one.region].variable), Const(one.literal))
+def is_active_formula(machine: Machine, vertex: str) -> Formula:
+    """Return the formula that the vertex is the active state of its region."""
+    state = machine.vertices[vertex]
+    return f.eq(f.var(machine.regions[state.region].variable), Const(state.literal))
 
 
-def _occurrence(machine: Machine, one: Transition) -> Formula:
-    state = machine.vertices[one.source]
-    if not one.occurrences:
-        return f.both(*(_complete(machine, machine.vertices[each]) for each in one.sources))
-    return f.either(*(_occurs(machine, state, each) for each in one.occurrences))
+def _occurrence_condition(machine: Machine, transition: Transition) -> Formula:
+    state = machine.vertices[transition.source]
+    if not transition.occurrences:
+        return f.both(
+            *(_completion_condition(machine, machine.vertices[item]) for item in transition.sources)
+        )
+    return f.either(*(_trigger_condition(machine, state, item) for item in transition.occurrences))
 
 
-def _complete(machine: Machine, state: Vertex) -> Formula:
-    ended = f.var(state.done) if state.done else f.TRUE
+def _completion_condition(machine: Machine, state: Vertex) -> Formula:
+    """Return the condition that a state is complete: do behaviour ended, inner regions in final
+    states.
+    """
+    end = f.var(state.done) if state.done else f.TRUE
     inner = []
     for region in state.regions:
         finals = [v for v in machine.vertices.values() if v.region == region and v.kind == "final"]
-        inner.append(f.either(*(active(machine, one.id) for one in finals)))
-    return f.both(ended, *inner)
+        inner.append(f.either(*(is_active_formula(machine, final.id) for final in finals)))
+    return f.both(end, *inner)
 
 
-def _occurs(machine: Machine, state: Vertex, occurrence: Occurrence) -> Formula:
+def _trigger_condition(machine: Machine, state: Vertex, occurrence: Occurrence) -> Formula:
     match occurrence:
         case OnEvent(None):
             return f.compare(Op.NE, f.var("event"), Const(NO_EVENT))
@@ -208,59 +248,71 @@ def _occurs(machine: Machine, state: Vertex, occurrence: Occurrence) -> Formula:
         case OnRise(memory, expression):
             truth = condition(expression, machine.scope)
             return f.both(truth, f.negate(f.var(memory)))
-        case WhenTold(variable):
+        case OnInput(variable):
             return f.var(variable)
 
 
-def _fires(machine: Machine, move: Move, moves: list[Move]) -> Formula:
-    """Enabled, before nothing that goes first, and chosen where there is a choice."""
+def _firing_condition(machine: Machine, move: Move, moves: list[Move]) -> Formula:
+    """Return the condition that the move is enabled, not preempted, and chosen among its
+    competitors.
+    """
     source = machine.vertices[move.transition.source]
-    chosen = is_picked(source.pick, move.transition.literal) if source.pick else f.TRUE
-    return f.both(_eligible(machine, move, moves), chosen)
+    choice = is_chosen_formula(source.pick, move.transition.literal) if source.pick else f.TRUE
+    return f.both(_eligibility_condition(machine, move, moves), choice)
 
 
-def _eligible(machine: Machine, move: Move, moves: list[Move]) -> Formula:
-    return f.both(move.enabled, *(f.negate(one.enabled) for one in _before(machine, move, moves)))
+def _eligibility_condition(machine: Machine, move: Move, moves: list[Move]) -> Formula:
+    return f.both(
+        move.enabled, *(f.negate(other.enabled) for other in _find_preempting(machine, move, moves))
+    )
 
 
-def _before(machine: Machine, move: Move, moves: list[Move]) -> Iterator[Move]:
-    """What goes first: transitions of inner states, and the completion of the same state."""
-    mine = move.transition
+def _find_preempting(machine: Machine, move: Move, moves: list[Move]) -> Iterator[Move]:
+    """Yield the moves that preempt this one: of inner states, and the completion of the same
+    state.
+    """
+    transition = move.transition
     for other in moves:
-        if _is_inside(machine, other, move):
-            if simultaneous(mine, other.transition):
+        if _leaves_inner_state(machine, other, move):
+            if can_be_simultaneous(transition, other.transition):
                 yield other
-        elif _is_later(mine, other.transition) and mine.source in other.transition.sources:
+        elif (
+            _yields_to_completion(transition, other.transition)
+            and transition.source in other.transition.sources
+        ):
             yield other
 
 
-def _is_later(one: Transition, other: Transition) -> bool:
-    return bool(one.occurrences) and not other.occurrences
+def _yields_to_completion(transition: Transition, other: Transition) -> bool:
+    return bool(transition.occurrences) and not other.occurrences
 
 
-def is_picked(pick: str, literal: str) -> Formula:
-    """A choice was made in favour of a transition; seen in the next step."""
+def is_chosen_formula(pick: str, literal: str) -> Formula:
+    """Return the formula that a choice was made in favour of a transition; it becomes visible in
+    the next step.
+    """
     return f.primed(f.eq(f.var(pick), Const(literal)))
 
 
-def _report(
+def _report_faults(
     graph: Graph,
     machine: Machine,
     domains: Mapping[str, Domain],
-    one: Transition,
+    transition: Transition,
     paths: list[Path],
     sink: Sink,
 ) -> None:
-    subject = graph.subject(graph[element_id(one.id)])
-    named = words.name_transition(one)
+    """Report assignments that saturate, and a choice whose guards do not cover all cases."""
+    subject = graph.subject(graph[element_id(transition.id)])
+    name = texts.name_transition(transition)
     for path in paths:
         for variable, _ in path.saturated:
-            sink.report(SATURATES, subject, transition=named, can="can", variable=variable)
-    target = machine.vertices[one.target] if one.target else None
-    if target is None or target.is_stable or one.kind == "internal":
+            sink.report(SATURATES, subject, transition=name, can="can", variable=variable)
+    target = machine.vertices[transition.target] if transition.target else None
+    if target is None or target.is_stable or transition.kind == "internal":
         return
-    guard = f.TRUE if one.guard is None else condition(one.guard, machine.scope)
-    way = _way(machine, domains, one, paths)
-    if simplified(f.implies(guard, way), domains) != f.TRUE:
-        name = graph[element_id(target.id)].name or target.kind
-        sink.report(BLOCKED, subject, transition=named, vertex=name)
+    guard = f.TRUE if transition.guard is None else condition(transition.guard, machine.scope)
+    condition_of_paths = _path_condition(machine, domains, transition, paths)
+    if simplified(f.implies(guard, condition_of_paths), domains) != f.TRUE:
+        vertex_name = graph[element_id(target.id)].name or target.kind
+        sink.report(BLOCKED, subject, transition=name, vertex=vertex_name)

@@ -1,4 +1,8 @@
-"""One way through a reaction of a state machine: what it changes, and when it is taken."""
+"""Symbolic execution of the transitions of a state machine.
+
+A path is one way that a transition can take through choices, saturation and the inner states that
+it leaves. Its values are formulas over the step before.
+"""
 
 from collections.abc import Iterator, Mapping
 
@@ -22,20 +26,20 @@ from sysmlc.logic.machines.machine import (
 from sysmlc.logic.simplify import is_satisfiable, rebuild, substitute
 
 
-class TooManyPaths(Exception):  # noqa: N818 - a limit, not a fault
-    """A transition has more paths than a contract should show."""
+class TooManyPathsError(Exception):
+    """A transition has more paths than a readable contract can show."""
 
 
-LIMIT = 200
+MAX_PATHS = 200
 """Most paths of one transition."""
 
 
 class Path(Struct, frozen=True):
-    """One way through a reaction; ``branch`` and ``case`` together say when it is taken.
+    """One path through a reaction, taken when both ``branch`` and ``case`` hold.
 
-    ``branch`` comes from guards (without one that is true the transition is not enabled),
-    ``case`` from distinctions that are always decided. ``saturated`` names the assignments
-    whose value stopped at a bound.
+    ``branch`` comes from guards: if no branch is true, the transition is not enabled. ``case``
+    comes from distinctions of which exactly one always holds. ``saturated`` lists the assignments
+    whose value was clamped to a bound, as pairs of variable and origin.
     """
 
     branch: Formula = f.TRUE
@@ -63,130 +67,150 @@ class Path(Struct, frozen=True):
         return f.both(self.branch, self.case)
 
 
-def when(path: Path, case: Formula) -> Path:
-    """The path in one case of what is always decided."""
+def add_case(path: Path, case: Formula) -> Path:
+    """Return the path restricted to *case*."""
     return replace(path, case=f.both(path.case, case))
 
 
-def without(path: Path, state: str) -> Path:
-    """The path when a state was left."""
-    opened = tuple(one for one in path.opened if one != state)
+def leave_state(path: Path, state: str) -> Path:
+    """Return the path after leaving *state*."""
+    opened = tuple(id for id in path.opened if id != state)
     return replace(path, left=(*path.left, state), opened=opened)
 
 
-def with_region(path: Path, variable: str, literal: str, inner: list[str]) -> Path:
-    """The path with a region in a state; ``inner`` regions become inactive."""
-    changed = {**dict.fromkeys(inner, INACTIVE), variable: literal}
-    return replace(path, config={**path.config, **changed}, entered={**path.entered, **changed})
+def set_region(path: Path, variable: str, literal: str, inner: list[str]) -> Path:
+    """Return the path with *variable* set to *literal* and the *inner* regions inactive."""
+    literals = {**dict.fromkeys(inner, INACTIVE), variable: literal}
+    return replace(path, config={**path.config, **literals}, entered={**path.entered, **literals})
 
 
-def saturated(
-    case: Formula, value: Formula, domain: IntegerDomain, spread: IntegerDomain
+def split_by_range(
+    case: Formula, value: Formula, domain: IntegerDomain, value_range: IntegerDomain
 ) -> Iterator[tuple[Formula, Formula, bool]]:
-    """The values that an assignment gives within a range, each with its condition, and whether it
-    stopped at a bound.
+    """Yield the results of assigning *value* to a variable of *domain*, clamped to its range.
+
+    Each result is the condition, the value, and whether the value was clamped. *spread* is the
+    range of the expression.
     """
     low, high = Const(domain.low), Const(domain.high)
-    inside = case
-    if spread.high > domain.high:
-        inside = f.both(inside, rebuild(Op.LE, (value, high)))
+    in_range = case
+    if value_range.high > domain.high:
+        in_range = f.both(in_range, rebuild(Op.LE, (value, high)))
         yield f.both(case, rebuild(Op.GT, (value, high))), high, True
-    if spread.low < domain.low:
-        inside = f.both(inside, rebuild(Op.GE, (value, low)))
+    if value_range.low < domain.low:
+        in_range = f.both(in_range, rebuild(Op.GE, (value, low)))
         yield f.both(case, rebuild(Op.LT, (value, low))), low, True
-    yield inside, value, False
+    yield in_range, value, False
 
 
-def check_number(paths: list[Path]) -> None:
-    """Raises TooManyPaths when there are more than a contract should show."""
-    if len(paths) > LIMIT:
-        raise TooManyPaths
+def check_path_count(paths: list[Path]) -> None:
+    """Raise TooManyPathsError if the list is longer than ``MAX_PATHS``."""
+    if len(paths) > MAX_PATHS:
+        raise TooManyPathsError
 
 
-class Explorer(Struct, frozen=True):
-    """Finds the paths of one machine."""
+class PathExplorer(Struct, frozen=True):
+    """Explores the paths of one machine."""
 
     machine: Machine
     domains: Mapping[str, Domain]
 
-    def transition(self, first: Transition) -> list[Path]:
-        """The feasible paths of a transition that leaves a state."""
-        known = self._known(first.sources)
-        found = self._follow(Path(config=known, before=known), first)
-        return self._feasible(self._filled(found))
+    def explore_transition(self, first: Transition) -> list[Path]:
+        """Return the feasible paths of a transition that leaves a state."""
+        configuration = self._known_configuration(first.sources)
+        paths = self._follow(Path(config=configuration, before=configuration), first)
+        return self._drop_infeasible(self._start_open_regions(paths))
 
-    def start(self, values: Mapping[str, Formula]) -> list[Path]:
-        """The feasible paths into the initial states; ``values`` are the properties' values."""
-        paths = [Path(values=values, config=self._resting())]
+    def explore_start(self, values: Mapping[str, Formula]) -> list[Path]:
+        """Return the feasible paths into the initial states; *values* are the initial values of
+        properties.
+        """
+        paths = [Path(values=values, config=self._inactive_regions())]
         for region in self.machine.top:
-            paths = self._filled([after for path in paths for after in self._begin(path, region)])
-            check_number(paths)
-        return list(self._feasible(paths))
+            paths = self._start_open_regions(
+                [after for path in paths for after in self._start_region(path, region)]
+            )
+            check_path_count(paths)
+        return list(self._drop_infeasible(paths))
 
-    def _resting(self) -> dict[str, str]:
+    def _inactive_regions(self) -> dict[str, str]:
         return {region.variable: INACTIVE for region in self.machine.regions.values()}
 
-    def _known(self, sources: tuple[str, ...]) -> dict[str, str]:
-        inside = [one for source in sources for one in (source, *self.machine.above(source))]
-        vertices = [self.machine.vertices[one] for one in inside]
-        return {self.machine.regions[one.region].variable: one.literal for one in vertices}
+    def _known_configuration(self, sources: tuple[str, ...]) -> dict[str, str]:
+        """Return the literals of the regions around the sources while these are active."""
+        states = [
+            state
+            for source in sources
+            for state in (source, *self.machine.list_enclosing_states(source))
+        ]
+        vertices = [self.machine.vertices[state] for state in states]
+        return {self.machine.regions[state.region].variable: state.literal for state in vertices}
 
-    def _feasible(self, paths: list[Path]) -> list[Path]:
+    def _drop_infeasible(self, paths: list[Path]) -> list[Path]:
         return [path for path in paths if is_satisfiable(path.when, self.domains)]
 
     # -- along transitions -------------------------------------------------------------------
 
-    def _follow(self, path: Path, one: Transition) -> list[Path]:
-        """The paths along a transition and all that it leads on to."""
-        guarded = self._pass(path, one)
-        region = self.machine.main_region(one)
-        is_leaving = region and not self.machine.is_split(one.source)
+    def _follow(self, path: Path, transition: Transition) -> list[Path]:
+        """Return the paths along a transition and through all pseudostates behind it."""
+        guarded = self._pass_guard(path, transition)
+        region = self.machine.find_main_region(transition)
+        is_leaving = region and not self.machine.has_concurrent_exits(transition.source)
         paths = self._leave(guarded, region) if region and is_leaving else [guarded]
-        for each in (one, *one.also):
-            paths = [after for path in paths for after in self._act(path, each.effect)]
+        for segment in (transition, *transition.join_partners):
+            paths = [after for path in paths for after in self._run_actions(path, segment.effect)]
         if not region:
-            return self._feasible(paths)
-        opened = [after for path in paths for after in self._open(path, region, one.target)]
-        found = [after for path in opened for after in self._arrive(path, one.target)]
-        check_number(found)
-        return self._feasible(found)
+            return self._drop_infeasible(paths)
+        opened = [
+            after
+            for path in paths
+            for after in self._enter_outer_states(path, region, transition.target)
+        ]
+        arrived = [after for path in opened for after in self._arrive(path, transition.target)]
+        check_path_count(arrived)
+        return self._drop_infeasible(arrived)
 
-    def _pass(self, path: Path, one: Transition) -> Path:
-        """The path when the guard of a transition is true."""
-        source = self.machine.vertices[one.source]
+    def _pass_guard(self, path: Path, transition: Transition) -> Path:
+        """Return the path on which the guard of the transition is true."""
+        source = self.machine.vertices[transition.source]
         if source.kind == "choice":
             path = replace(path, seen=path.values)
-        if one.guard is not None:
-            truth = substitute(condition(one.guard, self.machine.scope), path.seen)
+        if transition.guard is not None:
+            truth = substitute(condition(transition.guard, self.machine.scope), path.seen)
             path = replace(path, branch=f.both(path.branch, truth))
         if source.pick:
-            path = replace(path, picked={**path.picked, source.pick: one.literal})
+            path = replace(path, picked={**path.picked, source.pick: transition.literal})
         return path
 
     def _arrive(self, path: Path, id: str) -> list[Path]:
+        """Return the paths after reaching the vertex, through outgoing transitions of a
+        pseudostate.
+        """
         vertex, following = self.machine.vertices[id], self.machine.outgoing.get(id, ())
         if vertex.is_stable:
             return self._enter(path, vertex)
         if vertex.kind in HISTORIES:
             return self._restore(path, vertex)
-        if not self.machine.is_split(id):
-            return [after for one in following for after in self._follow(path, one)]
+        if not self.machine.has_concurrent_exits(id):
+            return [after for transition in following for after in self._follow(path, transition)]
         paths = [path]
-        for one in following:
-            paths = [after for each in paths for after in self._follow(each, one)]
+        for transition in following:
+            paths = [after for branch in paths for after in self._follow(branch, transition)]
         return paths
 
     # -- effects -----------------------------------------------------------------------------
 
-    def _act(self, path: Path, actions: tuple[Action, ...]) -> list[Path]:
+    def _run_actions(self, path: Path, actions: tuple[Action, ...]) -> list[Path]:
         if not actions:
             return [path]
         paths = [path]
         for action in actions:
-            paths = [after for one in paths for after in self._do(one, action)]
-        return self._feasible(paths)
+            paths = [
+                after for path_so_far in paths for after in self._run_action(path_so_far, action)
+            ]
+        return self._drop_infeasible(paths)
 
-    def _do(self, path: Path, action: Action) -> list[Path]:
+    def _run_action(self, path: Path, action: Action) -> list[Path]:
         if isinstance(action, Raise):
             raised = tuple(dict.fromkeys([*path.raised, action.output]))
             return [replace(path, raised=raised)]
@@ -198,170 +222,215 @@ class Explorer(Struct, frozen=True):
                 values={**path.values, action.variable: value},
                 saturated=path.saturated + ((action.variable, action.origin),) * is_bound,
             )
-            for case, value, is_bound in self._cases(path, action, domain)
+            for case, value, is_bound in self._split_assignment(path, action, domain)
         ]
 
-    def _cases(
+    def _split_assignment(
         self, path: Path, action: Assign, domain: Domain
     ) -> Iterator[tuple[Formula, Formula, bool]]:
-        """The values that an assignment can give, each with its condition."""
-        found = meaning(action.value, self.machine.scope, domain)
-        for term in found.terms:
+        """Yield the values that an assignment can give, each with its condition and whether it
+        was clamped.
+        """
+        result = meaning(action.value, self.machine.scope, domain)
+        for term in result.terms:
             case = substitute(term.condition, path.values)
             value = substitute(term.value, path.values)
-            if isinstance(domain, IntegerDomain) and isinstance(found.domain, IntegerDomain):
-                yield from saturated(case, value, domain, found.domain)
+            if isinstance(domain, IntegerDomain) and isinstance(result.domain, IntegerDomain):
+                yield from split_by_range(case, value, domain, result.domain)
             else:
                 yield case, value, False
 
     # -- leaving and entering ----------------------------------------------------------------
 
     def _leave(self, path: Path, region: str) -> list[Path]:
-        """Leave what is active in the region: one path for each state that does something."""
+        """Leave the active states of a region.
+
+        A state with an exit behaviour in or below it gets a path of its own; one path covers all
+        others.
+        """
         variable = self.machine.regions[region].variable
-        inside = [v for v in self.machine.vertices.values() if v.region == region and v.is_stable]
-        known = path.config.get(variable)
-        if known is not None:
-            inside = [one for one in inside if one.literal == known]
-            return self._leave_state(path, region, inside[0]) if inside else [path]
-        busy = [one for one in inside if self._does_on_exit(one)]
+        candidates = [
+            v for v in self.machine.vertices.values() if v.region == region and v.is_stable
+        ]
+        literal = path.config.get(variable)
+        if literal is not None:
+            candidates = [state for state in candidates if state.literal == literal]
+            return self._leave_state(path, region, candidates[0]) if candidates else [path]
+        busy = [state for state in candidates if self._does_on_exit(state)]
         paths: list[Path] = []
-        for one in busy:
-            case = f.both(path.case, f.eq(f.var(variable), Const(one.literal)))
-            paths += self._leave_state(replace(path, case=case), region, one)
-        others = [f.compare(Op.NE, f.var(variable), Const(one.literal)) for one in busy]
-        rest = replace(path, case=f.both(path.case, *others), left=self._all_left(path, inside))
-        return [*paths, with_region(rest, variable, INACTIVE, self._inner(region))]
+        for state in busy:
+            case = f.both(path.case, f.eq(f.var(variable), Const(state.literal)))
+            paths += self._leave_state(replace(path, case=case), region, state)
+        conditions = [f.compare(Op.NE, f.var(variable), Const(state.literal)) for state in busy]
+        other = replace(
+            path, case=f.both(path.case, *conditions), left=self._states_left(path, candidates)
+        )
+        return [*paths, set_region(other, variable, INACTIVE, self._inner_variables(region))]
 
     def _leave_state(self, path: Path, region: str, state: Vertex) -> list[Path]:
         paths = [path]
         for inner in state.regions:
-            paths = [after for one in paths for after in self._leave(one, inner)]
-        paths = [after for one in paths for after in self._act(one, state.exit)]
+            paths = [after for inner_path in paths for after in self._leave(inner_path, inner)]
+        paths = [
+            after for inner_path in paths for after in self._run_actions(inner_path, state.exit)
+        ]
         variable = self.machine.regions[region].variable
-        return [with_region(without(one, state.id), variable, INACTIVE, []) for one in paths]
+        return [
+            set_region(leave_state(inner_path, state.id), variable, INACTIVE, [])
+            for inner_path in paths
+        ]
 
     def _does_on_exit(self, state: Vertex) -> bool:
-        inside = [one for one in self.machine.states() if self.machine.contains(state.id, one.id)]
-        return any(one.exit for one in [state, *inside])
-
-    def _all_left(self, path: Path, states: list[Vertex]) -> tuple[str, ...]:
-        inside = [
-            one.id
-            for state in states
-            for one in self.machine.states()
-            if one is state or self.machine.contains(state.id, one.id)
+        """Return whether the state, or a state inside it, has an exit behaviour."""
+        inner = [
+            vertex
+            for vertex in self.machine.list_states()
+            if self.machine.contains(state.id, vertex.id)
         ]
-        return (*path.left, *inside)
+        return any(vertex.exit for vertex in [state, *inner])
 
-    def _inner(self, region: str) -> list[str]:
-        """Variables of the regions below this one."""
-        owners = [one.id for one in self.machine.states() if one.region == region]
+    def _states_left(self, path: Path, states: list[Vertex]) -> tuple[str, ...]:
+        """Return the states left so far, with *states* and all states inside them."""
+        ids = [
+            inner.id
+            for state in states
+            for inner in self.machine.list_states()
+            if inner is state or self.machine.contains(state.id, inner.id)
+        ]
+        return (*path.left, *ids)
+
+    def _inner_variables(self, region: str) -> list[str]:
+        """List the variables of the regions below *region*."""
+        states = [state.id for state in self.machine.list_states() if state.region == region]
         return [
             inner.variable
             for inner in self.machine.regions.values()
             if inner.state
             and (
-                inner.state in owners or any(self.machine.contains(o, inner.state) for o in owners)
+                inner.state in states
+                or any(self.machine.contains(outer, inner.state) for outer in states)
             )
         ]
 
-    def _open(self, path: Path, region: str, target: str) -> list[Path]:
-        """Enter the states of the region that contain the target, outermost first."""
+    def _enter_outer_states(self, path: Path, region: str, target: str) -> list[Path]:
+        """Enter the states in *region* that contain the target, outermost first."""
         paths = [path]
-        for id in reversed(self.machine.above(target)):
-            if region in self.machine.around(id):
+        for id in reversed(self.machine.list_enclosing_states(target)):
+            if region in self.machine.list_enclosing_regions(id):
                 state = self.machine.vertices[id]
                 paths = [
                     after
-                    for one in paths
-                    for after in ([one] if self._is_in(one, state) else self._enter(one, state))
+                    for path_so_far in paths
+                    for after in (
+                        [path_so_far]
+                        if self._is_active(path_so_far, state)
+                        else self._enter(path_so_far, state)
+                    )
                 ]
         return paths
 
-    def _is_in(self, path: Path, state: Vertex) -> bool:
+    def _is_active(self, path: Path, state: Vertex) -> bool:
         return path.config.get(self.machine.regions[state.region].variable) == state.literal
 
     def _enter(self, path: Path, state: Vertex) -> list[Path]:
         variable = self.machine.regions[state.region].variable
-        entered = with_region(path, variable, state.literal, [])
+        entered = set_region(path, variable, state.literal, [])
         if not state.regions:
-            return self._act(entered, state.entry)
-        inner = {self.machine.regions[one].variable: INACTIVE for one in state.regions}
+            return self._run_actions(entered, state.entry)
+        inner = {
+            self.machine.regions[inner_region].variable: INACTIVE for inner_region in state.regions
+        }
         opened = replace(
             entered, opened=(*path.opened, state.id), config={**entered.config, **inner}
         )
-        return self._act(opened, state.entry)
+        return self._run_actions(opened, state.entry)
 
-    def _filled(self, paths: list[Path]) -> list[Path]:
-        """Start the regions of entered states to which no way led, those of inner ones first."""
-        found: list[Path] = []
+    def _start_open_regions(self, paths: list[Path]) -> list[Path]:
+        """Start the regions of entered states that no path has entered, innermost states first."""
+        filled: list[Path] = []
         for path in paths:
-            region = self._unfilled(path)
-            found += self._filled(self._begin(path, region)) if region else [path]
-        return found
+            region = self._find_open_region(path)
+            filled += (
+                self._start_open_regions(self._start_region(path, region)) if region else [path]
+            )
+        return filled
 
-    def _unfilled(self, path: Path) -> str:
+    def _find_open_region(self, path: Path) -> str:
+        """Return a region of an entered state that no path has entered, or an empty text."""
         for id in reversed(path.opened):
             for region in self.machine.vertices[id].regions:
                 if path.config[self.machine.regions[region].variable] == INACTIVE:
                     return region
         return ""
 
-    def _begin(self, path: Path, region: str) -> list[Path]:
+    def _start_region(self, path: Path, region: str) -> list[Path]:
         """Start a region with its initial transition."""
-        begun = replace(path, seen=path.values)
+        started = replace(path, seen=path.values)
         outgoing = self.machine.outgoing[self.machine.regions[region].initial]
-        return [after for one in outgoing for after in self._follow(begun, one)]
+        return [after for transition in outgoing for after in self._follow(started, transition)]
 
     # -- history -----------------------------------------------------------------------------
 
     def _restore(self, path: Path, history: Vertex) -> list[Path]:
-        """One path for each state that the region may have been in, one for none of them."""
+        """Enter the state stored for a history pseudostate.
+
+        There is one path for each state that may be stored. On one more path no state is stored: it
+        takes the pseudostate's own transition, or starts the region.
+        """
         is_deep = history.kind == "deep-history"
-        states = [one for one in self._inside(history.region) if one.kind == "state"]
-        found = [
+        states = [
+            vertex for vertex in self._stable_vertices(history.region) if vertex.kind == "state"
+        ]
+        restored = [
             after
             for state in states
-            for case in [self._was(path, history.region, state)]
-            for after in self._again(when(path, case), state, is_deep)
+            for case in [self._was_last_active(path, history.region, state)]
+            for after in self._reenter(add_case(path, case), state, is_deep)
             if case != f.FALSE
         ]
-        others = (f.negate(self._was(path, history.region, state)) for state in states)
-        rest = when(path, f.both(*others))
+        conditions = (
+            f.negate(self._was_last_active(path, history.region, state)) for state in states
+        )
+        other = add_case(path, f.both(*conditions))
         following = self.machine.outgoing.get(history.id, ())
-        afresh = [after for one in following for after in self._follow(rest, one)]
-        return [*found, *(afresh if following else self._begin(rest, history.region))]
+        started = [after for vertex in following for after in self._follow(other, vertex)]
+        return [*restored, *(started if following else self._start_region(other, history.region))]
 
-    def _inside(self, region: str) -> list[Vertex]:
+    def _stable_vertices(self, region: str) -> list[Vertex]:
         return [v for v in self.machine.vertices.values() if v.region == region and v.is_stable]
 
-    def _was(self, path: Path, region: str, state: Vertex) -> Formula:
-        """The region is in the state before the reaction, or was when it was last active."""
-        one = self.machine.regions[region]
+    def _was_last_active(self, path: Path, region: str, state: Vertex) -> Formula:
+        """Return the condition that the region is in *state*, or was when it was last active."""
+        history_region = self.machine.regions[region]
         if path.before is None:
             return f.FALSE
-        known = path.before.get(one.variable)
-        if known is not None:
-            return f.TRUE if known == state.literal else f.FALSE
-        is_now = f.eq(f.var(one.variable), Const(state.literal))
-        if not one.memory:
+        literal = path.before.get(history_region.variable)
+        if literal is not None:
+            return f.TRUE if literal == state.literal else f.FALSE
+        is_now = f.eq(f.var(history_region.variable), Const(state.literal))
+        if not history_region.memory:
             return is_now
-        was = f.eq(f.var(one.memory), Const(state.literal))
-        return f.either(is_now, f.both(f.eq(f.var(one.variable), Const(INACTIVE)), was))
+        was = f.eq(f.var(history_region.memory), Const(state.literal))
+        return f.either(is_now, f.both(f.eq(f.var(history_region.variable), Const(INACTIVE)), was))
 
-    def _again(self, path: Path, state: Vertex, is_deep: bool) -> list[Path]:
+    def _reenter(self, path: Path, state: Vertex, is_deep: bool) -> list[Path]:
+        """Enter *state* again; deep history restores its inner regions too."""
         paths = self._enter(path, state)
         for region in state.regions if is_deep else ():
-            paths = [after for one in paths for after in self._again_in(one, region)]
-        return self._feasible(paths)
+            paths = [
+                after for outer_path in paths for after in self._reenter_region(outer_path, region)
+            ]
+        return self._drop_infeasible(paths)
 
-    def _again_in(self, path: Path, region: str) -> list[Path]:
-        cases = [(self._was(path, region, one), one) for one in self._inside(region)]
-        found = [
+    def _reenter_region(self, path: Path, region: str) -> list[Path]:
+        cases = [
+            (self._was_last_active(path, region, vertex), vertex)
+            for vertex in self._stable_vertices(region)
+        ]
+        restored = [
             after
             for case, state in cases
-            for after in self._again(when(path, case), state, True)
+            for after in self._reenter(add_case(path, case), state, True)
             if case != f.FALSE
         ]
-        return [*found, when(path, f.both(*(f.negate(case) for case, _ in cases)))]
+        return [*restored, add_case(path, f.both(*(f.negate(case) for case, _ in cases)))]

@@ -1,6 +1,7 @@
-"""Values of expressions for the reference interpreter, straight from what is written.
+"""Reactions of the reference interpreter: how one transition is taken.
 
-Independent of ``elaborate`` and ``evaluate``, which the derivation uses.
+Expressions are evaluated as they are written, independently of ``elaborate`` and ``evaluate``:
+these two belong to the derivation that the interpreter checks.
 """
 
 from collections.abc import Callable, Mapping
@@ -18,7 +19,7 @@ from sysmlc.logic.expressions.expression import (
     Unary,
     name_of,
 )
-from sysmlc.logic.expressions.expression import Literal as Written
+from sysmlc.logic.expressions.expression import Literal as LiteralExpression
 from sysmlc.logic.formula import Const, Literal, Var
 from sysmlc.logic.machines.machine import (
     HISTORIES,
@@ -33,41 +34,46 @@ from sysmlc.logic.machines.machine import (
 )
 
 
-def value_of(machine: Machine, expression: Expression, store: Mapping[str, Literal]) -> Literal:
-    """Value of an expression with these values of the variables.
+def evaluate_expression(
+    machine: Machine, expression: Expression, store: Mapping[str, Literal]
+) -> Literal:
+    """Return the value of an expression for the values in *store*.
 
     Integers divide towards zero; x / 0 is 0 and x % 0 is x.
     """
     match expression:
-        case Written(value):
+        case LiteralExpression(value):
             return value if isinstance(value, bool | int | str) else 0
         case Name() | Member():
-            return _named(machine, expression, store)
+            return _evaluate_name(machine, expression, store)
         case Unary(op, operand):
-            inner = value_of(machine, operand, store)
-            return not inner if op == "not" else int(inner) * (-1 if op == "-" else 1)
+            value = evaluate_expression(machine, operand, store)
+            return not value if op == "not" else int(value) * (-1 if op == "-" else 1)
         case Conditional(condition, then, otherwise):
-            branch = then if value_of(machine, condition, store) else otherwise
-            return value_of(machine, branch, store)
+            branch = then if evaluate_expression(machine, condition, store) else otherwise
+            return evaluate_expression(machine, branch, store)
         case Binary(op, left, right):
-            return _OPERATIONS[op](value_of(machine, left, store), value_of(machine, right, store))
+            return _OPERATIONS[op](
+                evaluate_expression(machine, left, store),
+                evaluate_expression(machine, right, store),
+            )
         case _:
             raise TypeError(f"{expression} has no finite value")
 
 
-def _named(machine: Machine, name: Name | Member, store: Mapping[str, Literal]) -> Literal:
-    written = name_of(name) or ""
-    symbol = machine.scope(written)
+def _evaluate_name(machine: Machine, name: Name | Member, store: Mapping[str, Literal]) -> Literal:
+    text = name_of(name) or ""
+    symbol = machine.scope(text)
     match None if symbol is None else symbol.formula:
         case Var(variable):
             return store[variable]
         case Const(value):
             return value
         case _:
-            return written.replace(".", "::").rpartition("::")[2]
+            return text.replace(".", "::").rpartition("::")[2]
 
 
-def _quotient(left: int, right: int) -> int:
+def _divide(left: int, right: int) -> int:
     if right == 0:
         return 0
     sign = 1 if (left < 0) == (right < 0) else -1
@@ -88,13 +94,15 @@ _OPERATIONS: dict[str, Callable[..., Literal]] = {
     "+": lambda a, b: a + b,
     "-": lambda a, b: a - b,
     "*": lambda a, b: a * b,
-    "/": _quotient,
-    "%": lambda a, b: a - b * _quotient(a, b),
+    "/": _divide,
+    "%": lambda a, b: a - b * _divide(a, b),
 }
 
 
-class Run(Struct, frozen=True):
-    """How far the reaction has come; ``store`` has the values reached, regions included."""
+class Reaction(Struct, frozen=True):
+    """A reaction in progress; ``store`` holds the current values, those of region variables
+    included.
+    """
 
     store: Mapping[str, Literal]
     raised: frozenset[str] = frozenset()
@@ -105,160 +113,198 @@ class Run(Struct, frozen=True):
     seen: Mapping[str, Literal] = field(default_factory=dict)
     """The values that guards read."""
 
-    def put(self, name: str, value: Literal) -> "Run":
+    def with_value(self, name: str, value: Literal) -> "Reaction":
+        """Return the reaction with a new value."""
         return replace(self, store={**self.store, name: value})
 
-    def pick(self, name: str, literal: str) -> "Run":
+    def with_choice(self, name: str, literal: str) -> "Reaction":
+        """Return the reaction with the choice that was made at a vertex."""
         return replace(self, picked={**self.picked, name: literal})
 
 
-def take(machine: Machine, now: Mapping[str, Literal], first: Transition) -> list[Run]:
-    """All ways to take a transition that leaves a state; none when a guard on the way is false."""
-    begun = replace(Run(now), seen=now)
-    runs = _follow(machine, begun, now, first)
-    return [after for run in runs for after in fill(machine, run, now)]
+def take_transition(
+    machine: Machine, now: Mapping[str, Literal], first: Transition
+) -> list[Reaction]:
+    """Return all ways to take a transition that leaves a state; none if a guard on the path is
+    false.
+    """
+    start = replace(Reaction(now), seen=now)
+    runs = _follow(machine, start, now, first)
+    return [after for run in runs for after in start_open_regions(machine, run, now)]
 
 
 def _follow(
-    machine: Machine, run: Run, past: Mapping[str, Literal] | None, one: Transition
-) -> list[Run]:
-    """The ways to take a transition and all that it leads on to; none when a guard is false.
+    machine: Machine, run: Reaction, past: Mapping[str, Literal] | None, transition: Transition
+) -> list[Reaction]:
+    """Return the ways to take a transition and all that follow through pseudostates.
 
-    ``past`` is the step in which the reaction began, None at the start of the machine.
+    There is none if a guard is false. *past* is the valuation in which the reaction began, None at
+    the start of the machine.
     """
-    source = machine.vertices[one.source]
+    source = machine.vertices[transition.source]
     if source.kind == "choice":
         run = replace(run, seen=run.store)
-    if one.guard is not None and not value_of(machine, one.guard, run.seen):
+    if transition.guard is not None and not evaluate_expression(
+        machine, transition.guard, run.seen
+    ):
         return []
     if source.pick:
-        run = run.pick(source.pick, one.literal)
-    region = machine.main_region(one)
-    if region and not machine.is_split(source.id):
-        run = _leave(machine, run, region)
-    for each in (one, *one.also):
-        run = _act(machine, run, each.effect)
+        run = run.with_choice(source.pick, transition.literal)
+    region = machine.find_main_region(transition)
+    if region and not machine.has_concurrent_exits(source.id):
+        run = _leave_region(machine, run, region)
+    for segment in (transition, *transition.join_partners):
+        run = _run_actions(machine, run, segment.effect)
     if not region:
         return [run]
-    return _arrive(machine, _open(machine, run, region, one.target), past, one.target)
+    return _arrive(
+        machine,
+        _enter_outer_states(machine, run, region, transition.target),
+        past,
+        transition.target,
+    )
 
 
-def _arrive(machine: Machine, run: Run, past: Mapping[str, Literal] | None, id: str) -> list[Run]:
-    vertex, following = machine.vertices[id], machine.outgoing.get(id, ())
+def _arrive(
+    machine: Machine, run: Reaction, past: Mapping[str, Literal] | None, id: str
+) -> list[Reaction]:
+    vertex, outgoing = machine.vertices[id], machine.outgoing.get(id, ())
     if vertex.is_stable:
-        return [_enter(machine, run, vertex)]
+        return [_enter_state(machine, run, vertex)]
     if vertex.kind in HISTORIES:
-        return _restore(machine, run, past, vertex)
-    if not machine.is_split(id):
-        return [after for one in following for after in _follow(machine, run, past, one)]
+        return _restore_history(machine, run, past, vertex)
+    if not machine.has_concurrent_exits(id):
+        return [
+            after for transition in outgoing for after in _follow(machine, run, past, transition)
+        ]
     runs = [run]
-    for one in following:
-        runs = [after for each in runs for after in _follow(machine, each, past, one)]
+    for transition in outgoing:
+        runs = [after for branch in runs for after in _follow(machine, branch, past, transition)]
     return runs
 
 
-def _leave(machine: Machine, run: Run, region: str) -> Run:
-    """Leave what is active in a region, innermost first."""
-    for vertex in active_in(machine, run.store, region):
+def _leave_region(machine: Machine, run: Reaction, region: str) -> Reaction:
+    """Leave the active states of a region, innermost first."""
+    for vertex in find_active_vertices(machine, run.store, region):
         for inner in vertex.regions:
-            run = _leave(machine, run, inner)
-        run = _act(machine, run, vertex.exit)
-        still = tuple(one for one in run.opened if one != vertex.id)
-        run = replace(run, left=run.left | {vertex.id}, opened=still)
-    return run.put(machine.regions[region].variable, INACTIVE)
+            run = _leave_region(machine, run, inner)
+        run = _run_actions(machine, run, vertex.exit)
+        opened = tuple(id for id in run.opened if id != vertex.id)
+        run = replace(run, left=run.left | {vertex.id}, opened=opened)
+    return run.with_value(machine.regions[region].variable, INACTIVE)
 
 
-def active_in(machine: Machine, store: Mapping[str, Literal], region: str) -> list[Vertex]:
-    """The vertex that a region is in; none when it is inactive."""
+def find_active_vertices(
+    machine: Machine, store: Mapping[str, Literal], region: str
+) -> list[Vertex]:
+    """Return the vertex that is active in a region; none if the region is inactive."""
     literal = store[machine.regions[region].variable]
-    inside = [one for one in machine.vertices.values() if one.region == region]
-    return [one for one in inside if one.is_stable and one.literal == literal]
+    vertices = [vertex for vertex in machine.vertices.values() if vertex.region == region]
+    return [vertex for vertex in vertices if vertex.is_stable and vertex.literal == literal]
 
 
-def _open(machine: Machine, run: Run, region: str, target: str) -> Run:
-    """Enter the states of the region that contain the target, outermost first."""
-    for id in reversed(machine.above(target)):
-        if region in machine.around(id) and not is_active(machine, run.store, id):
-            run = _enter(machine, run, machine.vertices[id])
+def _enter_outer_states(machine: Machine, run: Reaction, region: str, target: str) -> Reaction:
+    """Enter the states in *region* that contain the target, outermost first."""
+    for id in reversed(machine.list_enclosing_states(target)):
+        if region in machine.list_enclosing_regions(id) and not is_active(machine, run.store, id):
+            run = _enter_state(machine, run, machine.vertices[id])
     return run
 
 
-def _enter(machine: Machine, run: Run, state: Vertex) -> Run:
-    run = run.put(machine.regions[state.region].variable, state.literal)
-    return replace(_act(machine, run, state.entry), opened=(*run.opened, state.id))
+def _enter_state(machine: Machine, run: Reaction, state: Vertex) -> Reaction:
+    run = run.with_value(machine.regions[state.region].variable, state.literal)
+    return replace(_run_actions(machine, run, state.entry), opened=(*run.opened, state.id))
 
 
-def fill(machine: Machine, run: Run, past: Mapping[str, Literal] | None) -> list[Run]:
-    """Start the regions of entered states to which no way led, those of inner states first."""
+def start_open_regions(
+    machine: Machine, run: Reaction, past: Mapping[str, Literal] | None
+) -> list[Reaction]:
+    """Start the regions of entered states that no path has entered, innermost states first."""
     for id in reversed(run.opened):
         for region in machine.vertices[id].regions:
             if run.store[machine.regions[region].variable] == INACTIVE:
-                runs = begin(machine, run, past, region)
-                return [after for one in runs for after in fill(machine, one, past)]
+                runs = start_region(machine, run, past, region)
+                return [
+                    after
+                    for started in runs
+                    for after in start_open_regions(machine, started, past)
+                ]
     return [run]
 
 
-def begin(machine: Machine, run: Run, past: Mapping[str, Literal] | None, region: str) -> list[Run]:
+def start_region(
+    machine: Machine, run: Reaction, past: Mapping[str, Literal] | None, region: str
+) -> list[Reaction]:
     """Start a region with its initial transition."""
     outgoing = machine.outgoing[machine.regions[region].initial]
-    begun = replace(run, seen=run.store)
-    return [after for one in outgoing for after in _follow(machine, begun, past, one)]
+    start = replace(run, seen=run.store)
+    return [after for transition in outgoing for after in _follow(machine, start, past, transition)]
 
 
-def _restore(
-    machine: Machine, run: Run, past: Mapping[str, Literal] | None, history: Vertex
-) -> list[Run]:
-    last = [] if past is None else _remembered(machine, past, history.region)
+def _restore_history(
+    machine: Machine, run: Reaction, past: Mapping[str, Literal] | None, history: Vertex
+) -> list[Reaction]:
+    """Enter the stored state of a history pseudostate, else take its transition or start the
+    region.
+    """
+    last = [] if past is None else _last_active_vertices(machine, past, history.region)
     if last and last[0].kind == "state":
-        return [_again(machine, run, past or {}, last[0], history.kind == "deep-history")]
-    following = machine.outgoing.get(history.id, ())
-    if not following:
-        return begin(machine, run, past, history.region)
-    return [after for one in following for after in _follow(machine, run, past, one)]
+        return [_reenter(machine, run, past or {}, last[0], history.kind == "deep-history")]
+    outgoing = machine.outgoing.get(history.id, ())
+    if not outgoing:
+        return start_region(machine, run, past, history.region)
+    return [after for transition in outgoing for after in _follow(machine, run, past, transition)]
 
 
-def _remembered(machine: Machine, past: Mapping[str, Literal], region: str) -> list[Vertex]:
-    last = last_of(past, machine.regions[region])
-    inside = [one for one in machine.vertices.values() if one.region == region]
-    return [one for one in inside if one.is_stable and one.literal == last]
+def _last_active_vertices(
+    machine: Machine, past: Mapping[str, Literal], region: str
+) -> list[Vertex]:
+    """Return the vertex in which a region is, or was when it was last active."""
+    last = last_literal(past, machine.regions[region])
+    vertices = [vertex for vertex in machine.vertices.values() if vertex.region == region]
+    return [vertex for vertex in vertices if vertex.is_stable and vertex.literal == last]
 
 
-def _again(
-    machine: Machine, run: Run, past: Mapping[str, Literal], state: Vertex, is_deep: bool
-) -> Run:
-    run = _enter(machine, run, state)
+def _reenter(
+    machine: Machine, run: Reaction, past: Mapping[str, Literal], state: Vertex, is_deep: bool
+) -> Reaction:
+    """Enter *state* again; deep history restores its inner regions too."""
+    run = _enter_state(machine, run, state)
     for inner in state.regions if is_deep else ():
-        for last in _remembered(machine, past, inner):
-            run = _again(machine, run, past, last, is_deep)
+        for last in _last_active_vertices(machine, past, inner):
+            run = _reenter(machine, run, past, last, is_deep)
     return run
 
 
-def _act(machine: Machine, run: Run, actions: tuple[Action, ...]) -> Run:
+def _run_actions(machine: Machine, run: Reaction, actions: tuple[Action, ...]) -> Reaction:
     for action in actions:
         match action:
             case Raise(output):
                 run = replace(run, raised=run.raised | {output})
             case Assign(variable, expression):
-                value = value_of(machine, expression, run.store)
-                domain = machine.variable(variable).domain
+                value = evaluate_expression(machine, expression, run.store)
+                domain = machine.find_variable(variable).domain
                 if isinstance(domain, IntegerDomain):
-                    value = bounded(int(value), domain)
-                run = run.put(variable, value)
+                    value = clamp(int(value), domain)
+                run = run.with_value(variable, value)
     return run
 
 
-def bounded(value: int, domain: IntegerDomain) -> int:
-    """The value, or the bound of the domain beyond which it is."""
+def clamp(value: int, domain: IntegerDomain) -> int:
+    """Return the value, clamped to the domain."""
     return max(domain.low, min(domain.high, value))
 
 
 def is_active(machine: Machine, store: Mapping[str, Literal], vertex: str) -> bool:
-    """Whether the vertex is the state of its region."""
-    one = machine.vertices[vertex]
-    return store[machine.regions[one.region].variable] == one.literal and one.is_stable
+    """Return whether the vertex is the active state of its region."""
+    found_vertex = machine.vertices[vertex]
+    return (
+        store[machine.regions[found_vertex.region].variable] == found_vertex.literal
+        and found_vertex.is_stable
+    )
 
 
-def last_of(now: Mapping[str, Literal], region: Region) -> Literal:
-    """What the region is now, or was when it was last active."""
+def last_literal(now: Mapping[str, Literal], region: Region) -> Literal:
+    """Return the literal that the region has, or had when it was last active."""
     literal = now[region.variable]
     return literal if literal != INACTIVE or not region.memory else now[region.memory]

@@ -1,4 +1,8 @@
-"""From the graph to ``Machine``: vertices, regions, transitions and their variables."""
+"""Reader of state machines: from the graph to ``Machine``.
+
+The vertices, regions and transitions are read first. The checks of well-formedness and of conflicts
+between transitions follow, because they need the complete machine.
+"""
 
 from msgspec import Struct
 from msgspec.structs import replace
@@ -7,20 +11,20 @@ from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Element, Graph, query
 from sysmlc.logic.contract import EnumerationDomain, IntegerDomain, Owner, Variable
 from sysmlc.logic.expressions.context import context_of
-from sysmlc.logic.machines.actions import Reading, Sharing
+from sysmlc.logic.machines.actions import ReadingContext, Sharing
 from sysmlc.logic.machines.conflicts import (
     GuardComparison,
     TooManyValuationsError,
+    are_regions_independent,
     have_common_cause,
-    is_undisturbed,
     may_compete,
-    report_overrides,
+    report_lost_events,
 )
 from sysmlc.logic.machines.machine import NO_EVENT, Machine, Transition, element_id
 from sysmlc.logic.machines.supported_constructs import is_supported
-from sysmlc.logic.machines.transitions import join_up, read_transitions
-from sysmlc.logic.machines.vertices import Parts, read_regions, remember
-from sysmlc.logic.machines.well_formedness import has_ends, is_well_formed
+from sysmlc.logic.machines.transitions import combine_joins, read_transitions
+from sysmlc.logic.machines.vertices import MachineDraft, add_history_memories, read_regions
+from sysmlc.logic.machines.well_formedness import has_valid_targets, is_well_formed
 from sysmlc.logic.names import Names
 from sysmlc.logic.writers import Writers
 
@@ -48,17 +52,21 @@ COINCIDING = rule(
 
 
 class MachineOptions(Struct, frozen=True):
-    """Length of a step in seconds, and the range of Integers that have none."""
+    """Length of a step in seconds, and the range of Integers without a stated range."""
 
     tick_seconds: float = 1.0
     assumed_range: tuple[int, int] = (0, 15)
 
 
-def context_classifier(graph: Graph, behaviour: Element) -> Element | None:
-    """The classifier in which a behaviour's names are resolved: the nearest that is none."""
-    for above in graph.ancestors(behaviour):
-        if above.kind in query.CLASSIFIERS and above.kind not in query.BEHAVIORS:
-            return above
+def find_context_classifier(graph: Graph, behaviour: Element) -> Element | None:
+    """Return the classifier in which names of *behaviour* are resolved.
+
+    It is the nearest classifier around the behaviour that is no behaviour, else the behaviour
+    itself.
+    """
+    for ancestor in graph.ancestors(behaviour):
+        if ancestor.kind in query.CLASSIFIERS and ancestor.kind not in query.BEHAVIORS:
+            return ancestor
     return behaviour if behaviour.kind in query.BEHAVIORS else None
 
 
@@ -69,127 +77,143 @@ def read_machine(
     options: MachineOptions | None = None,
     writers: Writers | None = None,
 ) -> Machine | None:
-    """The state machine as values, or None when something in it is not derived.
+    """Read a state machine; return None if something in it cannot be derived.
 
-    Everything that is missing or wrong is reported. What others of the ``writers`` write, too, is
-    the environment's; without them the machine alone is looked at.
+    Every fault is reported. A feature that another behaviour of *writers* writes becomes an input;
+    without *writers* only the machine itself is searched for writers.
     """
     if not is_supported(graph, machine, sink):
         return None
     sharing = Sharing(graph, machine, writers)
-    parts = _start(graph, sharing, sink, options or MachineOptions())
-    top = read_regions(parts, machine, "", machine)
-    remember(parts)
-    read_transitions(parts)
-    drawn = _assemble(parts, top)
-    completing = {one.source for one in drawn.transitions() if not one.occurrences}
-    if not (has_ends(graph, drawn, sink) and join_up(graph, drawn, sink)):
+    draft = _start_draft(graph, sharing, sink, options or MachineOptions())
+    top = read_regions(draft, machine, "", machine)
+    add_history_memories(draft)
+    read_transitions(draft)
+    raw_machine = _assemble(draft, top)
+    completion_sources = {
+        transition.source
+        for transition in raw_machine.list_transitions()
+        if not transition.occurrences
+    }
+    if not (
+        has_valid_targets(graph, raw_machine, sink) and combine_joins(graph, raw_machine, sink)
+    ):
         return None
-    comparison = GuardComparison(drawn.scope)
+    comparison = GuardComparison(raw_machine.scope)
     try:
-        _complete_states(parts, drawn, completing, comparison)
-        made = _assemble(parts, top)
-        if not is_well_formed(graph, made, sink):
+        _add_state_variables(draft, raw_machine, completion_sources, comparison)
+        result = _assemble(draft, top)
+        if not is_well_formed(graph, result, sink):
             return None
-        if not is_undisturbed(graph, made, comparison, sink):
+        if not are_regions_independent(graph, result, comparison, sink):
             return None
-        report_overrides(graph, made, comparison, sink)
+        report_lost_events(graph, result, comparison, sink)
     except TooManyValuationsError:
         sink.report(TOO_MANY_GUARDS, graph.subject(machine), machine=machine.name)
         return None
-    return made
+    return result
 
 
-def _start(graph: Graph, sharing: Sharing, sink: Sink, options: MachineOptions) -> Parts:
+def _start_draft(
+    graph: Graph, sharing: Sharing, sink: Sink, options: MachineOptions
+) -> MachineDraft:
     machine = sharing.machine
-    found = context_classifier(graph, machine)
-    context = context_of(graph, found, options.assumed_range, machine)
-    taken = [*context.variables.values(), *context.features]
-    names = Names("event", NO_EVENT, *taken)
-    return Parts(Reading(graph, sink, context, names, options.tick_seconds, sharing), machine)
+    classifier = find_context_classifier(graph, machine)
+    context = context_of(graph, classifier, options.assumed_range, machine)
+    reserved = [*context.variables.values(), *context.features]
+    names = Names("event", NO_EVENT, *reserved)
+    return MachineDraft(
+        ReadingContext(graph, sink, context, names, options.tick_seconds, sharing), machine
+    )
 
 
 # -- the whole ---------------------------------------------------------------------------------
 
 
-def _complete_states(
-    parts: Parts, machine: Machine, completing: set[str], comparison: GuardComparison
+def _add_state_variables(
+    draft: MachineDraft, machine: Machine, completing: set[str], comparison: GuardComparison
 ) -> None:
-    """Give states and branching pseudostates the variables that their transitions need.
+    """Add timers, ends of do behaviours and choice variables to the vertices that need them.
 
-    ``completing`` are the vertices that something leaves when they are complete.
+    *completing* are the vertices that a completion transition leaves.
     """
-    reading = parts.reading
-    for id, vertex in tuple(parts.vertices.items()):
-        outgoing = parts.outgoing.get(id, ())
-        element = parts.element(id)
+    reading = draft.reading
+    for id, vertex in tuple(draft.vertices.items()):
+        outgoing = draft.outgoing.get(id, ())
+        element = draft.element(id)
         name = element.name or vertex.kind
         timer, done, pick = vertex.timer, vertex.done, vertex.pick
-        if id in parts.bounds:
-            domain = IntegerDomain(0, parts.bounds[id])
-            timer = reading.make(f"timer {id}", f"ticks_{name}", Owner.SYSTEM, domain, element.id)
+        if id in draft.bounds:
+            domain = IntegerDomain(0, draft.bounds[id])
+            timer = reading.variable_for(
+                f"timer {id}", f"ticks_{name}", Owner.SYSTEM, domain, element.id
+            )
         if vertex.do and id in completing:
-            told = vertex.do.replace("do_", "done_", 1)
-            done = reading.told(f"end {id}", told, element.id)
-        if not machine.is_split(id) and may_compete(outgoing, vertex, comparison):
-            pick = _pick(parts, id, name, outgoing, comparison)
+            done_name = vertex.do.replace("do_", "done_", 1)
+            done = reading.input_for(f"end {id}", done_name, element.id)
+        if not machine.has_concurrent_exits(id) and may_compete(outgoing, vertex, comparison):
+            pick = _add_choice_variable(draft, id, name, outgoing, comparison)
         if timer or done or pick:
-            parts.vertices[id] = replace(vertex, timer=timer, done=done, pick=pick)
+            draft.vertices[id] = replace(vertex, timer=timer, done=done, pick=pick)
 
 
-def _pick(
-    parts: Parts,
+def _add_choice_variable(
+    draft: MachineDraft,
     id: str,
     name: str,
     outgoing: tuple[Transition, ...],
     comparison: GuardComparison,
 ) -> str:
-    reading = parts.reading
-    literals = tuple(one.literal for one in outgoing)
+    """Create the variable that names the transition taken at a vertex; report the competing
+    transitions.
+    """
+    reading = draft.reading
+    literals = tuple(transition.literal for transition in outgoing)
     domain = EnumerationDomain((NO_EVENT, *literals))
-    pick = reading.make(f"pick {id}", f"taken_{name}", Owner.SYSTEM, domain, element_id(id))
-    named = ", ".join(f"'{one.words}'" for one in outgoing)
-    subject = reading.graph.subject(parts.element(id))
-    same = have_common_cause(outgoing, parts.vertices[id], comparison)
-    broken = NONDETERMINISTIC if same else COINCIDING
-    reading.sink.report(broken, subject, transitions=named, vertex=name, pick=pick)
+    pick = reading.variable_for(f"pick {id}", f"taken_{name}", Owner.SYSTEM, domain, element_id(id))
+    names = ", ".join(f"'{transition.words}'" for transition in outgoing)
+    subject = reading.graph.subject(draft.element(id))
+    has_common_cause = have_common_cause(outgoing, draft.vertices[id], comparison)
+    rule = NONDETERMINISTIC if has_common_cause else COINCIDING
+    reading.sink.report(rule, subject, transitions=names, vertex=name, pick=pick)
     return pick
 
 
-def _assemble(parts: Parts, top: tuple[str, ...]) -> Machine:
-    reading = parts.reading
-    features = {one.variable: one for one in reading.context.features.values()}
-    assigned = tuple(name for name in features if name in reading.assigned)
+def _assemble(draft: MachineDraft, top: tuple[str, ...]) -> Machine:
+    reading = draft.reading
+    features = {feature.variable: feature for feature in reading.context.features.values()}
+    assigned = tuple(name for name in features if name in reading.assigned_variables)
     defaults = {name: features[name].default for name in assigned}
     return Machine(
-        parts.machine.id,
-        parts.machine.name,
-        (*_event_variable(parts), *_properties(reading), *reading.made.values()),
-        parts.vertices,
-        parts.regions,
-        parts.outgoing,
+        draft.machine.id,
+        draft.machine.name,
+        (*_event_variable(draft), *_property_variables(reading), *reading.auxiliary.values()),
+        draft.vertices,
+        draft.regions,
+        draft.outgoing,
         top,
-        reading.scope,
+        reading.find_symbol,
         {name: value for name, value in defaults.items() if value is not None},
-        tuple(reading.outputs),
+        tuple(reading.output_names),
         assigned,
-        parts.memories,
+        draft.memories,
     )
 
 
-def _event_variable(parts: Parts) -> tuple[Variable, ...]:
-    if not parts.events:
+def _event_variable(draft: MachineDraft) -> tuple[Variable, ...]:
+    if not draft.events:
         return ()
-    domain = EnumerationDomain((NO_EVENT, *parts.events.values()))
-    return (Variable("event", Owner.ENVIRONMENT, domain, parts.machine.id),)
+    domain = EnumerationDomain((NO_EVENT, *draft.events.values()))
+    return (Variable("event", Owner.ENVIRONMENT, domain, draft.machine.id),)
 
 
-def _properties(reading: Reading) -> list[Variable]:
-    found: list[Variable] = []
+def _property_variables(reading: ReadingContext) -> list[Variable]:
+    """List the variables of the properties that the machine reads or assigns."""
+    variables: list[Variable] = []
     for feature in reading.context.features.values():
-        is_assigned = feature.variable in reading.assigned
-        is_read = feature.variable in reading.used and not feature.constant
+        is_assigned = feature.variable in reading.assigned_variables
+        is_read = feature.variable in reading.read_variables and not feature.constant
         if feature.domain is not None and (is_assigned or is_read):
             owner = Owner.SYSTEM if is_assigned else Owner.ENVIRONMENT
-            found.append(Variable(feature.variable, owner, feature.domain, feature.element.id))
-    return found
+            variables.append(Variable(feature.variable, owner, feature.domain, feature.element.id))
+    return variables

@@ -1,4 +1,7 @@
-"""What of a state machine can be derived at all; the rest is named before anything is read."""
+"""Check that a state machine uses only constructs that can be derived.
+
+The check runs before the machine is read, so that a diagnostic names every unsupported construct.
+"""
 
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Edge, Element, Graph, Kind
@@ -47,89 +50,111 @@ _REDEFINABLE = frozenset([Kind.STATE_MACHINE, Kind.REGION, Kind.STATE, Kind.TRAN
 
 
 def is_supported(graph: Graph, machine: Element, sink: Sink) -> bool:
-    """Whether all of the machine can be derived; what cannot is reported."""
-    drawn = [one for each in _with_submachines(graph, machine) for one in graph.subtree(each)]
-    missing = [
-        (element, what)
-        for element in drawn
-        for what in [_unsupported(graph, element) or _endless(graph, element)]
-        if what
+    """Return whether the whole machine can be derived; report what cannot."""
+    elements = [
+        element
+        for owner in _collect_submachines(graph, machine)
+        for element in graph.subtree(owner)
     ]
-    for element, what in missing:
-        sink.report(NOT_DERIVED, graph.subject(element), what=what, machine=machine.name)
-    broken = [_is_broken(graph, element, sink) for element in drawn]
-    return not missing and not any(broken)
+    unsupported = [
+        (element, description)
+        for element in elements
+        for description in [
+            _describe_unsupported(graph, element) or _describe_recursion(graph, element)
+        ]
+        if description
+    ]
+    for element, description in unsupported:
+        sink.report(NOT_DERIVED, graph.subject(element), what=description, machine=machine.name)
+    faults = [_is_broken(graph, element, sink) for element in elements]
+    return not unsupported and not any(faults)
 
 
-def _with_submachines(graph: Graph, machine: Element) -> list[Element]:
-    """The machine and all that states of it are, at whatever depth."""
-    found = [machine]
-    for one in found:
-        for each in graph.subtree(one):
-            called = submachine_of(graph, each)
-            if called is not None and called not in found:
-                found.append(called)
-    return found
+def _collect_submachines(graph: Graph, machine: Element) -> list[Element]:
+    """Return the machine and the submachines of its states, transitively."""
+    machines = [machine]
+    for member in machines:
+        for element in graph.subtree(member):
+            submachine = find_submachine(graph, element)
+            if submachine is not None and submachine not in machines:
+                machines.append(submachine)
+    return machines
 
 
-def submachine_of(graph: Graph, state: Element) -> Element | None:
-    """The state machine that a state is, when it is one that is drawn here."""
+def find_submachine(graph: Graph, state: Element) -> Element | None:
+    """Return the state machine that *state* uses, if the model defines it."""
     if state.kind is not Kind.STATE:
         return None
-    called = graph.target(state, Edge.CALLS)
-    is_drawn = called is not None and called.kind is Kind.STATE_MACHINE
-    return called if is_drawn and called is not None and not called.attrs.get("external") else None
+    submachine = graph.target(state, Edge.CALLS)
+    is_drawn = submachine is not None and submachine.kind is Kind.STATE_MACHINE
+    return (
+        submachine
+        if is_drawn and submachine is not None and not submachine.attrs.get("external")
+        else None
+    )
 
 
-def _endless(graph: Graph, state: Element) -> str:
-    """A submachine state of a machine that is in itself again."""
-    called = submachine_of(graph, state)
-    if called is None or called not in _callers(graph, state):
+def _describe_recursion(graph: Graph, state: Element) -> str:
+    """Describe a submachine state that contains itself; return "" for any other element."""
+    submachine = find_submachine(graph, state)
+    if submachine is None or submachine not in _enclosing_machines(graph, state):
         return ""
-    return f"submachine state '{state.name}', in which '{called.name}' contains itself,"
+    return f"submachine state '{state.name}', in which '{submachine.name}' contains itself,"
 
 
-def _callers(graph: Graph, state: Element) -> list[Element]:
-    """The state machines around a state, and those of the states that are them."""
-    found = [one for one in graph.ancestors(state) if one.kind is Kind.STATE_MACHINE]
-    for one in found:
-        for user in graph.sources(one, Edge.CALLS):
-            above = [up for up in graph.ancestors(user) if up.kind is Kind.STATE_MACHINE]
-            found += (up for up in above if user.kind is Kind.STATE and up not in found)
-    return found
+def _enclosing_machines(graph: Graph, state: Element) -> list[Element]:
+    """Return the state machines that contain *state*, also through submachine states."""
+    machines = [
+        ancestor for ancestor in graph.ancestors(state) if ancestor.kind is Kind.STATE_MACHINE
+    ]
+    for ancestor in machines:
+        for user_state in graph.sources(ancestor, Edge.CALLS):
+            ancestors = [
+                ancestor
+                for ancestor in graph.ancestors(user_state)
+                if ancestor.kind is Kind.STATE_MACHINE
+            ]
+            machines += (
+                ancestor
+                for ancestor in ancestors
+                if user_state.kind is Kind.STATE and ancestor not in machines
+            )
+    return machines
 
 
-def _unsupported(graph: Graph, element: Element) -> str:
+def _describe_unsupported(graph: Graph, element: Element) -> str:
+    """Describe why *element* cannot be derived; return an empty text if it can."""
     if element.kind is Kind.PSEUDOSTATE:
-        return _unsupported_pseudostate(graph, element)
+        return _describe_unsupported_pseudostate(graph, element)
     if element.kind in _REDEFINABLE and graph.targets(element, Edge.REDEFINES):
         return f"the redefinition or extension by '{element.name or element.kind}'"
     if element.kind is not Kind.STATE:
         return ""
-    if any(one.kind is Kind.TRIGGER for one in graph.owned(element)):
+    if any(child.kind is Kind.TRIGGER for child in graph.owned(element)):
         return f"the deferral of events in state '{element.name}'"
     is_submachine = "submachine" in element.attrs or any(
         target.kind is Kind.STATE_MACHINE
         for edge in (Edge.CALLS, Edge.TYPED_BY, Edge.REFERENCES)
         for target in graph.targets(element, edge)
     )
-    is_known = submachine_of(graph, element) is not None
-    return f"submachine state '{element.name}'" if is_submachine and not is_known else ""
+    is_readable = find_submachine(graph, element) is not None
+    return f"submachine state '{element.name}'" if is_submachine and not is_readable else ""
 
 
-def _unsupported_pseudostate(graph: Graph, element: Element) -> str:
+def _describe_unsupported_pseudostate(graph: Graph, element: Element) -> str:
     if element.subkind not in _PSEUDO:
         return f"{element.subkind or 'pseudostate'} pseudostate '{element.name}'"
     if element.subkind == "connection-point" and len(graph.targets(element, Edge.REFERENCES)) != 1:
         return f"the connection point '{element.name}' that stands for no one point"
     region = graph.owner(element)
-    is_second = region is not None and initial_of(graph, region) not in (None, element)
+    is_second = region is not None and find_initial(graph, region) not in (None, element)
     if element.subkind == "initial" and is_second:
         return f"the second initial pseudostate '{element.name}'"
     return ""
 
 
 def _is_broken(graph: Graph, element: Element, sink: Sink) -> bool:
+    """Return whether a region lacks its initial pseudostate or a transition an end; report it."""
     if element.kind is Kind.REGION:
         return _lacks_initial(graph, element, sink)
     if element.kind is not Kind.TRANSITION:
@@ -138,20 +163,20 @@ def _is_broken(graph: Graph, element: Element, sink: Sink) -> bool:
         "source": graph.target(element, Edge.FLOW_SOURCE),
         "target": graph.target(element, Edge.FLOW_TARGET),
     }
-    known = element.attrs.get("unresolved")
-    told = known if isinstance(known, tuple) else ()
+    unresolved = element.attrs.get("unresolved")
+    reported = unresolved if isinstance(unresolved, tuple) else ()
     for end, vertex in ends.items():
-        if vertex is None and f"flow-{end}" not in told:
+        if vertex is None and f"flow-{end}" not in reported:
             name = element.name or "<Transition>"
             sink.report(DANGLING, graph.subject(element), transition=name, end=end)
     return None in ends.values()
 
 
 def _lacks_initial(graph: Graph, region: Element, sink: Sink) -> bool:
-    initial = initial_of(graph, region)
+    initial = find_initial(graph, region)
     if initial is not None and len(graph.sources(initial, Edge.FLOW_SOURCE)) == 1:
         return False
-    if not any(one.kind in (Kind.STATE, Kind.FINAL_STATE) for one in graph.owned(region)):
+    if not any(vertex.kind in (Kind.STATE, Kind.FINAL_STATE) for vertex in graph.owned(region)):
         return False
     owner = graph.owner(region) or region
     name = region.name or "<Region>"
@@ -159,7 +184,7 @@ def _lacks_initial(graph: Graph, region: Element, sink: Sink) -> bool:
     return True
 
 
-def initial_of(graph: Graph, region: Element) -> Element | None:
-    """The first initial pseudostate of a region."""
+def find_initial(graph: Graph, region: Element) -> Element | None:
+    """Return the first initial pseudostate of *region*."""
     owned = graph.owned(region)
-    return next((one for one in owned if one.subkind == "initial"), None)
+    return next((vertex for vertex in owned if vertex.subkind == "initial"), None)

@@ -1,4 +1,4 @@
-"""Transitions of a state machine, and those that forks and joins make one."""
+"""Transitions of a state machine; the transitions that lead to a join become one transition."""
 
 from msgspec.structs import replace
 
@@ -13,36 +13,38 @@ from sysmlc.logic.machines.machine import (
     Transition,
     Vertex,
     element_id,
-    id_within,
+    submachine_id,
 )
 from sysmlc.logic.machines.supported_constructs import JOIN_BESIDE
-from sysmlc.logic.machines.triggers import occurrence_of
-from sysmlc.logic.machines.vertices import Parts, drawn_from
-from sysmlc.logic.machines.well_formedness import common_state
+from sysmlc.logic.machines.triggers import read_occurrence
+from sysmlc.logic.machines.vertices import MachineDraft, list_outgoing
+from sysmlc.logic.machines.well_formedness import find_common_state
 from sysmlc.logic.names import unique
 
 
-def read_transitions(parts: Parts) -> None:
-    """Read the transitions that leave each vertex, in the order of the drawing."""
+def read_transitions(parts: MachineDraft) -> None:
+    """Read the transitions that leave each vertex, in the order of the diagram."""
     graph = parts.reading.graph
     for vertex in tuple(parts.vertices.values()):
-        drawn = drawn_from(parts, vertex.id)
-        literals = unique([_label(graph, one) for one, _ in drawn], "transition", NO_EVENT)
-        read = [
-            _read_transition(parts, one, within, vertex, literal)
-            for (one, within), literal in zip(drawn, literals, strict=True)
+        elements = list_outgoing(parts, vertex.id)
+        literals = unique(
+            [_base_literal(graph, element) for element, _ in elements], "transition", NO_EVENT
+        )
+        transitions = [
+            _read_transition(parts, element, within, vertex, literal)
+            for (element, within), literal in zip(elements, literals, strict=True)
         ]
-        if read:
-            parts.outgoing[vertex.id] = _without_else(graph, read)
+        if transitions:
+            parts.outgoing[vertex.id] = _expand_else(graph, transitions)
 
 
-def _label(graph: Graph, transition: Element) -> str:
+def _base_literal(graph: Graph, transition: Element) -> str:
     target = graph.target(transition, Edge.FLOW_TARGET)
     return transition.name or f"to_{target.name if target and target.name else 'next'}"
 
 
 def _read_transition(
-    parts: Parts, element: Element, within: str, vertex: Vertex, literal: str
+    parts: MachineDraft, element: Element, within: str, vertex: Vertex, literal: str
 ) -> Transition:
     graph = parts.reading.graph
     text = _guard_text(graph, element)
@@ -52,21 +54,23 @@ def _read_transition(
     triggers = graph.targets(element, Edge.TRIGGER) if vertex.kind == "state" else []
     target = graph.target(element, Edge.FLOW_TARGET)
     return Transition(
-        id_within(within, element.id),
+        submachine_id(within, element.id),
         literal,
-        _words(graph, element, text),
+        _describe(graph, element, text),
         vertex.id,
-        _target(parts, within, target),
+        _resolve_target(parts, within, target),
         element.subkind or "external",
-        tuple(occurrence_of(parts, trigger, vertex) for trigger in triggers),
+        tuple(read_occurrence(parts, trigger, vertex) for trigger in triggers),
         guard,
         read_behaviours(parts.reading, element, Edge.EFFECT),
     )
 
 
-def _target(parts: Parts, within: str, target: Element | None) -> str:
-    """The id of a target; what stands for a point of a submachine leads there."""
-    id = "" if target is None else id_within(within, target.id)
+def _resolve_target(parts: MachineDraft, within: str, target: Element | None) -> str:
+    """Return the id of a target; a connection point of a submachine state is replaced by the point
+    that it stands for.
+    """
+    id = "" if target is None else submachine_id(within, target.id)
     return next(iter(parts.aliases.get(id, ())), id)
 
 
@@ -78,17 +82,21 @@ def _guard_text(graph: Graph, transition: Element) -> str:
     return "" if constraint is None else str(constraint.attrs.get("body", ""))
 
 
-def _words(graph: Graph, transition: Element, guard: str) -> str:
+def _describe(graph: Graph, transition: Element, guard: str) -> str:
+    """Describe a transition for diagnostics, by its ends and its guard."""
     ends = [graph.target(transition, edge) for edge in (Edge.FLOW_SOURCE, Edge.FLOW_TARGET)]
-    names = [end.name or end.subkind or str(end.kind) for end in ends if end is not None]
+    end_names = [end.name or end.subkind or str(end.kind) for end in ends if end is not None]
     condition = f" [{guard.strip()}]" if guard.strip() else ""
-    return " to ".join(names) + condition
+    return " to ".join(end_names) + condition
 
 
-def _without_else(graph: Graph, drawn: list[Transition]) -> tuple[Transition, ...]:
-    """The same with ``else`` written out as the negation of the other guards."""
+def _expand_else(graph: Graph, transitions: list[Transition]) -> tuple[Transition, ...]:
+    """Replace each guard ``else`` by the negation of the other guards."""
     return tuple(
-        replace(one, guard=_negated(one, drawn)) if _is_else(graph, one) else one for one in drawn
+        replace(transition, guard=_negate_siblings(transition, transitions))
+        if _is_else(graph, transition)
+        else transition
+        for transition in transitions
     )
 
 
@@ -96,18 +104,19 @@ def _is_else(graph: Graph, transition: Transition) -> bool:
     return _guard_text(graph, graph[element_id(transition.id)]).strip() == "else"
 
 
-def _negated(transition: Transition, drawn: list[Transition]) -> Expression | None:
+def _negate_siblings(transition: Transition, transitions: list[Transition]) -> Expression | None:
+    """Return the negated disjunction of the guards of the siblings that share a trigger."""
     guards: list[Expression] = [
-        one.guard or Written(True)
-        for one in drawn
-        if one is not transition and _share_occurrence(one, transition)
+        sibling.guard or Written(True)
+        for sibling in transitions
+        if sibling is not transition and _share_occurrence(sibling, transition)
     ]
     if not guards:
         return None
-    joined = guards[0]
+    disjunction = guards[0]
     for guard in guards[1:]:
-        joined = Binary("or", joined, guard)
-    return Unary("not", joined)
+        disjunction = Binary("or", disjunction, guard)
+    return Unary("not", disjunction)
 
 
 def _share_occurrence(left: Transition, right: Transition) -> bool:
@@ -118,56 +127,74 @@ def _share_occurrence(left: Transition, right: Transition) -> bool:
 # -- forks and joins -----------------------------------------------------------------------------
 
 
-def join_up(graph: Graph, machine: Machine, sink: Sink) -> bool:
-    """Make one transition of those that lead to a join, and let forks and joins stand outside the
-    state whose regions they split; False, reported, when a source has another way to complete.
+def combine_joins(graph: Graph, machine: Machine, sink: Sink) -> bool:
+    """Combine the transitions that lead to each join into one transition.
 
-    What is malformed stays as it is, for ``shape`` to tell.
+    A fork or join moves to the region around the state whose regions it connects. The result is
+    False, and the fault reported, if a source of a join has another completion transition. A
+    malformed fork or join is left unchanged; ``well_formedness`` reports it.
     """
-    is_clear = True
+    is_valid = True
     for vertex in tuple(machine.vertices.values()):
         if vertex.kind == "fork":
-            _move_out(machine, vertex, [one.target for one in machine.outgoing.get(vertex.id, ())])
+            _move_to_outer_region(
+                machine,
+                vertex,
+                [transition.target for transition in machine.outgoing.get(vertex.id, ())],
+            )
         elif vertex.kind == "join":
-            into = [one for one in machine.transitions() if one.target == vertex.id]
-            if len(into) > 1 and all(_may_join(machine, one) for one in into):
-                _move_out(machine, vertex, [one.source for one in into])
-                is_clear = _join(graph, machine, into, sink) and is_clear
-    return is_clear
+            incoming = [
+                transition
+                for transition in machine.list_transitions()
+                if transition.target == vertex.id
+            ]
+            if len(incoming) > 1 and all(_can_join(machine, transition) for transition in incoming):
+                _move_to_outer_region(
+                    machine, vertex, [transition.source for transition in incoming]
+                )
+                is_valid = _combine(graph, machine, incoming, sink) and is_valid
+    return is_valid
 
 
-def _may_join(machine: Machine, one: Transition) -> bool:
-    is_bare = one.guard is None and not one.occurrences
-    return machine.vertices[one.source].kind == "state" and is_bare
+def _can_join(machine: Machine, transition: Transition) -> bool:
+    is_unconditional = transition.guard is None and not transition.occurrences
+    return machine.vertices[transition.source].kind == "state" and is_unconditional
 
 
-def _move_out(machine: Machine, vertex: Vertex, ends: list[str]) -> None:
-    known = [one for one in ends if one in machine.vertices]
-    state = common_state(machine, known[0], known[1]) if len(known) > 1 else None
+def _move_to_outer_region(machine: Machine, vertex: Vertex, ends: list[str]) -> None:
+    """Move a fork or join to the region that contains the state whose regions it connects."""
+    inner = [end for end in ends if end in machine.vertices]
+    state = find_common_state(machine, inner[0], inner[1]) if len(inner) > 1 else None
     if state:
         region = machine.vertices[state].region
         machine.vertices[vertex.id] = replace(vertex, region=region)
 
 
-def _join(graph: Graph, machine: Machine, into: list[Transition], sink: Sink) -> bool:
-    first, *others = into
-    for one in into:
-        beside = [each for each in machine.outgoing[one.source] if each is not one]
-        rival = next((each for each in beside if not each.occurrences), None)
-        if rival is not None:
-            _report_rival(graph, machine, one, rival, sink)
+def _combine(graph: Graph, machine: Machine, incoming: list[Transition], sink: Sink) -> bool:
+    """Replace the incoming transitions of a join by the first one, with the others as its join
+    partners.
+    """
+    first, *partners = incoming
+    for transition in incoming:
+        siblings = [
+            sibling for sibling in machine.outgoing[transition.source] if sibling is not transition
+        ]
+        competitor = next((sibling for sibling in siblings if not sibling.occurrences), None)
+        if competitor is not None:
+            _report_competing_completion(graph, machine, transition, competitor, sink)
             return False
-        machine.outgoing[one.source] = tuple(beside)
-    joined = replace(first, also=tuple(others))
+        machine.outgoing[transition.source] = tuple(siblings)
+    joined = replace(first, join_partners=tuple(partners))
     machine.outgoing[first.source] = (joined, *machine.outgoing[first.source])
     return True
 
 
-def _report_rival(
-    graph: Graph, machine: Machine, one: Transition, rival: Transition, sink: Sink
+def _report_competing_completion(
+    graph: Graph, machine: Machine, transition: Transition, competitor: Transition, sink: Sink
 ) -> None:
-    element, other = (graph[element_id(each)] for each in (one.source, rival.id))
-    target = graph.target(other, Edge.FLOW_TARGET)
-    name = other.name or f"{element.name} -> {target.name if target is not None else ''}"
-    subject = graph.subject(other)
+    """Report that a source of a join completes along another transition."""
+    element, completion = (graph[element_id(id)] for id in (transition.source, competitor.id))
+    target = graph.target(completion, Edge.FLOW_TARGET)
+    name = completion.name or f"{element.name} -> {target.name if target is not None else ''}"
+    subject = graph.subject(completion)
     sink.report(JOIN_BESIDE, subject, state=element.name, machine=machine.name, other=name)

@@ -1,4 +1,4 @@
-"""Triggers of a state machine, and the variables that they need."""
+"""Triggers of a state machine: events, times and changes, with the variables that they need."""
 
 import re
 from math import ceil
@@ -10,7 +10,7 @@ from sysmlc.logic.contract import (
     Owner,
 )
 from sysmlc.logic.machines.actions import (
-    Reading,
+    ReadingContext,
     read_condition,
 )
 from sysmlc.logic.machines.machine import (
@@ -18,51 +18,55 @@ from sysmlc.logic.machines.machine import (
     AfterTicks,
     Occurrence,
     OnEvent,
+    OnInput,
     OnRise,
     Vertex,
-    WhenTold,
 )
-from sysmlc.logic.machines.vertices import Parts
+from sysmlc.logic.machines.vertices import MachineDraft
 from sysmlc.logic.names import unique
 
 
-def occurrence_of(parts: Parts, trigger: Element, vertex: Vertex) -> Occurrence:
-    """What makes the trigger occur; its variables are made when they are needed first."""
+def read_occurrence(parts: MachineDraft, trigger: Element, vertex: Vertex) -> Occurrence:
+    """Return the occurrence that makes *trigger* fire; create its variables on first use."""
     kind = trigger.subkind
     if kind == "time" or (not kind and "when" in trigger.attrs):
-        return _time(parts, trigger, vertex)
+        return _read_time(parts, trigger, vertex)
     if kind == "change" or (not kind and "condition" in trigger.attrs):
-        return _change(parts, trigger)
+        return _read_change(parts, trigger)
     if kind == "any":
         parts.events.setdefault("any", unique([*parts.events.values(), "other"], "", NO_EVENT)[-1])
         return OnEvent(None)
-    return OnEvent(_event(parts, trigger))
+    return OnEvent(_read_event(parts, trigger))
 
 
-def _event(parts: Parts, trigger: Element) -> str:
+def _read_event(parts: MachineDraft, trigger: Element) -> str:
+    """Return the literal of ``event`` for a signal or operation; triggers of one type share it."""
     graph = parts.reading.graph
     type_ = graph.target(trigger, Edge.TYPED_BY)
     key = trigger.name if type_ is None else type_.id
     name = (type_.name if type_ is not None else "") or trigger.name or "event"
     if key not in parts.events:
-        taken = unique([*parts.events.values(), name], "event", NO_EVENT)
-        parts.events[key] = taken[-1]
+        literals = unique([*parts.events.values(), name], "event", NO_EVENT)
+        parts.events[key] = literals[-1]
     return parts.events[key]
 
 
-def _time(parts: Parts, trigger: Element, vertex: Vertex) -> Occurrence:
-    count = ticks_of(parts.reading, trigger)
+def _read_time(parts: MachineDraft, trigger: Element, vertex: Vertex) -> Occurrence:
+    """Return the number of steps, or an input if the time is not a constant."""
+    count = count_ticks(parts.reading, trigger)
     if count is None:
-        return WhenTold(told_time(parts.reading, trigger))
+        return OnInput(make_time_input(parts.reading, trigger))
     parts.bounds[vertex.id] = max(count, parts.bounds.get(vertex.id, 0))
     return AfterTicks(count)
 
 
-def _change(parts: Parts, trigger: Element) -> Occurrence:
+def _read_change(parts: MachineDraft, trigger: Element) -> Occurrence:
     text = str(trigger.attrs.get("condition", "")).strip() or trigger.name
     condition = read_condition(parts.reading, text, "change condition", trigger)
     key = f"memory {text}"
-    memory = parts.reading.make(key, f"was_{text}", Owner.SYSTEM, BooleanDomain(), trigger.id)
+    memory = parts.reading.variable_for(
+        key, f"was_{text}", Owner.SYSTEM, BooleanDomain(), trigger.id
+    )
     parts.memories[memory] = condition
     return OnRise(memory, condition)
 
@@ -98,34 +102,35 @@ _SECONDS = {
 _TIME = re.compile(r"^\s*(?:after\b)?\s*\(?\s*(\d+(?:\.\d+)?)\s*([A-Za-z]*)\s*\)?\s*$")
 
 
-def ticks_of(reading: Reading, trigger: Element) -> int | None:
-    """Steps after which a time trigger occurs, at least 1; None when it is no constant.
+def count_ticks(reading: ReadingContext, trigger: Element) -> int | None:
+    """Return the number of steps after which a time trigger occurs, at least 1.
 
-    A number without unit counts steps; with a unit, steps last ``tick_seconds``.
+    The result is None if the time is not constant. A number without a unit counts steps; with a
+    unit, a step lasts ``tick_seconds``.
     """
     text = str(trigger.attrs.get("when", ""))
-    relative = trigger.attrs.get("relative") is True or text.strip().startswith("after")
-    found = _TIME.match(text)
-    if not relative or found is None or (found[2] and found[2].lower() not in _SECONDS):
+    is_relative = trigger.attrs.get("relative") is True or text.strip().startswith("after")
+    match = _TIME.match(text)
+    if not is_relative or match is None or (match[2] and match[2].lower() not in _SECONDS):
         return None
-    number = float(found[1])
-    if found[2]:
-        number = number * _SECONDS[found[2].lower()] / reading.tick_seconds
+    number = float(match[1])
+    if match[2]:
+        number = number * _SECONDS[match[2].lower()] / reading.tick_seconds
     return max(1, ceil(number))
 
 
-def milliseconds(text: str) -> int | None:
-    """A duration with a unit, ``5 s``, in milliseconds; None for any other text."""
-    found = _TIME.match(text)
-    if found is None or found[2].lower() not in _SECONDS:
+def parse_milliseconds(text: str) -> int | None:
+    """Return a duration with a unit, such as ``5 s``, in milliseconds; None for any other text."""
+    match = _TIME.match(text)
+    if match is None or match[2].lower() not in _SECONDS:
         return None
-    return round(float(found[1]) * _SECONDS[found[2].lower()] * 1000)
+    return round(float(match[1]) * _SECONDS[match[2].lower()] * 1000)
 
 
-def told_time(reading: Reading, trigger: Element) -> str:
-    """The Boolean by which the environment says that a time has come."""
+def make_time_input(reading: ReadingContext, trigger: Element) -> str:
+    """Report a time that is not constant and return the Boolean input that replaces it."""
     text = str(trigger.attrs.get("when", "")) or trigger.name
-    variable = reading.told(f"time {text}", f"time_{text}", trigger.id)
+    variable = reading.input_for(f"time {text}", f"time_{text}", trigger.id)
     subject = reading.graph.subject(trigger)
     reading.sink.report(OPAQUE_TIME, subject, text=text, variable=variable)
     return variable

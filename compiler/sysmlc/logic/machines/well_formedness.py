@@ -1,4 +1,6 @@
-"""What is wrong with the shape of a state machine: ends, ways without end, forks and joins."""
+"""Checks of the shape of a state machine: transition targets, dead ends, cycles of pseudostates,
+forks and joins.
+"""
 
 from collections.abc import Iterator
 from itertools import combinations
@@ -41,105 +43,128 @@ MALFORMED = rule(
 )
 
 
-def has_ends(graph: Graph, machine: Machine, sink: Sink) -> bool:
-    """Whether every transition leads to a vertex of the machine; those that do not are told."""
-    return not list(_strangers(graph, machine, sink))
+def has_valid_targets(graph: Graph, machine: Machine, sink: Sink) -> bool:
+    """Return whether every transition leads to a vertex of a region of the machine; report the
+    others.
+    """
+    return not list(_report_foreign_targets(graph, machine, sink))
 
 
 def is_well_formed(graph: Graph, machine: Machine, sink: Sink) -> bool:
-    """Whether every way ends in a state, as it may; what stands against it is reported."""
-    if [*_dead_ends(graph, machine, sink), *_cycles(graph, machine, sink)]:
+    """Return whether every path ends in a state that it may reach; report the faults."""
+    if [*_report_dead_ends(graph, machine, sink), *_report_cycles(graph, machine, sink)]:
         return False
-    return not [*_strays(graph, machine, sink), *_malformed(graph, machine, sink)]
+    return not [*_report_strays(graph, machine, sink), *_report_malformed(graph, machine, sink)]
 
 
-def _strangers(graph: Graph, machine: Machine, sink: Sink) -> Iterator[str]:
-    """Transitions to what is no vertex of a region of this machine."""
-    for one in machine.transitions():
-        if one.target not in machine.vertices:
-            where = "to what is in no region of this machine"
-            yield _report_stray(graph, one, where, sink)
-
-
-def _report_stray(graph: Graph, one: Transition, where: str, sink: Sink) -> str:
-    subject = graph.subject(graph[element_id(one.id)])
-    sink.report(STRAY, subject, transition=one.words, where=where)
-    return one.id
-
-
-def _strays(graph: Graph, machine: Machine, sink: Sink) -> Iterator[str]:
-    """Transitions between regions of the machine; initial ones, and those of a history
-    pseudostate, out of their region.
+def _report_foreign_targets(graph: Graph, machine: Machine, sink: Sink) -> Iterator[str]:
+    """Report transitions to a target that is no vertex of a region of this machine. Yield their
+    ids.
     """
-    for one in machine.transitions():
-        source = machine.vertices[one.source]
-        if machine.main_region(one) is None:
-            yield _report_stray(graph, one, "out of its region", sink)
+    for transition in machine.list_transitions():
+        if transition.target not in machine.vertices:
+            where = "to what is in no region of this machine"
+            yield _report_stray(graph, transition, where, sink)
+
+
+def _report_stray(graph: Graph, transition: Transition, where: str, sink: Sink) -> str:
+    subject = graph.subject(graph[element_id(transition.id)])
+    sink.report(STRAY, subject, transition=transition.words, where=where)
+    return transition.id
+
+
+def _report_strays(graph: Graph, machine: Machine, sink: Sink) -> Iterator[str]:
+    """Report transitions that leave the machine's regions in a way UML forbids. Yield their ids.
+
+    Such are transitions between regions of the machine, and transitions of an initial or history
+    pseudostate to a vertex outside its own region.
+    """
+    for transition in machine.list_transitions():
+        source = machine.vertices[transition.source]
+        if machine.find_main_region(transition) is None:
+            yield _report_stray(graph, transition, "out of its region", sink)
         elif source.kind == "initial" or source.kind in HISTORIES:
-            ends = ends_of(machine, one)
-            if not all(source.region in machine.around(end) for end in ends):
-                yield _report_stray(graph, one, "out of its region", sink)
+            targets = list_stable_targets(machine, transition)
+            if not all(source.region in machine.list_enclosing_regions(end) for end in targets):
+                yield _report_stray(graph, transition, "out of its region", sink)
 
 
-def _dead_ends(graph: Graph, machine: Machine, sink: Sink) -> Iterator[str]:
+def _report_dead_ends(graph: Graph, machine: Machine, sink: Sink) -> Iterator[str]:
+    """Report pseudostates that no transition leaves; a history pseudostate needs none. Yield their
+    ids.
+    """
     for vertex in machine.vertices.values():
-        is_passed = not vertex.is_stable and vertex.kind not in HISTORIES
-        if is_passed and not machine.outgoing.get(vertex.id):
+        is_transient = not vertex.is_stable and vertex.kind not in HISTORIES
+        if is_transient and not machine.outgoing.get(vertex.id):
             element = graph[element_id(vertex.id)]
             name = element.name or vertex.kind
             sink.report(DEAD_END, graph.subject(element), kind=vertex.kind, vertex=name)
             yield vertex.id
 
 
-def _cycles(graph: Graph, machine: Machine, sink: Sink) -> Iterator[str]:
+def _report_cycles(graph: Graph, machine: Machine, sink: Sink) -> Iterator[str]:
+    """Report pseudostates that lie on a cycle of pseudostates. Yield their ids."""
     for vertex in machine.vertices.values():
-        if not vertex.is_stable and vertex.id in _beyond(machine, vertex.id):
+        if not vertex.is_stable and vertex.id in _reachable_pseudostates(machine, vertex.id):
             element = graph[element_id(vertex.id)]
             name = element.name or vertex.kind
             sink.report(PSEUDO_CYCLE, graph.subject(element), vertex=name)
             yield vertex.id
 
 
-def _beyond(machine: Machine, start: str) -> dict[str, None]:
-    """Pseudostates that can be reached through pseudostates."""
-    found: dict[str, None] = {}
-    waiting = [start]
-    while waiting:
-        for one in machine.outgoing.get(waiting.pop(), ()):
-            target = machine.vertices.get(one.target)
-            if target is not None and not target.is_stable and target.id not in found:
-                found[target.id] = None
-                waiting.append(target.id)
-    return found
+def _reachable_pseudostates(machine: Machine, start: str) -> dict[str, None]:
+    """Return the pseudostates that are reachable from *start* through pseudostates alone."""
+    pseudostates: dict[str, None] = {}
+    worklist = [start]
+    while worklist:
+        for transition in machine.outgoing.get(worklist.pop(), ()):
+            target = machine.vertices.get(transition.target)
+            if target is not None and not target.is_stable and target.id not in pseudostates:
+                pseudostates[target.id] = None
+                worklist.append(target.id)
+    return pseudostates
 
 
-def segments(machine: Machine, first: Transition) -> list[Transition]:
-    """The transition, those taken with it, and all to which it leads on through pseudostates."""
-    found = [first, *first.also]
+def collect_segments(machine: Machine, first: Transition) -> list[Transition]:
+    """List the segments of a compound transition: the first one, its join partners, and all that
+    follow through pseudostates.
+    """
+    transitions = [first, *first.join_partners]
     if first.kind == "internal" or machine.vertices[first.target].is_stable:
-        return found
-    for id in (first.target, *_beyond(machine, first.target)):
-        found += (one for one in machine.outgoing.get(id, ()) if one not in found)
-    return found
+        return transitions
+    for id in (first.target, *_reachable_pseudostates(machine, first.target)):
+        transitions += (
+            transition
+            for transition in machine.outgoing.get(id, ())
+            if transition not in transitions
+        )
+    return transitions
 
 
-def ends_of(machine: Machine, transition: Transition) -> list[str]:
-    """Stable vertices to which a transition can lead, through pseudostates."""
-    targets = (one.target for one in segments(machine, transition))
-    return [one for one in dict.fromkeys(targets) if machine.vertices[one].is_stable]
+def list_stable_targets(machine: Machine, transition: Transition) -> list[str]:
+    """List the stable vertices to which the compound transition can lead."""
+    targets = (segment.target for segment in collect_segments(machine, transition))
+    return [segment for segment in dict.fromkeys(targets) if machine.vertices[segment].is_stable]
 
 
 # -- forks and joins -----------------------------------------------------------------------------
 
 
-def _malformed(graph: Graph, machine: Machine, sink: Sink) -> Iterator[str]:
+def _report_malformed(graph: Graph, machine: Machine, sink: Sink) -> Iterator[str]:
+    """Report forks and joins that violate UML 2.5.1, 14.5.11. Yield their ids."""
     for vertex in machine.vertices.values():
         reason = ""
         if vertex.kind == "fork":
-            reason = _bad_fork(machine, machine.outgoing[vertex.id])
+            reason = _explain_bad_fork(machine, machine.outgoing[vertex.id])
         elif vertex.kind == "join":
-            into = [one for one in machine.transitions() if one.target == vertex.id]
-            reason = _bad_join(machine, into) or _open_end(machine.outgoing[vertex.id])
+            incoming = [
+                transition
+                for transition in machine.list_transitions()
+                if transition.target == vertex.id
+            ]
+            reason = _explain_bad_join(machine, incoming) or _explain_join_exits(
+                machine.outgoing[vertex.id]
+            )
         if reason:
             element = graph[element_id(vertex.id)]
             name = element.name or vertex.kind
@@ -149,42 +174,53 @@ def _malformed(graph: Graph, machine: Machine, sink: Sink) -> Iterator[str]:
             yield vertex.id
 
 
-def _bad_fork(machine: Machine, outgoing: tuple[Transition, ...]) -> str:
-    if any(one.guard is not None for one in outgoing):
+def _explain_bad_fork(machine: Machine, outgoing: tuple[Transition, ...]) -> str:
+    """Return why the transitions of a fork are invalid, or an empty text."""
+    if any(transition.guard is not None for transition in outgoing):
         return "a transition that leaves it has a guard"
-    if not _are_orthogonal(machine, [one.target for one in outgoing]):
+    if not _are_orthogonal(machine, [transition.target for transition in outgoing]):
         return "its transitions do not lead to different regions of one state"
     return ""
 
 
-def _bad_join(machine: Machine, into: list[Transition]) -> str:
-    if any(machine.vertices[one.source].kind != "state" for one in into):
+def _explain_bad_join(machine: Machine, incoming: list[Transition]) -> str:
+    """Return why the transitions that lead to a join are invalid, or an empty text."""
+    if any(machine.vertices[transition.source].kind != "state" for transition in incoming):
         return "a transition leads to it from what is no state"
-    if any(one.guard is not None or one.occurrences for one in into):
+    if any(transition.guard is not None or transition.occurrences for transition in incoming):
         return "a transition that leads to it has a guard or a trigger"
-    if not _are_orthogonal(machine, [one.source for one in into]):
+    if not _are_orthogonal(machine, [transition.source for transition in incoming]):
         return "its transitions do not come from different regions of one state"
     return ""
 
 
-def _open_end(outgoing: tuple[Transition, ...]) -> str:
+def _explain_join_exits(outgoing: tuple[Transition, ...]) -> str:
+    """Return why the exit of a join is invalid, or an empty text."""
     return "" if len(outgoing) == 1 else "more than one transition leaves it"
 
 
 def _are_orthogonal(machine: Machine, vertices: list[str]) -> bool:
-    states = [common_state(machine, *pair) for pair in combinations(vertices, 2)]
+    """Return whether the vertices lie in different regions of one state."""
+    states = [find_common_state(machine, *pair) for pair in combinations(vertices, 2)]
     return None not in states and len(set(states)) <= 1
 
 
-def common_state(machine: Machine, one: str, other: str) -> str | None:
-    """The state (empty: the machine) in different regions of which the two lie, else None."""
-    if machine.contains(one, other) or machine.contains(other, one):
+def find_common_state(machine: Machine, left: str, right: str) -> str | None:
+    """Return the state in different regions of which both vertices lie.
+
+    The result is empty if the regions belong to the machine itself, and None if there is no such
+    state.
+    """
+    if machine.contains(left, right) or machine.contains(right, left):
         return None
     chains = [
-        {machine.regions[region].state: region for region in reversed(machine.around(start))}
-        for start in (one, other)
+        {
+            machine.regions[region].state: region
+            for region in reversed(machine.list_enclosing_regions(start))
+        }
+        for start in (left, right)
     ]
-    for region in machine.around(one):
+    for region in machine.list_enclosing_regions(left):
         state = machine.regions[region].state
         if state in chains[1]:
             return state if chains[1][state] != region else None

@@ -12,7 +12,7 @@ from sysmlc.logic.expressions.context import named_values
 from sysmlc.logic.expressions.declared import Feature
 from sysmlc.logic.expressions.elaborate import ElaborationError, Fault
 from sysmlc.logic.expressions.expression import Expression
-from sysmlc.logic.machines.actions import NOT_ASSIGNABLE, RULE_OF, check_assignable
+from sysmlc.logic.machines.actions import NOT_ASSIGNABLE, RULE_OF_FAULT, check_assignable
 from sysmlc.logic.machines.moves import SATURATES
 from sysmlc.logic.writers import Writers, called
 from sysmlc.logic.written import Assigned, assigned
@@ -68,7 +68,9 @@ def report_faults(
             sink.report(NOT_ASSIGNABLE, subject, text=text, name=one.name, context=context)
         elif fault := _find_fault(one.value, feature, scope):
             reason = str(fault)
-            sink.report(RULE_OF[fault.fault], subject, what="assignment", text=text, reason=reason)
+            sink.report(
+                RULE_OF_FAULT[fault.fault], subject, what="assignment", text=text, reason=reason
+            )
 
 
 def _owner_name(graph: Graph, activity: Element, feature: Feature) -> str:

@@ -12,7 +12,7 @@ from sysmlc.logic.contract import Domain, IntegerDomain, Owner, Variable
 from sysmlc.logic.expressions.declared import Feature
 from sysmlc.logic.expressions.elaborate import ElaborationError
 from sysmlc.logic.formula import Formula
-from sysmlc.logic.machines.paths import saturated
+from sysmlc.logic.machines.paths import split_by_range
 from sysmlc.logic.simplify import is_satisfiable, substitute, tidy
 from sysmlc.logic.writers import Writers, called
 from sysmlc.logic.written import Assigned
@@ -236,7 +236,7 @@ def _within(case: Formula, value: Formula, domain: Domain, spread: Domain) -> It
     if isinstance(domain, IntegerDomain) and isinstance(spread, IntegerDomain):
         # What is always outside is an error of its own.
         is_outside = _is_outside(domain, spread)
-        for when, given, is_bound in saturated(case, value, domain, spread):
+        for when, given, is_bound in split_by_range(case, value, domain, spread):
             yield when, given, is_bound and not is_outside
     else:
         yield case, value, False

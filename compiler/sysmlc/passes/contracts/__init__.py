@@ -75,7 +75,9 @@ class Contracts(Struct, frozen=True):
         machine = read_machine(graph, about, sink, options, writers)
         if machine is None:
             return None
-        return statemachine.derive(graph, machine, query.component_name(graph, about), sink)
+        return statemachine.derive_contract(
+            graph, machine, query.component_name(graph, about), sink
+        )
 
 
 def _is_behaviour(graph: Graph, element: Element) -> bool:

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 from sysmlc.ir import Element
 from sysmlc.logic.expressions import expression as source
-from sysmlc.logic.machines.triggers import milliseconds
+from sysmlc.logic.machines.triggers import parse_milliseconds
 from sysmlc.passes.recipe.context import Context
 from sysmlc.passes.recipe.features import feature_at, literal_value, value_type
 from sysmlc.recipe.expression import Apply, Call, Expr, Index, Lit, Opaque, Var
@@ -23,7 +23,7 @@ def read(text: str) -> Expr:
 
 def read_time(text: str) -> Expr:
     """A duration in milliseconds: a number with a unit, or an expression that is one already."""
-    found = milliseconds(text)
+    found = parse_milliseconds(text)
     return read(text) if found is None else Lit(found)
 
 
