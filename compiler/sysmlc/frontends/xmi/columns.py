@@ -140,7 +140,8 @@ def _derive_columns(document: Document) -> None:
         _rename_attributes(document, namespace, xmi)
     document.id_key, document.type_key = f"{xmi}}}id", f"{xmi}}}type"
     document.idref_key = f"{xmi}}}idref"
-    document.features = [_drop_prefix(tag.rpartition("}")[2]) for tag in document.tags]
+    local_names = {tag: tag.rpartition("}")[2].rpartition(":")[2] for tag in set(document.tags)}
+    document.features = [local_names[tag] for tag in document.tags]
     document.types = _extract_types(document, document.type_key)
     if _XSI in document.declared_namespaces and not any(document.types):
         # EMF saves the type in this namespace if the options of UML2 are not set.
@@ -164,12 +165,8 @@ def _rename_attributes(document: Document, namespace: str, new_namespace: str) -
                 values[f"{new_namespace}}}{name}"] = value
 
 
-def _drop_prefix(name: str) -> str:
-    return name.rpartition(":")[2]
-
-
 def _extract_types(document: Document, key: str) -> list[str]:
-    return [_drop_prefix(values.pop(key, "")) for values in document.attributes]
+    return [values.pop(key, "").rpartition(":")[2] for values in document.attributes]
 
 
 def _index_ids(document: Document) -> None:

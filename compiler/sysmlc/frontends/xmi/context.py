@@ -96,8 +96,8 @@ class Context:
         """Give the row and all its content one verdict; return the row after."""
         end, parent = self.document.ends[row], self.document.parents[row]
         id = self.element_ids[row] or (self.element_ids[parent] if parent >= 0 else "")
-        self.verdicts[row:end] = [verdict] * (end - row)
-        self.element_ids[row:end] = [id] * (end - row)
+        for inner in range(row, end):
+            self.verdicts[inner], self.element_ids[inner] = verdict, id
         return end
 
     def next_row(self, row: int) -> int:
@@ -171,12 +171,10 @@ class Context:
         The reference is resolved when all documents are lowered. *file* is the file that writes it
         if it is not this document.
         """
-        target, row, is_href = reference
-        self.unit.references.append(
-            UnresolvedReference(
-                edge, source, file or self.file, target, row, is_href, feature, is_reversed
-            )
+        unresolved = UnresolvedReference(
+            edge, source, file or self.file, *reference, feature, is_reversed
         )
+        self.unit.references.append(unresolved)
 
     def add_references(self, edge: Edge, source: str, row: int, feature: str) -> None:
         """Add an edge from *source* to each target of a feature of the row."""

@@ -1,7 +1,7 @@
 """Coverage of a file: the verdict of every element, and diagnostics about unread elements."""
 
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 
 from sysmlc.diagnostics import Coverage, Rule, Severity, Sink, Subject, Verdict, rule
 from sysmlc.diagnostics.coverage import Loss
@@ -22,40 +22,46 @@ def report_coverage(context: Context, sink: Sink, coverage: Coverage) -> None:
     """Count every element of the file once, and report elements that are not or partly read."""
     document = context.document
     counts = coverage.file(document.name)
-    type_names = _list_type_names(context)
-    rows = Counter(zip(type_names, context.verdicts, strict=True))
-    for (type_name, verdict), number in rows.items():
+    rows = zip(
+        document.types,
+        document.features,
+        map(bool, context.elements),
+        context.verdicts,
+        strict=True,
+    )
+    for (written, feature, has_element, verdict), number in Counter(rows).items():
+        type_name = _name_type(written, feature, has_element)
         counts.count(type_name, verdict or Verdict.UNSUPPORTED, number)
     for feature, number in document.skipped_elements.items():
         counts.count(feature, Verdict.IGNORED_NOTATION, number)
     if coverage.is_detailed:
-        counts.losses.extend(_list_losses(context, type_names))
-    _report_unsupported(context, sink, type_names)
-    _report_approximated(context, sink, type_names)
+        counts.losses.extend(_list_losses(context))
+    _report_unsupported(context, sink)
+    _report_approximated(context, sink)
     _report_baseless(context, sink)
     if not any(context.elements):
         subject = Subject(document.name, place=context.locate(0))
         sink.report(rules.NO_MODEL, subject, file=document.name)
 
 
-def _list_type_names(context: Context) -> list[str]:
-    """Return the type of each row: as written, else the default of its feature, else its tag.
+def _name_type(written: str, feature: str, has_element: bool) -> str:
+    """Return the type of a row: as written, else the default of its feature, else its tag.
 
     Only rows with an element of their own have a default type.
     """
+    metaclass = written or (metaclasses.DEFAULT_TYPES.get(feature) if has_element else "")
+    return f"uml:{metaclass}" if metaclass else feature
+
+
+def _type_name(context: Context, row: int) -> str:
     document = context.document
-    rows = zip(document.types, document.features, context.elements, strict=True)
-    type_names = []
-    for written, feature, element in rows:
-        metaclass = written or (metaclasses.DEFAULT_TYPES.get(feature) if element else "")
-        type_names.append(f"uml:{metaclass}" if metaclass else feature)
-    return type_names
+    return _name_type(document.types[row], document.features[row], bool(context.elements[row]))
 
 
 # -- diagnostics -----------------------------------------------------------------------------------
 
 
-def _report_unsupported(context: Context, sink: Sink, type_names: Sequence[str]) -> None:
+def _report_unsupported(context: Context, sink: Sink) -> None:
     document = context.document
     rows_by_type: dict[str, list[int]] = {}
     baseless = frozenset(context.baseless_applications)
@@ -64,17 +70,17 @@ def _report_unsupported(context: Context, sink: Sink, type_names: Sequence[str])
         if verdict is Verdict.UNSUPPORTED and row >= end:
             end = document.ends[row]
             if row not in baseless:
-                rows_by_type.setdefault(type_names[row], []).append(row)
+                rows_by_type.setdefault(_type_name(context, row), []).append(row)
     for type_name, rows in rows_by_type.items():
         number = sum(document.ends[row] - row for row in rows)
         subject, count = _subject(context, rows[0]), _format_count(len(rows))
         sink.report(rules.UNSUPPORTED, subject, count=count, type=type_name, number=number)
 
 
-def _report_approximated(context: Context, sink: Sink, type_names: Sequence[str]) -> None:
+def _report_approximated(context: Context, sink: Sink) -> None:
     rows_by_loss: dict[tuple[str, str], list[int]] = {}
     for row, loss in context.losses.items():
-        rows_by_loss.setdefault((type_names[row], loss), []).append(row)
+        rows_by_loss.setdefault((_type_name(context, row), loss), []).append(row)
     for (type_name, loss), rows in rows_by_loss.items():
         subject, count = _subject(context, rows[0]), _format_count(len(rows))
         sink.report(rules.APPROXIMATED, subject, count=count, type=type_name, lost=loss)
@@ -102,7 +108,7 @@ def _format_count(number: int) -> str:
 # -- losses ----------------------------------------------------------------------------------------
 
 
-def _list_losses(context: Context, type_names: Sequence[str]) -> Iterator[Loss]:
+def _list_losses(context: Context) -> Iterator[Loss]:
     """Yield the rows that are not mapped, in document order, for ``sysmlc coverage``.
 
     The content of a row counts with the row as long as it has the same verdict.
@@ -114,7 +120,7 @@ def _list_losses(context: Context, type_names: Sequence[str]) -> Iterator[Loss]:
         # The element has the name, if the row has an element of its own.
         name = "" if context.elements[row] else context.document.attributes[row].get("name", "")
         yield Loss(
-            type_names[row],
+            _type_name(context, row),
             verdict,
             context.document.ordinals[row],
             number,

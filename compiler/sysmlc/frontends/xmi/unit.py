@@ -125,15 +125,16 @@ class Unit:
         None if the target is read but not part of the graph. A target that no file of the unit has
         is returned as written (an href normalised).
         """
-        row = self.find_target(file, target, is_href)
-        if row is None and is_href:
+        definition = self.find_target(file, target, is_href)
+        if definition is None and is_href:
             normalised = hrefs.normalise_href(target, file.document.name)
             return self._find_in_library(target) or normalised
-        if row is None:
+        if definition is None:
             return target
-        if not row.element and row.verdict in _OMITTED:
+        holder, row = definition
+        if not holder.elements[row] and holder.verdicts[row] in _OMITTED:
             return None
-        return row.element_id or None
+        return holder.element_ids[row] or None
 
     def _find_holders(self, id: str) -> list[LoweredDocument]:
         if len(self.files) == 1:

@@ -85,14 +85,16 @@ def report_unknown_attributes(context: Context) -> None:
     Tags of stereotypes, the content of extensions, and attributes in namespaces of tools are no
     attributes of UML.
     """
-    document = context.document
-    elements = zip(document.types, document.attributes, strict=True)
+    document, applications = context.document, frozenset(context.applications)
     # Nearly all files have only known attributes: the distinct names are checked first.
-    names = {(type_name, name) for type_name, values in elements for name in values}
-    if not any(_list_unknown(type_name, [name]) for type_name, name in names):
+    names_by_type: dict[str, set[str]] = {}
+    for row, type_name in enumerate(document.types):
+        if row not in applications:
+            names_by_type.setdefault(type_name, set()).update(document.attributes[row])
+    if not any(_check(type_, name) for type_, names in names_by_type.items() for name in names):
         return
     groups: dict[_UnknownAttribute, list[int]] = {}
-    for row, unknown in _find_rows(context):
+    for row, unknown in _find_rows(context, applications):
         if context.verdicts[row] is Verdict.MAPPED:
             context.verdicts[row] = Verdict.APPROXIMATED
             context.loss_rules[row] = unknown[0].rule, f"read without {_format_names(unknown)}"
@@ -103,13 +105,18 @@ def report_unknown_attributes(context: Context) -> None:
 
 
 def _list_unknown(metaclass: str, names: Iterable[str]) -> list[_UnknownAttribute]:
-    names = list(islice(names, DEFAULT_LIMITS.attributes))
-    unknown = [_UnknownAttribute(name) for name in names if not _is_known(name)]
-    return unknown + [
-        _UnknownAttribute(name, metaclass)
-        for name in names
-        if name in FEATURES and name not in TOOL_ATTRIBUTES and is_misplaced(metaclass, name)
-    ]
+    """Return the unknown attributes among *names*, then those that another metaclass has."""
+    checked = (_check(metaclass, name) for name in islice(names, DEFAULT_LIMITS.attributes))
+    unknown = [attribute for attribute in checked if attribute is not None]
+    return sorted(unknown, key=lambda attribute: attribute.metaclass != "")
+
+
+def _check(metaclass: str, name: str) -> _UnknownAttribute | None:
+    if not _is_known(name):
+        return _UnknownAttribute(name)
+    if name in FEATURES and name not in TOOL_ATTRIBUTES and is_misplaced(metaclass, name):
+        return _UnknownAttribute(name, metaclass)
+    return None
 
 
 def _is_known(name: str) -> bool:
@@ -121,9 +128,11 @@ def _is_known(name: str) -> bool:
     return bool(namespace) or name in TOOL_ATTRIBUTES
 
 
-def _find_rows(context: Context) -> Iterator[tuple[int, list[_UnknownAttribute]]]:
+def _find_rows(
+    context: Context, applications: frozenset[int]
+) -> Iterator[tuple[int, list[_UnknownAttribute]]]:
     """Yield the rows of the model that have unknown attributes, with these."""
-    document, applications = context.document, frozenset(context.applications)
+    document = context.document
     for row, (type_name, values) in enumerate(
         zip(document.types, document.attributes, strict=True)
     ):
