@@ -2,20 +2,16 @@
 
 import re
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
-from sysmlc.diagnostics import Coverage, Place, Sink, Subject
+from sysmlc.diagnostics import Coverage, Sink
 from sysmlc.ir import Graph
-from sysmlc.sources import Fault, Source, SourceError
-
-if TYPE_CHECKING:
-    from sysmlc.frontends.huds.records import Record
+from sysmlc.sources import Source
 
 _ROOT = re.compile(
     rb"\s*(<\?xml[^>]*>\s*)?(<!--.*?-->\s*|<!DOCTYPE[^>\[]*(\[.*?\])?\s*>\s*)*<packet[\s>]",
     re.DOTALL,
 )
-"""A DOCTYPE is refused later, with its place."""
+"""The start of an export. The reader refuses a DOCTYPE later and reports its location."""
 
 
 class HudsFrontend:
@@ -24,40 +20,23 @@ class HudsFrontend:
     name = "huds"
 
     def detect(self, source: Source) -> float:
-        """Sure when the root is ``packet`` and MTIP's types of data are near."""
+        """Return 1 if the root is ``packet`` and the head has marks of MTIP, else 0."""
         head = source.data[:8192].removeprefix(b"\xef\xbb\xbf")
-        known = b"mtipVersion" in head or b"_dtype=" in head
-        return 1.0 if known and _ROOT.match(head) else 0.0
+        is_marked = b"mtipVersion" in head or b"_dtype=" in head
+        return 1.0 if is_marked and _ROOT.match(head) else 0.0
 
     def links(self, source: Source) -> Sequence[str]:
-        """An export refers to no other file."""
+        """Return nothing: an export refers to no other file."""
         return ()
 
     def read(self, sources: Sequence[Source], graph: Graph, sink: Sink, coverage: Coverage) -> None:
-        """Read the files into the graph; a damaged file is reported and left out.
+        """Read the files into the graph; a damaged file is reported and skipped.
 
-        Raises SourceError for what exceeds the limits.
+        Raises SourceError if a file exceeds the limits.
         """
-        from sysmlc.frontends.huds.lowering import lower
+        from sysmlc.frontends.huds.lowering import lower_files
 
-        for source in sorted(sources, key=lambda one: one.name):
-            records = _records(source, sink)
-            if records is not None:
-                lower(source.name, records, graph, sink, coverage)
-
-
-def _records(source: Source, sink: Sink) -> "list[Record] | None":
-    from sysmlc.frontends.huds.records import read
-    from sysmlc.frontends.huds.rules import MALFORMED
-
-    try:
-        return read(source)
-    except SourceError as problem:
-        if problem.fault is Fault.LIMIT:
-            raise
-        subject = Subject(source.name, place=Place(source.name, offset=problem.offset))
-        sink.report(MALFORMED, subject, file=source.name, problem=problem.message)
-        return None
+        lower_files(sources, graph, sink, coverage)
 
 
 FRONTEND = HudsFrontend()

@@ -1,94 +1,116 @@
-"""From records to elements and references: owners first, then what refers to them."""
+"""Lowers records to elements of the graph: owners first, then the relations between elements."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 
 from sysmlc.diagnostics import Coverage, Place, Rule, Sink, Subject, Verdict
 from sysmlc.frontends.huds import rules
 from sysmlc.frontends.huds import vocabulary as v
-from sysmlc.frontends.huds.features import ATTRIBUTES, apply_stereotypes
-from sysmlc.frontends.huds.records import Record
-from sysmlc.frontends.huds.relations import relate
+from sysmlc.frontends.huds.records import Record, read_records
+from sysmlc.frontends.huds.relations import add_relations
 from sysmlc.ir import Edge, Element, Graph, Kind
-from sysmlc.sources import DEFAULT_LIMITS, Fault, SourceError
+from sysmlc.ir.identity import derived_id
+from sysmlc.sources import DEFAULT_LIMITS, Fault, Source, SourceError
+
+_LOSS_RULES = (rules.UNSUPPORTED, rules.OWNERLESS, rules.REPEATED, rules.LOOSE_END)
 
 
-def lower(file: str, records: list[Record], graph: Graph, sink: Sink, coverage: Coverage) -> None:
-    """Add the elements of one file, its references as pending ones, and count every record."""
-    lowered = Lowered(file, records, graph, sink)
-    for record in lowered.in_order():
-        lowered.add(record)
-    for record in records:
-        lowered.finish(record)
-    counts = coverage.file(file)
-    for record in records:
-        counts.count(record.type or "?", lowered.verdicts[record.ordinal])
-    lowered.report()
+def lower_files(sources: Sequence[Source], graph: Graph, sink: Sink, coverage: Coverage) -> None:
+    """Read and lower the files, and count every record. Raises SourceError for a limit."""
+    for source in sorted(sources, key=lambda source: source.name):
+        try:
+            records = read_records(source)
+        except SourceError as problem:
+            if problem.fault is Fault.LIMIT:
+                raise
+            subject = Subject(source.name, place=Place(source.name, offset=problem.offset))
+            sink.report(rules.MALFORMED, subject, file=source.name, problem=problem.message)
+        else:
+            lowering = FileLowering(source.name, records, graph)
+            lowering.lower()
+            counts = coverage.file(source.name)
+            for record in records:
+                counts.count(record.type or "?", lowering.verdicts[record.ordinal])
+            lowering.report_losses(sink)
 
 
-class Lowered:
-    """One file on its way into the graph."""
+class FileLowering:
+    """The lowering of one file."""
 
-    def __init__(self, file: str, records: list[Record], graph: Graph, sink: Sink) -> None:
-        self.file, self.records, self.graph, self.sink = file, records, graph, sink
+    def __init__(self, file: str, records: list[Record], graph: Graph) -> None:
+        self.file, self.records, self.graph = file, records, graph
         self.by_id: dict[str, Record] = {}
         self.verdicts: dict[int, Verdict] = {}
+        """Verdicts by the ordinal of the record."""
         self._depths: dict[str, int] = {}
-        self._lost: dict[tuple[str, str], list[Record]] = {}
+        self._losses: dict[tuple[str, str], list[Record]] = {}
+        """Records that are not wholly read, by code of the rule and type or id."""
         for record in records:
             if not record.id:
-                self._lose(record, rules.UNSUPPORTED, _local(record))
+                self._mark_unsupported(record, rules.UNSUPPORTED, record.local_type)
             elif self.by_id.setdefault(record.id, record) is not record:
-                self._lose(record, rules.REPEATED, record.id)
+                self._mark_unsupported(record, rules.REPEATED, record.id)
 
-    def kind(self, record: Record) -> tuple[Kind, str] | None:
-        """What the record is in the graph, if it is an element."""
-        return v.KINDS.get(_local(record))
+    def lower(self) -> None:
+        """Add all elements, then the relations and stereotypes of each record."""
+        for record in self._iter_owners_first():
+            self._add(record)
+        for record in self.records:
+            if self.by_id.get(record.id) is record:
+                element = self.graph.get(self.graph_id(record.id))
+                add_relations(self, record, element)
+                if element is not None:
+                    _apply_stereotypes(self.graph, element, record)
+
+    # -- ids and owners ----------------------------------------------------------------------------
 
     def graph_id(self, id: str) -> str:
-        """Id in the graph of an element of the file."""
-        return id if id in self.by_id and not self._is_taken(id) else f"{self.file}#{id}"
+        """Return the id in the graph of an element of the file."""
+        return id if id in self.by_id and not self._is_in_other_file(id) else f"{self.file}#{id}"
 
-    def target(self, id: str) -> str:
-        """What a relation leads to: an element, or one that MTIP left out."""
-        found = self.graph_id(id)
-        return found if found in self.graph else f"MTIP:not-exported#{id}"
+    def target_id(self, id: str) -> str:
+        """Return the graph id of the target of a relation; MTIP omits elements of some types."""
+        graph_id = self.graph_id(id)
+        return graph_id if graph_id in self.graph else f"MTIP:not-exported#{id}"
 
-    def _is_taken(self, id: str) -> bool:
-        known = self.graph.get(id)
-        return known is not None and known.source != self.file
+    def _is_in_other_file(self, id: str) -> bool:
+        element = self.graph.get(id)
+        return element is not None and element.source != self.file
 
-    def above(self, record: Record) -> Record | None:
-        """The owner: of a transition the region of its source, which MTIP does not say."""
-        known = self.kind(record)
-        if known is not None and known[0] is Kind.TRANSITION:
+    def _find_owner(self, record: Record) -> Record | None:
+        """Return the record of the owner.
+
+        MTIP does not write the owner of a transition, which is the region of its source.
+        """
+        mapped = v.KINDS.get(record.local_type)
+        if mapped is not None and mapped[0] is Kind.TRANSITION:
             record = self.by_id.get(record.first("supplier"), record)
         return self.by_id.get(record.first("hasParent"))
 
-    def in_order(self) -> Iterator[Record]:
-        """The records with owners before what they own."""
-        done: set[str] = {""}
+    def _iter_owners_first(self) -> Iterator[Record]:
+        visited: set[str] = {""}
         for record in self.records:
             chain: list[Record] = []
-            above: Record | None = record
-            while above is not None and above.id not in done:
-                done.add(above.id)
-                chain.append(above)
-                above = self.above(above)
+            ancestor: Record | None = record
+            while ancestor is not None and ancestor.id not in visited:
+                visited.add(ancestor.id)
+                chain.append(ancestor)
+                ancestor = self._find_owner(ancestor)
             yield from reversed(chain)
 
-    def add(self, record: Record) -> None:
-        """Add the record's element, or note what became of it instead."""
-        known, type_name = self.kind(record), _local(record)
-        if known is None:
-            self._note(record, type_name)
+    # -- elements ----------------------------------------------------------------------------------
+
+    def _add(self, record: Record) -> None:
+        """Add the element of a record, or set the verdict of a record that is no element."""
+        mapped = v.KINDS.get(record.local_type)
+        if mapped is None:
+            self._mark_omitted(record)
             return
-        kind, subkind = known
-        above = record.first("hasParent")
-        owner = self._owner(record, kind)
+        kind, subkind = mapped
+        owner = self._find_owner_id(record, kind)
         if record.ordinal in self.verdicts:
             return
-        if owner is None and above:
-            self._lose_below(record, above, type_name)
+        if owner is None and record.first("hasParent"):
+            self._mark_ownerless(record)
             return
         id = self.graph_id(record.id)
         self._check_depth(id, owner)
@@ -97,15 +119,15 @@ class Lowered:
             element.attrs["subkind"] = subkind
         self.graph.add(element)
         self.verdicts[record.ordinal] = Verdict.MAPPED
-        for key, read in ATTRIBUTES.items():
+        for key, store in _ATTRIBUTES.items():
             text = record.value(key)
             if text:
-                read(element, text)
+                store(element, text)
 
-    def _owner(self, record: Record, kind: Kind) -> str | None:
-        """Id of the owner when it is there and may own such an element."""
-        above = self.above(record)
-        owner = self.graph.get(self.graph_id(above.id)) if above else None
+    def _find_owner_id(self, record: Record, kind: Kind) -> str | None:
+        """Return the id of the owner if it is in the graph and may own the kind."""
+        owner_record = self._find_owner(record)
+        owner = self.graph.get(self.graph_id(owner_record.id)) if owner_record else None
         if owner is None or (kind in v.OWNERS and owner.kind not in v.OWNERS[kind]):
             return None
         return owner.id
@@ -116,60 +138,103 @@ class Lowered:
             message = f"nested more than {DEFAULT_LIMITS.depth} deep"
             raise SourceError(message, self.file, fault=Fault.LIMIT)
 
-    def _lose_below(self, record: Record, above: str, type_name: str) -> None:
-        """What belongs to settings of the tool is none of the model's either."""
-        owner = self.by_id.get(above)
+    # -- losses ------------------------------------------------------------------------------------
+
+    def _mark_omitted(self, record: Record) -> None:
+        if v.is_notation(record.local_type):
+            self.verdicts[record.ordinal] = Verdict.IGNORED_NOTATION
+        elif record.local_type in v.FOLDED:
+            self.verdicts[record.ordinal] = Verdict.MAPPED
+        else:
+            self._mark_unsupported(record, rules.UNSUPPORTED, record.local_type)
+
+    def _mark_ownerless(self, record: Record) -> None:
+        """Mark a record whose owner is not read; the content of tool settings is no loss."""
+        owner = self.by_id.get(record.first("hasParent"))
         if owner and self.verdicts.get(owner.ordinal) is Verdict.IGNORED_NOTATION:
             self.verdicts[record.ordinal] = Verdict.IGNORED_NOTATION
         else:
-            self._lose(record, rules.OWNERLESS, type_name)
+            self._mark_unsupported(record, rules.OWNERLESS, record.local_type)
 
-    def _note(self, record: Record, type_name: str) -> None:
-        if v.is_notation(type_name):
-            self.verdicts[record.ordinal] = Verdict.IGNORED_NOTATION
-        elif type_name in v.FOLDED:
-            self.verdicts[record.ordinal] = Verdict.MAPPED
-        else:
-            self._lose(record, rules.UNSUPPORTED, type_name)
-
-    def _lose(self, record: Record, rule: Rule, what: str) -> None:
+    def _mark_unsupported(self, record: Record, rule: Rule, subject: str) -> None:
         self.verdicts[record.ordinal] = Verdict.UNSUPPORTED
-        self._lost.setdefault((rule.code, what), []).append(record)
+        self._losses.setdefault((rule.code, subject), []).append(record)
 
-    def finish(self, record: Record) -> None:
-        """Add what the record says about others."""
-        if self.by_id.get(record.id) is not record:
-            return
-        element = self.graph.get(self.graph_id(record.id))
-        relate(self, record, element)
-        if element is not None:
-            apply_stereotypes(self.graph, element, record)
-
-    def lose_end(self, record: Record, flow: Element, edge: Edge) -> None:
-        """The flow leads from or to a node that is not read."""
-        known = flow.attrs.get("unresolved")
-        names = known if isinstance(known, tuple) else ()
-        flow.attrs["unresolved"] = (*names, edge.value)
+    def mark_loose_end(self, record: Record, flow: Element, edge: Edge) -> None:
+        """Mark a flow that leads from or to a node that is not read."""
+        unresolved = flow.attrs.get("unresolved")
+        edges = unresolved if isinstance(unresolved, tuple) else ()
+        flow.attrs["unresolved"] = (*edges, edge.value)
         self.verdicts[record.ordinal] = Verdict.APPROXIMATED
-        self._lost.setdefault((rules.LOOSE_END.code, _local(record)), []).append(record)
+        key = rules.LOOSE_END.code, record.local_type
+        self._losses.setdefault(key, []).append(record)
 
-    def report(self) -> None:
-        """Report what is not read, once for each type."""
-        found = {rule.code: rule for rule in _TOLD}
-        for (code, what), records in self._lost.items():
-            place = Place(self.file, records[0].ordinal)
-            self.sink.report(
-                found[code],
-                Subject(what, place=place),
+    def report_losses(self, sink: Sink) -> None:
+        """Report records that are not read, once for each type or id."""
+        loss_rules = {rule.code: rule for rule in _LOSS_RULES}
+        for (code, name), records in self._losses.items():
+            sink.report(
+                loss_rules[code],
+                Subject(name, place=Place(self.file, records[0].ordinal)),
                 count=len(records),
-                type=what,
-                id=what,
+                type=name,
+                id=name,
                 file=self.file,
             )
 
 
-_TOLD = (rules.UNSUPPORTED, rules.OWNERLESS, rules.REPEATED, rules.LOOSE_END)
+# -- attributes and stereotypes --------------------------------------------------------------------
+
+_WITH_MULTIPLICITY = frozenset({Kind.PROPERTY, Kind.PORT, Kind.PARAMETER, Kind.PIN})
 
 
-def _local(record: Record) -> str:
-    return record.type.rpartition(".")[2]
+def _store_multiplicity(element: Element, text: str) -> None:
+    if element.kind in _WITH_MULTIPLICITY and text not in ("1", "1..1", "unspecified"):
+        element.attrs["multiplicity"] = "*" if text == "0..*" else text
+
+
+def _store_default(element: Element, text: str) -> None:
+    element.attrs["default"] = text
+    element.attrs["default_language"] = ""
+
+
+def _make_text_handler(key: str) -> Callable[[Element, str], None]:
+    def store(element: Element, text: str) -> None:
+        element.attrs[key] = text
+
+    return store
+
+
+_ATTRIBUTES: dict[str, Callable[[Element, str], None]] = {
+    "multiplicity": _store_multiplicity,
+    "defaultValue": _store_default,
+    "direction": _make_text_handler("direction"),
+    "guard": _make_text_handler("guard"),
+    "body": _make_text_handler("body"),
+    "language": _make_text_handler("language"),
+    "valueSpecification": _make_text_handler("body"),
+    "documentation": _make_text_handler("documentation"),
+    "messageSort": _make_text_handler("message_sort"),
+    "text": _make_text_handler("text"),
+    "id": _make_text_handler("req_id"),
+}
+"""Handlers that store the attributes of a record, in this order."""
+
+
+def _apply_stereotypes(graph: Graph, element: Element, record: Record) -> None:
+    """Add an application for each stereotype, with its tagged values."""
+    for name, profile in record.list_stereotypes():
+        namespace = v.SYSML if profile in v.SYSML_PROFILES else profile
+        application = Element(
+            derived_id(element.id, f"stereotype {profile}::{name}"),
+            Kind.APPLICATION,
+            name,
+            element.id,
+            record.ordinal,
+            element.source,
+            {"stereotype": name, "namespace": namespace},
+        )
+        for tag, values in record.iter_tagged_values(name):
+            application.attrs[f"tag.{tag}"] = values[0] if len(values) == 1 else values
+        graph.add(application)
+        graph.connect(Edge.SUBJECT, application, element)

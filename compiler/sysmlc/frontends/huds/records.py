@@ -1,4 +1,4 @@
-"""An MTIP file as records: one ``<data>`` an element of the model, read in one pass.
+"""Reads an MTIP file into records, one for each ``<data>``, in one pass.
 
 MTIP (Model Transformation Integration Plug-in) writes a flat list; ownership and all other
 relations are pairs of a name and an id inside the record.
@@ -10,22 +10,30 @@ from typing import NamedTuple
 from sysmlc.sources import DEFAULT_LIMITS, Source
 from sysmlc.sources.xml import Parser, parse, parser, too_deep
 
-_KEPT = frozenset({"value", "stereotypeName", "profileName", "taggedValueName"})
-"""Of the parts of an attribute; the others repeat types and ids of the exporting tool."""
+_READ_PARTS = frozenset({"value", "stereotypeName", "profileName", "taggedValueName"})
+"""Parts of an attribute that are read; the others repeat types and ids of the exporting tool."""
 _Part = tuple[str, str]
 
 
 class Record(NamedTuple):
-    """One element: place in document order, type (``sysml.Block``), id, attributes, relations."""
+    """One element of the model."""
 
     ordinal: int
     type: str
+    """The type with its prefix, as in ``sysml.Block``."""
     id: str
     attributes: list[tuple[str, list[_Part]]]
+    """Names of attributes with their parts, which are pairs of a key and a text."""
     relations: list[_Part]
+    """Names of relations with the id of their target."""
+
+    @property
+    def local_type(self) -> str:
+        """The type without its prefix."""
+        return self.type.rpartition(".")[2]
 
     def values(self, key: str) -> list[str]:
-        """Texts of an attribute, in order."""
+        """Return the texts of an attribute, in order."""
         return [
             text
             for name, parts in self.attributes
@@ -35,36 +43,56 @@ class Record(NamedTuple):
         ]
 
     def value(self, key: str) -> str:
-        """First text of an attribute, or the empty string."""
+        """Return the first text of an attribute, or the empty string."""
         return next(iter(self.values(key)), "")
 
-    def related(self, name: str) -> list[str]:
-        """Ids that a relation leads to, in order."""
+    def targets(self, name: str) -> list[str]:
+        """Return the ids that a relation leads to, in order."""
         return [id for relation, id in self.relations if relation == name]
 
     def first(self, name: str) -> str:
-        """First id that a relation leads to, or the empty string."""
+        """Return the first id that a relation leads to, or the empty string."""
         return next((id for relation, id in self.relations if relation == name), "")
 
+    def list_stereotypes(self) -> list[tuple[str, str]]:
+        """Return name and profile of each stereotype that is applied, each once."""
+        applied = (dict(parts) for key, parts in self.attributes if key == "stereotype")
+        return sorted(
+            {(parts.get("stereotypeName", ""), parts.get("profileName", "")) for parts in applied}
+        )
 
-def read(source: Source) -> list[Record]:
-    """The records of a file, in document order. Raises SourceError."""
-    made = parser()
-    reader = _Reader(source, made)
-    made.StartElementHandler = reader.start
-    made.EndElementHandler = reader.end
-    made.CharacterDataHandler = reader.texts.append
-    parse(source, made)
+    def iter_tagged_values(self, stereotype: str) -> Iterator[tuple[str, tuple[str, ...]]]:
+        """Yield the tags of a stereotype and their values, without tags that have none."""
+        for key, parts in self.attributes:
+            texts = dict(parts)
+            if key == "stereotypeTaggedValue" and texts.get("stereotypeName") == stereotype:
+                values = tuple(text for part, text in parts if part == "value" and text.strip())
+                if values and texts.get("taggedValueName"):
+                    yield texts["taggedValueName"], values
+
+
+def read_records(source: Source) -> list[Record]:
+    """Return the records of a file, in document order. Raises SourceError."""
+    xml_parser = parser()
+    reader = _RecordReader(source, xml_parser)
+    xml_parser.StartElementHandler = reader.start
+    xml_parser.EndElementHandler = reader.end
+    xml_parser.CharacterDataHandler = reader.texts.append
+    parse(source, xml_parser)
     return reader.records
 
 
-class _Reader:
-    """Handlers that fill the records; they are called for every XML element."""
+class _RecordReader:
+    """Parser handlers that collect the records.
 
-    def __init__(self, source: Source, made: Parser) -> None:
+    A record is an element at depth 2, its sections (``type``, ``id``, ``attributes``,
+    ``relationships``) are at depth 3, single attributes and relations at depth 4.
+    """
+
+    def __init__(self, source: Source, xml_parser: Parser) -> None:
         self.records: list[Record] = []
         self.texts: list[str] = []
-        self._source, self._made = source, made
+        self._source, self._parser = source, xml_parser
         self._depth = self._count = self._ordinal = 0
         self._section = self._relation = self._type = self._id = ""
         self._keys: list[str] = []
@@ -73,7 +101,7 @@ class _Reader:
         self._relations: list[_Part] = []
 
     def start(self, tag: str, values: dict[str, str]) -> None:
-        """An XML element begins."""
+        """Handle the start of an XML element."""
         self._depth = depth = self._depth + 1
         self._count += 1
         self.texts.clear()
@@ -81,32 +109,26 @@ class _Reader:
             if self._section == "attributes":
                 self._keys.append(values.get("key", ""))
             if depth > DEFAULT_LIMITS.depth:
-                too_deep(self._source, self._made)
+                too_deep(self._source, self._parser)
         elif depth == 4:
-            self._fourth(tag, values)
+            self._relation = tag
+            if self._section == "attributes":
+                self._parts = []
+                self._attributes.append((values.get("key", ""), self._parts))
         elif depth == 3:
             self._section = tag
         elif depth == 2:
-            self._begin()
-
-    def _fourth(self, tag: str, values: dict[str, str]) -> None:
-        self._relation = tag
-        if self._section == "attributes":
-            self._parts = []
-            self._attributes.append((values.get("key", ""), self._parts))
-
-    def _begin(self) -> None:
-        self._ordinal = self._count - 1
-        self._type = self._id = ""
-        self._attributes, self._relations = [], []
+            self._ordinal = self._count - 1
+            self._type = self._id = ""
+            self._attributes, self._relations = [], []
 
     def end(self, tag: str) -> None:
-        """An XML element ends."""
+        """Handle the end of an XML element."""
         depth, section = self._depth, self._section
         self._depth = depth - 1
         if depth > 4 and section == "attributes":
             key = self._keys.pop()
-            if key in _KEPT and self.texts:
+            if key in _READ_PARTS and self.texts:
                 self._parts.append((key, "".join(self.texts)))
         elif depth > 4 and tag == "id":
             self._relations.append((self._relation, "".join(self.texts)))
@@ -119,22 +141,3 @@ class _Reader:
                 Record(self._ordinal, self._type, self._id, self._attributes, self._relations)
             )
         self.texts.clear()
-
-
-def stereotypes(record: Record) -> Iterator[tuple[str, str]]:
-    """Name and profile of each stereotype that is applied, each once."""
-    found = {
-        (parts.get("stereotypeName", ""), parts.get("profileName", ""))
-        for parts in (dict(p) for key, p in record.attributes if key == "stereotype")
-    }
-    yield from sorted(found)
-
-
-def tagged_values(record: Record, stereotype: str) -> Iterator[tuple[str, tuple[str, ...]]]:
-    """Tags of a stereotype and their values; tags without a value are left out."""
-    for key, parts in record.attributes:
-        known = dict(parts)
-        if key == "stereotypeTaggedValue" and known.get("stereotypeName") == stereotype:
-            values = tuple(text for part, text in parts if part == "value" and text.strip())
-            if values and known.get("taggedValueName"):
-                yield known["taggedValueName"], values

@@ -1,4 +1,4 @@
-"""Types of MTIP and what they are in the graph; names are those of the plug-in."""
+"""Tables that map the types and relations of MTIP to kinds and edges of the graph."""
 
 from sysmlc.ir import Edge, Kind
 
@@ -98,13 +98,13 @@ KINDS: dict[str, tuple[Kind, str]] = {
     "Lifeline": (Kind.LIFELINE, ""),
     "Message": (Kind.MESSAGE, ""),
 }
-"""Kind and subkind by type, without ``sysml.``."""
+"""Kind and subkind by type without prefix."""
 
 FOLDED = frozenset(
     {"SignalEvent", "TimeEvent", "ChangeEvent", "CallEvent", "TimeExpression", "OpaqueExpression"}
     | {"Generalization", "Include", "Extend"}
 )
-"""Types that say something about another element, which holds it."""
+"""Types whose records become an edge or part of another element."""
 
 RELATIONS: dict[str, Edge] = {
     "typedBy": Edge.TYPED_BY,
@@ -121,7 +121,7 @@ RELATIONS: dict[str, Edge] = {
     "exit": Edge.EXIT,
     "instanceValue": Edge.REFERENCES,
 }
-"""Relations that are one edge from the element to its target."""
+"""Relations that are an edge from the element to its target."""
 
 ENDS: dict[Kind, tuple[Edge, Edge]] = {
     Kind.CONTROL_FLOW: (Edge.FLOW_SOURCE, Edge.FLOW_TARGET),
@@ -131,7 +131,7 @@ ENDS: dict[Kind, tuple[Edge, Edge]] = {
     Kind.ITEM_FLOW: (Edge.FLOW_SOURCE, Edge.FLOW_TARGET),
     Kind.DEPENDENCY: (Edge.CLIENT, Edge.SUPPLIER),
 }
-"""Edges to ``supplier`` and ``client``: MTIP calls supplier where an arrow starts."""
+"""Edges to ``supplier`` and ``client``: in MTIP an arrow starts at its supplier."""
 
 OWNERS: dict[Kind, frozenset[Kind]] = {
     Kind.REGION: frozenset({Kind.STATE_MACHINE, Kind.STATE}),
@@ -140,12 +140,12 @@ OWNERS: dict[Kind, frozenset[Kind]] = {
     Kind.ENUMERATION_LITERAL: frozenset({Kind.ENUMERATION}),
     Kind.SLOT: frozenset({Kind.INSTANCE}),
 }
-"""Kinds that have a place only below these."""
+"""Owners that elements of a kind may have; elements below other owners are not read."""
 
 SYSML = "http://www.omg.org/spec/SysML/20181001/SysML"
 SYSML_PROFILES = frozenset({"SysML", "additional_stereotypes", "SysML Profile"})
 
 
 def is_notation(type_name: str) -> bool:
-    """Whether elements of the type are drawn, or tables and settings of the tool, and no more."""
+    """Whether elements of the type are diagrams, tables or settings of the tool."""
     return type_name.endswith(("Diagram", "Table", "Matrix", "Map")) or type_name == "Customization"
