@@ -22,7 +22,7 @@ def load_companions(reading: Reading, root: Path, sink: Sink) -> tuple[Source, .
         name
         for item in reading.recognised
         if isinstance(item.frontend, DiagramReader)
-        for name in item.frontend.companions(item.source.name)
+        for name in item.frontend.list_companions(item.source.name)
     )
     sources = {
         source.name: source for name in names for source in _load(name, root, reading.roots, sink)

@@ -233,7 +233,7 @@ class _CompilationRun:
     def _read_diagrams(self, frontend: Frontend, sources: list[Source]) -> bool:
         return not isinstance(frontend, DiagramReader) or self._run_guarded(
             f"diagrams of {frontend.name}",
-            lambda: frontend.drawings(sources, self._drawings, self._graph, self._sink),
+            lambda: frontend.read_drawings(sources, self._drawings, self._graph, self._sink),
         )
 
     def _refine(self, step: Pass) -> bool:

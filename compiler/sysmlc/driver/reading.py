@@ -10,7 +10,7 @@ from sysmlc.diagnostics import Place, Rule, Sink, Subject
 from sysmlc.driver import faults
 from sysmlc.driver.inputs import Recognised, collect_files, find_allowed_roots, name_of, recognise
 from sysmlc.driver.overlays import LoadedOverlay, find_overlay, list_models, load_overlay
-from sysmlc.frontends.base import Frontend, Mentioning
+from sysmlc.frontends.base import AttachmentFrontend, Frontend
 from sysmlc.sources import Roots, Source, SourceError, load
 
 
@@ -164,10 +164,10 @@ class _Reader:
         References inside a package (``!`` in the name) are checked by its front end.
         """
         source, frontend = item.source, item.frontend
-        if not isinstance(frontend, Mentioning) or "!" in source.name:
+        if not isinstance(frontend, AttachmentFrontend) or "!" in source.name:
             return
         missing: dict[str, Place] = {}
-        for href, place in frontend.mentioned(source):
+        for href, place in frontend.list_attachments(source):
             if self._roots.resolve(path, href) is None:
                 missing.setdefault(href.partition("#")[0], place)
         if missing:

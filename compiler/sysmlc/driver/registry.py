@@ -16,7 +16,7 @@ from msgspec import Struct, structs
 from sysmlc.backends.base import Backend
 from sysmlc.config import ConfigError
 from sysmlc.diagnostics import Rule, catalogue
-from sysmlc.frontends.base import Frontend, Libraried
+from sysmlc.frontends.base import Frontend, LibraryFrontend
 from sysmlc.passes import pipeline
 from sysmlc.passes.base import Pass
 from sysmlc.support.suggestions import did_you_mean
@@ -82,7 +82,7 @@ def load_frontends(library: str = "") -> list[Frontend]:
     frontends = [cast("Frontend", import_module(name).FRONTEND) for name in _FRONTENDS]
     if not library:
         return frontends
-    return [f.with_library(library) if isinstance(f, Libraried) else f for f in frontends]
+    return [f.with_library(library) if isinstance(f, LibraryFrontend) else f for f in frontends]
 
 
 def load_passes(options: Mapping[str, Mapping[str, object]]) -> list[Pass]:

@@ -18,7 +18,7 @@ from sysmlc.diagnostics import Diagnostic
 from sysmlc.driver.compilation import OpenedUnit, Request, load_drawings, open_unit
 from sysmlc.driver.inputs import Recognised, find_unit_root
 from sysmlc.driver.reading import ReadFile, Reading
-from sysmlc.frontends.base import FileNames, Relating
+from sysmlc.frontends.base import FileNames, UnitFrontend
 from sysmlc.support.file_names import assign_file_names
 
 
@@ -104,7 +104,7 @@ def _find_text_folder(folder: Path, root: Path, mixed: AbstractSet[Path]) -> Pat
 def _is_folder_unit(file: ReadFile, recognised: Mapping[str, Recognised]) -> bool:
     frontends = [recognised[name].frontend for name in file.sources if name in recognised]
     return bool(frontends) and all(
-        isinstance(frontend, Relating) and frontend.is_folder_unit for frontend in frontends
+        isinstance(frontend, UnitFrontend) and frontend.is_folder_unit for frontend in frontends
     )
 
 
@@ -130,7 +130,7 @@ def _read_names(bundle: Bundle, recognised: Mapping[str, Recognised]) -> None:
 
 def _names_of(item: Recognised) -> FileNames:
     frontend = item.frontend
-    return frontend.read_names(item.source) if isinstance(frontend, Relating) else FileNames()
+    return frontend.read_names(item.source) if isinstance(frontend, UnitFrontend) else FileNames()
 
 
 def _refer_by_path(bundles: Sequence[Bundle]) -> None:

@@ -1,4 +1,4 @@
-"""What a front end is: it recognises its files and reads them into the graph."""
+"""The interface of front ends: detect files of a language and read them into the graph."""
 
 from collections.abc import Sequence
 from collections.abc import Set as AbstractSet
@@ -14,27 +14,27 @@ from sysmlc.sources import Source
 class Frontend(Protocol):
     """Reads one family of source languages.
 
-    All files of a compile unit come in one call, because an id is kept only when it is unique
-    in the unit. Local references may stay in ``graph.pending`` for the pass ``resolve``.
+    One call reads all files of a compile unit, because ids are retained only if they are unique in
+    the unit. Local references may stay in ``graph.pending`` for the pass ``resolve``.
     """
 
     name: str
 
     def detect(self, source: Source) -> float:
-        """How sure it is, from 0 to 1 and by content, that it can read this source."""
+        """Return how certain it is, from 0 to 1 and by content, that the front end can read it."""
 
     def links(self, source: Source) -> Sequence[str]:
-        """References to other files, as the source writes them, each once and in order.
+        """Return the references to other files, as the source writes them, each once, in order.
 
-        The driver adds those files to the compile unit that are there and allowed.
+        The driver adds the files that exist and are allowed to the compile unit.
         """
 
     def read(self, sources: Sequence[Source], graph: Graph, sink: Sink, coverage: Coverage) -> None:
-        """Read the files into the graph and account for every element of them."""
+        """Read the files into the graph and count the verdict of every element."""
 
 
 class FileNames(Struct, frozen=True):
-    """How a file takes part in the compile units of its folder, beyond ``Frontend.links``.
+    """Names by which files of a folder form compile units, in addition to ``Frontend.links``.
 
     A library, such as a profile, only defines what models use. It belongs to each unit that uses
     it and does not connect these units.
@@ -50,43 +50,46 @@ class FileNames(Struct, frozen=True):
 
 
 @runtime_checkable
-class Relating(Protocol):
+class UnitFrontend(Protocol):
     """A front end whose files are libraries, refer to one another by name, or share a folder."""
 
     is_folder_unit: bool
-    """Whether the files of a folder are one model although none of them names another file."""
+    """Whether all files of a folder form one model, without references to one another."""
 
     def read_names(self, source: Source) -> FileNames:
-        """Return how the source takes part in compile units; its faults are reported later."""
+        """Return the names by which the source takes part in compile units.
+
+        Faults of the source are not reported here, but when it is read.
+        """
 
 
 @runtime_checkable
-class Libraried(Protocol):
+class LibraryFrontend(Protocol):
     """A front end whose models refer to a library of models."""
 
     def with_library(self, path: str) -> Frontend:
-        """The same front end, with the library from a folder or an archive."""
+        """Return the same front end with the library in a folder or an archive."""
 
 
 @runtime_checkable
-class Mentioning(Protocol):
-    """A front end whose files refer to others that are not read, but should be there."""
+class AttachmentFrontend(Protocol):
+    """A front end whose files refer to documents that are not read, but should exist."""
 
-    def mentioned(self, source: Source) -> Sequence[tuple[str, Place]]:
-        """Paths of such files, as the source writes them, each with its place."""
+    def list_attachments(self, source: Source) -> Sequence[tuple[str, Place]]:
+        """Return the paths of the documents, as the source writes them, with their locations."""
 
 
 @runtime_checkable
 class DiagramReader(Protocol):
     """A front end that can also read the diagrams of authors."""
 
-    def companions(self, name: str) -> Sequence[str]:
-        """What may lie beside a source of this name and hold the diagrams of its authors.
+    def list_companions(self, name: str) -> Sequence[str]:
+        """Return the files beside the source *name* that may hold the diagrams of its authors.
 
-        Names of files, or ``archive!pattern`` for entries of an archive (``BINARY-*``).
+        They are names of files, or ``archive!pattern`` for entries of an archive (``BINARY-*``).
         """
 
-    def drawings(
+    def read_drawings(
         self, sources: Sequence[Source], beside: Sequence[Source], graph: Graph, sink: Sink
     ) -> None:
-        """Keep the diagrams of authors (``ir.drawing.Drawing``) for the pass ``views``."""
+        """Store the diagrams of authors (``ir.drawing.Drawing``) for the pass ``views``."""

@@ -31,7 +31,7 @@ class CaexFrontend:
 
         return FileNames(is_library=not has_hierarchy(source))
 
-    def mentioned(self, source: Source) -> Sequence[tuple[str, Place]]:
+    def list_attachments(self, source: Source) -> Sequence[tuple[str, Place]]:
         """The files of other languages that it refers to: they are not read."""
         from sysmlc.frontends.caex.documents import mentioned
 

@@ -61,13 +61,13 @@ class XmiFrontend:
 
         reading.read(sources, graph, sink, coverage)
 
-    def companions(self, name: str) -> Sequence[str]:
+    def list_companions(self, name: str) -> Sequence[str]:
         """Return Papyrus' notation file, or MagicDraw's entries with shapes."""
-        from sysmlc.frontends.xmi.diagrams.reading import list_companions
+        from sysmlc.frontends.xmi.diagrams import reading
 
-        return list_companions(name)
+        return reading.list_companions(name)
 
-    def drawings(
+    def read_drawings(
         self, sources: Sequence[Source], beside: Sequence[Source], graph: Graph, sink: Sink
     ) -> None:
         """Store the diagrams of the authors for the pass ``views``."""
