@@ -53,7 +53,7 @@ def parse(folder: Path, *_arguments: str) -> tuple[Measured, int]:
 def resolve(folder: Path, *_arguments: str) -> tuple[Measured, int]:
     """Text to a tree whose names lead to elements."""
     from sysmlc.diagnostics import Sink
-    from sysmlc.language.library import find
+    from sysmlc.language.library import find_library
     from sysmlc.language.names import resolve as names
     from sysmlc.language.text import parse as tree
 
@@ -61,7 +61,7 @@ def resolve(folder: Path, *_arguments: str) -> tuple[Measured, int]:
     measured = Measured()
     documents = [tree(text, name, language, sink) for text, name, language in texts]
     measured.lap("parse")
-    names(documents, find(), sink)
+    names(documents, find_library(), sink)
     measured.lap("resolve")
     return measured, sum(len(text.encode()) for text, _, _ in texts)
 

@@ -22,7 +22,7 @@ def build(model, folder):
 @pytest.mark.parametrize("model", MODELS)
 def test_the_bundled_core_gives_the_same_outputs_with_one_warning(model, tmp_path, monkeypatch):
     complete, expected = build(model, tmp_path / "complete")
-    monkeypatch.setattr("sysmlc.language.library._installed", lambda: None)
+    monkeypatch.setattr("sysmlc.language.library._find_installed", lambda: None)
     done, outputs = build(model, tmp_path / "core")
     assert (complete.exit_code, done.exit_code) == (0, 0)
     assert outputs == expected

@@ -188,8 +188,8 @@ def _keep_library() -> None:
             model = Path(folder, f"m.{language}")
             model.write_text("package P { private import ScalarValues::*; }")
             compile_model(Request((model,)))
-    library.find().names()
-    library._read = cache(library._read)
+    library.find_library().names()
+    library._read_sources = cache(library._read_sources)
 
 
 _MODEL = """<?xml version="1.0" encoding="UTF-8"?>

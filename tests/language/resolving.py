@@ -4,7 +4,7 @@ from functools import cache
 from textwrap import dedent
 
 from sysmlc.diagnostics import Sink
-from sysmlc.language.library import Library, core
+from sysmlc.language.library import Library, load_core
 from sysmlc.language.names import Model, resolve
 from sysmlc.language.names.implied_relations import implied_relations
 from sysmlc.language.text import parse
@@ -14,7 +14,7 @@ from sysmlc.language.tree import Document, Node
 @cache
 def library() -> Library:
     """The core, read once for all tests."""
-    return core()
+    return load_core()
 
 
 def documents(*texts: str, language: str = "sysml") -> list[Document]:

@@ -12,7 +12,7 @@ import xpect
 
 from sysmlc.diagnostics import Severity, Sink, catalogue
 from sysmlc.language.checks import check
-from sysmlc.language.library import Library, find
+from sysmlc.language.library import Library, find_library
 from sysmlc.language.names import resolve
 from sysmlc.language.text import parse
 from sysmlc.sources import Source
@@ -40,7 +40,7 @@ MISSED = {
 
 @cache
 def library():
-    return find(_FOLDER / "omg-release" / "sysml.library")
+    return find_library(_FOLDER / "omg-release" / "sysml.library")
 
 
 @pytest.mark.parametrize(

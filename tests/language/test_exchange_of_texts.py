@@ -8,7 +8,7 @@ import pytest
 from long_runs import quick_first
 from sysmlc.diagnostics import Sink
 from sysmlc.language.interchange import Files, interchange_path, link, read, write
-from sysmlc.language.library import find
+from sysmlc.language.library import find_library
 from sysmlc.language.names import resolve
 from sysmlc.language.names.implied_relations import implied_redefinitions
 from sysmlc.language.text import parse
@@ -19,7 +19,7 @@ pytestmark = pytest.mark.corpus
 
 @pytest.fixture(scope="module")
 def library(corpus):
-    return find(corpus / "sysml2/omg-release/sysml.library", {})
+    return find_library(corpus / "sysml2/omg-release/sysml.library", {})
 
 
 def written(folder, library):

@@ -12,7 +12,7 @@ import pytest
 from resolving import implied
 
 from sysmlc.diagnostics import Sink
-from sysmlc.language.library import find
+from sysmlc.language.library import find_library
 from sysmlc.language.names import resolve
 from sysmlc.language.text import parse
 
@@ -74,7 +74,7 @@ FACTS = {
 
 @cache
 def library():
-    return find(_LIBRARY)
+    return find_library(_LIBRARY)
 
 
 @pytest.mark.parametrize("path", sorted(FACTS))

@@ -9,7 +9,7 @@ import pytest
 from sysmlc.diagnostics import Severity, Sink
 from sysmlc.language.interchange import link
 from sysmlc.language.interchange import read as read_interchange
-from sysmlc.language.library import Library, find
+from sysmlc.language.library import Library, find_library
 from sysmlc.language.names import Model, resolve
 from sysmlc.language.text import parse
 from sysmlc.sources import Source
@@ -24,7 +24,7 @@ XMI_FILES = sorted(path.relative_to(_XMI).as_posix() for path in _XMI.rglob("*.*
 
 @cache
 def library():
-    return find(_LIBRARY)
+    return find_library(_LIBRARY)
 
 
 def documents(folder):

@@ -7,7 +7,7 @@ import pytest
 from resolving import documents, leads, library, resolved, told
 
 from sysmlc.diagnostics import Sink
-from sysmlc.language.library import find
+from sysmlc.language.library import find_library
 from sysmlc.language.names import Model
 from sysmlc.language.text import parse
 
@@ -50,7 +50,7 @@ def test_the_type_of_metadata_is_not_looked_for_in_what_the_metadata_makes_of_it
     """)
     owner = model.documents[0].root.members[-1]
     assert model.target(owner.members[0], owner.members[0].relations[0]).owner.owner is None
-    assert "services" in [model.name(one) for one in model.supers(owner)]
+    assert "services" in [model.name(one) for one in model.all_supertypes(owner)]
 
 
 def test_the_ends_of_a_message_are_not_each_other():
@@ -124,4 +124,4 @@ def test_real_models_give_the_same_answers_in_any_order_of_questions(folder, cor
     def read():
         return [parse(path.read_text("utf-8"), str(path), "sysml", Sink()) for path in paths]
 
-    assert answers(read(), find(), Random(folder)) == answers(read(), find())
+    assert answers(read(), find_library(), Random(folder)) == answers(read(), find_library())

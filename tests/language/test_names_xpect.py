@@ -8,7 +8,7 @@ import pytest
 import xpect
 
 from sysmlc.diagnostics import Severity, Sink
-from sysmlc.language.library import find
+from sysmlc.language.library import find_library
 from sysmlc.language.names import Model, contexts, resolve
 from sysmlc.language.text import parse
 
@@ -31,7 +31,7 @@ HIDDEN_MEANWHILE = {
 
 @cache
 def library():
-    return find(_FOLDER / "omg-release" / "sysml.library")
+    return find_library(_FOLDER / "omg-release" / "sysml.library")
 
 
 def cases():
@@ -107,8 +107,8 @@ def test_names_lead_where_the_pilot_says():
 def missing(model, made, expected):
     """Names of a scope expectation that lead nowhere from the place it is about."""
     node, relation = reference_at(made[0], expected.offset)
-    start = contexts.start(node, relation)
-    kinds = contexts.WANTED.get(relation.kind)
+    start = contexts.find_context(node, relation)
+    kinds = contexts.TARGET_KINDS.get(relation.kind)
     names = [tuple(name.split(".")) for name in sorted(expected.names)]
     return [name for name in names if model.lookup.search(start, name, kinds) is None]
 

@@ -3,7 +3,7 @@
 import pytest
 
 from sysmlc.diagnostics import Sink
-from sysmlc.language.notation import expression
+from sysmlc.language.notation import write_expression
 from sysmlc.language.text import parse
 
 SAME = [
@@ -50,9 +50,9 @@ def shape(node):
 def test_expressions_are_written_as_they_are_read(text):
     node = value(text)
     node.role = ""
-    again = value(expression(node))
+    again = value(write_expression(node))
     again.role = ""
-    assert expression(node) == text
+    assert write_expression(node) == text
     assert shape(again) == shape(node)
 
 
@@ -61,11 +61,11 @@ def test_expressions_are_written_as_they_are_read(text):
     [("((1))", "1"), ("a->f(b)", "f(a, b)"), ("(1, (2, 3))", "(1, 2, 3)"), ("()", "null")],
 )
 def test_what_has_two_notations_has_one(text, written):
-    assert expression(value(text)) == written
+    assert write_expression(value(text)) == written
 
 
 def test_a_body_has_no_notation_without_its_declarations():
-    assert expression(value("a->collect {in x; x + 1}")) == ""
+    assert write_expression(value("a->collect {in x; x + 1}")) == ""
 
 
 def test_a_conditional_within_an_operand_stands_in_parentheses():
@@ -75,4 +75,4 @@ def test_a_conditional_within_an_operand_stands_in_parentheses():
         "if a ?? b ? c else d ?? e",
         "(if a ? b else c, d)",
     ):
-        assert expression(value(text)) == text
+        assert write_expression(value(text)) == text

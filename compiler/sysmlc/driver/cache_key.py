@@ -75,9 +75,9 @@ def _sort_items(value: object) -> object:
 
 
 def _digest_library(path: str) -> Iterator[str]:
-    from sysmlc.language.library import place
+    from sysmlc.language.library import find_library_path
 
-    folder = place(path or None)
+    folder = find_library_path(path or None)
     yield str(folder)
     if folder is not None:
         yield from _digest_folder(folder) if folder.is_dir() else [_digest_file(str(folder))]

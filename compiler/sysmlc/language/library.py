@@ -1,4 +1,4 @@
-"""The model libraries that a model refers to: where they are, and their files, read when needed."""
+"""The model libraries that models refer to: where they are, and their files, parsed on demand."""
 
 import os
 from collections.abc import Iterable, Mapping
@@ -15,19 +15,19 @@ from sysmlc.support import resources
 
 VARIABLE = "SYSML_LIBRARY_PATH"
 """Environment variable: the folder or .kpar of the standard library."""
-_REMEMBERED = 256
-"""Files of libraries that are kept in memory."""
+_MAX_CACHED_FILES = 256
+"""Files of libraries that stay in memory."""
 _SUFFIXES = {".sysml": "sysml", ".kerml": "kerml"}
 SHIPPED = "sysmlc:"
-"""What the names of library files that come with sysmlc begin with."""
+"""Prefix of the names of library files that come with sysmlc."""
 _DISTRIBUTION = "sysml"
 """The distribution whose model files are the standard library; they are read as data only."""
 
 
 class Library:
-    """Files of a library and their root members, each file parsed when a name of it is asked for.
+    """Files of a library and their root members; a file is parsed when a name in it is looked up.
 
-    ``label`` names the library and how it was found, for users. ``is_core`` marks the core that is
+    ``label`` names the library and its origin, for users. ``is_core`` marks the core that is
     bundled with sysmlc, which has only the names that production models use.
     """
 
@@ -76,7 +76,7 @@ class Library:
     def loaded(self) -> list[Document]:
         """Return the documents that the model refers to so far, by path.
 
-        Files that were only searched in vain are not among them.
+        Documents that were searched without success are not among them.
         """
         return [self._parsed[path] for path in sorted(self._loaded)]
 
@@ -105,10 +105,10 @@ class Library:
         roots: list[Node] = []
         for path in paths:
             members = self._parse(path).root.members
-            named = [member for member in members if name in (member.name, member.short_name)]
-            if named:
+            matching = [member for member in members if name in (member.name, member.short_name)]
+            if matching:
                 self._loaded.add(path)
-                roots += named
+                roots += matching
         return roots
 
     def _paths_mentioning(self, name: str) -> list[str]:
@@ -126,46 +126,49 @@ def _suffix(path: str) -> str:
     return path[path.rfind(".") :]
 
 
-def find(path: str | Path | None = None, environment: Mapping[str, str] = os.environ) -> Library:
-    """The library at ``path``, else of the environment, of the installed distribution, our own.
+def find_library(
+    path: str | Path | None = None, environment: Mapping[str, str] = os.environ
+) -> Library:
+    """Return the library at ``path``, else that of the environment, the installed one, or the core.
 
-    ``path`` is a folder with .sysml and .kerml files, a folder of .kpar archives or one .kpar.
-    Some wheels of the distribution come without model files (Linux on ARM, musl): they count as
-    not installed. Raises SourceError when the library that was asked for is missing or has no
-    model files.
+    ``path`` is a folder with .sysml and .kerml files, a folder of .kpar archives or one .kpar. Some
+    wheels of the distribution come without model files (Linux on ARM, musl): they count as not
+    installed. Raises SourceError if the requested library is missing or has no model files.
     """
-    asked = asked_for(path, environment)
-    if asked:
-        sources = _read(Path(asked))
+    requested = requested_path(path, environment)
+    if requested:
+        sources = _read_sources(Path(requested))
         if not sources:
-            raise SourceError("has no .sysml or .kerml files", asked, fault=Fault.MISSING)
+            raise SourceError("has no .sysml or .kerml files", requested, fault=Fault.MISSING)
         origin = "--library" if path else VARIABLE
-        return _reuse_library(tuple(sources), f"{asked} ({origin})")
-    installed = _installed()
+        return _reuse_library(tuple(sources), f"{requested} ({origin})")
+    installed = _find_installed()
     if installed is not None:
-        return _reuse_library(tuple(_read(installed)), _label_of_installed(installed))
-    return core()
+        return _reuse_library(tuple(_read_sources(installed)), _label_of_installed(installed))
+    return load_core()
 
 
-def asked_for(path: str | Path | None, environment: Mapping[str, str] = os.environ) -> str:
-    """The folder or archive that an option, else the environment names; empty for none."""
+def requested_path(path: str | Path | None, environment: Mapping[str, str] = os.environ) -> str:
+    """Return the folder or archive that an option, else the environment names; empty for none."""
     return str(path) if path else environment.get(VARIABLE, "")
 
 
-def place(path: str | Path | None, environment: Mapping[str, str] = os.environ) -> Path | None:
-    """The folder or archive that ``find`` reads; None for the small library of our own."""
-    asked = asked_for(path, environment)
-    return Path(asked) if asked else _installed()
+def find_library_path(
+    path: str | Path | None, environment: Mapping[str, str] = os.environ
+) -> Path | None:
+    """Return the folder or archive that ``find_library`` reads, or None for the core."""
+    requested = requested_path(path, environment)
+    return Path(requested) if requested else _find_installed()
 
 
-def core() -> Library:
-    """The core that is bundled with sysmlc."""
-    sources = _read(resources.path("metamodels", "core"))
+def load_core() -> Library:
+    """Return the core library that is bundled with sysmlc."""
+    sources = _read_sources(resources.path("metamodels", "core"))
     return _reuse_library(tuple(sources), "core of sysmlc (bundled)", is_core=True)
 
 
 def _reuse_library(sources: tuple[Source, ...], label: str, *, is_core: bool = False) -> Library:
-    """Return the library of these files with what this process has parsed of it before."""
+    """Return the library of these files, with the documents that this process has parsed."""
     library = _make_library(sources, label, is_core)
     library.clear_targets()
     return library
@@ -176,8 +179,8 @@ def _make_library(sources: tuple[Source, ...], label: str, is_core: bool) -> Lib
     return Library(sources, label=label, is_core=is_core)
 
 
-def _installed() -> Path | None:
-    """The folder of model files of the installed distribution, which is not imported."""
+def _find_installed() -> Path | None:
+    """Return the folder of model files of the installed distribution, which is not imported."""
     from importlib.util import find_spec
 
     try:
@@ -192,46 +195,46 @@ def _installed() -> Path | None:
 
 
 def _label_of_installed(models: Path) -> str:
-    """Return name and version of the distribution, which the name of its metadata folder has."""
+    """Return name and version of the distribution, from the name of its metadata folder."""
     folders = models.parents[1].glob(f"{_DISTRIBUTION}-*.dist-info")
     version = next((folder.stem.partition("-")[2] for folder in folders), "of unknown version")
     return f"{_DISTRIBUTION} {version} (installed)"
 
 
-def _read(path: Path) -> list[Source]:
-    """The model files of a folder or archive, named relative to it. Raises SourceError."""
+def _read_sources(path: Path) -> list[Source]:
+    """Return the model files of a folder or archive, named relative to it. Raises SourceError."""
     if path.is_dir():
-        return _of_folder(path)
+        return _read_folder(path)
     source = Source(path.name, read_whole(path, str(path), DEFAULT_LIMITS))
     if is_archive(source.data):
         return entries(source, _is_model)
     return [source] if _is_model(path.name) else []
 
 
-def _of_folder(folder: Path) -> list[Source]:
-    found: list[Source] = []
-    for below, _, files in os.walk(folder):
+def _read_folder(folder: Path) -> list[Source]:
+    sources: list[Source] = []
+    for parent, _, files in os.walk(folder):
         for file in files:
             suffix = _suffix(file)
             if suffix in _SUFFIXES or suffix == ".kpar":
-                path = Path(below) / file
+                path = Path(parent) / file
                 name = path.relative_to(folder).as_posix()
-                source = _source(path, name)
-                found += entries(source, _is_model) if suffix == ".kpar" else [source]
-    return sorted(found, key=lambda source: source.name)
+                source = _read_source(path, name)
+                sources += entries(source, _is_model) if suffix == ".kpar" else [source]
+    return sorted(sources, key=lambda source: source.name)
 
 
-def _source(path: Path, name: str) -> Source:
+def _read_source(path: Path, name: str) -> Source:
     try:
         status = path.stat()
     except OSError as problem:
         raise SourceError(problem.strerror or "not there", str(path), fault=Fault.MISSING) from None
-    return _kept(path, name, status.st_size, status.st_mtime_ns)
+    return _read_unchanged(path, name, status.st_size, status.st_mtime_ns)
 
 
-@lru_cache(_REMEMBERED)
-def _kept(path: Path, name: str, _size: int, _changed: int) -> Source:
-    """The file as it was changed last: a process that compiles again need not read it."""
+@lru_cache(_MAX_CACHED_FILES)
+def _read_unchanged(path: Path, name: str, _size: int, _changed: int) -> Source:
+    """Read a file; the result is cached until its size or modification time changes."""
     return Source(name, read_whole(path, name, DEFAULT_LIMITS))
 
 

@@ -1,6 +1,7 @@
-"""The metaclasses of KerML and SysML v2: which specialises which, and what follows for elements.
+"""The metaclasses of KerML and SysML v2: which specialises which (KerML 1.0 8.3, SysML 2.0 8.3).
 
-KerML 1.0, 8.3; SysML 2.0, 8.3 and 8.2.2.6.2, note 1."""
+``is_composite`` and ``is_end`` are attributes of usages that follow from their metaclass and owner.
+"""
 
 from sysmlc.language.tree import Node
 
@@ -100,49 +101,52 @@ RequirementUsage AssertConstraintUsage: SatisfyRequirementUsage
 RequirementDefinition: ConcernDefinition ViewpointDefinition
 UseCaseUsage PerformActionUsage: IncludeUseCaseUsage
 """
-"""Generals before the colon, the metaclasses that specialise all of them after it."""
+"""Generals before each colon, and after it the metaclasses that specialise all of them."""
 
 
-def _read(table: str) -> dict[str, tuple[str, ...]]:
-    read: dict[str, tuple[str, ...]] = {"Element": ()}
+def _parse_table(table: str) -> dict[str, tuple[str, ...]]:
+    generals_of: dict[str, tuple[str, ...]] = {"Element": ()}
     for line in table.replace("\n    ", " ").splitlines():
         generals, _, specials = line.partition(":")
-        read.update(dict.fromkeys(specials.split(), tuple(generals.split())))
-    return read
+        generals_of.update(dict.fromkeys(specials.split(), tuple(generals.split())))
+    return generals_of
 
 
-GENERALS = _read(_GENERALS)
+GENERALS = _parse_table(_GENERALS)
 """Direct generals of each metaclass; ``Element`` has none."""
 
 
-def _close(generals: dict[str, tuple[str, ...]]) -> dict[str, frozenset[str]]:
-    closed: dict[str, frozenset[str]] = {}
+def _compute_closure(generals: dict[str, tuple[str, ...]]) -> dict[str, frozenset[str]]:
+    closure: dict[str, frozenset[str]] = {}
 
     def close(kind: str) -> frozenset[str]:
-        if kind not in closed:
-            closed[kind] = frozenset({kind}).union(*map(close, generals[kind]))
-        return closed[kind]
+        if kind not in closure:
+            closure[kind] = frozenset({kind}).union(*map(close, generals[kind]))
+        return closure[kind]
 
     for kind in generals:
         close(kind)
-    return closed
+    return closure
 
 
-ALL_GENERALS = _close(GENERALS)
-"""Each metaclass with all that it specialises, itself included."""
-_NOTHING: frozenset[str] = frozenset()
+ALL_GENERALS = _compute_closure(GENERALS)
+"""Each metaclass with everything that it specialises, itself included."""
+_NO_KINDS: frozenset[str] = frozenset()
 
 
 def is_a(kind: str, general: str) -> bool:
-    """Whether a metaclass is ``general`` or specialises it; an unknown one is nothing."""
-    return general in ALL_GENERALS.get(kind, _NOTHING)
+    """Whether a metaclass is ``general`` or specialises it; an unknown metaclass is not."""
+    return general in ALL_GENERALS.get(kind, _NO_KINDS)
 
 
 def kinds_of(general: str) -> frozenset[str]:
-    """All metaclasses that are ``general`` or specialise it."""
-    return frozenset(kind for kind, all_of in ALL_GENERALS.items() if general in all_of)
+    """Return ``general`` and all metaclasses that specialise it."""
+    return frozenset(kind for kind, generals in ALL_GENERALS.items() if general in generals)
 
 
+FEATURES = kinds_of("Feature")
+TYPES = kinds_of("Type")
+NAMESPACES = kinds_of("Namespace")
 USAGES = kinds_of("Usage")
 _REFERENTIAL = (
     kinds_of("ReferenceUsage")
@@ -158,10 +162,11 @@ _ATTRIBUTES = kinds_of("AttributeDefinition") | kinds_of("AttributeUsage")
 
 
 def is_composite(node: Node) -> bool:
-    """Whether a usage is a composite feature: not ``ref``, and nothing makes it referential.
+    """Whether a usage is composite: not ``ref``, and not referential by its kind or place.
 
     Referential are attributes, events and performances, binding and succession connectors,
-    parameters, ends, what no type owns as a feature, and ports except within ports.
+    parameters, ends, usages that no type owns as a feature, and ports except within ports (SysML
+    2.0, 8.2.2.6.2, note 1).
     """
     if node.kind in _REFERENTIAL or node.attributes.get("isReference") or is_end(node):
         return False
@@ -176,5 +181,14 @@ def is_composite(node: Node) -> bool:
 
 
 def is_end(node: Node) -> bool:
-    """Whether a feature is an end: it says so, or its membership does."""
+    """Whether a feature is an end, by its attribute or its membership."""
     return node.membership == "EndFeatureMembership" or node.attributes.get("isEnd") is True
+
+
+def describe_kind(node: Node) -> str:
+    """Return the kind of an element in words: ``a part definition``."""
+    if is_a(node.kind, "Package"):
+        return "a package"
+    words = "".join(f" {c.lower()}" if c.isupper() else c for c in node.kind).strip()
+    words = words.removesuffix(" usage")
+    return f"{'an' if words[0] in 'aeiou' else 'a'} {words}"

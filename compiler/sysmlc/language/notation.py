@@ -1,4 +1,4 @@
-"""Expressions as the textual notation says them, from trees that have no text (KerML 8.2.5.8)."""
+"""The textual notation of expressions, from trees that may have no text (KerML 8.2.5.8)."""
 
 from collections.abc import Callable
 
@@ -6,163 +6,180 @@ from sysmlc.language.text.builders.operators import PRECEDENCE, PRECEDENCE_LEVEL
 from sysmlc.language.tree import Node, Reference
 
 _CONDITIONAL = -1
-"""How tightly ``if`` binds: less than all binary operators."""
+"""The level of ``if``, which binds less than all binary operators."""
 _UNARY = len(PRECEDENCE_LEVELS)
 _PRIMARY = _UNARY + 1
-_TYPED = {"istype", "hastype", "@", "@@", "as", "meta"}
+_TYPE_OPERATORS = {"istype", "hastype", "@", "@@", "as", "meta"}
 _ESCAPES = str.maketrans({"\\": "\\\\", '"': '\\"', "\n": "\\n", "\t": "\\t", "\r": "\\r"})
 
 
-def expression(node: Node) -> str:
-    """The notation of an expression; empty for what has none without its declarations."""
+def write_expression(node: Node) -> str:
+    """Return the notation of an expression; empty if it needs declarations in a body."""
     try:
-        return _written(node)[0]
-    except (_UnsaidError, RecursionError):
+        return _write(node)[0]
+    except (_NoNotationError, RecursionError):
         return ""
 
 
-class _UnsaidError(ValueError):
-    """An expression that contains declarations, or that lacks a part."""
+class _NoNotationError(ValueError):
+    """The expression contains declarations, or lacks a part."""
 
 
-def _written(node: Node) -> tuple[str, int]:
-    """The notation, and how firmly its parts are bound."""
+def _write(node: Node) -> tuple[str, int]:
+    """Return the notation of an expression and its binding level."""
     writer = _WRITERS.get(node.kind)
     if writer is None:
-        raise _UnsaidError(node.kind)
+        raise _NoNotationError(node.kind)
     return writer(node)
 
 
-def _within(node: Node, level: int) -> str:
-    """The notation of an operand, in parentheses when it is bound less firmly than ``level``."""
-    text, own = _written(node)
-    return text if own >= level else f"({text})"
+def _write_operand(node: Node, level: int) -> str:
+    """Return the notation of an operand, in parentheses if it binds less than ``level``."""
+    text, own_level = _write(node)
+    return text if own_level >= level else f"({text})"
 
 
-def _arguments(node: Node) -> list[Node]:
-    return [one for one in node.members if one.membership == "ParameterMembership"]
+def _list_arguments(node: Node) -> list[Node]:
+    return [member for member in node.members if member.membership == "ParameterMembership"]
 
 
-def _name(node: Node) -> str:
-    """What an expression refers to."""
-    found = next((one for one in node.relations if one.kind == "Membership"), None)
-    if found is None:
-        raise _UnsaidError(node.kind)
-    return _reference(found.reference)
+def _write_name(node: Node) -> str:
+    """Return the name of the referent of an expression."""
+    relation = next(
+        (relation for relation in node.relations if relation.kind == "Membership"), None
+    )
+    if relation is None:
+        raise _NoNotationError(node.kind)
+    return _write_reference(relation.reference)
 
 
-def _reference(reference: Reference) -> str:
-    from sysmlc.language.interchange.element_ids import escaped
+def _write_reference(reference: Reference) -> str:
+    from sysmlc.language.text.lexer import quote_name
 
-    links = ("::".join(n if n == "$" else escaped(n) for n in names) for names in reference.chain)
+    links = (
+        "::".join(name if name == "$" else quote_name(name) for name in names)
+        for names in reference.chain
+    )
     return ".".join(links)
 
 
-def _type(node: Node) -> str:
-    """The type that an operator like ``as`` names."""
-    typed = (one for member in node.members for one in member.relations)
-    found = next((one for one in typed if one.kind == "FeatureTyping"), None)
-    if found is None:
-        raise _UnsaidError(node.kind)
-    return _reference(found.reference)
+def _write_type(node: Node) -> str:
+    """Return the type that an operator such as ``as`` names."""
+    relations = (relation for member in node.members for relation in member.relations)
+    typing = next((relation for relation in relations if relation.kind == "FeatureTyping"), None)
+    if typing is None:
+        raise _NoNotationError(node.kind)
+    return _write_reference(typing.reference)
 
 
-def _operator(node: Node) -> tuple[str, int]:
-    operator, args = str(node.attributes.get("operator", "")), _arguments(node)
-    if operator in _TYPED:
-        left = [one for one in args if one.kind != "Feature"]
-        before = f"{_within(left[0], PRECEDENCE[operator])} " if left else ""
-        return f"{before}{operator} {_type(node)}", PRECEDENCE[operator]
+def _write_operator(node: Node) -> tuple[str, int]:
+    operator, operands = str(node.attributes.get("operator", "")), _list_arguments(node)
+    if operator in _TYPE_OPERATORS:
+        left_operands = [operand for operand in operands if operand.kind != "Feature"]
+        left = f"{_write_operand(left_operands[0], PRECEDENCE[operator])} " if left_operands else ""
+        return f"{left}{operator} {_write_type(node)}", PRECEDENCE[operator]
     if operator == "all":
-        return f"all {_type(node)}", _UNARY
-    if operator == "if" and len(args) == 3:
-        test, then, other = (_within(one, _CONDITIONAL + 1) for one in args)
-        return f"if {test} ? {then} else {other}", _CONDITIONAL
-    if len(args) == 1:
+        return f"all {_write_type(node)}", _UNARY
+    if operator == "if" and len(operands) == 3:
+        test, then, otherwise = (_write_operand(operand, _CONDITIONAL + 1) for operand in operands)
+        return f"if {test} ? {then} else {otherwise}", _CONDITIONAL
+    if len(operands) == 1:
         space = " " if operator.isalpha() else ""
-        return f"{operator}{space}{_within(args[0], _UNARY)}", _UNARY
-    if len(args) != 2:
-        raise _UnsaidError(operator)
-    return _binary(operator, args[0], args[1])
+        return f"{operator}{space}{_write_operand(operands[0], _UNARY)}", _UNARY
+    if len(operands) != 2:
+        raise _NoNotationError(operator)
+    return _write_binary(operator, operands[0], operands[1])
 
 
-def _binary(operator: str, left: Node, right: Node) -> tuple[str, int]:
+def _write_binary(operator: str, left: Node, right: Node) -> tuple[str, int]:
     if operator == ",":
-        rest = _written(right)[0]
+        rest = _write(right)[0]
         is_list = right.attributes.get("operator") == ","
-        return f"({_within(left, _CONDITIONAL)}, {rest[1:-1] if is_list else rest})", _PRIMARY
+        return (
+            f"({_write_operand(left, _CONDITIONAL)}, {rest[1:-1] if is_list else rest})",
+            _PRIMARY,
+        )
     if operator == "[":
-        return f"{_within(left, _PRIMARY)} [{_bare(right)}]", _PRIMARY
+        return f"{_write_operand(left, _PRIMARY)} [{_write_without_parentheses(right)}]", _PRIMARY
     level = PRECEDENCE.get(operator)
     if level is None:
-        raise _UnsaidError(operator)
+        raise _NoNotationError(operator)
     first, second = (level + 1, level) if operator in ("^", "**") else (level, level + 1)
     sign = operator if operator in ("^", "**", "..") else f" {operator} "
-    return f"{_within(left, first)}{sign}{_within(right, second)}", level
+    return f"{_write_operand(left, first)}{sign}{_write_operand(right, second)}", level
 
 
-def _bare(node: Node) -> str:
-    """A sequence without its parentheses, where others stand around it."""
-    text, _ = _written(node)
+def _write_without_parentheses(node: Node) -> str:
+    """Return a sequence without its parentheses, for use in other brackets."""
+    text, _ = _write(node)
     return text[1:-1] if node.attributes.get("operator") == "," else text
 
 
-def _index(node: Node) -> tuple[str, int]:
-    base, index = _arguments(node)
-    return f"{_within(base, _PRIMARY)}#({_bare(index)})", _PRIMARY
+def _write_index(node: Node) -> tuple[str, int]:
+    base, index = _list_arguments(node)
+    return f"{_write_operand(base, _PRIMARY)}#({_write_without_parentheses(index)})", _PRIMARY
 
 
-def _chain(node: Node) -> tuple[str, int]:
-    base = _arguments(node)
+def _write_chain(node: Node) -> tuple[str, int]:
+    base = _list_arguments(node)
     if not base:
-        raise _UnsaidError(node.kind)
-    return f"{_within(base[0], _PRIMARY)}.{_name(node)}", _PRIMARY
+        raise _NoNotationError(node.kind)
+    return f"{_write_operand(base[0], _PRIMARY)}.{_write_name(node)}", _PRIMARY
 
 
-def _call(node: Node) -> tuple[str, int]:
-    given = [_given(one) for one in node.members if one.membership != "ReturnParameterMembership"]
-    return f"{_name(node)}({', '.join(given)})", _PRIMARY
+def _write_call(node: Node) -> tuple[str, int]:
+    arguments = [
+        _write_argument(argument)
+        for argument in node.members
+        if argument.membership != "ReturnParameterMembership"
+    ]
+    return f"{_write_name(node)}({', '.join(arguments)})", _PRIMARY
 
 
-def _given(argument: Node) -> str:
-    """An argument, by its position or by the name of its parameter."""
+def _write_argument(argument: Node) -> str:
+    """Return an argument, by position or with the name of its parameter."""
     if argument.kind != "Feature":
-        return _within(argument, _CONDITIONAL)
-    named = next((one for one in argument.relations if one.kind == "Redefinition"), None)
-    if named is None or len(argument.members) != 1:
-        raise _UnsaidError(argument.kind)
-    return f"{_reference(named.reference)} = {_within(argument.members[0], _CONDITIONAL)}"
+        return _write_operand(argument, _CONDITIONAL)
+    redefinition = next(
+        (relation for relation in argument.relations if relation.kind == "Redefinition"), None
+    )
+    if redefinition is None or len(argument.members) != 1:
+        raise _NoNotationError(argument.kind)
+    value = _write_operand(argument.members[0], _CONDITIONAL)
+    return f"{_write_reference(redefinition.reference)} = {value}"
 
 
-def _construct(node: Node) -> tuple[str, int]:
-    results = [one for one in node.members if one.membership == "ReturnParameterMembership"]
-    given = [_given(one) for result in results for one in result.members]
-    return f"new {_name(node)}({', '.join(given)})", _PRIMARY
+def _write_constructor(node: Node) -> tuple[str, int]:
+    results = [
+        member for member in node.members if member.membership == "ReturnParameterMembership"
+    ]
+    arguments = [_write_argument(argument) for result in results for argument in result.members]
+    return f"new {_write_name(node)}({', '.join(arguments)})", _PRIMARY
 
 
-def _literal(node: Node) -> tuple[str, int]:
+def _write_literal(node: Node) -> tuple[str, int]:
     value = node.attributes.get("value")
     if isinstance(value, bool):
         return ("true" if value else "false"), _PRIMARY
     if isinstance(value, str):
         return f'"{value.translate(_ESCAPES)}"', _PRIMARY
     if value is None:
-        raise _UnsaidError(node.kind)
+        raise _NoNotationError(node.kind)
     return str(value), _PRIMARY
 
 
 _WRITERS: dict[str, Callable[[Node], tuple[str, int]]] = {
-    "OperatorExpression": _operator,
-    "IndexExpression": _index,
-    "FeatureChainExpression": _chain,
-    "FeatureReferenceExpression": lambda node: (_name(node), _PRIMARY),
-    "MetadataAccessExpression": lambda node: (f"{_name(node)}.metadata", _PRIMARY),
-    "InvocationExpression": _call,
-    "ConstructorExpression": _construct,
-    "LiteralBoolean": _literal,
-    "LiteralInteger": _literal,
-    "LiteralRational": _literal,
-    "LiteralString": _literal,
+    "OperatorExpression": _write_operator,
+    "IndexExpression": _write_index,
+    "FeatureChainExpression": _write_chain,
+    "FeatureReferenceExpression": lambda node: (_write_name(node), _PRIMARY),
+    "MetadataAccessExpression": lambda node: (f"{_write_name(node)}.metadata", _PRIMARY),
+    "InvocationExpression": _write_call,
+    "ConstructorExpression": _write_constructor,
+    "LiteralBoolean": _write_literal,
+    "LiteralInteger": _write_literal,
+    "LiteralRational": _write_literal,
+    "LiteralString": _write_literal,
     "LiteralInfinity": lambda _: ("*", _PRIMARY),
     "NullExpression": lambda _: ("null", _PRIMARY),
 }

@@ -6,7 +6,7 @@ Who moves on to another release of the standard library runs it; a test says whe
 from textwrap import wrap
 
 from sysmlc.backends.sysml.inherited import BASES, FILE
-from sysmlc.language.library import find
+from sysmlc.language.library import find_library
 from sysmlc.language.names import Model
 from sysmlc.support import resources
 
@@ -15,7 +15,7 @@ _WIDTH = 98
 
 def text() -> str:
     """The names that every kind of member has, as the library that is installed says."""
-    model = Model([], find())
+    model = Model([], find_library())
     lines = []
     for base in sorted({*BASES.values()}):
         named = " ".join(sorted(_names(model, base)))

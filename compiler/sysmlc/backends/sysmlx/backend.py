@@ -11,7 +11,7 @@ from sysmlc.backends.sysmlx.rules import OWN_TEXT, TOO_DEEP
 from sysmlc.diagnostics import Diagnostic, Sink
 from sysmlc.ir import Element, Graph
 from sysmlc.language.interchange import Files, interchange_path, write
-from sysmlc.language.library import SHIPPED, VARIABLE, Library, core, find
+from sysmlc.language.library import SHIPPED, VARIABLE, Library, find_library, load_core
 from sysmlc.language.names import Model
 from sysmlc.language.names.implied_relations import implied_redefinitions
 from sysmlc.language.text.nesting import MAX_DEPTH
@@ -120,9 +120,9 @@ def _deepest(graph: Graph) -> Element:
 def _find_library(asked: str) -> Library:
     """Return the library at *asked*, else the installed one; the small one if it is missing."""
     try:
-        return find(asked or None)
+        return find_library(asked or None)
     except SourceError:
-        return core()
+        return load_core()
 
 
 @lru_cache(maxsize=1)

@@ -48,9 +48,9 @@ def text(node: Node, source: str = "") -> str:
     if written is not None:
         return written
     if not source:
-        from sysmlc.language.notation import expression
+        from sysmlc.language.notation import write_expression
 
-        return expression(node)
+        return write_expression(node)
     return nodes.quoted(node, source)
 
 

@@ -114,11 +114,11 @@ def _is_interchange(document: Document) -> bool:
 
 def _library(path: str, sink: Sink) -> "Library":
     """The standard library, or our small one with what goes wrong told."""
-    from sysmlc.language.library import asked_for, core, find
+    from sysmlc.language.library import find_library, load_core, requested_path
 
-    asked = asked_for(path)
+    asked = requested_path(path)
     try:
-        found = find(path or None)
+        found = find_library(path or None)
         if asked:
             from sysmlc.frontends.sysml.projects import examine_library
 
@@ -126,4 +126,4 @@ def _library(path: str, sink: Sink) -> "Library":
         return found
     except SourceError as problem:
         sink.report(NO_LIBRARY, Subject(asked), path=asked, problem=problem.message)
-        return core()
+        return load_core()

@@ -4,11 +4,9 @@ from collections.abc import Iterator
 
 from sysmlc.diagnostics import Sink
 from sysmlc.language.checks.rules import NOT_ACCESSIBLE
-from sysmlc.language.metaclasses import kinds_of
+from sysmlc.language.metaclasses import FEATURES, TYPES, kinds_of
 from sysmlc.language.names import Model
-from sysmlc.language.names.symbols import FEATURES, TYPES
-from sysmlc.language.names.unresolved import subject
-from sysmlc.language.tree import Document, Node, Relation
+from sysmlc.language.tree import Document, Node, Relation, make_subject
 
 _CONNECTORS = kinds_of("Connector")
 _FEATURE_MEMBERSHIPS = kinds_of("FeatureMembership")
@@ -35,7 +33,7 @@ def check(model: Model, document: Document, node: Node, sink: Sink) -> None:
     if not any(scope.membership == "ElementFilterMembership" for scope in scopes):
         far = [one for one in uses if not any(_has(model, scope, one[2]) for scope in scopes)]
         for user, relation, feature in far or _outside(model, scopes[1], uses):
-            place = subject(document, user, relation.reference.start)
+            place = make_subject(document, user, relation.reference.start)
             owner = model.name(feature.owner) if feature.owner else ""
             text = "::".join(relation.reference.chain[0])
             sink.report(NOT_ACCESSIBLE, place, name=text, owner=owner)
@@ -77,7 +75,7 @@ def _around(node: Node) -> list[Node]:
 def _has(model: Model, scope: Node, feature: Node) -> bool:
     """Whether a type owns a feature or specialises its owner."""
     owner = feature.owner
-    return scope is owner or (scope.kind in TYPES and owner in model.supers_of(scope))
+    return scope is owner or (scope.kind in TYPES and owner in model.supertype_set(scope))
 
 
 def _outside(

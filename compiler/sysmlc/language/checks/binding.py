@@ -6,7 +6,7 @@ from sysmlc.diagnostics import Severity, rule
 from sysmlc.language.checks.found import Found, name_of
 from sysmlc.language.metaclasses import kinds_of
 from sysmlc.language.names import Model
-from sysmlc.language.names.positional_redefinition import own
+from sysmlc.language.names.positional_redefinition import find_own_features
 from sysmlc.language.tree import Node
 
 UNLIKE = rule(
@@ -20,7 +20,7 @@ UNLIKE = rule(
 
 def check(model: Model, node: Node) -> Iterator[Found]:
     """Report a binding of features of which the types have nothing in common."""
-    bound = [one for end in own(node, "end") for one in _referenced(end)]
+    bound = [one for end in find_own_features(node, "end") for one in _referenced(end)]
     if len(bound) != 2:
         return
     first, second = (model.types(one) for one in bound)

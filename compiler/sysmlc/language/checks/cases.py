@@ -6,7 +6,7 @@ from sysmlc.language.checks.found import Found, name_of
 from sysmlc.language.checks.rules import ONLY_ONE, SUBJECT_FIRST
 from sysmlc.language.metaclasses import kinds_of
 from sysmlc.language.names import Model
-from sysmlc.language.names.positional_redefinition import role
+from sysmlc.language.names.positional_redefinition import find_role
 from sysmlc.language.tree import Node
 
 _CASES = kinds_of("CaseDefinition") | kinds_of("CaseUsage")
@@ -27,14 +27,14 @@ def check_objective(model: Model, node: Node) -> Iterator[Found]:
 
 def check_subject(model: Model, node: Node) -> Iterator[Found]:
     """Report a case or requirement of which the inherited subject is not the first parameter."""
-    if any(role(one) in _PARAMETERS for one in node.members):
+    if any(find_role(one) in _PARAMETERS for one in node.members):
         return
     if any(map(_is_late, model.lookup.generals(node))):
         yield Found(SUBJECT_FIRST, node.start, {"owner": name_of(model, node)})
 
 
 def _is_late(general: Node) -> bool:
-    roles = [one for one in map(role, general.members) if one in _PARAMETERS]
+    roles = [one for one in map(find_role, general.members) if one in _PARAMETERS]
     return "subject" in roles[1:] and roles[0] != "subject"
 
 

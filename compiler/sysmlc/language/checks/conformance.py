@@ -7,8 +7,8 @@ from sysmlc.language.checks.found import DECLARED_FEATURES, Found, name_of, writ
 from sysmlc.language.checks.reference_rules import OTHER_DIRECTION
 from sysmlc.language.metaclasses import USAGES, is_end, kinds_of
 from sysmlc.language.names import Model
-from sysmlc.language.names.generals import GENERAL
-from sysmlc.language.names.implied import owning_type
+from sysmlc.language.names.generals import GENERALIZATION_KINDS
+from sysmlc.language.names.implied import find_owning_type
 from sysmlc.language.tree import Node
 
 NONUNIQUE = rule(
@@ -75,7 +75,7 @@ def _is_unique(feature: Node) -> bool:
 
 
 def _are_free(model: Model, feature: Node, general: Node) -> bool:
-    if owning_type(feature) is not None or owning_type(general) is not None:
+    if find_owning_type(feature) is not None or find_owning_type(general) is not None:
         return False
     return not (_is_featured(model, feature) or _is_featured(model, general))
 
@@ -94,8 +94,8 @@ def _is_featured(model: Model, feature: Node) -> bool:
 
 
 def _are_of_one(feature: Node, general: Node) -> bool:
-    owner = owning_type(feature)
-    return owner is not None and owner is owning_type(general)
+    owner = find_owning_type(feature)
+    return owner is not None and owner is find_owning_type(general)
 
 
 def _may_change(feature: Node) -> bool:
@@ -104,7 +104,7 @@ def _may_change(feature: Node) -> bool:
 
 def check_direction(model: Model, node: Node) -> Iterator[Found]:
     """Report a feature with another direction than what it redefines has where it is."""
-    scope = owning_type(node)
+    scope = find_owning_type(node)
     if scope is None or scope.kind == "FlowEnd":
         return
     own = _said(node)
@@ -119,7 +119,7 @@ def _redefined(model: Model, node: Node) -> Iterator[tuple[int, Node]]:
     """What a feature redefines, as its text says or by its position, and where it says so."""
     for relation, target in written(node, _REDEFINITION):
         yield relation.reference.start, target
-    for target in model.lookup.by_position(node):
+    for target in model.lookup.redefined_by_position(node):
         yield node.start, target
 
 
@@ -148,7 +148,7 @@ def direction(model: Model, scope: Node, feature: Node) -> str:
 def _generals(model: Model, node: Node) -> Iterator[tuple[Node, bool]]:
     """What an element directly specialises, and whether that turns directions around."""
     for relation in node.relations:
-        general = model.target(node, relation) if relation.kind in GENERAL else None
+        general = model.target(node, relation) if relation.kind in GENERALIZATION_KINDS else None
         if general is not None:
             yield general, relation.kind in _TURNING
     for general in model.needed_generals(node):

@@ -6,7 +6,7 @@ from sysmlc.diagnostics import Severity, rule
 from sysmlc.language.checks.found import Found, name_of, written
 from sysmlc.language.metaclasses import is_end
 from sysmlc.language.names import Model
-from sysmlc.language.names.implied import owning_type
+from sysmlc.language.names.implied import find_owning_type
 from sysmlc.language.tree import Node, Reference
 
 NOT_OPPOSITE = rule(
@@ -71,12 +71,12 @@ def _is_opposite(node: Node, reference: Reference) -> bool:
     """Whether a chain leads from the other end to a feature of it."""
     targets = reference.targets or []
     is_other = bool(targets) and targets[0] is not node and is_end(targets[0])
-    return len(targets) == 2 and is_other and owning_type(targets[0]) is not None
+    return len(targets) == 2 and is_other and find_owning_type(targets[0]) is not None
 
 
 def _generally(model: Model, node: Node) -> list[Node]:
     """What the ends cross that an end redefines."""
-    ends = sorted(model.lookup.redefined(node), key=model.qualified_name)
+    ends = sorted(model.lookup.redefined_features(node), key=model.qualified_name)
     return [target for end in ends for _, target in written(end, _CROSSES)]
 
 

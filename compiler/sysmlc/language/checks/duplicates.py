@@ -6,8 +6,8 @@ from sysmlc.diagnostics import Severity, rule
 from sysmlc.language.checks.found import DECLARED_TYPES, Found, name_of
 from sysmlc.language.metaclasses import kinds_of
 from sysmlc.language.names import Model
-from sysmlc.language.names.members import is_of_library
-from sysmlc.language.names.positional_redefinition import role
+from sysmlc.language.names.members import is_in_library
+from sysmlc.language.names.positional_redefinition import find_role
 from sysmlc.language.tree import Node
 
 DUPLICATE = rule(
@@ -49,10 +49,10 @@ def check_inherited(model: Model, node: Node) -> Iterator[Found]:
         return
     for member in node.members:
         name = member.name
-        if name is None or member.membership not in MEMBERSHIPS or role(member) == "parameter":
+        if name is None or member.membership not in MEMBERSHIPS or find_role(member) == "parameter":
             continue
         for hit in inherited(node, name):
-            is_ours = hit.name in (name, None) and not is_of_library(hit)
+            is_ours = hit.name in (name, None) and not is_in_library(hit)
             if is_ours and not _redefines(model, member, hit):
                 general = name_of(model, hit.owner)
                 facts = {"owner": name_of(model, node), "name": name, "general": general}
@@ -65,10 +65,10 @@ def _redefines(model: Model, member: Node, hit: Node) -> bool:
 
     KerML 1.0, 8.3.3.1.10, removeRedefinedFeatures; the inherited one may be an alias.
     """
-    element, redefined = model.lookup.element(hit), model.lookup.redefined(member)
+    element, redefined = model.lookup.resolve_alias(hit), model.lookup.redefined_features(member)
     if element is None or element is member or element in redefined:
         return True
-    return bool(redefined) and not redefined.isdisjoint(model.lookup.redefined(element))
+    return bool(redefined) and not redefined.isdisjoint(model.lookup.redefined_features(element))
 
 
 MEMBERSHIPS = frozenset({"FeatureMembership", "OwningMembership", "EndFeatureMembership"})

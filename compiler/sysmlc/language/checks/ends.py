@@ -7,7 +7,7 @@ from sysmlc.language.checks.found import Found, name_of
 from sysmlc.language.checks.member_rules import TOO_MANY_ENDS
 from sysmlc.language.metaclasses import is_a, is_end, kinds_of
 from sysmlc.language.names import Model
-from sysmlc.language.names.positional_redefinition import own
+from sysmlc.language.names.positional_redefinition import find_own_features
 from sysmlc.language.tree import Node, Relation
 
 END_TYPE = rule(
@@ -55,10 +55,10 @@ def check_types(model: Model, node: Node) -> Iterator[Found]:
 
 def check_related(model: Model, node: Node) -> Iterator[Found]:
     """Report a connector with ends of its own that names less than two related elements."""
-    ends = own(node, "end")
+    ends = find_own_features(node, "end")
     if not ends or node.attributes.get("isAbstract") or node.kind in _SUCCESSIONS:
         return
-    ends += model.lookup.at_positions(node, "end")
+    ends += model.lookup.features_of_role(node, "end")
     count = len({end for end in ends if _is_related(end)})
     if count < 2:
         facts = {"name": name_of(model, node), "count": str(count)}
@@ -91,8 +91,8 @@ def _is_held_by_a_type(relation: Relation) -> bool:
 
 def check_flow(model: Model, node: Node) -> Iterator[Found]:
     """Report a definition of flows that inherits more than two ends."""
-    ends = model.lookup.at_positions(node, "end")
-    if len(ends) > 2 and len(own(node, "end")) <= 2:
+    ends = model.lookup.features_of_role(node, "end")
+    if len(ends) > 2 and len(find_own_features(node, "end")) <= 2:
         facts = {"name": name_of(model, ends[2]), "owner": name_of(model, node)}
         yield Found(TOO_MANY_ENDS, node.start, facts)
 

@@ -6,7 +6,7 @@ from sysmlc.diagnostics import Severity, rule
 from sysmlc.language.checks.found import Found, name_of
 from sysmlc.language.metaclasses import kinds_of
 from sysmlc.language.names import Model
-from sysmlc.language.names.expression_results import named
+from sysmlc.language.names.expression_results import find_named_element
 from sysmlc.language.tree import Node
 
 NOT_EVALUABLE = rule(
@@ -54,7 +54,7 @@ def _called(model: Model, node: Node) -> str:
         return operator if operator in _OPERATORS else ""
     if node.kind != "InvocationExpression":
         return ""
-    function = named(node, model.lookup)
+    function = find_named_element(node, model.lookup)
     is_basic = function is None or (_is_of_library(function) and function.name not in _ITERATING)
     return "" if is_basic else name_of(model, function)
 

@@ -5,12 +5,10 @@ from collections.abc import Iterator
 from sysmlc.diagnostics import Severity, rule
 from sysmlc.language.checks.found import Found, name_of, written
 from sysmlc.language.checks.values import arguments
-from sysmlc.language.metaclasses import kinds_of
+from sysmlc.language.metaclasses import FEATURES, TYPES, describe_kind, kinds_of
 from sysmlc.language.names import Model
-from sysmlc.language.names.expression_results import result
-from sysmlc.language.names.implied import owning_type
-from sysmlc.language.names.symbols import FEATURES, TYPES
-from sysmlc.language.names.unresolved import kind_of
+from sysmlc.language.names.expression_results import find_result
+from sysmlc.language.names.implied import find_owning_type
 from sysmlc.language.tree import Node
 
 NO_FEATURE = rule(
@@ -37,7 +35,7 @@ def check(model: Model, node: Node) -> Iterator[Found]:
     for relation, target in written(node, _MEMBERSHIP):
         facts = {"name": name_of(model, target)}
         if target.kind in TYPES - FEATURES:
-            facts["found"] = kind_of(target)
+            facts["found"] = describe_kind(target)
             yield Found(NO_FEATURE, relation.reference.start, facts)
         elif len(relation.reference.chain[0]) > 1 and _is_elsewhere(model, node, target):
             facts["owner"] = name_of(model, target.owner)
@@ -49,11 +47,11 @@ def _is_elsewhere(model: Model, node: Node, target: Node) -> bool:
     if node.kind != "FeatureChainExpression":
         return False
     operand = next(iter(arguments(node)), None)
-    source = result(operand, model.lookup) if operand is not None else None
-    owner = owning_type(target)
+    source = find_result(operand, model.lookup) if operand is not None else None
+    owner = find_owning_type(target)
     if source is None or owner is None or owner.kind not in FEATURES:
         return False
-    return owner not in model.supers_of(source)
+    return owner not in model.supertype_set(source)
 
 
 CHECKS = ((_REFERRING & kinds_of("Expression"), check),)

@@ -32,8 +32,7 @@ from sysmlc.language.checks import (
 from sysmlc.language.checks.found import DECLARED_TYPES, Check
 from sysmlc.language.metaclasses import USAGES
 from sysmlc.language.names import Model
-from sysmlc.language.names.unresolved import subject
-from sysmlc.language.tree import Document, Node
+from sysmlc.language.tree import Document, Node, make_subject
 
 Reporter = Callable[[Model, Document, Node, Sink], None]
 """A check that reports what it finds itself."""
@@ -141,5 +140,5 @@ def check(model: Model, document: Document, node: Node, sink: Sink) -> None:
         reporter(model, document, node, sink)
     for one in checks:
         for found in one(model, node):
-            place = subject(document, node, found.start)
+            place = make_subject(document, node, found.start)
             sink.report(found.rule, place, notes=(), help="", **found.facts)

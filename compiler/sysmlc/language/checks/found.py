@@ -4,9 +4,8 @@ from collections.abc import Callable, Iterable, Iterator
 from typing import NamedTuple
 
 from sysmlc.diagnostics import Rule
-from sysmlc.language.metaclasses import kinds_of
+from sysmlc.language.metaclasses import FEATURES, TYPES, kinds_of
 from sysmlc.language.names import Model
-from sysmlc.language.names.symbols import FEATURES, TYPES
 from sysmlc.language.tree import Node, Relation
 
 

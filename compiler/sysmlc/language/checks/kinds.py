@@ -6,9 +6,8 @@ from typing import NamedTuple
 from sysmlc.diagnostics import Severity, rule
 from sysmlc.language.checks.found import Found, name_of, written
 from sysmlc.language.checks.member_rules import VARIATION_OF_VARIATION
-from sysmlc.language.metaclasses import kinds_of
+from sysmlc.language.metaclasses import describe_kind, kinds_of
 from sysmlc.language.names import Model
-from sysmlc.language.names.unresolved import kind_of
 from sysmlc.language.tree import Node
 
 OTHER_KIND = rule(
@@ -51,9 +50,9 @@ def check(model: Model, node: Node) -> Iterator[Found]:
             if node.kind in apart.kinds and target.kind in apart.others:
                 facts = {
                     "name": name_of(model, node),
-                    "kind": kind_of(node),
+                    "kind": describe_kind(node),
                     "general": name_of(model, target),
-                    "found": kind_of(target),
+                    "found": describe_kind(target),
                     "wanted": apart.wanted,
                 }
                 yield Found(OTHER_KIND, relation.reference.start, facts)

@@ -4,9 +4,8 @@ from sysmlc.diagnostics import Rule, Sink
 from sysmlc.language.checks import member_rules as rules
 from sysmlc.language.metaclasses import is_end, kinds_of
 from sysmlc.language.names import Model
-from sysmlc.language.names.positional_redefinition import own
-from sysmlc.language.names.unresolved import subject
-from sysmlc.language.tree import Document, Node
+from sysmlc.language.names.positional_redefinition import find_own_features
+from sysmlc.language.tree import Document, Node, make_subject
 
 _FEATURE_MEMBERSHIPS = kinds_of("FeatureMembership")
 _SUCCESSIONS = kinds_of("Succession") | {"TransitionUsage"}
@@ -28,7 +27,7 @@ def check(model: Model, document: Document, node: Node, sink: Sink) -> None:
     if broken is None and node.kind in _TYPED:
         broken = _by_itself(model, node)
     if broken is not None:
-        place = subject(document, node, node.start)
+        place = make_subject(document, node, node.start)
         name = model.name(node) or node.kind
         sink.report(broken, place, name=name, owner=model.name(owner) or owner.kind)
 
@@ -56,7 +55,7 @@ def _as_feature(node: Node, owner: Node) -> Rule | None:
     if owner.kind in _INTERFACES:
         is_port = node.kind in ("PortUsage", "ReferenceUsage")
         return None if is_port else rules.END_NO_PORT
-    return rules.TOO_MANY_ENDS if own(owner, "end").index(node) > 1 else None
+    return rules.TOO_MANY_ENDS if find_own_features(owner, "end").index(node) > 1 else None
 
 
 def _by_itself(model: Model, node: Node) -> Rule | None:

@@ -5,9 +5,8 @@ from collections.abc import Iterable, Iterator
 from sysmlc.diagnostics import Severity, rule
 from sysmlc.language.checks.found import Found, name_of
 from sysmlc.language.checks.member_rules import ABSTRACT_METADATA
-from sysmlc.language.metaclasses import ALL_GENERALS, is_a, kinds_of
+from sysmlc.language.metaclasses import ALL_GENERALS, describe_kind, is_a, kinds_of
 from sysmlc.language.names import Model
-from sysmlc.language.names.unresolved import kind_of
 from sysmlc.language.tree import Node
 
 OTHER_ELEMENT = rule(
@@ -43,12 +42,12 @@ def check_annotated(model: Model, node: Node) -> Iterator[Found]:
     for element in _annotated(node):
         if allowed and not any(is_a(element.kind, one) for one in allowed):
             name = name_of(model, next(iter(model.lookup.generals(node)), node))
-            facts = {"name": name, "found": kind_of(element), "wanted": _words(allowed)}
+            facts = {"name": name, "found": describe_kind(element), "wanted": _words(allowed)}
             yield Found(OTHER_ELEMENT, node.start, facts)
 
 
 def _words(kinds: list[str]) -> str:
-    return " or ".join(kind_of(Node(kind)) for kind in kinds)
+    return " or ".join(describe_kind(Node(kind)) for kind in kinds)
 
 
 def _annotated(node: Node) -> list[Node]:
@@ -60,10 +59,10 @@ def _annotated(node: Node) -> list[Node]:
 
 def _allowed(model: Model, node: Node) -> list[str]:
     """Metaclasses that ``annotatedElement`` is redefined or subset to be; empty for any."""
-    kept = model.annotating
+    kept = model.annotated_kinds
     definitions = tuple(model.lookup.all_generals(node))
     if definitions not in kept:
-        kept[definitions] = _allowed_in(model, model.supers(node)[1:])
+        kept[definitions] = _allowed_in(model, model.all_supertypes(node)[1:])
     return list(dict.fromkeys([*_allowed_in(model, [node]), *kept[definitions]]))
 
 
@@ -99,7 +98,7 @@ def check_body(model: Model, node: Node) -> Iterator[Found]:
 def _is_strange(model: Model, owner: Node, member: Node) -> bool:
     """Whether a feature in a body is none of what its owner specialises, by name or link."""
     redefined = [r.reference.target for r in member.relations if r.kind == "Redefinition"]
-    generals = model.supers(owner)
+    generals = model.all_supertypes(owner)
     if redefined:
         return not any(one is None or one.owner in generals for one in redefined)
     return not any(one.name == member.name for g in generals[1:] for one in g.members)

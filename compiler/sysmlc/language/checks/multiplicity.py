@@ -8,7 +8,7 @@ from sysmlc.diagnostics import Severity, rule
 from sysmlc.language.checks.found import Found, name_of, written
 from sysmlc.language.checks.values import value
 from sysmlc.language.names import Model
-from sysmlc.language.names.implied import owning_type
+from sysmlc.language.names.implied import find_owning_type
 from sysmlc.language.tree import Node
 
 MORE = rule(
@@ -64,7 +64,7 @@ def bounds(model: Model, feature: Node, depth: int = 0) -> Bounds | None:
         return _said(model, feature)
     for _, target in written(feature, _REDEFINITION):
         return bounds(model, target, depth + 1) if depth < _DEEP else None
-    is_single = feature.kind in _SINGLE and owning_type(feature) is not None
+    is_single = feature.kind in _SINGLE and find_owning_type(feature) is not None
     return Bounds(1, 1) if is_single else None
 
 

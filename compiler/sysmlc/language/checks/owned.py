@@ -6,7 +6,7 @@ from sysmlc.diagnostics import Severity, rule
 from sysmlc.language.checks.found import DECLARED_FEATURES, DECLARED_TYPES, Found, name_of
 from sysmlc.language.metaclasses import kinds_of
 from sysmlc.language.names import Model
-from sysmlc.language.names.implied import owning_type
+from sysmlc.language.names.implied import find_owning_type
 from sysmlc.language.tree import Node
 
 SECOND_RESULT = rule(
@@ -47,7 +47,7 @@ def check_result(model: Model, node: Node) -> Iterator[Found]:
     own = _results(node)
     if not own and not model.lookup.generals(node):
         return
-    inherited = [one for general in model.supers(node)[1:] for one in _results(general)]
+    inherited = [one for general in model.all_supertypes(node)[1:] for one in _results(general)]
     count = len(own) + len(inherited)
     if count > 1:
         start = own[-1].start if own else node.start
@@ -64,7 +64,7 @@ def check_variable(model: Model, node: Node) -> Iterator[Found]:
     """Report a feature that is said to change and cannot."""
     if node.attributes.get("isVariable") is not True:
         return
-    owner = owning_type(node)
+    owner = find_owning_type(node)
     facts = {"name": name_of(model, node), "owner": name_of(model, node.owner)}
     if node.attributes.get("isPortion"):
         yield Found(VARIABLE_PORTION, node.start, facts)

@@ -7,8 +7,8 @@ from sysmlc.language.checks.found import Found, name_of
 from sysmlc.language.checks.values import arguments
 from sysmlc.language.metaclasses import kinds_of
 from sysmlc.language.names import Model
-from sysmlc.language.names.expression_results import named
-from sysmlc.language.names.positional_redefinition import own
+from sysmlc.language.names.expression_results import find_named_element
+from sysmlc.language.names.positional_redefinition import find_own_features
 from sysmlc.language.tree import Node
 
 TOO_MANY = rule(
@@ -39,10 +39,10 @@ _ROLES = ("subject", "parameter")
 def check_arguments(model: Model, node: Node) -> Iterator[Found]:
     """Report an invocation with more arguments by position than what it calls has inputs."""
     given = arguments(node)
-    called = named(node, model.lookup)
+    called = find_named_element(node, model.lookup)
     if called is None or called.kind not in _CALLED:
         return
-    takes = [one for role in _ROLES for one in model.lookup.at_positions(called, role)]
+    takes = [one for role in _ROLES for one in model.lookup.features_of_role(called, role)]
     inputs = [one for one in takes if _direction(one) in _IN]
     if len(given) > len(inputs):
         said = {0: "no value", 1: "one value"}.get(len(inputs), f"{len(inputs)} values")
@@ -52,11 +52,11 @@ def check_arguments(model: Model, node: Node) -> Iterator[Found]:
 
 def check_parameters(model: Model, node: Node) -> Iterator[Found]:
     """Report parameters of a step that are none of what it performs, where that has some."""
-    given = own(node, "parameter")
+    given = find_own_features(node, "parameter")
     called = _called(node) if given else None
     if called is None:
         return
-    wanted = model.lookup.at_positions(called, "parameter")
+    wanted = model.lookup.features_of_role(called, "parameter")
     for place, one in enumerate(given):
         is_said = any(r.kind == "Redefinition" for r in one.relations)
         namesakes = [other for other in wanted if model.name(other) == model.name(one)]

@@ -5,10 +5,9 @@ from collections.abc import Iterator, Mapping
 from sysmlc.diagnostics import Rule, Sink
 from sysmlc.language.checks import member_rules, reference_rules
 from sysmlc.language.checks.found import written
-from sysmlc.language.metaclasses import is_composite, kinds_of
+from sysmlc.language.metaclasses import describe_kind, is_composite, kinds_of
 from sysmlc.language.names import Model
-from sysmlc.language.names.unresolved import kind_of, subject
-from sysmlc.language.tree import Document, Node, Relation
+from sysmlc.language.tree import Document, Node, Relation, make_subject
 
 _REFERENCED = {
     "IncludeUseCaseUsage": (kinds_of("UseCaseUsage"), "a use case"),
@@ -40,7 +39,7 @@ def check(model: Model, document: Document, node: Node, sink: Sink) -> None:
             itself = {"name": model.name(node) or node.kind, "owner": ""}
             broken.append((member_rules.VARIATION_OF_VARIATION, itself))
         for rule, facts in broken:
-            place = subject(document, node, relation.reference.start)
+            place = make_subject(document, node, relation.reference.start)
             sink.report(rule, place, notes=(), help="", **facts)
 
 
@@ -48,7 +47,10 @@ def _of_other_kind(node: Node, relation: Relation, target: Node) -> Iterator[_Br
     kinds, words = _REFERENCED.get(node.kind, (_USAGES, ""))
     if target.kind in _USAGES and target.kind not in kinds:
         name = str(relation.reference)
-        yield reference_rules.OTHER_KIND, {"name": name, "found": kind_of(target), "wanted": words}
+        yield (
+            reference_rules.OTHER_KIND,
+            {"name": name, "found": describe_kind(target), "wanted": words},
+        )
 
 
 def _turns(model: Model, node: Node, target: Node) -> bool:
@@ -59,7 +61,7 @@ def _turns(model: Model, node: Node, target: Node) -> bool:
 
 def _is_conjugated(model: Model, node: Node) -> bool:
     """Whether the owner, or what it specialises, turns directions around."""
-    supers = model.supers(node.owner) if node.owner is not None else ()
+    supers = model.all_supertypes(node.owner) if node.owner is not None else ()
     return any(r.kind == "ConjugatedPortTyping" for one in supers for r in one.relations)
 
 
@@ -68,14 +70,14 @@ def check_itself(model: Model, document: Document, node: Node, sink: Sink) -> No
     owner, name = node.owner, node.name or node.kind
     is_in_port = owner is not None and owner.kind in _PORT_OWNERS
     if is_in_port and node.kind != "PortUsage" and is_composite(node):
-        place = subject(document, node, node.start)
+        place = make_subject(document, node, node.start)
         sink.report(reference_rules.PART_OF_PORT, place, name=name, owner=_name(model, owner))
     if node.attributes.get("isIndividual") and any(
         r.kind == "FeatureTyping" for r in node.relations
     ):
         types = [one for one in model.types(node) if one.attributes.get("isIndividual")]
         if len(types) != 1:
-            place = subject(document, node, node.start)
+            place = make_subject(document, node, node.start)
             sink.report(reference_rules.INDIVIDUAL, place, name=name, count=len(types))
 
 

@@ -3,8 +3,7 @@
 from sysmlc.diagnostics import Sink
 from sysmlc.language.checks.rules import ONLY_ONE, SUBJECT_FIRST
 from sysmlc.language.names import Model
-from sysmlc.language.names.unresolved import subject
-from sysmlc.language.tree import Document, Node
+from sysmlc.language.tree import Document, Node, make_subject
 
 _ROLES = {
     "SubjectMembership": "subject",
@@ -23,10 +22,10 @@ def check(model: Model, document: Document, node: Node, sink: Sink) -> None:
     for member in node.members:
         role = _role(member)
         if role in seen:
-            place = subject(document, member, member.start)
+            place = make_subject(document, member, member.start)
             sink.report(ONLY_ONE, place, owner=model.name(node) or node.kind, role=role)
         elif role == "subject" and parameters:
-            place = subject(document, member, member.start)
+            place = make_subject(document, member, member.start)
             sink.report(SUBJECT_FIRST, place, owner=model.name(node) or node.kind)
         if role:
             seen.add(role)

@@ -4,11 +4,9 @@ from typing import NamedTuple
 
 from sysmlc.diagnostics import Sink
 from sysmlc.language.checks.rules import ONE_TYPE, TYPED_BY
-from sysmlc.language.metaclasses import ALL_GENERALS, kinds_of
+from sysmlc.language.metaclasses import ALL_GENERALS, FEATURES, describe_kind, kinds_of
 from sysmlc.language.names import Model
-from sysmlc.language.names.symbols import FEATURES
-from sysmlc.language.names.unresolved import kind_of, subject
-from sysmlc.language.tree import Document, Node
+from sysmlc.language.tree import Document, Node, make_subject
 
 
 class Wanted(NamedTuple):
@@ -89,9 +87,9 @@ def check(model: Model, document: Document, node: Node, sink: Sink) -> None:
     types = _types(model, node)
     if all(one.kind in wanted.kinds for one in types) and not (wanted.single and len(types) > 1):
         return
-    place = subject(document, node, node.start)
+    place = make_subject(document, node, node.start)
     name = model.name(node)
-    what = f"{kind_of(node).partition(' ')[2]} '{name}'" if name else kind_of(node)
+    what = f"{describe_kind(node).partition(' ')[2]} '{name}'" if name else describe_kind(node)
     for one in types:
         if one.kind not in wanted.kinds:
             sink.report(
@@ -100,7 +98,7 @@ def check(model: Model, document: Document, node: Node, sink: Sink) -> None:
                 usage=what,
                 wanted=wanted.words,
                 type=model.name(one),
-                found=kind_of(one),
+                found=describe_kind(one),
             )
             return
     if wanted.single and len(types) > 1:

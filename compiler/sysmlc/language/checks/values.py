@@ -3,10 +3,9 @@
 import operator as op
 from collections.abc import Callable
 
-from sysmlc.language.metaclasses import kinds_of
+from sysmlc.language.metaclasses import FEATURES, kinds_of
 from sysmlc.language.names import Model
-from sysmlc.language.names.expression_results import named, returned
-from sysmlc.language.names.symbols import FEATURES
+from sysmlc.language.names.expression_results import find_named_element, find_result_parameter
 from sysmlc.language.tree import Node
 
 Value = bool | int | float | str
@@ -64,7 +63,7 @@ def value(model: Model, expression: Node, depth: int = 0) -> Value | None:
     if depth > _DEEP:
         return None
     if expression.kind == "FeatureReferenceExpression":
-        feature = named(expression, model.lookup)
+        feature = find_named_element(expression, model.lookup)
         bound = given(feature) if feature is not None else None
         return value(model, bound, depth + 1) if bound is not None else None
     operands = arguments(expression)
@@ -107,9 +106,13 @@ def _source(model: Model, expression: Node) -> Node | None:
     """The feature or type that gives the values of an expression."""
     if expression.kind not in _NAMING:
         return None
-    found = named(expression, model.lookup)
+    found = find_named_element(expression, model.lookup)
     is_called = expression.kind == "InvocationExpression"
-    return returned(found, model.lookup, set()) if found is not None and is_called else found
+    return (
+        find_result_parameter(found, model.lookup, set())
+        if found is not None and is_called
+        else found
+    )
 
 
 def cannot_be(model: Model, expression: Node, wanted: str) -> bool:

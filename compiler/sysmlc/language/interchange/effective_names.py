@@ -3,7 +3,7 @@
 from collections.abc import Callable, Sequence
 
 from sysmlc.language.metaclasses import kinds_of
-from sysmlc.language.names.symbols import payload_of
+from sysmlc.language.names.symbols import find_payload
 from sysmlc.language.tree import Node, Reference
 
 _PERFORMANCES = kinds_of("PerformActionUsage")
@@ -64,7 +64,9 @@ def effective(node: Node, redefined: Redefined = nothing, depth: int = 0) -> str
     if accepted is not None:
         return effective(accepted, redefined, depth + 1)
     kinds = _naming_relations(node)
-    named = next((one for kind in kinds for one in node.relations if one.kind == kind), None)
+    named = next(
+        (relation for kind in kinds for relation in node.relations if relation.kind == kind), None
+    )
     target = named.reference.target if named else next(iter(redefined(node)), None)
     if target is None:
         return _last(named.reference) if named else ""
@@ -76,7 +78,7 @@ def accepted_by(node: Node) -> Node | None:
     owner = node.owner
     if owner is None or owner.kind != "TransitionUsage" or node.membership != "ParameterMembership":
         return None
-    payload, accepted = payload_of(owner)
+    payload, accepted = find_payload(owner)
     return accepted if node is payload and accepted is not node else None
 
 

@@ -4,26 +4,22 @@ KerML 1.0, 9.1: an element of a standard library has a version 5 UUID (RFC 9562)
 the namespace of its package, whose UUID is that of its IRI.
 """
 
-import re
 from uuid import NAMESPACE_URL, UUID, uuid5
 
 from sysmlc.language.interchange.effective_names import Redefined, effective, nothing
 from sysmlc.language.interchange.elements import Element, walk
 from sysmlc.language.interchange.unfolding import unfold
 from sysmlc.language.metaclasses import is_a
+from sysmlc.language.text.lexer import quote_name
 from sysmlc.language.tree import Document, Node
 
 _STANDARD = {"kerml": "https://www.omg.org/spec/KerML/", "sysml": "https://www.omg.org/spec/SysML/"}
-_BASIC = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 _OPERANDS = {
     **dict.fromkeys(("and", "or", "implies"), ("firstValue", "secondValue")),
     **dict.fromkeys(("<", ">", "<=", ">=", "==", "!=", "===", "!==", "xor", "not"), ("x", "y")),
     **dict.fromkeys(("+", "-", "*", "/", "%", "^", "**", "|", "&"), ("x", "y")),
 }
 """Parameters of the functions of operators, which those of an expression redefine (KerML 9.4)."""
-_ESCAPES = str.maketrans(
-    {"\\": "\\\\", "'": "\\'", "\n": "\\n", "\t": "\\t", "\r": "\\r", "\f": "\\f", "\b": "\\b"}
-)
 
 
 def ids(document: Document) -> dict[str, Node]:
@@ -42,7 +38,9 @@ def ids(document: Document) -> dict[str, Node]:
 
 def identify(root: Element, document: Document, redefined: Redefined = nothing) -> None:
     """Give the element and all below it their ids."""
-    package = next((one for one in document.root.members if one.kind == "LibraryPackage"), None)
+    package = next(
+        (member for member in document.root.members if member.kind == "LibraryPackage"), None
+    )
     standard = package is not None and package.attributes.get("isStandard") is True
     if package is not None and standard:
         name = package.name or ""
@@ -115,7 +113,7 @@ class _Ids:
 def _joined(above: str, name: str) -> str:
     if not name:
         return ""
-    return f"{above}::{escaped(name)}" if above else escaped(name)
+    return f"{above}::{quote_name(name)}" if above else quote_name(name)
 
 
 def _is_relationship(element: Element) -> bool:
@@ -136,9 +134,6 @@ def _name(owned: Element, redefined: Redefined) -> str:
 def conjugated(definition: Element) -> Node | None:
     """The port definition that a ConjugatedPortDefinition conjugates."""
     targets = (target for _, target in definition.owned[0].targets)
-    return next((one.node for one in targets if isinstance(one, Element) and one.node), None)
-
-
-def escaped(name: str) -> str:
-    """A name as a text writes it: in quotes unless it is basic (KerML 1.0, 8.2.2.3)."""
-    return name if _BASIC.fullmatch(name) else f"'{name.translate(_ESCAPES)}'"
+    return next(
+        (target.node for target in targets if isinstance(target, Element) and target.node), None
+    )

@@ -37,7 +37,7 @@ def argument(node: Node, owner: Node) -> Node:
 def _carried(node: Node) -> Node:
     """The value of a parameter that has nothing but a value, else the parameter."""
     carries = node.kind == "Feature" and not (node.name or node.relations)
-    if not carries or [one.membership for one in node.members] != ["FeatureValue"]:
+    if not carries or [member.membership for member in node.members] != ["FeatureValue"]:
         return node
     return node.members[0]
 
@@ -264,7 +264,7 @@ def _settle(node: Node) -> None:
 
 def _leads_on(node: Node) -> bool:
     """Whether it is a ``then`` before an element: its end there is empty (SysML 8.2.2.9.3)."""
-    ends = [one for one in node.members if one.membership == "EndFeatureMembership"]
+    ends = [member for member in node.members if member.membership == "EndFeatureMembership"]
     return node.members == ends and len(ends) == 2 and _is_bare(ends[1])
 
 

@@ -275,7 +275,7 @@ def _numbers(version: str) -> tuple[int, ...]:
 def _report_unresolved_usage(
     project: Project, usage: Usage, candidates: Sequence[Project], sink: Sink
 ) -> None:
-    versions = ", ".join(one.version or "without a version" for one in candidates)
+    versions = ", ".join(candidate.version or "without a version" for candidate in candidates)
     problem = f"but the one given is {versions}" if candidates else "which is not given"
     constraint = f" ({usage.constraint})" if usage.constraint else ""
     sink.report(

@@ -85,7 +85,7 @@ def link(documents: Iterable[Document], sink: Sink, library: Library | None = No
     of that name and an element that the standard gives that id; others stay as they are, with
     ``targets`` None.
     """
-    read = [one for one in documents if isinstance(one, ExchangeDocument)]
+    read = [document for document in documents if isinstance(document, ExchangeDocument)]
     finder = _Finding(read, library)
     naming = Naming()
     for document in read:

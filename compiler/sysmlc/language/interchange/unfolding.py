@@ -31,11 +31,13 @@ def late(value: Element) -> Element:
 def add_implicit(element: Element, node: Node) -> None:
     """Own what follows for an element of its kind when its node owns nothing like it."""
     if node.kind in NAMING and node.kind not in _RESULTLESS:
-        if not any(one.membership == "ReturnParameterMembership" for one in node.members):
+        if not any(member.membership == "ReturnParameterMembership" for member in node.members):
             element.add_owned(_result())
     elif node.kind == "PortDefinition":
         element.add_owned(Element("OwningMembership")).add_owned(_conjugate(element))
-    elif node.kind == "SuccessionAsUsage" and [one.membership for one in node.members] == [_END]:
+    elif node.kind == "SuccessionAsUsage" and [member.membership for member in node.members] == [
+        _END
+    ]:
         element.add_owned(Element(_END)).add_owned(Element("ReferenceUsage")).attributes[
             "isEnd"
         ] = True

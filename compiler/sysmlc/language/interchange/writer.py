@@ -14,7 +14,7 @@ from sysmlc.language.interchange.metamodel import stated
 from sysmlc.language.interchange.unfolding import unfold
 from sysmlc.language.library import SHIPPED
 from sysmlc.language.metaclasses import is_a
-from sysmlc.language.tree import AttributeValue, Document, Node, locate
+from sysmlc.language.tree import AttributeValue, Document, Node, find_root, locate
 
 _MEMBERSHIPS = {"importedMembership"}
 """Features that refer to the membership of an element, not to the element."""
@@ -64,7 +64,7 @@ class Files:
 
     def add(self, documents: Iterable[Document]) -> None:
         """References may lead to these documents too."""
-        self._documents.update((one.root, one) for one in documents)
+        self._documents.update((document.root, document) for document in documents)
 
     def of(self, root: Node) -> File | None:
         """The file of the document with that root; None for one that is not known."""
@@ -226,7 +226,7 @@ class _Writer:
         node = link.node
         if node is None:
             return link.text, "Element"
-        root = _root(node)
+        root = find_root(node)
         file = self._file if root is self._document.root else self._others.of(root)
         target = file.target(node, feature) if file else None
         if file is None or target is None:
@@ -254,12 +254,6 @@ class _Writer:
         where = locate(self._document, node.start)
         facts = {"element": shown(node), "name": what, "feature": what}
         self._sink.report(rule, Subject(shown(node), place=where), notes=(), help="", **facts)
-
-
-def _root(node: Node) -> Node:
-    while node.owner is not None:
-        node = node.owner
-    return node
 
 
 def _lost(element: Element) -> Iterator[str]:

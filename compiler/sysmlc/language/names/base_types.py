@@ -1,4 +1,4 @@
-"""What each metaclass implicitly specialises (KerML 8.4.2 to 8.4.4, SysML 8.4: the base tables)."""
+"""What each metaclass implicitly specialises (KerML 8.4.2 to 8.4.4, SysML 8.4): the base tables."""
 
 from typing import NamedTuple
 
@@ -98,9 +98,9 @@ BASES: dict[str, str] = {
     "RenderingUsage": "Views::renderings",
     "MetadataUsage": "Metadata::metadataItems",
 }
-"""The base of a metaclass; one that has none here has that of its nearest general."""
+"""The base of a metaclass. A metaclass that is absent has the base of its nearest general."""
 
-BINARY: dict[str, str] = {
+BINARY_BASES: dict[str, str] = {
     "Association": "Links::BinaryLink",
     "AssociationStructure": "Objects::BinaryLinkObject",
     "Connector": "Links::binaryLinks",
@@ -110,13 +110,13 @@ BINARY: dict[str, str] = {
     "InterfaceUsage": "Interfaces::binaryInterfaces",
     "FlowDefinition": "Flows::Message",
 }
-"""The base of what has exactly two ends."""
-NEGATED: dict[str, str] = {
+"""The base of connectors and associations with exactly two ends."""
+NEGATED_BASES: dict[str, str] = {
     "Invariant": "Performances::falseEvaluations",
     "AssertConstraintUsage": "Constraints::negatedConstraintChecks",
     "SatisfyRequirementUsage": "Requirements::notSatisfiedRequirementChecks",
 }
-BY_MEMBERSHIP: dict[tuple[str, str], str] = {
+MEMBERSHIP_BASES: dict[tuple[str, str], str] = {
     ("StateSubactionMembership", "entry"): "States::StateAction::entryAction",
     ("StateSubactionMembership", "do"): "States::StateAction::doAction",
     ("StateSubactionMembership", "exit"): "States::StateAction::exitAction",
@@ -141,15 +141,18 @@ BY_MEMBERSHIP: dict[tuple[str, str], str] = {
         "VerificationCases::VerificationCase::obj::requirementVerifications"
     ),
 }
-"""What a member specialises because of its membership and the role that this gives it."""
-REDEFINED_BY_MEMBERSHIP = frozenset(
+"""The base of a member by its membership and role."""
+REDEFINING_MEMBERSHIPS = frozenset(
     {"StateSubactionMembership", "TransitionFeatureMembership", "ViewRenderingMembership"}
 )
-"""Memberships whose members redefine that feature."""
+"""Memberships whose members redefine their base instead of subsetting it."""
 
 
-class Place(NamedTuple):
-    """A usage of ``kinds`` owned as a feature by one of ``owners`` specialises ``base``."""
+class OwnerBase(NamedTuple):
+    """A usage of ``kinds`` owned as a feature by one of ``owners`` specialises ``base``.
+
+    ``composite`` says whether the usage must be composite.
+    """
 
     kinds: frozenset[str]
     owners: frozenset[str]
@@ -157,95 +160,115 @@ class Place(NamedTuple):
     composite: bool = True
 
 
-def _both(name: str) -> frozenset[str]:
+def _both_kinds(name: str) -> frozenset[str]:
     return kinds_of(f"{name}Definition") | kinds_of(f"{name}Usage")
 
 
-_ACTION, _PART, _ITEM, _CASE = _both("Action"), _both("Part"), _both("Item"), _both("Case")
+_ACTION, _PART, _ITEM, _CASE = (
+    _both_kinds("Action"),
+    _both_kinds("Part"),
+    _both_kinds("Item"),
+    _both_kinds("Case"),
+)
 _CONTROL = kinds_of("ControlNode")
 _TRANSITION = frozenset({"TransitionUsage"})
 _STATE_USAGE = kinds_of("StateUsage") - {"ExhibitStateUsage"}
 _PERFORM = kinds_of("PerformActionUsage")
 _OCCURRENCE = kinds_of("OccurrenceDefinition") | kinds_of("OccurrenceUsage") | kinds_of("Class")
 
-PLACES: tuple[Place, ...] = (
-    Place(kinds_of("ActionUsage") - _PERFORM, _ACTION, "Actions::Action::subactions"),
-    Place(kinds_of("ActionUsage") - _PERFORM, _PART, "Parts::Part::ownedActions"),
-    Place(kinds_of("SendActionUsage"), _ACTION, "Actions::Action::sendSubactions"),
-    Place(kinds_of("AcceptActionUsage"), _ACTION, "Actions::Action::acceptSubactions"),
-    Place(kinds_of("TerminateActionUsage"), _ACTION, "Actions::Action::terminateSubactions"),
-    Place(kinds_of("AssignmentActionUsage"), _ACTION, "Actions::Action::assignments"),
-    Place(kinds_of("IfActionUsage"), _ACTION, "Actions::Action::ifSubactions"),
-    Place(kinds_of("WhileLoopActionUsage"), _ACTION, "Actions::Action::whileLoops"),
-    Place(kinds_of("ForLoopActionUsage"), _ACTION, "Actions::Action::forLoops"),
-    Place(frozenset({"MergeNode"}), _ACTION, "Actions::Action::merges", False),
-    Place(frozenset({"DecisionNode"}), _ACTION, "Actions::Action::decisions", False),
-    Place(frozenset({"JoinNode"}), _ACTION, "Actions::Action::joins", False),
-    Place(frozenset({"ForkNode"}), _ACTION, "Actions::Action::forks", False),
-    Place(_TRANSITION, _ACTION - _both("State"), "Actions::Action::transitions"),
-    Place(_TRANSITION, _both("State"), "States::StateAction::stateTransitions"),
-    Place(_STATE_USAGE, _both("State"), "States::StateAction::substates"),
-    Place(_STATE_USAGE, _PART, "Parts::Part::ownedStates"),
-    Place(_PERFORM, _PART, "Parts::Part::performedActions", False),
-    Place(_PERFORM, _ACTION, "Performances::Performance::enclosedPerformances", False),
-    Place(frozenset({"ExhibitStateUsage"}), _PART, "Parts::Part::exhibitedStates", False),
-    Place(
+OWNER_BASES: tuple[OwnerBase, ...] = (
+    OwnerBase(kinds_of("ActionUsage") - _PERFORM, _ACTION, "Actions::Action::subactions"),
+    OwnerBase(kinds_of("ActionUsage") - _PERFORM, _PART, "Parts::Part::ownedActions"),
+    OwnerBase(kinds_of("SendActionUsage"), _ACTION, "Actions::Action::sendSubactions"),
+    OwnerBase(kinds_of("AcceptActionUsage"), _ACTION, "Actions::Action::acceptSubactions"),
+    OwnerBase(kinds_of("TerminateActionUsage"), _ACTION, "Actions::Action::terminateSubactions"),
+    OwnerBase(kinds_of("AssignmentActionUsage"), _ACTION, "Actions::Action::assignments"),
+    OwnerBase(kinds_of("IfActionUsage"), _ACTION, "Actions::Action::ifSubactions"),
+    OwnerBase(kinds_of("WhileLoopActionUsage"), _ACTION, "Actions::Action::whileLoops"),
+    OwnerBase(kinds_of("ForLoopActionUsage"), _ACTION, "Actions::Action::forLoops"),
+    OwnerBase(frozenset({"MergeNode"}), _ACTION, "Actions::Action::merges", False),
+    OwnerBase(frozenset({"DecisionNode"}), _ACTION, "Actions::Action::decisions", False),
+    OwnerBase(frozenset({"JoinNode"}), _ACTION, "Actions::Action::joins", False),
+    OwnerBase(frozenset({"ForkNode"}), _ACTION, "Actions::Action::forks", False),
+    OwnerBase(_TRANSITION, _ACTION - _both_kinds("State"), "Actions::Action::transitions"),
+    OwnerBase(_TRANSITION, _both_kinds("State"), "States::StateAction::stateTransitions"),
+    OwnerBase(_STATE_USAGE, _both_kinds("State"), "States::StateAction::substates"),
+    OwnerBase(_STATE_USAGE, _PART, "Parts::Part::ownedStates"),
+    OwnerBase(_PERFORM, _PART, "Parts::Part::performedActions", False),
+    OwnerBase(_PERFORM, _ACTION, "Performances::Performance::enclosedPerformances", False),
+    OwnerBase(frozenset({"ExhibitStateUsage"}), _PART, "Parts::Part::exhibitedStates", False),
+    OwnerBase(
         kinds_of("CalculationUsage"),
-        _both("Calculation"),
+        _both_kinds("Calculation"),
         "Calculations::Calculation::subcalculations",
     ),
-    Place(kinds_of("CaseUsage"), _CASE, "Cases::Case::subcases"),
-    Place(
+    OwnerBase(kinds_of("CaseUsage"), _CASE, "Cases::Case::subcases"),
+    OwnerBase(
         kinds_of("AnalysisCaseUsage"),
-        _both("AnalysisCase"),
+        _both_kinds("AnalysisCase"),
         "AnalysisCases::AnalysisCase::subAnalysisCases",
     ),
-    Place(
+    OwnerBase(
         kinds_of("VerificationCaseUsage"),
-        _both("VerificationCase"),
+        _both_kinds("VerificationCase"),
         "VerificationCases::VerificationCase::subVerificationCases",
     ),
-    Place(kinds_of("UseCaseUsage"), _both("UseCase"), "UseCases::UseCase::subUseCases"),
-    Place(
+    OwnerBase(
+        kinds_of("UseCaseUsage"),
+        _both_kinds("UseCase"),
+        "UseCases::UseCase::subUseCases",
+    ),
+    OwnerBase(
         frozenset({"IncludeUseCaseUsage"}),
-        _both("UseCase"),
+        _both_kinds("UseCase"),
         "UseCases::UseCase::includedUseCases",
         False,
     ),
-    Place(kinds_of("ConstraintUsage"), _ITEM, "Items::Item::checkedConstraints"),
-    Place(
+    OwnerBase(kinds_of("ConstraintUsage"), _ITEM, "Items::Item::checkedConstraints"),
+    OwnerBase(
         kinds_of("RequirementUsage"),
-        _both("Requirement"),
+        _both_kinds("Requirement"),
         "Requirements::RequirementCheck::subrequirements",
     ),
-    Place(
-        kinds_of("ConcernUsage"), _both("Requirement"), "Requirements::RequirementCheck::concerns"
+    OwnerBase(
+        kinds_of("ConcernUsage"),
+        _both_kinds("Requirement"),
+        "Requirements::RequirementCheck::concerns",
     ),
-    Place(kinds_of("ViewpointUsage"), _both("View"), "Views::View::viewpointSatisfactions"),
-    Place(kinds_of("ViewUsage"), _both("View"), "Views::View::subviews", False),
-    Place(kinds_of("RenderingUsage"), _both("Rendering"), "Views::Rendering::subrenderings", False),
-    Place(kinds_of("ItemUsage"), _ITEM, "Items::Item::subitems"),
-    Place(kinds_of("PartUsage"), _ITEM, "Items::Item::subparts"),
-    Place(kinds_of("PortUsage"), _PART, "Parts::Part::ownedPorts", False),
-    Place(kinds_of("PortUsage"), _both("Port"), "Ports::Port::subports"),
-    Place(kinds_of("OccurrenceUsage"), _OCCURRENCE, "Occurrences::Occurrence::suboccurrences"),
-    Place(
+    OwnerBase(
+        kinds_of("ViewpointUsage"),
+        _both_kinds("View"),
+        "Views::View::viewpointSatisfactions",
+    ),
+    OwnerBase(kinds_of("ViewUsage"), _both_kinds("View"), "Views::View::subviews", False),
+    OwnerBase(
+        kinds_of("RenderingUsage"),
+        _both_kinds("Rendering"),
+        "Views::Rendering::subrenderings",
+        False,
+    ),
+    OwnerBase(kinds_of("ItemUsage"), _ITEM, "Items::Item::subitems"),
+    OwnerBase(kinds_of("PartUsage"), _ITEM, "Items::Item::subparts"),
+    OwnerBase(kinds_of("PortUsage"), _PART, "Parts::Part::ownedPorts", False),
+    OwnerBase(kinds_of("PortUsage"), _both_kinds("Port"), "Ports::Port::subports"),
+    OwnerBase(kinds_of("OccurrenceUsage"), _OCCURRENCE, "Occurrences::Occurrence::suboccurrences"),
+    OwnerBase(
         kinds_of("EventOccurrenceUsage"),
         _OCCURRENCE,
         "Occurrences::Occurrence::timeEnclosedOccurrences",
         False,
     ),
-    Place(
+    OwnerBase(
         kinds_of("Step"),
         kinds_of("Behavior") | kinds_of("Step"),
         "Performances::Performance::subperformances",
     ),
-    Place(
+    OwnerBase(
         kinds_of("Step"),
         kinds_of("Behavior") | kinds_of("Step"),
         "Performances::Performance::enclosedPerformances",
         False,
     ),
-    Place(kinds_of("Step"), kinds_of("Structure"), "Objects::Object::ownedPerformances"),
+    OwnerBase(kinds_of("Step"), kinds_of("Structure"), "Objects::Object::ownedPerformances"),
 )
-"""What usages specialise because of where they are."""
+"""The bases of usages by their owner."""

@@ -1,15 +1,14 @@
-"""Where the search for a name begins (KerML 8.2.3.5.2) and what it may lead to."""
+"""Lookup contexts: where the search for a name begins (KerML 8.2.3.5.2), and what it may find."""
 
 from typing import NamedTuple
 
-from sysmlc.language.metaclasses import kinds_of
-from sysmlc.language.names.symbols import NAMESPACES
+from sysmlc.language.metaclasses import NAMESPACES, kinds_of
 from sysmlc.language.tree import Node, Reference, Relation
 
 _CONNECTORS = kinds_of("Connector")
 INSTANTIATIONS = kinds_of("InstantiationExpression")
-_SKIPPED = INSTANTIATIONS | {"FeatureReferenceExpression", "MetadataAccessExpression"}
-"""Expressions that only hold other expressions: no name is looked up in them."""
+_TRANSPARENT = INSTANTIATIONS | {"FeatureReferenceExpression", "MetadataAccessExpression"}
+"""Expressions that only contain other expressions and are no scopes."""
 _FLOWS = kinds_of("FlowUsage")
 _EVENTS = kinds_of("EventOccurrenceUsage")
 _FEATURE = kinds_of("Feature")
@@ -22,7 +21,7 @@ _TYPING = frozenset({"FeatureTyping", "TypeFeaturing"})
 _MEMBER = frozenset({"importedMembership"})
 _IMPORTED = _MEMBER | {"importedNamespace"}
 
-WANTED: dict[str, frozenset[str]] = {
+TARGET_KINDS: dict[str, frozenset[str]] = {
     "Specialization": _TYPE,
     "Subclassification": _CLASSIFIER,
     "FeatureTyping": _TYPE,
@@ -59,21 +58,25 @@ WANTED: dict[str, frozenset[str]] = {
     "featureOfType": _FEATURE,
     "featuringType": _TYPE,
 }
-"""Metaclasses that the target of a relation may have; other relations take any element."""
+"""Metaclasses that the target of a relation may have. Other relations accept any element."""
 
 
-class Start(NamedTuple):
-    """Where a search begins: ``scope`` and outwards, or in the result of ``operand`` only.
+class LookupContext(NamedTuple):
+    """Where the lookup of the first name of a reference begins, and what it skips.
 
-    ``inherited`` looks in the generals of the scope first and not at what it owns: a feature
-    redefines what its owner inherits (KerML 8.2.3.5.2). ``without`` is not found by its
-    effective name, which the search is to give. ``before`` is the link of a chain that the
-    name follows. ``everything`` looks at private members too, as ``import all`` does.
-    ``past_subjects`` passes subjects over: what a requirement is satisfied by is not its subject,
-    which may have the same name. ``importing`` are the namespaces that the name is imported into:
-    what they import is looked at last, for it may depend on where the name leads. For the same
-    reason the type of metadata (``is_metadata``) is not looked for in what the annotated element
-    implicitly specialises.
+    - ``scope``: the lookup goes from this namespace outwards. With ``operand`` it looks only in the
+      result of that expression, with ``before`` only in the target of the link before it.
+    - ``inherited``: in ``scope`` itself only inherited members count. A feature redefines what its
+      owner inherits (KerML 8.2.3.5.2).
+    - ``without``: this node is not found by its effective name, because the lookup computes it.
+    - ``everything``: private members are visible, as for ``import all``.
+    - ``reference``: the reference, if its first name is ``$``.
+    - ``past_subjects``: subjects are skipped. The element that satisfies a requirement is not the
+      requirement's subject, which may have the same name.
+    - ``importing``: namespaces that the name is imported into. Their imports are searched last,
+      because they may depend on the result.
+    - ``is_metadata``: the lookup is for the type of metadata. Implied generals of the annotated
+      element are skipped, because they may depend on the result.
     """
 
     scope: Node | None
@@ -88,67 +91,73 @@ class Start(NamedTuple):
     is_metadata: bool = False
 
 
-def start(node: Node, relation: Relation) -> Start:
-    """Where the first name of a relation of ``node`` is looked up."""
-    found = _start(node, relation)
+def find_context(node: Node, relation: Relation) -> LookupContext:
+    """Return where the first name of a relation of ``node`` is looked up."""
+    context = _make_context(node, relation)
     begins_globally = relation.reference.chain[0][0] == "$"
-    return found._replace(reference=relation.reference) if begins_globally else found
+    return context._replace(reference=relation.reference) if begins_globally else context
 
 
-def _start(node: Node, relation: Relation) -> Start:
+def _make_context(node: Node, relation: Relation) -> LookupContext:
     kind = relation.kind
     if kind == "Membership":
-        return _membership(node)
+        return _make_membership_context(node)
     if kind == "ReferenceSubsetting" and (_is_connector_end(node) or _is_event_of_message(node)):
-        return Start(_beyond_transition(node.owner), without=node)
+        return LookupContext(_find_end_scope(node.owner), without=node)
     if kind == "Redefinition":
-        return Start(namespace(node), inherited=len(relation.reference.chain) == 1, without=node)
+        return LookupContext(
+            find_namespace(node), inherited=len(relation.reference.chain) == 1, without=node
+        )
     if kind in _TYPING:
-        scope = node if kind == "TypeFeaturing" else beyond_expressions(node)
-        return Start(scope, without=node, is_metadata=node.kind in _METADATA)
+        scope = node if kind == "TypeFeaturing" else find_expression_scope(node)
+        return LookupContext(scope, without=node, is_metadata=node.kind in _METADATA)
     if kind in _IMPORTED:
-        return _import(
+        return _make_import_context(
             node, everything=kind in _MEMBER and bool(node.attributes.get("isImportAll"))
         )
-    before = _before(node, relation) if kind == "FeatureChaining" else None
-    return Start(namespace(node), without=node, before=before)
+    before = _find_previous_link(node, relation) if kind == "FeatureChaining" else None
+    return LookupContext(find_namespace(node), without=node, before=before)
 
 
-def _import(node: Node, everything: bool) -> Start:
-    """A filtered import is within a package of its own, which another import owns."""
-    scope = namespace(node)
+def _make_import_context(node: Node, everything: bool) -> LookupContext:
+    """Return the context of an import. Another import owns the package of a filtered one."""
+    scope = find_namespace(node)
     importing = [] if scope is None else [scope]
     while importing and importing[-1].owner is not None and importing[-1].owner.kind in _IMPORTS:
-        above = namespace(importing[-1].owner)
-        if above is None:
+        namespace = find_namespace(importing[-1].owner)
+        if namespace is None:
             break
-        importing.append(above)
-    return Start(scope, without=node, everything=everything, importing=tuple(importing))
+        importing.append(namespace)
+    return LookupContext(scope, without=node, everything=everything, importing=tuple(importing))
 
 
-def _before(node: Node, relation: Relation) -> Relation | None:
-    chain = [r for r in node.relations if r.kind == "FeatureChaining"]
-    index = chain.index(relation)
-    return chain[index - 1] if index else None
+def _find_previous_link(node: Node, relation: Relation) -> Relation | None:
+    links = [relation for relation in node.relations if relation.kind == "FeatureChaining"]
+    index = links.index(relation)
+    return links[index - 1] if index else None
 
 
-def _membership(node: Node) -> Start:
+def _make_membership_context(node: Node) -> LookupContext:
     if node.kind == "Membership":
-        return Start(namespace(node), without=node)
+        return LookupContext(find_namespace(node), without=node)
     if node.kind == "FeatureChainExpression":
-        return Start(None, operand=node.members[0] if node.members else None)
+        return LookupContext(None, operand=node.members[0] if node.members else None)
     if node.kind == "AssignmentActionUsage":
-        operand = _assigned(node)
-        return Start(None, operand=operand) if operand else Start(node)
-    if node.kind in _SKIPPED:
-        scope = beyond_expressions(node)
-        is_by = scope is not None and scope.kind == "SatisfyRequirementUsage"
-        return Start(scope, past_subjects=is_by)
-    return Start(namespace(node)) if node.kind == "TransitionUsage" else Start(node)
+        operand = _find_assigned_operand(node)
+        return LookupContext(None, operand=operand) if operand else LookupContext(node)
+    if node.kind in _TRANSPARENT:
+        scope = find_expression_scope(node)
+        is_subject_binding = scope is not None and scope.kind == "SatisfyRequirementUsage"
+        return LookupContext(scope, past_subjects=is_subject_binding)
+    return (
+        LookupContext(find_namespace(node))
+        if node.kind == "TransitionUsage"
+        else LookupContext(node)
+    )
 
 
-def _assigned(node: Node) -> Node | None:
-    """The expression before the dot of ``assign x.y := z``, where it is written apart."""
+def _find_assigned_operand(node: Node) -> Node | None:
+    """Return the expression before the dot of ``assign x.y := z``."""
     for member in node.members:
         if member.membership == "ParameterMembership":
             return next((m for m in member.members if m.membership == "FeatureValue"), None)
@@ -165,38 +174,38 @@ def _is_connector_end(node: Node) -> bool:
 
 
 def _is_event_of_message(node: Node) -> bool:
-    """Whether a message begins or ends with it: ``message from a to b`` (SysML 8.2.2.16.2)."""
+    """Whether an event begins or ends a message: ``message from a to b`` (8.2.2.16.2)."""
     owner = node.owner
     is_parameter = node.membership == "ParameterMembership"
     return is_parameter and owner is not None and owner.kind in _FLOWS and node.kind in _EVENTS
 
 
-def _beyond_transition(connector: Node | None) -> Node | None:
-    """Where the ends of a connector are looked up; those of a transition's, around that."""
-    scope = namespace(connector) if connector else None
-    return namespace(scope) if scope is not None and scope.kind == "TransitionUsage" else scope
+def _find_end_scope(connector: Node | None) -> Node | None:
+    """Return the scope of a connector's ends; those of a transition's are outside of it."""
+    scope = find_namespace(connector) if connector else None
+    return find_namespace(scope) if scope is not None and scope.kind == "TransitionUsage" else scope
 
 
-def namespace(node: Node) -> Node | None:
-    """The nearest namespace around ``node``."""
+def find_namespace(node: Node) -> Node | None:
+    """Return the nearest namespace around ``node``."""
     owner = node.owner
     while owner is not None and owner.kind not in NAMESPACES:
         owner = owner.owner
     return owner
 
 
-def beyond_expressions(node: Node) -> Node | None:
-    """The nearest namespace around ``node`` in which names of an expression are looked up."""
-    owner = namespace(node)
-    while owner is not None and (node.membership == "FeatureValue" or owner.kind in _SKIPPED):
+def find_expression_scope(node: Node) -> Node | None:
+    """Return the nearest namespace around ``node`` in which an expression is looked up."""
+    owner = find_namespace(node)
+    while owner is not None and (node.membership == "FeatureValue" or owner.kind in _TRANSPARENT):
         node = owner
-        owner = namespace(node)
+        owner = find_namespace(node)
     return owner
 
 
-def outer(scope: Node) -> Node | None:
-    """The next scope outwards."""
+def find_outer_scope(scope: Node) -> Node | None:
+    """Return the next scope outwards."""
     owner = scope.owner
-    while owner is not None and (owner.kind not in NAMESPACES or owner.kind in _SKIPPED):
+    while owner is not None and (owner.kind not in NAMESPACES or owner.kind in _TRANSPARENT):
         owner = owner.owner
     return owner

@@ -1,81 +1,97 @@
-"""The types of features: the most special of all that their generals are typed by."""
+"""Types of features: the most special of all types of their generals."""
 
 from collections.abc import Callable
 
-from sysmlc.language.names.generals import Generals
-from sysmlc.language.names.symbols import FEATURES
+from sysmlc.language.metaclasses import FEATURES
+from sysmlc.language.names.generals import GeneralLookup
 from sysmlc.language.tree import Node
 
-_DEEP = 100
-"""Features that are typed by what they specialise in so many steps are looked at one by one."""
+_MAX_DEPTH = 100
+"""Length of chains of generals for which the recursion of ``_find_single`` is used."""
 
 
-class Types:
-    """Types of features, each found once; ``supers`` gives all that a type specialises.
+class FeatureTypes:
+    """Memoised types of features.
 
-    Most features have one type that specialises all others which they have from their generals:
-    it follows from such types of the generals.
+    Most features have one type that specialises all others which they inherit. It is computed from
+    the single types of the generals. Only features without such a type collect all types.
+    ``supertypes`` returns a type with everything that it specialises.
     """
 
-    def __init__(self, lookup: Generals, supers: Callable[[Node], dict[Node, None]]) -> None:
+    def __init__(
+        self, lookup: GeneralLookup, supertypes: Callable[[Node], dict[Node, None]]
+    ) -> None:
         self._lookup = lookup
-        self._supers = supers
-        self._single: dict[Node, Node | None] = {}
-        self._several: dict[tuple[Node, ...], list[Node]] = {}
+        self._supertypes = supertypes
+        self._single_types: dict[Node, Node | None] = {}
+        self._multiple_types: dict[tuple[Node, ...], list[Node]] = {}
 
-    def of(self, node: Node) -> list[Node]:
-        """The types of a feature: its own, else those of what it subsets and redefines."""
-        single = self._one(node, 0)
-        return [single] if single is not None else list(self._among(node))
+    def find_types(self, node: Node) -> list[Node]:
+        """Return the types of a feature: its own, else those of what it subsets and redefines."""
+        single = self._find_single(node, 0)
+        return [single] if single is not None else list(self._find_several(node))
 
-    def _one(self, node: Node, depth: int) -> Node | None:
-        """The type of a feature that specialises its others; None where that is not known."""
-        if node in self._single:
-            return self._single[node]
-        if depth > _DEEP:
+    def _find_single(self, node: Node, depth: int) -> Node | None:
+        """Return the type of a feature that specialises all its other types, if known."""
+        if node in self._single_types:
+            return self._single_types[node]
+        if depth > _MAX_DEPTH:
             return None
-        self._single[node] = None  # for who asks while it is being found
-        found: Node | None = None
+        self._single_types[node] = None  # the value for recursive queries in a cycle
+        result: Node | None = None
         for general in self._lookup.all_generals(node):
-            one = general if general.kind not in FEATURES else self._one(general, depth + 1)
-            found = one if found is None or one is None else self._special(found, one)
-            if found is None:
+            type_ = (
+                general if general.kind not in FEATURES else self._find_single(general, depth + 1)
+            )
+            result = (
+                type_ if result is None or type_ is None else self._choose_special(result, type_)
+            )
+            if result is None:
                 return None
-        self._single[node] = found
-        return found
+        self._single_types[node] = result
+        return result
 
-    def _special(self, one: Node, other: Node) -> Node | None:
-        """Which of two types specialises the other; None for neither and for both."""
-        if one is other:
-            return one
-        is_special = other in self._supers(one)
-        if is_special is (one in self._supers(other)):
+    def _choose_special(self, left: Node, right: Node) -> Node | None:
+        """Return the type that specialises the other one; None if neither or both do."""
+        if left is right:
+            return left
+        is_special = right in self._supertypes(left)
+        if is_special is (left in self._supertypes(right)):
             return None
-        return one if is_special else other
+        return left if is_special else right
 
-    def _among(self, node: Node) -> list[Node]:
-        """The most special of what is no feature among generals of a feature, and theirs."""
+    def _find_several(self, node: Node) -> list[Node]:
+        """Return the most special types among the generals of a feature and theirs."""
         generals = self._lookup.all_generals(node)
-        known = self._several.get(generals)
-        if known is None:
-            known = self._several[generals] = self._most_special(self._above(generals))
-        return known
+        cached = self._multiple_types.get(generals)
+        if cached is None:
+            cached = self._multiple_types[generals] = self._drop_general(
+                self._collect_types(generals)
+            )
+        return cached
 
-    def _above(self, generals: tuple[Node, ...]) -> list[Node]:
-        """What is no feature among generals of a feature and theirs, the nearest first."""
-        found: dict[Node, None] = {}
+    def _collect_types(self, generals: tuple[Node, ...]) -> list[Node]:
+        """Return all types among generals of a feature and theirs, nearest first."""
+        types: dict[Node, None] = {}
         seen: set[Node] = set()
-        waiting = [generals]
-        for some in waiting:
-            for one in some:
-                if one.kind not in FEATURES:
-                    found[one] = None
-                elif one not in seen:
-                    seen.add(one)
-                    waiting.append(self._lookup.all_generals(one))
-        return list(found)
+        worklist = [generals]
+        for generals_of_feature in worklist:
+            for general in generals_of_feature:
+                if general.kind not in FEATURES:
+                    types[general] = None
+                elif general not in seen:
+                    seen.add(general)
+                    worklist.append(self._lookup.all_generals(general))
+        return list(types)
 
-    def _most_special(self, found: list[Node]) -> list[Node]:
-        if len(found) < 2:
-            return found
-        return [t for t in found if not any(t is not o and t in self._supers(o) for o in found)]
+    def _drop_general(self, types: list[Node]) -> list[Node]:
+        """Return the types that no other one of ``types`` specialises."""
+        if len(types) < 2:
+            return types
+        return [
+            type_
+            for type_ in types
+            if not any(
+                type_ is not special and type_ in self._supertypes(special) for special in types
+            )
+        ]

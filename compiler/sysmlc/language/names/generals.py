@@ -1,4 +1,4 @@
-"""What elements specialise and redefine, as the text says and by position."""
+"""Generals of elements: what they specialise and redefine, by the text and by position."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable
@@ -9,17 +9,18 @@ from sysmlc.language.names import expression_results as results
 from sysmlc.language.names import positional_redefinition as positions
 from sysmlc.language.tree import Node, Reference, Relation
 
-GENERAL = kinds_of("Specialization") | {"Conjugation", "FeatureChaining"}
-"""Relations whose target gives its members to the node that has them."""
+GENERALIZATION_KINDS = kinds_of("Specialization") | {"Conjugation", "FeatureChaining"}
+"""Relations by which a node inherits the members of the target."""
 
 
-class Generals(ABC):
-    """Generals of elements, each found once.
+class GeneralLookup(ABC):
+    """Memoised generals of elements.
 
-    ``cuts`` counts the questions that were not answered because their answer is being looked
-    for already: what was found while one was cut is not remembered, so cycles end and change no
-    other answer. ``abandoned`` has references that were too deep. ``cycles`` has elements that
-    specialise themselves.
+    The queries call each other recursively and may ask for a value that is being computed. Such a
+    query returns an incomplete value and increments ``cycle_hits``. A value is memoised only if no
+    cycle was hit while it was computed, so a cycle ends and changes no other answer.
+    ``abandoned_references`` could not be resolved within the recursion limit. ``cycles`` has
+    elements that specialise themselves.
     """
 
     def __init__(
@@ -27,208 +28,217 @@ class Generals(ABC):
     ) -> None:
         self._implied = implied
         self._by_role = by_role
-        self.cuts = 0
+        self.cycle_hits = 0
         self.cycles: list[Node] = []
         self._active: set[Reference] = set()
-        self.abandoned: set[Reference] = set()
+        self.abandoned_references: set[Reference] = set()
         self._cyclic: set[Node] = set()
-        self._pointed: set[Node] = set()
+        self._general_targets: set[Node] = set()
         self._generals: dict[Node, list[Node]] = {}
-        self._silently: dict[Node, tuple[Node, ...]] = {}
+        self._implied_generals: dict[Node, tuple[Node, ...]] = {}
         self._all_generals: dict[Node, tuple[Node, ...]] = {}
-        self._redefining: dict[Node, list[Node]] = {}
-        self._placing: set[Node | tuple[Node, str]] = set()
-        """Features, and roles of owners, whose positions are being looked at."""
+        self._positional_members: dict[Node, list[Node]] = {}
+        self._active_positions: set[Node | tuple[Node, str]] = set()
+        """Features, and roles of owners, whose positions are being computed."""
         self._positions: dict[Node, list[Node]] = {}
         self._own_of_role: dict[tuple[Node, str], list[Node]] = {}
         self._at_positions: dict[tuple[Node, str], list[Node]] = {}
 
     def abandon(self) -> None:
-        """Give up what is being looked for, after an error in the midst of it."""
+        """Reset the state of the queries that a RecursionError interrupted."""
         for reference in self._active:
             reference.set_targets([])
-        self.abandoned |= self._active
+        self.abandoned_references |= self._active
         self._active.clear()
-        self._placing.clear()
+        self._active_positions.clear()
 
     @abstractmethod
     def target(self, node: Node, relation: Relation) -> Node | None:
-        """The element that a relation of ``node`` leads to; None when a name leads nowhere."""
+        """Return the element that a relation of ``node`` leads to, or None if it is unresolved."""
 
     @abstractmethod
-    def element(self, hit: Node) -> Node | None:
-        """What a member stands for: the element of an alias, else the member itself."""
+    def resolve_alias(self, hit: Node) -> Node | None:
+        """Return the element that a member stands for: that of an alias, else the member itself."""
 
     def generals(self, node: Node) -> list[Node]:
-        """What ``node`` specialises as the text says: types, subsetted, redefined features ..."""
-        known = self._generals.get(node)
-        if known is not None:
-            return known
+        """Return the generals that the text states: types, subsetted, redefined features ..."""
+        cached = self._generals.get(node)
+        if cached is not None:
+            return cached
         if not node.relations:
             return self._generals.setdefault(node, [])
-        before = self.cuts
-        found: list[Node] = []
+        hits_before = self.cycle_hits
+        generals: list[Node] = []
         links: list[Node] = []
         for relation in node.relations:
-            if relation.kind in GENERAL or (
+            if relation.kind in GENERALIZATION_KINDS or (
                 relation.kind == "Membership" and node.kind in contexts.INSTANTIATIONS
             ):
                 target = self.target(node, relation)
-                if target is not None and target not in found:
+                if target is not None and target not in generals:
                     if relation.kind == "FeatureChaining":
-                        found = [one for one in found if one not in links]
+                        generals = [general for general in generals if general not in links]
                         links.append(target)
-                    found.append(target)
-        if self.cuts == before:
-            self._generals[node] = found
-            self._pointed.update(found)
-            if node in self._pointed:
-                self._find_cycle(node)
-        return found
+                    generals.append(target)
+        if self.cycle_hits == hits_before:
+            self._generals[node] = generals
+            self._general_targets.update(generals)
+            if node in self._general_targets:
+                self._record_cycle(node)
+        return generals
 
-    def _find_cycle(self, node: Node) -> None:
-        """Note when ``node`` specialises itself: those in a circle inherit all of each other."""
-        reached = self.reached(node)
-        if node not in reached or node in self._cyclic:
+    def _record_cycle(self, node: Node) -> None:
+        """Record ``node`` if it specialises itself.
+
+        Elements in a cycle inherit everything of each other.
+        """
+        ancestors = self.known_ancestors(node)
+        if node not in ancestors or node in self._cyclic:
             return
         specials: dict[Node, list[Node]] = {}
-        for one in reached:
-            for general in self._generals.get(one, ()):
-                specials.setdefault(general, []).append(one)
-        circle = {node}
-        waiting = [node]
-        while waiting:
-            found = [one for one in specials.get(waiting.pop(), ()) if one not in circle]
-            circle.update(found)
-            waiting += found
-        self._cyclic |= circle
+        for ancestor in ancestors:
+            for general in self._generals.get(ancestor, ()):
+                specials.setdefault(general, []).append(ancestor)
+        cycle = {node}
+        worklist = [node]
+        while worklist:
+            specials_in_cycle = [
+                special for special in specials.get(worklist.pop(), ()) if special not in cycle
+            ]
+            cycle.update(specials_in_cycle)
+            worklist += specials_in_cycle
+        self._cyclic |= cycle
         self.cycles.append(node)
 
-    def circle(self, node: Node) -> list[Node]:
-        """The shortest way from ``node`` through its generals to itself, without ``node``."""
-        before: dict[Node, Node] = {}
-        waiting = [node]
-        for one in waiting:
-            for general in self._generals.get(one, ()):
+    def find_cycle_path(self, node: Node) -> list[Node]:
+        """Return the shortest path from ``node`` through its generals to itself, exclusive."""
+        previous: dict[Node, Node] = {}
+        worklist = [node]
+        for current in worklist:
+            for general in self._generals.get(current, ()):
                 if general is node:
-                    way = [one]
-                    while way[-1] is not node:
-                        way.append(before[way[-1]])
-                    return way[-2::-1]
-                if general not in before:
-                    before[general] = one
-                    waiting.append(general)
+                    path = [current]
+                    while path[-1] is not node:
+                        path.append(previous[path[-1]])
+                    return path[-2::-1]
+                if general not in previous:
+                    previous[general] = current
+                    worklist.append(general)
         return []
 
-    def reached(self, node: Node) -> list[Node]:
-        """What ``node`` specialises, as far as it is known, the nearest first."""
-        reached: dict[Node, None] = {}
-        waiting = [node]
-        while waiting:
-            for general in self._generals.get(waiting.pop(0), ()):
-                if general not in reached:
-                    reached[general] = None
-                    waiting.append(general)
-        return list(reached)
+    def known_ancestors(self, node: Node) -> list[Node]:
+        """Return the memoised direct and indirect generals of ``node``, nearest first."""
+        ancestors: dict[Node, None] = {}
+        worklist = [node]
+        while worklist:
+            for general in self._generals.get(worklist.pop(0), ()):
+                if general not in ancestors:
+                    ancestors[general] = None
+                    worklist.append(general)
+        return list(ancestors)
 
     def conforms(self, node: Node, general: Node) -> bool:
-        """Whether ``node`` specialises ``general`` as the text says, in any number of steps."""
-        seen, waiting = {node}, [node]
-        while waiting:
-            one = waiting.pop()
-            if one is general:
+        """Whether ``node`` is ``general`` or specialises it by relations that the text states."""
+        seen, worklist = {node}, [node]
+        while worklist:
+            current = worklist.pop()
+            if current is general:
                 return True
-            for other in self.generals(one):
-                if other not in seen:
-                    seen.add(other)
-                    waiting.append(other)
+            for ancestor in self.generals(current):
+                if ancestor not in seen:
+                    seen.add(ancestor)
+                    worklist.append(ancestor)
         return False
 
-    def redefined(self, feature: Node) -> set[Node]:
-        """What a feature redefines, directly or not."""
-        found: set[Node] = set()
-        waiting = [feature]
-        while waiting:
-            node = waiting.pop()
+    def redefined_features(self, feature: Node) -> set[Node]:
+        """Return the features that ``feature`` redefines, directly or not."""
+        redefined: set[Node] = set()
+        worklist = [feature]
+        while worklist:
+            node = worklist.pop()
             for relation in node.relations:
                 if relation.kind == "Redefinition":
                     target = self.target(node, relation)
-                    if target is not None and target not in found:
-                        found.add(target)
-                        waiting.append(target)
-            waiting += [other for other in self.by_position(node) if other not in found]
-            found.update(self.by_position(node))
-        return found
+                    if target is not None and target not in redefined:
+                        redefined.add(target)
+                        worklist.append(target)
+            worklist += [
+                general for general in self.redefined_by_position(node) if general not in redefined
+            ]
+            redefined.update(self.redefined_by_position(node))
+        return redefined
 
-    def _silent(self, scope: Node) -> list[Node]:
-        """The members of ``scope`` that redefine something though the text does not say so."""
-        known = self._redefining.get(scope)
-        if known is None:
-            known = self._redefining[scope] = [m for m in scope.members if positions.counts(m)]
-        return known
+    def _find_positional_members(self, scope: Node) -> list[Node]:
+        """Return the members of ``scope`` that may redefine a feature without stating it."""
+        cached = self._positional_members.get(scope)
+        if cached is None:
+            cached = self._positional_members[scope] = [
+                member for member in scope.members if positions.may_redefine_by_position(member)
+            ]
+        return cached
 
-    def by_position(self, feature: Node) -> list[Node]:
-        """What a feature redefines because of its position or its membership."""
-        known = self._positions.get(feature)
-        if known is None:
-            if not positions.counts(feature):
+    def redefined_by_position(self, feature: Node) -> list[Node]:
+        """Return the features that ``feature`` redefines by its position or its membership."""
+        cached = self._positions.get(feature)
+        if cached is None:
+            if not positions.may_redefine_by_position(feature):
                 return self._positions.setdefault(feature, [])
-            if feature in self._placing:
-                self.cuts += 1
+            if feature in self._active_positions:
+                self.cycle_hits += 1
                 return []
-            before = self.cuts
-            self._placing.add(feature)
-            known = positions.redefined(feature, self) or self._by_role(feature)
-            self._placing.discard(feature)
-            if self.cuts == before:
-                self._positions[feature] = known
-        return known
+            hits_before = self.cycle_hits
+            self._active_positions.add(feature)
+            cached = positions.find_redefined(feature, self) or self._by_role(feature)
+            self._active_positions.discard(feature)
+            if self.cycle_hits == hits_before:
+                self._positions[feature] = cached
+        return cached
 
-    def own_of_role(self, scope: Node, role: str) -> list[Node]:
-        """The features of a type with one role by position, in the order of the text."""
+    def own_features_of_role(self, scope: Node, role: str) -> list[Node]:
+        """Return the features of a type with a positional role, in the order of the text."""
         key = (scope, role)
-        known = self._own_of_role.get(key)
-        if known is None:
-            known = self._own_of_role[key] = positions.own(scope, role)
-        return known
+        cached = self._own_of_role.get(key)
+        if cached is None:
+            cached = self._own_of_role[key] = positions.find_own_features(scope, role)
+        return cached
 
-    def at_positions(self, scope: Node, role: str) -> list[Node]:
-        """The features of a type with one role by position, own ones before inherited ones."""
+    def features_of_role(self, scope: Node, role: str) -> list[Node]:
+        """Return the features of a type with a positional role, own before inherited ones."""
         key = (scope, role)
-        known = self._at_positions.get(key)
-        if known is None:
-            if key in self._placing:
-                self.cuts += 1
+        cached = self._at_positions.get(key)
+        if cached is None:
+            if key in self._active_positions:
+                self.cycle_hits += 1
                 return []
-            before = self.cuts
-            self._placing.add(key)
-            known = positions.gather(scope, role, self)
-            self._placing.discard(key)
-            if self.cuts == before:
-                self._at_positions[key] = known
-        return known
+            hits_before = self.cycle_hits
+            self._active_positions.add(key)
+            cached = positions.gather_features(scope, role, self)
+            self._active_positions.discard(key)
+            if self.cycle_hits == hits_before:
+                self._at_positions[key] = cached
+        return cached
 
     def all_generals(self, node: Node) -> tuple[Node, ...]:
-        """What ``node`` specialises as the text says and what it may implicitly."""
-        known = self._all_generals.get(node)
-        if known is None:
-            before = self.cuts
-            known = (*self.generals(node), *self._silent_generals(node))
-            if self.cuts == before:
-                self._all_generals[node] = known
-        return known
+        """Return the generals that the text states, then those that may be implied."""
+        cached = self._all_generals.get(node)
+        if cached is None:
+            hits_before = self.cycle_hits
+            cached = (*self.generals(node), *self._find_implied_generals(node))
+            if self.cycle_hits == hits_before:
+                self._all_generals[node] = cached
+        return cached
 
-    def _silent_generals(self, node: Node) -> tuple[Node, ...]:
-        known = self._silently.get(node)
-        if known is None:
-            before = self.cuts
-            value = results.of_value(node, self) if not self.generals(node) else None
-            placed = self.by_position(node)
-            known = self._implied(node)
-            if placed:
-                known = (*placed, *known)
+    def _find_implied_generals(self, node: Node) -> tuple[Node, ...]:
+        cached = self._implied_generals.get(node)
+        if cached is None:
+            hits_before = self.cycle_hits
+            value = results.find_value_result(node, self) if not self.generals(node) else None
+            by_position = self.redefined_by_position(node)
+            cached = self._implied(node)
+            if by_position:
+                cached = (*by_position, *cached)
             if value is not None and value is not node:
-                known = (value, *known)
-            if self.cuts == before:
-                self._silently[node] = known
-        return known
+                cached = (value, *cached)
+            if self.cycle_hits == hits_before:
+                self._implied_generals[node] = cached
+        return cached

@@ -1,9 +1,14 @@
-"""Relations that the specification adds to those that a text states (KerML 8.4, SysML 8.4)."""
+"""Relations that the specification adds to those that a text states (KerML 8.4, SysML 8.4).
 
-from sysmlc.language.metaclasses import kinds_of
-from sysmlc.language.names.implied import is_part, owning_type
+The generals that features have by their types are those of KerML 8.4.4.2 to 8.4.4.4:
+checkFeatureDataValueSpecialization, checkFeatureOccurrenceSpecialization,
+checkFeatureSuboccurrenceSpecialization, checkFeatureObjectSpecialization,
+checkFeatureSubobjectSpecialization, checkFeaturePortionSpecialization.
+"""
+
+from sysmlc.language.metaclasses import FEATURES, TYPES, kinds_of
+from sysmlc.language.names.implied import find_owning_type, is_part
 from sysmlc.language.names.model import Model
-from sysmlc.language.names.symbols import FEATURES, TYPES
 from sysmlc.language.tree import Node, Reference, Relation
 
 _BASES = (
@@ -11,66 +16,73 @@ _BASES = (
     (kinds_of("Class"), "Occurrences::occurrences", "Occurrences::Occurrence::suboccurrences"),
     (kinds_of("DataType"), "Base::dataValues", ""),
 )
-"""Metaclasses of types; what a feature of such a type specialises, and what as a part of one."""
+"""Kinds of types, the base of a feature with such a type, and that of a part of such an owner."""
 _CLASSES = kinds_of("Class")
 _PORTIONS = "Occurrences::Occurrence::portions"
 
 
-def generals_by_type(model: Model, node: Node) -> tuple[Node, ...]:
-    """What ``node`` specialises because of the types that its text says.
-
-    Not what a feature that it specialises does for the same reason.
-    """
-    found = _candidates(model, node)
-    if not found:
+def find_typed_generals(model: Model, node: Node) -> tuple[Node, ...]:
+    """Return the bases of a feature by its stated types that no general of it has."""
+    bases = _find_type_bases(model, node)
+    if not bases:
         return ()
     generals = model.lookup.all_generals(node)
-    above = model.by_types_above.get(generals)
-    if above is None:
-        above = {one for general in _above(model, generals) for one in _candidates(model, general)}
-        model.by_types_above[generals] = above
-    return tuple([one for one in found if one not in above])
+    inherited_bases = model.typed_generals_above.get(generals)
+    if inherited_bases is None:
+        inherited_bases = {
+            one
+            for general in _collect_supertypes(model, generals)
+            for one in _find_type_bases(model, general)
+        }
+        model.typed_generals_above[generals] = inherited_bases
+    return tuple([one for one in bases if one not in inherited_bases])
 
 
-def _above(model: Model, generals: tuple[Node, ...]) -> set[Node]:
-    return {one for general in generals for one in model.supers_of(general)}
+def _collect_supertypes(model: Model, generals: tuple[Node, ...]) -> set[Node]:
+    return {one for general in generals for one in model.supertype_set(general)}
 
 
-def _candidates(model: Model, node: Node) -> tuple[Node, ...]:
-    known = model.by_type.get(node)
-    if known is None:
-        named = _names(model, node) if node.kind in FEATURES else []
-        found = [model.find(name) for name in named]
-        known = tuple([one for one in found if one is not None and one is not node])
-        model.by_type[node] = known
-    return known
+def _find_type_bases(model: Model, node: Node) -> tuple[Node, ...]:
+    bases = model.typed_generals.get(node)
+    if bases is None:
+        names = _list_base_names(model, node) if node.kind in FEATURES else []
+        elements = [model.find(name) for name in names]
+        bases = tuple(
+            [element for element in elements if element is not None and element is not node]
+        )
+        model.typed_generals[node] = bases
+    return bases
 
 
-def _names(model: Model, node: Node) -> list[str]:
+def _list_base_names(model: Model, node: Node) -> list[str]:
     names = (
-        [_PORTIONS] if node.attributes.get("isPortion") and _is_in(model, node, _CLASSES) else []
+        [_PORTIONS]
+        if node.attributes.get("isPortion") and _is_owned_by(model, node, _CLASSES)
+        else []
     )
-    stated = {one.kind for one in _stated(node)}
-    for kinds, base, part in _BASES if stated else ():
-        if not kinds.isdisjoint(stated):
-            is_inside = bool(part) and is_part(node) and _is_in(model, node, kinds)
-            names += [part, base] if is_inside else [base]
+    kinds_of_types = {type_.kind for type_ in _list_stated_types(node)}
+    for kinds, base, part_base in _BASES if kinds_of_types else ():
+        if not kinds.isdisjoint(kinds_of_types):
+            is_inside = bool(part_base) and is_part(node) and _is_owned_by(model, node, kinds)
+            names += [part_base, base] if is_inside else [base]
     return names
 
 
-def _stated(node: Node) -> list[Node]:
-    """The types that the text says for a feature."""
-    said = [r.reference.target for r in node.relations if r.kind == "FeatureTyping"]
-    return [one for one in said if one is not None]
+def _list_stated_types(node: Node) -> list[Node]:
+    """Return the types that the text states for a feature."""
+    targets = [
+        relation.reference.target for relation in node.relations if relation.kind == "FeatureTyping"
+    ]
+    return [target for target in targets if target is not None]
 
 
-def _is_in(model: Model, node: Node, kinds: frozenset[str]) -> bool:
-    """Whether a type of such a metaclass owns the feature, or a feature of such a type."""
-    owner = owning_type(node)
+def _is_owned_by(model: Model, node: Node, kinds: frozenset[str]) -> bool:
+    """Whether a type of one of ``kinds``, or a feature of such a type, owns the feature."""
+    owner = find_owning_type(node)
     if owner is None:
         return False
     if owner.kind in FEATURES:
-        return any(one.kind in kinds for one in model.types(owner))
+        return any(type_.kind in kinds for type_ in model.types(owner))
     return owner.kind in kinds
 
 
@@ -84,19 +96,19 @@ _DECLARED = TYPES - kinds_of("Multiplicity") - _EXPRESSIONS
 
 
 def implied_relations(model: Model, node: Node) -> list[Relation]:
-    """What the text does not say of a type or feature.
+    """Return the relations of a type or feature that the text does not state.
 
-    Expressions and multiplicities, which no one declares, have none, but for the conditions of
-    steps: those are parameters, and named by what they redefine.
+    Expressions and multiplicities have none. The conditions of steps are an exception: they are
+    parameters, and have the names of the parameters that they redefine.
     """
     if not _has_implied(node):
         return []
-    return [_relation(model, kind, one) for kind, one in _relations(model, node)]
+    return [_make_relation(model, kind, target) for kind, target in _list_relations(model, node)]
 
 
 def implied_redefinitions(model: Model, node: Node) -> list[Node]:
-    """What a feature redefines though the text does not say so."""
-    return model.lookup.by_position(node) if _has_implied(node) else []
+    """Return the features that a feature redefines without stating it."""
+    return model.lookup.redefined_by_position(node) if _has_implied(node) else []
 
 
 def _has_implied(node: Node) -> bool:
@@ -108,23 +120,23 @@ def _is_condition(node: Node) -> bool:
     return owner is not None and owner.kind in _STEPS
 
 
-def _relations(model: Model, node: Node) -> list[tuple[str, Node]]:
-    """Kind and target of each relation that is needed beside the written ones."""
-    made = [("Redefinition", one) for one in model.lookup.by_position(node)]
+def _list_relations(model: Model, node: Node) -> list[tuple[str, Node]]:
+    """Return kind and target of each relation that is needed beside the stated ones."""
+    relations = [("Redefinition", target) for target in model.lookup.redefined_by_position(node)]
     if node.kind not in _DECLARED:
-        return made
-    by_type = generals_by_type(model, node)
+        return relations
+    by_type = find_typed_generals(model, node)
     needed = dict.fromkeys(model.needed_generals(node, by_type))
-    for _, one in made:
-        needed.pop(one, None)
-    for kind, target in [*(("Subsetting", one) for one in by_type), *model.candidates(node)]:
+    for _, target in relations:
+        needed.pop(target, None)
+    for kind, target in [*(("Subsetting", target) for target in by_type), *model.candidates(node)]:
         if target in needed:
             del needed[target]
-            made.append((kind, target))
-    return made
+            relations.append((kind, target))
+    return relations
 
 
-def _relation(model: Model, kind: str, target: Node) -> Relation:
+def _make_relation(model: Model, kind: str, target: Node) -> Relation:
     reference = Reference((tuple(model.qualified_name(target).split("::")),))
     reference.set_targets([target])
     return Relation(kind, reference)

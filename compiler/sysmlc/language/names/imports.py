@@ -1,19 +1,18 @@
-"""What namespaces import (KerML 8.2.3.5.3 and 7.2.5.4)."""
+"""Import resolution: the members that namespaces import (KerML 8.2.3.5.3 and 7.2.5.4)."""
 
 from collections.abc import Callable
 
-from sysmlc.language.metaclasses import kinds_of
-from sysmlc.language.names.members import NONE, Hits, Members
-from sysmlc.language.names.metadata import passes
-from sysmlc.language.names.symbols import NAMESPACES
+from sysmlc.language.metaclasses import NAMESPACES, kinds_of
+from sysmlc.language.names.members import NO_HITS, Hits, MemberLookup
+from sysmlc.language.names.metadata import passes_filter
 from sysmlc.language.tree import Node, Relation
 
 _IMPORTS = kinds_of("Import")
 _EXPOSES = kinds_of("Expose")
 
 
-class Imports(Members):
-    """Imported members, each name looked up once for each namespace."""
+class ImportLookup(MemberLookup):
+    """Memoised lookup of imported members by namespace and name."""
 
     def __init__(
         self, implied: Callable[[Node], tuple[Node, ...]], by_role: Callable[[Node], list[Node]]
@@ -24,75 +23,79 @@ class Imports(Members):
         self._conditions: dict[Node, list[Node]] = {}
         self._below: dict[tuple[Node, bool], list[Node]] = {}
         self._seen: dict[tuple[Node, bool, str], Hits] = {}
-        """What one question has passed through already: imports may go in circles."""
+        """Results of the lookup in progress: imports may form a cycle."""
 
     def abandon(self) -> None:
-        """Give up what is being looked for, after an error in the midst of it."""
+        """Reset the state of the queries that a RecursionError interrupted."""
         super().abandon()
         self._seen.clear()
 
     def imports(self, scope: Node) -> list[Node]:
-        """The imports that a namespace owns."""
-        known = self._imports.get(scope)
-        if known is None:
-            known = self._imports[scope] = [m for m in scope.members if m.kind in _IMPORTS]
-        return known
+        """Return the imports that a namespace owns."""
+        cached = self._imports.get(scope)
+        if cached is None:
+            cached = self._imports[scope] = [
+                member for member in scope.members if member.kind in _IMPORTS
+            ]
+        return cached
 
-    def imported(self, scope: Node, name: str, *, inside: bool) -> Hits:
-        """Members by one name that a namespace imports; from outside the public ones."""
+    def imported_members(self, scope: Node, name: str, *, inside: bool) -> Hits:
+        """Return imported members by name; with ``inside`` false only those of public imports."""
         imports = self.imports(scope)
         if not imports:
-            return NONE
+            return NO_HITS
         key = (scope, inside)
-        memo = self._imported.get(key)
-        if memo is None:
-            memo = self._imported[key] = {}
-        hits = memo.get(name)
+        cached = self._imported.get(key)
+        if cached is None:
+            cached = self._imported[key] = {}
+        hits = cached.get(name)
         if hits is not None:
             return hits
-        seen = self._seen.get((scope, inside, name))
-        if seen is not None:
-            self.cuts += 1
-            return seen
-        before, outermost = self.cuts, not self._seen
-        self._seen[scope, inside, name] = NONE
-        hits = self._gather(scope, imports, name, inside)
+        in_progress = self._seen.get((scope, inside, name))
+        if in_progress is not None:
+            self.cycle_hits += 1
+            return in_progress
+        hits_before, is_outermost = self.cycle_hits, not self._seen
+        self._seen[scope, inside, name] = NO_HITS
+        hits = self._find_imported(scope, imports, name, inside)
         self._seen[scope, inside, name] = hits
-        if self.cuts == before:
-            memo[name] = hits
-        if outermost:
+        if self.cycle_hits == hits_before:
+            cached[name] = hits
+        if is_outermost:
             self._seen.clear()
         return hits
 
-    def _gather(self, scope: Node, imports: list[Node], name: str, inside: bool) -> Hits:
-        found: list[Node] = []
+    def _find_imported(self, scope: Node, imports: list[Node], name: str, inside: bool) -> Hits:
+        hits: list[Node] = []
         for node in imports:
             if inside or node.visibility == "public":
-                found += [h for h in self._brought(node, name) if h not in found]
-        if not found:
-            return NONE
+                hits += [h for h in self._find_in_import(node, name) if h not in hits]
+        if not hits:
+            return NO_HITS
         conditions = self._conditions.get(scope)
         if conditions is None:
-            conditions = [m for m in scope.members if m.membership == "ElementFilterMembership"]
+            conditions = [
+                member for member in scope.members if member.membership == "ElementFilterMembership"
+            ]
             self._conditions[scope] = conditions
-        return tuple(h for h in found if all(passes(c, h, self) for c in conditions))
+        return tuple(hit for hit in hits if all(passes_filter(c, hit, self) for c in conditions))
 
-    def _brought(self, node: Node, name: str) -> Hits:
-        """Members by one name that one import brings."""
+    def _find_in_import(self, node: Node, name: str) -> Hits:
+        """Return the members by name that one import brings."""
         for member in node.members:
             if member.kind == "Package":
-                return self.visible(member, name)
+                return self.visible_outside(member, name)
         for relation in node.relations:
             if relation.kind == "importedMembership":
-                return self._one(node, relation, name)
+                return self._find_in_membership_import(node, relation, name)
             if relation.kind == "importedNamespace":
-                return self._many(node, self.target(node, relation), name)
-        return NONE
+                return self._find_in_namespace_import(node, self.target(node, relation), name)
+        return NO_HITS
 
-    def _one(self, node: Node, relation: Relation, name: str) -> Hits:
+    def _find_in_membership_import(self, node: Node, relation: Relation, name: str) -> Hits:
         hit = self.target(node, relation)
         if hit is None:
-            return NONE
+            return NO_HITS
         names = (
             (hit.name, hit.short_name)
             if hit.name or hit.short_name
@@ -101,36 +104,42 @@ class Imports(Members):
         if name in names:
             return (hit,)
         if node.attributes.get("isRecursive"):
-            return self._many(node, self.element(hit), name)
-        return NONE
+            return self._find_in_namespace_import(node, self.resolve_alias(hit), name)
+        return NO_HITS
 
-    def _many(self, node: Node, scope: Node | None, name: str) -> Hits:
+    def _find_in_namespace_import(self, node: Node, scope: Node | None, name: str) -> Hits:
         if scope is None:
-            return NONE
+            return NO_HITS
         everything = node.kind in _EXPOSES or bool(node.attributes.get("isImportAll"))
-        hits = tuple(self.inside(scope, name)) if everything else self.visible(scope, name)
+        hits = (
+            tuple(self.iter_visible_inside(scope, name))
+            if everything
+            else self.visible_outside(scope, name)
+        )
         if hits or not node.attributes.get("isRecursive"):
             return hits
-        for nested in self._nested(scope, everything):
-            hits = self.own_members(nested, name) if everything else self.visible(nested, name)
+        for nested in self._list_nested_namespaces(scope, everything):
+            hits = (
+                self.own_members(nested, name) if everything else self.visible_outside(nested, name)
+            )
             if hits:
                 return hits
-        return NONE
+        return NO_HITS
 
-    def _nested(self, scope: Node, everything: bool) -> list[Node]:
-        """The namespaces below ``scope`` that a recursive import searches, owners first."""
-        known = self._below.get((scope, everything))
-        if known is None:
-            known = self._below[scope, everything] = []
-            waiting = [scope]
-            while waiting:
-                node = waiting.pop()
+    def _list_nested_namespaces(self, scope: Node, everything: bool) -> list[Node]:
+        """Return the namespaces below ``scope`` that a recursive import searches, owners first."""
+        nested = self._below.get((scope, everything))
+        if nested is None:
+            nested = self._below[scope, everything] = []
+            worklist = [scope]
+            while worklist:
+                node = worklist.pop()
                 if node is not scope:
-                    known.append(node)
-                waiting += [
+                    nested.append(node)
+                worklist += [
                     member
                     for member in reversed(node.members)
                     if member.kind in NAMESPACES
                     and (everything or member.visibility in ("", "public"))
                 ]
-        return known
+        return nested

@@ -1,42 +1,42 @@
-"""Looking names up: where each reference of a model leads (KerML 8.2.3.5)."""
+"""Name lookup: the elements that the references of a model lead to (KerML 8.2.3.5)."""
 
 from collections.abc import Callable, Iterable
 
+from sysmlc.language.metaclasses import NAMESPACES, TYPES
 from sysmlc.language.names import contexts
 from sysmlc.language.names import expression_results as results
-from sysmlc.language.names.imports import Imports
+from sysmlc.language.names.imports import ImportLookup
 from sysmlc.language.names.members import Hits
-from sysmlc.language.names.symbols import NAMESPACES, TYPES
 from sysmlc.language.tree import Node, Reference, Relation
 
-_MOST = 2_000
-"""Circles that a name may be looked for in; behind those it is known as lost. Namesakes that each
-specialise what lies in all of them lead to one another in more ways than can be tried."""
+_MAX_CYCLES = 2_000
+"""Cycles hit by the lookup of one name before it is given up. Namesakes that each specialise what
+lies in all of them lead to one another in exponentially many ways."""
 
 
-class Lookup(Imports):
-    """Finds what names lead to, each once; ``roots`` gives the members of the global scope.
+class Lookup(ImportLookup):
+    """Memoised lookup of references; the result is stored in the reference.
 
-    ``implied`` gives the elements that a type specialises though the text does not say so,
-    ``by_role`` those that a member redefines because of its membership, ``text`` the text of
-    the document with a root.
+    ``find_roots`` returns the members of the global scope by name, ``implied`` the elements that a
+    type may implicitly specialise, ``by_role`` those that a member redefines because of its
+    membership, and ``text`` the text of the document with a root.
     """
 
     def __init__(
         self,
-        roots: Callable[[str], Hits],
+        find_roots: Callable[[str], Hits],
         implied: Callable[[Node], tuple[Node, ...]],
         by_role: Callable[[Node], list[Node]],
         text: Callable[[Node], str],
     ) -> None:
         super().__init__(implied, by_role)
-        self._roots = roots
+        self._find_roots = find_roots
         self._text = text
-        self.given_up: set[Reference] = set()
-        """References that were looked for in more circles than may be followed."""
+        self.circular_references: set[Reference] = set()
+        """References whose lookup hit too many cycles."""
 
     def target(self, node: Node, relation: Relation) -> Node | None:
-        """The element that a relation of ``node`` leads to; None when a name leads nowhere.
+        """Return the element that a relation of ``node`` leads to, or None if it is unresolved.
 
         The target of ``importedMembership`` may be the Membership node of an alias.
         """
@@ -44,88 +44,97 @@ class Lookup(Imports):
         if reference.targets is not None:
             return reference.target
         if reference in self._active:
-            self.cuts += 1
+            self.cycle_hits += 1
             return None
-        before = self.cuts
+        hits_before = self.cycle_hits
         self._active.add(reference)
-        targets = self._follow(node, relation)
+        targets = self._resolve_chain(node, relation)
         self._active.discard(reference)
-        is_whole, cuts = len(targets) == len(reference.chain), self.cuts - before
-        if not is_whole and cuts > _MOST:
-            self.given_up.add(reference)
-        if is_whole or not self._active or not 0 < cuts <= _MOST:
+        is_whole, new_hits = len(targets) == len(reference.chain), self.cycle_hits - hits_before
+        if not is_whole and new_hits > _MAX_CYCLES:
+            self.circular_references.add(reference)
+        if is_whole or not self._active or not 0 < new_hits <= _MAX_CYCLES:
             reference.set_targets(targets)
         return targets[-1] if is_whole else None
 
-    def _follow(self, node: Node, relation: Relation) -> list[Node]:
-        """The element of each link of the chain, as far as they are found."""
+    def _resolve_chain(self, node: Node, relation: Relation) -> list[Node]:
+        """Return the element of each link of the chain, up to the first that is not found."""
         reference = relation.reference
-        wanted = contexts.WANTED.get(relation.kind)
-        last = len(reference.chain) - 1
-        start = contexts.start(node, relation)
-        found: list[Node] = []
+        target_kinds = contexts.TARGET_KINDS.get(relation.kind)
+        last_index = len(reference.chain) - 1
+        context = contexts.find_context(node, relation)
+        targets: list[Node] = []
         for index, names in enumerate(reference.chain):
-            kinds = wanted if index == last else contexts.WANTED["Subsetting"]
-            if index or start.before is not None:
-                scope = found[-1] if index else self._link(node, start.before)
+            kinds = target_kinds if index == last_index else contexts.TARGET_KINDS["Subsetting"]
+            if index or context.before is not None:
+                scope = targets[-1] if index else self._resolve_link(node, context.before)
                 hit = self.descend(scope, names, 0, kinds) if scope else None
-            elif start.operand is not None:
-                scope = results.result(start.operand, self)
+            elif context.operand is not None:
+                scope = results.find_result(context.operand, self)
                 hit = self.descend(scope, names, 0, kinds) if scope else None
             else:
-                hit = self.search(start, names, kinds)
+                hit = self.search(context, names, kinds)
             if hit is None:
                 break
-            imported = relation.kind == "importedMembership"
-            element = hit if imported and index == last else self.element(hit)
+            is_import = relation.kind == "importedMembership"
+            element = hit if is_import and index == last_index else self.resolve_alias(hit)
             if element is None:
                 break
-            found.append(element)
-        return found
+            targets.append(element)
+        return targets
 
-    def _link(self, node: Node, relation: Relation | None) -> Node | None:
+    def _resolve_link(self, node: Node, relation: Relation | None) -> Node | None:
         return self.target(node, relation) if relation is not None else None
 
-    def element(self, hit: Node) -> Node | None:
-        """What a member stands for: the element of an alias, else the member itself."""
+    def resolve_alias(self, hit: Node) -> Node | None:
+        """Return the element that a member stands for: that of an alias, else the member itself."""
         if hit.kind != "Membership":
             return hit
-        return next((self.target(hit, r) for r in hit.relations if r.kind == "Membership"), None)
+        return next(
+            (
+                self.target(hit, relation)
+                for relation in hit.relations
+                if relation.kind == "Membership"
+            ),
+            None,
+        )
 
     def search(
-        self, start: contexts.Start, names: tuple[str, ...], kinds: frozenset[str] | None
+        self, context: contexts.LookupContext, names: tuple[str, ...], kinds: frozenset[str] | None
     ) -> Node | None:
-        """The member that a qualified name leads to from a scope, outwards."""
-        first, scope = names[0], start.scope
-        if first == "$" and len(names) > 1 and not self._is_quoted(start):
-            return self.among(self._roots(names[1]), names, 1, kinds)
+        """Return the member that a qualified name leads to from a scope outwards."""
+        first, scope = names[0], context.scope
+        if first == "$" and len(names) > 1 and not self._is_first_name_quoted(context):
+            return self.find_among(self._find_roots(names[1]), names, 1, kinds)
         while scope is not None:
-            for hits in self._stages_of(start, scope, first):
-                if start.past_subjects:
+            for hits in self._choose_stages(context, scope, first):
+                if context.past_subjects:
                     hits = tuple(hit for hit in hits if hit.membership != "SubjectMembership")
                 if hits:
-                    found = self.among(hits, names, 0, kinds, start.everything)
-                    if found is not None:
-                        return found
+                    member = self.find_among(hits, names, 0, kinds, context.everything)
+                    if member is not None:
+                        return member
                     if len(names) > 1 and any(map(self._is_namespace, hits)):
                         return None
-            scope = contexts.outer(scope)
-        found = self.among(self._roots(first), names, 0, kinds)
-        for importing in start.importing if found is None else ():
-            hits = self.imported(importing, first, inside=True)
-            found = found or self.among(hits, names, 0, kinds, start.everything)
-        return found
+            scope = contexts.find_outer_scope(scope)
+        member = self.find_among(self._find_roots(first), names, 0, kinds)
+        for importing in context.importing if member is None else ():
+            hits = self.imported_members(importing, first, inside=True)
+            member = member or self.find_among(hits, names, 0, kinds, context.everything)
+        return member
 
-    def _stages_of(self, start: contexts.Start, scope: Node, name: str) -> Iterable[Hits]:
-        """Members by one name in a scope, as far as a search looks at them there."""
-        if scope in start.importing:
-            return self._without_imports(scope, name)
-        if scope is start.scope and scope.kind in TYPES:
-            if start.inherited:
-                return (self._general_hits(scope, name),)
-            if start.is_metadata:
-                return self._without_implied(scope, name)
-        return self._stages(scope, name, start.without)
+    def _choose_stages(
+        self, context: contexts.LookupContext, scope: Node, name: str
+    ) -> Iterable[Hits]:
+        """Return the stages of the lookup of a name in one scope, nearest members first."""
+        if scope in context.importing:
+            return self._iter_stages_without_imports(scope, name)
+        if scope is context.scope and scope.kind in TYPES:
+            if context.inherited:
+                return (self._find_in_generals(scope, name),)
+            if context.is_metadata:
+                return self._iter_stages_without_implied(scope, name)
+        return self._iter_stages(scope, name, context.without)
 
     def descend(
         self,
@@ -135,15 +144,19 @@ class Lookup(Imports):
         kinds: frozenset[str] | None,
         everything: bool = False,
     ) -> Node | None:
-        """The member that the names from ``index`` on lead to, from outside of ``scope``.
+        """Return the member that the names from ``index`` on lead to, from outside of ``scope``.
 
-        ``everything``: private and protected members too, as ``import all`` sees them.
+        With ``everything``, private and protected members are visible, as for ``import all``.
         """
         name = names[index]
-        hits = tuple(self.inside(scope, name)) if everything else self.visible(scope, name)
-        return self.among(hits, names, index, kinds, everything)
+        hits = (
+            tuple(self.iter_visible_inside(scope, name))
+            if everything
+            else self.visible_outside(scope, name)
+        )
+        return self.find_among(hits, names, index, kinds, everything)
 
-    def among(
+    def find_among(
         self,
         hits: Hits,
         names: tuple[str, ...],
@@ -151,14 +164,14 @@ class Lookup(Imports):
         kinds: frozenset[str] | None,
         everything: bool = False,
     ) -> Node | None:
-        """The member that the names after ``index`` lead to from the first hit where they do."""
+        """Return the member that the names after ``index`` lead to from the first possible hit."""
         for hit in hits:
-            found = self._take(hit, names, index, kinds, everything)
-            if found is not None:
-                return found
+            member = self._match_hit(hit, names, index, kinds, everything)
+            if member is not None:
+                return member
         return None
 
-    def _take(
+    def _match_hit(
         self,
         hit: Node,
         names: tuple[str, ...],
@@ -166,24 +179,24 @@ class Lookup(Imports):
         kinds: frozenset[str] | None,
         everything: bool,
     ) -> Node | None:
-        """``hit`` when it ends the name and is of a wanted kind, else what lies further in it."""
-        element = hit if hit.kind != "Membership" else self.element(hit)
+        """Return ``hit`` if it ends the name and is of a kind, else the member inside of it."""
+        element = hit if hit.kind != "Membership" else self.resolve_alias(hit)
         if element is None:
             return None
         if index + 1 == len(names):
             return hit if kinds is None or element.kind in kinds else None
         return self.descend(element, names, index + 1, kinds, everything)
 
-    def _is_quoted(self, start: contexts.Start) -> bool:
-        """Whether ``$`` is a name in quotes: the reference is longer than its names."""
-        reference = start.reference
-        if reference is None or reference.start < 0 or start.scope is None:
+    def _is_first_name_quoted(self, context: contexts.LookupContext) -> bool:
+        """Whether ``$`` is a name in quotes, not the global scope."""
+        reference = context.reference
+        if reference is None or reference.start < 0 or context.scope is None:
             return False
-        root = start.scope
+        root = context.scope
         while root.owner is not None:
             root = root.owner
         return self._text(root)[reference.start : reference.start + 1] == "'"
 
     def _is_namespace(self, hit: Node) -> bool:
-        element = self.element(hit)
+        element = self.resolve_alias(hit)
         return element is not None and element.kind in NAMESPACES

@@ -1,25 +1,26 @@
-"""The members of one namespace by name: what it owns, what it inherits (KerML 8.2.3.5.3)."""
+"""Members of one namespace by name: owned and inherited ones (KerML 8.2.3.5.3)."""
 
 from abc import abstractmethod
 from collections.abc import Callable, Iterator
 
-from sysmlc.language.names.generals import Generals
-from sysmlc.language.names.symbols import TYPES, Owned, naming, owned
+from sysmlc.language.metaclasses import TYPES
+from sysmlc.language.names.generals import GeneralLookup
+from sysmlc.language.names.symbols import SymbolTable, build_symbol_table, find_naming_reference
 from sysmlc.language.tree import Node
 
 Hits = tuple[Node, ...]
-"""Members found by one name, the nearest first; an alias is its Membership node."""
-NONE: Hits = ()
+"""Members found by one name, nearest first. An alias is represented by its Membership node."""
+NO_HITS: Hits = ()
 
 
-class Members(Generals):
-    """Members of namespaces, each name looked up once."""
+class MemberLookup(GeneralLookup):
+    """Memoised lookup of the members of namespaces by name."""
 
     def __init__(
         self, implied: Callable[[Node], tuple[Node, ...]], by_role: Callable[[Node], list[Node]]
     ) -> None:
         super().__init__(implied, by_role)
-        self._owned: dict[Node, Owned] = {}
+        self._owned: dict[Node, SymbolTable] = {}
         self._inherited: dict[Node, dict[str, Hits]] = {}
         self._inheriting: set[Node] = set()
         self._inheritable: dict[Node, frozenset[str] | None] = {}
@@ -27,40 +28,44 @@ class Members(Generals):
         self._names_above: dict[Node, frozenset[str]] = {}
 
     def abandon(self) -> None:
-        """Give up what is being looked for, after an error in the midst of it."""
+        """Reset the state of the queries that a RecursionError interrupted."""
         super().abandon()
         self._inheriting.clear()
 
     @abstractmethod
     def imports(self, scope: Node) -> list[Node]:
-        """The imports that a namespace owns."""
+        """Return the imports that a namespace owns."""
 
     @abstractmethod
-    def imported(self, scope: Node, name: str, *, inside: bool) -> Hits:
-        """Members by one name that a namespace imports; from outside the public ones."""
+    def imported_members(self, scope: Node, name: str, *, inside: bool) -> Hits:
+        """Return imported members by name; with ``inside`` false only those of public imports."""
 
-    def owned(self, scope: Node) -> Owned:
-        """What ``scope`` owns, by name."""
+    def symbol_table(self, scope: Node) -> SymbolTable:
+        """Return the owned members of ``scope`` by name."""
         index = self._owned.get(scope)
         if index is None:
-            index = self._owned[scope] = owned(scope)
+            index = self._owned[scope] = build_symbol_table(scope)
         return index
 
     def own_members(self, scope: Node, name: str) -> Hits:
-        """The members by one name that ``scope`` owns; a nameless one needs what names it."""
-        hits = self.owned(scope).get(name)
+        """Return the owned members with a name; a nameless one if its naming reference resolves."""
+        hits = self.symbol_table(scope).get(name)
         if hits is None:
-            return NONE
-        return tuple([hit for hit in hits if hit.name or hit.short_name or self._is_named(hit)])
+            return NO_HITS
+        return tuple(
+            [hit for hit in hits if hit.name or hit.short_name or self._has_resolved_name(hit)]
+        )
 
-    def _is_named(self, feature: Node) -> bool:
-        reference = naming(feature)
-        relation = next((r for r in feature.relations if r.reference is reference), None)
+    def _has_resolved_name(self, feature: Node) -> bool:
+        reference = find_naming_reference(feature)
+        relation = next(
+            (relation for relation in feature.relations if relation.reference is reference), None
+        )
         return relation is None or self.target(feature, relation) is not None
 
-    def _stages(self, scope: Node, name: str, without: Node | None) -> Iterator[Hits]:
-        """Members by one name as seen from inside: all own ones, inherited, imported ones."""
-        hits = self.owned(scope).get(name)
+    def _iter_stages(self, scope: Node, name: str, without: Node | None) -> Iterator[Hits]:
+        """Yield the members visible inside ``scope`` by name: owned, inherited, imported ones."""
+        hits = self.symbol_table(scope).get(name)
         if hits is not None:
             if (
                 without in hits
@@ -68,164 +73,182 @@ class Members(Generals):
                 and name not in (without.name, without.short_name)
             ):
                 hits = [hit for hit in hits if hit is not without]
-            yield tuple([hit for hit in hits if hit.name or hit.short_name or self._is_named(hit)])
+            yield tuple(
+                [hit for hit in hits if hit.name or hit.short_name or self._has_resolved_name(hit)]
+            )
         if scope.kind in TYPES:
             yield self.inherited(scope, name)
         if self.imports(scope):
-            yield self.imported(scope, name, inside=True)
+            yield self.imported_members(scope, name, inside=True)
 
-    def _without_imports(self, scope: Node, name: str) -> Iterator[Hits]:
-        """All own members by one name, and inherited ones."""
+    def _iter_stages_without_imports(self, scope: Node, name: str) -> Iterator[Hits]:
+        """Yield owned members by name, then inherited ones."""
         yield self.own_members(scope, name)
         if scope.kind in TYPES:
             yield self.inherited(scope, name)
 
-    def _without_implied(self, scope: Node, name: str) -> Iterator[Hits]:
-        """Members by one name, inherited ones only of what the text says that a type is."""
+    def _iter_stages_without_implied(self, scope: Node, name: str) -> Iterator[Hits]:
+        """Yield members by name, without those that only implied generals have."""
         yield self.own_members(scope, name)
         for general in self.generals(scope):
-            yield self._heritable(general, name)
-        yield self.imported(scope, name, inside=True)
+            yield self._find_heritable(general, name)
+        yield self.imported_members(scope, name, inside=True)
 
-    def inside(self, scope: Node, name: str) -> Iterator[Node]:
-        """Members by one name as seen from inside: all own ones, inherited, imported."""
-        for hits in self._stages(scope, name, None):
+    def iter_visible_inside(self, scope: Node, name: str) -> Iterator[Node]:
+        """Yield members by name as seen from inside: owned, inherited, imported ones."""
+        for hits in self._iter_stages(scope, name, None):
             yield from hits
 
-    def visible(self, scope: Node, name: str) -> Hits:
-        """Members by one name as seen from outside: public own ones, inherited, imported."""
-        hits = [h for h in self.own_members(scope, name) if h.visibility in ("", "public")]
+    def visible_outside(self, scope: Node, name: str) -> Hits:
+        """Return members by name as seen from outside: public owned, inherited, imported ones."""
+        hits = [
+            member
+            for member in self.own_members(scope, name)
+            if member.visibility in ("", "public")
+        ]
         if not hits and scope.kind in TYPES:
             hits += [h for h in self.inherited(scope, name) if h.visibility != "protected"]
         if not hits:
-            hits += self.imported(scope, name, inside=False)
+            hits += self.imported_members(scope, name, inside=False)
         return tuple(hits)
 
     def inherited(self, scope: Node, name: str) -> Hits:
-        """Members by one name that a type inherits, without those that it redefines."""
+        """Return the members by name that a type inherits, without those that it redefines."""
         names = self._inheritable.get(scope)
         if names is not None and name not in names:
-            return NONE
-        memo = self._inherited.get(scope)
-        if memo is None:
-            memo = self._inherited[scope] = {}
-        hits = memo.get(name)
+            return NO_HITS
+        cached = self._inherited.get(scope)
+        if cached is None:
+            cached = self._inherited[scope] = {}
+        hits = cached.get(name)
         if hits is not None:
             return hits
         if scope in self._inheriting:
-            self.cuts += 1
-            return NONE
-        before = self.cuts
+            self.cycle_hits += 1
+            return NO_HITS
+        hits_before = self.cycle_hits
         self._inheriting.add(scope)
-        hits = self._general_hits(scope, name)
+        hits = self._find_in_generals(scope, name)
         if hits:
-            left = (self._instead(scope, hit) for hit in hits)
-            hits = tuple(dict.fromkeys(hit for hit in left if hit is not None))
+            replacements = (self._find_replacement(scope, hit) for hit in hits)
+            hits = tuple(dict.fromkeys(hit for hit in replacements if hit is not None))
         self._inheriting.discard(scope)
-        if self.cuts == before:
-            memo[name] = hits
+        if self.cycle_hits == hits_before:
+            cached[name] = hits
             if not hits and scope not in self._inheritable:
-                self._inheritable[scope] = self._learnt(scope)
+                self._inheritable[scope] = self._collect_inheritable_names(scope)
         return hits
 
-    def _learnt(self, scope: Node) -> frozenset[str] | None:
-        """The names of all that ``scope`` may inherit, found when all was searched in vain.
+    def _collect_inheritable_names(self, scope: Node) -> frozenset[str] | None:
+        """Return the names of all members that ``scope`` may inherit.
 
-        None where generals import some, are not known for good, or lead in a circle.
+        Called when a lookup failed, so that later failures are cheap. None where a general imports
+        names, has unknown generals, or is in a cycle.
         """
         key = self.all_generals(scope)
         if key not in self._names_of:
-            each = [self._names_from(general, {}) for general in key]
-            known = [names for names in each if names is not None]
-            whole = len(known) == len(each)
-            self._names_of[key] = frozenset().union(*known) if whole else None
+            names_of_generals = [self._collect_names(general, {}) for general in key]
+            complete = [names for names in names_of_generals if names is not None]
+            whole = len(complete) == len(names_of_generals)
+            self._names_of[key] = frozenset().union(*complete) if whole else None
         return self._names_of[key]
 
-    def _names_from(self, general: Node, below: dict[Node, None]) -> frozenset[str] | None:
-        """The names that ``general`` owns or inherits; ``below`` are those that asked for it."""
+    def _collect_names(self, general: Node, pending: dict[Node, None]) -> frozenset[str] | None:
+        """Return the names that ``general`` owns or inherits; ``pending`` has its callers."""
         names = self._names_above.get(general)
         if names is not None:
             return names
-        written, silent = self._generals.get(general), self._silently.get(general)
-        if written is None or silent is None or general in below:
+        stated, implied = self._generals.get(general), self._implied_generals.get(general)
+        if stated is None or implied is None or general in pending:
             return None
-        if any(one.visibility == "public" for one in self.imports(general)):
+        if any(imported.visibility == "public" for imported in self.imports(general)):
             return None
-        below[general] = None
-        found = set(self.owned(general))
-        for one in (*written, *silent):
-            inherited = self._names_from(one, below)
+        pending[general] = None
+        collected = set(self.symbol_table(general))
+        for inherited_from in (*stated, *implied):
+            inherited = self._collect_names(inherited_from, pending)
             if inherited is None:
                 return None
-            found |= inherited
-        del below[general]
-        names = self._names_above[general] = frozenset(found)
+            collected |= inherited
+        del pending[general]
+        names = self._names_above[general] = frozenset(collected)
         return names
 
-    def _general_hits(self, scope: Node, name: str) -> Hits:
+    def _find_in_generals(self, scope: Node, name: str) -> Hits:
         hits: list[Node] = []
         if scope in self._cyclic:
-            all_own = (h for g in self.reached(scope) for h in self.own_members(g, name))
-            return tuple(dict.fromkeys(h for h in all_own if h.visibility != "private"))
+            members = (
+                member for g in self.known_ancestors(scope) for member in self.own_members(g, name)
+            )
+            return tuple(
+                dict.fromkeys(member for member in members if member.visibility != "private")
+            )
         for general in self.generals(scope):
-            found = self._heritable(general, name)
-            if found:
-                hits += [hit for hit in found if hit not in hits]
+            inherited = self._find_heritable(general, name)
+            if inherited:
+                hits += [hit for hit in inherited if hit not in hits]
         if not hits and not self._may_inherit(scope, name):
-            return NONE
-        if not hits or any(map(is_of_library, hits)):
-            for general in self._silent_generals(scope):
-                found = self._heritable(general, name)
-                if found:
-                    hits += [hit for hit in found if hit not in hits]
-        return tuple(hits) if len(hits) < 2 else self._most_special(hits)
+            return NO_HITS
+        if not hits or any(map(is_in_library, hits)):
+            for general in self._find_implied_generals(scope):
+                inherited = self._find_heritable(general, name)
+                if inherited:
+                    hits += [hit for hit in inherited if hit not in hits]
+        return tuple(hits) if len(hits) < 2 else self._drop_general(hits)
 
     def _may_inherit(self, scope: Node, name: str) -> bool:
-        """Whether some general of a type has a name, as far as is known from what has the same."""
+        """Whether a general of the type may have a member by name, by the memoised names."""
         names = self._names_of.get(self.all_generals(scope))
         return names is None or name in names
 
-    def _heritable(self, general: Node, name: str) -> Hits:
-        """Members by one name that ``general`` gives to what specialises it."""
+    def _find_heritable(self, general: Node, name: str) -> Hits:
+        """Return the members by name that ``general`` passes on to its specialisations."""
         index = self._owned.get(general)
         if index is None:
-            index = self.owned(general)
+            index = self.symbol_table(general)
         if name in index:
-            hits = [h for h in self.own_members(general, name) if h.visibility != "private"]
+            hits = [
+                member
+                for member in self.own_members(general, name)
+                if member.visibility != "private"
+            ]
             if hits:
                 return tuple(hits)
         memo = self._inherited.get(general)
-        found = memo.get(name) if memo is not None else None
-        if found is None:
-            found = self.inherited(general, name)
-        return found or (
-            self.imported(general, name, inside=False) if self.imports(general) else NONE
+        inherited = memo.get(name) if memo is not None else None
+        if inherited is None:
+            inherited = self.inherited(general, name)
+        return inherited or (
+            self.imported_members(general, name, inside=False) if self.imports(general) else NO_HITS
         )
 
-    def _most_special(self, hits: list[Node]) -> Hits:
-        """Without the members that others of them redefine."""
-        redefined = {general for hit in hits for general in self.redefined(hit)}
+    def _drop_general(self, hits: list[Node]) -> Hits:
+        """Return the members that no other one of ``hits`` redefines."""
+        redefined = {general for hit in hits for general in self.redefined_features(hit)}
         return tuple(hit for hit in hits if hit not in redefined)
 
-    def _instead(self, scope: Node, hit: Node) -> Node | None:
-        """What ``scope`` has instead of an inherited member: the member itself, what redefines it
-        without a name of its own, or nothing."""
+    def _find_replacement(self, scope: Node, hit: Node) -> Node | None:
+        """Return the member of ``scope`` in place of an inherited one.
+
+        That is the inherited member itself, a member without a name that redefines it, or None if a
+        member with a name does.
+        """
         for member in scope.members:
             for relation in member.relations:
                 if relation.kind == "Redefinition":
                     name = relation.reference.chain[-1][-1]
                     if name in (hit.name, hit.short_name) or hit.name is None:
                         target = self.target(member, relation)
-                        if target is hit or (target and hit in self.redefined(target)):
+                        if target is hit or (target and hit in self.redefined_features(target)):
                             return None
-        for member in self._silent(scope):
-            if hit in self.by_position(member):
+        for member in self._find_positional_members(scope):
+            if hit in self.redefined_by_position(member):
                 return None if member.name else member
         return hit
 
 
-def is_of_library(node: Node) -> bool:
-    """Whether a member is of a library package: what is implied may give a more special one."""
+def is_in_library(node: Node) -> bool:
+    """Whether a member is in a library package: an implied general may have a more special one."""
     owner = node.owner
     while owner is not None and owner.owner is not None:
         node, owner = owner, owner.owner

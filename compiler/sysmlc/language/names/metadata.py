@@ -1,31 +1,34 @@
-"""Model-level evaluation for metadata: filter conditions and semantic metadata (KerML 7.2.5.4)."""
+"""Model-level evaluation of expressions about metadata (KerML 7.2.5.4, 8.4.4.13).
+
+The conditions of filtered imports are evaluated for each member. An element with semantic metadata
+specialises the base type that the metadata names.
+"""
 
 import operator as op
 from collections.abc import Callable
 
-from sysmlc.language.metaclasses import USAGES, is_a, is_composite
-from sysmlc.language.names.expression_results import named
+from sysmlc.language.metaclasses import FEATURES, USAGES, is_a, is_composite
+from sysmlc.language.names.expression_results import find_named_element
 from sysmlc.language.names.queries import LookupQueries
-from sysmlc.language.names.symbols import FEATURES
 from sysmlc.language.tree import Node
 
 Value = str | bool | int | float | None
-"""What an expression gives; None is the empty sequence."""
+"""Values of expressions; None is the empty sequence."""
 _METADATA = frozenset({"MetadataUsage", "MetadataFeature"})
-_STATED = frozenset(
+_BOOLEAN_ATTRIBUTES = frozenset(
     {"isAbstract", "isConstant", "isDerived", "isEnd", "isIndividual", "isNegated", "isOrdered"}
     | {"isParallel", "isPortion", "isSufficient", "isVariable", "isVariation"}
 )
-"""Attributes of metaclasses that are false unless the text states them."""
+"""Attributes that are false unless the text states them."""
 
 
 class UndecidedError(Exception):
-    """An expression that is not constant, or not understood: nothing is kept out because of it."""
+    """The expression is not constant, or not understood."""
 
 
-def passes(condition: Node, hit: Node, lookup: LookupQueries) -> bool:
-    """Whether a member may be imported; one that is not decided may."""
-    element = lookup.element(hit)
+def passes_filter(condition: Node, hit: Node, lookup: LookupQueries) -> bool:
+    """Whether a member may be imported; an undecided condition lets it pass."""
+    element = lookup.resolve_alias(hit)
     if element is None:
         return True
     try:
@@ -35,19 +38,23 @@ def passes(condition: Node, hit: Node, lookup: LookupQueries) -> bool:
 
 
 def evaluate(expression: Node, element: Node, lookup: LookupQueries) -> Value:
-    """The value of a model-level expression for an annotated element. Raises UndecidedError."""
+    """Return the value of an expression for an annotated element. Raises UndecidedError."""
     if "value" in expression.attributes:
         return expression.attributes["value"]
     operator = expression.attributes.get("operator")
     if operator is None:
-        return _referred(expression, element, lookup)
+        return _evaluate_reference(expression, element, lookup)
     if operator in ("@", "hastype", "istype"):
-        return _classified(expression, element, lookup)
-    operands = [m for m in expression.members if m.membership == "ParameterMembership"]
-    return _operated(str(operator), operands, element, lookup)
+        return _is_classified(expression, element, lookup)
+    operands = [
+        member for member in expression.members if member.membership == "ParameterMembership"
+    ]
+    return _apply_operator(str(operator), operands, element, lookup)
 
 
-def _operated(operator: str, operands: list[Node], element: Node, lookup: LookupQueries) -> Value:
+def _apply_operator(
+    operator: str, operands: list[Node], element: Node, lookup: LookupQueries
+) -> Value:
     values = [evaluate(operand, element, lookup) for operand in operands]
     if operator in ("and", "&"):
         return all(value is True for value in values)
@@ -60,9 +67,9 @@ def _operated(operator: str, operands: list[Node], element: Node, lookup: Lookup
     raise UndecidedError(operator)
 
 
-def _order(compare: Callable[[float, float], bool]) -> Callable[[Value, Value], bool]:
-    def ordered(one: Value, other: Value) -> bool:
-        numbers = [value for value in (one, other) if isinstance(value, int | float)]
+def _compare_numbers(compare: Callable[[float, float], bool]) -> Callable[[Value, Value], bool]:
+    def ordered(left: Value, right: Value) -> bool:
+        numbers = [value for value in (left, right) if isinstance(value, int | float)]
         return len(numbers) == 2 and compare(numbers[0], numbers[1])
 
     return ordered
@@ -74,69 +81,69 @@ _COMPARISONS: dict[str, Callable[[Value, Value], bool]] = {
     "!=": op.ne,
     "!==": op.ne,
     "xor": lambda one, other: (one is True) != (other is True),
-    "<": _order(op.lt),
-    "<=": _order(op.le),
-    ">": _order(op.gt),
-    ">=": _order(op.ge),
+    "<": _compare_numbers(op.lt),
+    "<=": _compare_numbers(op.le),
+    ">": _compare_numbers(op.gt),
+    ">=": _compare_numbers(op.ge),
 }
 
 
-def _classified(expression: Node, element: Node, lookup: LookupQueries) -> bool:
-    """``@M``: the element has metadata of that type, or its metaclass is that one."""
+def _is_classified(expression: Node, element: Node, lookup: LookupQueries) -> bool:
+    """Evaluate ``@M``: the element has metadata of that type, or that metaclass."""
     for member in expression.members:
         for relation in member.relations:
             if relation.kind == "FeatureTyping":
                 wanted = lookup.target(member, relation)
                 if wanted is not None:
-                    return _has(element, wanted, lookup)
+                    return _has_classifier(element, wanted, lookup)
     raise UndecidedError("type")
 
 
-def _has(element: Node, wanted: Node, lookup: LookupQueries) -> bool:
+def _has_classifier(element: Node, wanted: Node, lookup: LookupQueries) -> bool:
     if _is_reflective(wanted):
         return is_a(element.kind, wanted.name or "")
-    return any(lookup.conforms(one, wanted) for one in metadata(element))
+    return any(lookup.conforms(usage, wanted) for usage in find_metadata(element))
 
 
 def _is_reflective(wanted: Node) -> bool:
-    """Whether a metaclass is of the packages that describe KerML and SysML themselves."""
-    at: Node | None = wanted
-    while at is not None:
-        if at.kind == "LibraryPackage" and at.name in ("KerML", "SysML"):
+    """Whether a metaclass is in the libraries that describe KerML and SysML themselves."""
+    namespace: Node | None = wanted
+    while namespace is not None:
+        if namespace.kind == "LibraryPackage" and namespace.name in ("KerML", "SysML"):
             return True
-        at = at.owner
+        namespace = namespace.owner
     return False
 
 
-def metadata(element: Node) -> list[Node]:
-    """The metadata that an element owns."""
+def find_metadata(element: Node) -> list[Node]:
+    """Return the metadata that an element owns."""
     return [member for member in element.members if member.kind in _METADATA]
 
 
-def _referred(expression: Node, element: Node, lookup: LookupQueries) -> Value:
-    """``M::x`` or ``(as M).x``: what the metadata of the element gives for a feature."""
+def _evaluate_reference(expression: Node, element: Node, lookup: LookupQueries) -> Value:
+    """Evaluate ``M::x`` or ``(as M).x``: the value of a feature in the metadata of the element."""
     for relation in expression.relations:
         if relation.kind == "Membership":
             feature = lookup.target(expression, relation)
             if feature is not None and feature.kind in FEATURES:
-                return _given(feature, element, lookup)
+                return _evaluate_feature(feature, element, lookup)
     raise UndecidedError("reference")
 
 
-def _given(feature: Node, element: Node, lookup: LookupQueries) -> Value:
+def _evaluate_feature(feature: Node, element: Node, lookup: LookupQueries) -> Value:
     if feature.owner is not None and _is_reflective(feature.owner):
-        return _of_metaclass(feature, element)
-    for usage in metadata(element):
+        return _read_metaclass_attribute(feature, element)
+    for usage in find_metadata(element):
         for member in usage.members:
-            if feature in lookup.redefined(member):
-                return _bound(member, element, lookup)
+            if feature in lookup.redefined_features(member):
+                return _evaluate_bound_value(member, element, lookup)
         if feature.owner is not None and lookup.conforms(usage, feature.owner):
-            return _bound(feature, element, lookup)
+            return _evaluate_bound_value(feature, element, lookup)
     return None
 
 
-def _of_metaclass(feature: Node, element: Node) -> Value:
-    """What an element itself says for ``Element::name``, ``Type::isAbstract`` and alike."""
+def _read_metaclass_attribute(feature: Node, element: Node) -> Value:
+    """Return the value of ``Element::name``, ``Type::isAbstract`` and the like."""
     name, metaclass = feature.name or "", feature.owner and feature.owner.name
     if not is_a(element.kind, metaclass or ""):
         return None
@@ -146,12 +153,12 @@ def _of_metaclass(feature: Node, element: Node) -> Value:
         return element.short_name
     if name == "isComposite" and element.kind in USAGES:
         return is_composite(element)
-    if name in _STATED or name == "isComposite":
+    if name in _BOOLEAN_ATTRIBUTES or name == "isComposite":
         return element.attributes.get(name, False)
     raise UndecidedError(name)
 
 
-def _bound(feature: Node, element: Node, lookup: LookupQueries) -> Value:
+def _evaluate_bound_value(feature: Node, element: Node, lookup: LookupQueries) -> Value:
     for member in feature.members:
         if member.membership == "FeatureValue":
             return evaluate(member, element, lookup)
@@ -159,49 +166,49 @@ def _bound(feature: Node, element: Node, lookup: LookupQueries) -> Value:
 
 
 METADATA = frozenset({"MetadataUsage", "MetadataFeature"})
-"""Members that may say what their owner specialises."""
+"""Members that may define what their owner specialises."""
 
 
-def bases(node: Node, lookup: LookupQueries) -> list[tuple[str, Node]]:
-    """Kind of relation and target of what ``node`` specialises because of its metadata."""
-    found: list[tuple[str, Node]] = []
+def find_semantic_bases(node: Node, lookup: LookupQueries) -> list[tuple[str, Node]]:
+    """Return relation and target of what ``node`` specialises because of its metadata."""
+    relations: list[tuple[str, Node]] = []
     for member in node.members:
         if member.kind in METADATA:
-            base = _base(member, lookup)
+            base = _find_base_type(member, lookup)
             if base is not None:
-                found += _relations(node, base, lookup)
-    return found
+                relations += _make_base_relations(node, base, lookup)
+    return relations
 
 
-def _base(metadata: Node, lookup: LookupQueries) -> Node | None:
-    """The element that the ``baseType`` of a metadata usage names."""
-    for feature in lookup.inside(metadata, "baseType"):
+def _find_base_type(metadata: Node, lookup: LookupQueries) -> Node | None:
+    """Return the element that the ``baseType`` of a metadata usage names."""
+    for feature in lookup.iter_visible_inside(metadata, "baseType"):
         for value in feature.members:
             if value.membership == "FeatureValue":
-                return _named(value, metadata, lookup)
+                return _choose_named_element(value, metadata, lookup)
     return None
 
 
-def _named(value: Node, metadata: Node, lookup: LookupQueries) -> Node | None:
-    """``x meta M`` names x; a conditional names what its condition about the element chooses."""
+def _choose_named_element(value: Node, metadata: Node, lookup: LookupQueries) -> Node | None:
+    """Return the element that ``x meta M`` names; a conditional chooses by its condition."""
     while value.kind == "OperatorExpression" and value.members:
-        chosen = 0
+        branch = 0
         if value.attributes.get("operator") == "if":
-            chosen = 1 if _holds(value.members[0], metadata, lookup) else 2
-        if chosen >= len(value.members):
+            branch = 1 if _is_true(value.members[0], metadata, lookup) else 2
+        if branch >= len(value.members):
             return None
-        value = value.members[chosen]
-    return named(value, lookup)
+        value = value.members[branch]
+    return find_named_element(value, lookup)
 
 
-def _holds(condition: Node, metadata: Node, lookup: LookupQueries) -> bool:
+def _is_true(condition: Node, metadata: Node, lookup: LookupQueries) -> bool:
     try:
         return metadata.owner is not None and evaluate(condition, metadata.owner, lookup) is True
     except UndecidedError:
         return False
 
 
-def _relations(node: Node, base: Node, lookup: LookupQueries) -> list[tuple[str, Node]]:
+def _make_base_relations(node: Node, base: Node, lookup: LookupQueries) -> list[tuple[str, Node]]:
     if node.kind in FEATURES:
         return [("Subsetting" if base.kind in FEATURES else "FeatureTyping", base)]
     if base.kind not in FEATURES:

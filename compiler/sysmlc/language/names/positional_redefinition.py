@@ -1,13 +1,12 @@
-"""Features that redefine others by their position: ends, parameters, results, subjects.
+"""Features that redefine others by position: ends, parameters, results, subjects, objectives.
 
 KerML 8.4.4.1 (checkFeatureEndRedefinition, checkFeatureParameterRedefinition,
 checkFeatureResultRedefinition), SysML 8.4 (subject and objective).
 """
 
-from sysmlc.language.metaclasses import kinds_of
-from sysmlc.language.names.base_types import REDEFINED_BY_MEMBERSHIP
+from sysmlc.language.metaclasses import FEATURES, kinds_of
+from sysmlc.language.names.base_types import REDEFINING_MEMBERSHIPS
 from sysmlc.language.names.queries import GeneralizationQueries
-from sysmlc.language.names.symbols import FEATURES
 from sysmlc.language.tree import Node
 
 _ROLES = {
@@ -17,15 +16,15 @@ _ROLES = {
     "SubjectMembership": "subject",
     "ObjectiveMembership": "objective",
 }
-"""How a membership makes its member redefine others."""
+"""The positional role that a membership gives its member."""
 _SINGLE = frozenset({"subject", "objective"})
-"""Roles of one feature: what an owner has too many of redefines the first of its generals too."""
+"""Roles of one feature. A superfluous one redefines the same inherited feature."""
 _BEHAVING = kinds_of("Behavior") | kinds_of("Step")
-_SKIPPED = kinds_of("InstantiationExpression")
+_WITHOUT_POSITIONS = kinds_of("InstantiationExpression")
 
 
-def role(feature: Node) -> str:
-    """Among which features of its owner a feature is counted; empty for one that is not."""
+def find_role(feature: Node) -> str:
+    """Return the positional role of a feature; empty if its position has no meaning."""
     if feature.membership != "FeatureMembership":
         return _ROLES.get(feature.membership, "")
     if not feature.attributes or feature.kind not in FEATURES:
@@ -37,36 +36,36 @@ def role(feature: Node) -> str:
     return "parameter" if counted else ""
 
 
-def counts(feature: Node) -> bool:
-    """Whether a feature may redefine another though the text does not say so."""
-    if feature.membership not in REDEFINED_BY_MEMBERSHIP and not role(feature):
+def may_redefine_by_position(feature: Node) -> bool:
+    """Whether a feature may redefine another one without stating it."""
+    if feature.membership not in REDEFINING_MEMBERSHIPS and not find_role(feature):
         return False
-    return "Redefinition" not in [one.kind for one in feature.relations]
+    return "Redefinition" not in [relation.kind for relation in feature.relations]
 
 
-def own(scope: Node, wanted: str) -> list[Node]:
-    """The features of ``scope`` with that role, in the order of the text."""
-    return [member for member in scope.members if role(member) == wanted]
+def find_own_features(scope: Node, role: str) -> list[Node]:
+    """Return the features of ``scope`` with a role, in the order of the text."""
+    return [member for member in scope.members if find_role(member) == role]
 
 
-def redefined(feature: Node, lookup: GeneralizationQueries) -> list[Node]:
-    """What a feature without a written redefinition redefines by its position."""
-    owner, wanted = feature.owner, role(feature)
-    if not wanted or owner is None or owner.kind in _SKIPPED:
+def find_redefined(feature: Node, lookup: GeneralizationQueries) -> list[Node]:
+    """Return the features that ``feature`` redefines by its position."""
+    owner, role = feature.owner, find_role(feature)
+    if not role or owner is None or owner.kind in _WITHOUT_POSITIONS:
         return []
-    index = 0 if wanted in _SINGLE else lookup.own_of_role(owner, wanted).index(feature)
-    found: list[Node] = []
+    index = 0 if role in _SINGLE else lookup.own_features_of_role(owner, role).index(feature)
+    redefined: list[Node] = []
     for general in lookup.all_generals(owner):
-        features = lookup.at_positions(general, wanted)
-        if index < len(features) and features[index] not in found:
-            found.append(features[index])
-    return [one for one in found if one is not feature]
+        features = lookup.features_of_role(general, role)
+        if index < len(features) and features[index] not in redefined:
+            redefined.append(features[index])
+    return [general_feature for general_feature in redefined if general_feature is not feature]
 
 
-def gather(scope: Node, wanted: str, lookup: GeneralizationQueries) -> list[Node]:
-    """The features of ``scope`` with that role, those that it inherits after its own."""
-    features = list(lookup.own_of_role(scope, wanted))
+def gather_features(scope: Node, role: str, lookup: GeneralizationQueries) -> list[Node]:
+    """Return the features of ``scope`` with a role, inherited ones after its own."""
+    features = list(lookup.own_features_of_role(scope, role))
     for general in lookup.all_generals(scope):
-        inherited = lookup.at_positions(general, wanted)
+        inherited = lookup.features_of_role(general, role)
         features += inherited[len(features) :]
     return features

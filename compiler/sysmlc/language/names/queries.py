@@ -22,24 +22,24 @@ class GeneralizationQueries(Protocol):
     def all_generals(self, node: Node) -> tuple[Node, ...]:
         """Return the generals that the text states and those that may be implied."""
 
-    def own_of_role(self, scope: Node, role: str) -> list[Node]:
+    def own_features_of_role(self, scope: Node, role: str) -> list[Node]:
         """Return the features of ``scope`` with a positional role, in the order of the text."""
 
-    def at_positions(self, scope: Node, role: str) -> list[Node]:
+    def features_of_role(self, scope: Node, role: str) -> list[Node]:
         """Return the features of a type with a positional role, own before inherited ones."""
 
 
 class LookupQueries(GeneralizationQueries, Protocol):
     """Queries about members and redefinition, which ``lookup.Lookup`` answers too."""
 
-    def element(self, hit: Node) -> Node | None:
+    def resolve_alias(self, hit: Node) -> Node | None:
         """Return the element that a member stands for: that of an alias, else the member."""
 
     def conforms(self, node: Node, general: Node) -> bool:
         """Whether ``node`` is ``general`` or specialises it by relations that the text states."""
 
-    def redefined(self, feature: Node) -> set[Node]:
+    def redefined_features(self, feature: Node) -> set[Node]:
         """Return the features that ``feature`` redefines, directly or not."""
 
-    def inside(self, scope: Node, name: str) -> Iterator[Node]:
+    def iter_visible_inside(self, scope: Node, name: str) -> Iterator[Node]:
         """Yield the members named ``name`` that are visible inside ``scope``."""

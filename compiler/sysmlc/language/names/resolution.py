@@ -1,4 +1,4 @@
-"""Every reference of a model is resolved; what leads nowhere, or in a circle, is reported."""
+"""Resolution of every reference of a model; unresolved names and cycles are reported."""
 
 import gc
 import sys
@@ -6,45 +6,45 @@ from collections.abc import Sequence
 
 from sysmlc.diagnostics import Sink, Subject
 from sysmlc.language.library import SHIPPED, Library
-from sysmlc.language.names.model import Model, root
+from sysmlc.language.names.model import Model
 from sysmlc.language.names.rules import CYCLE, NO_STANDARD_LIBRARY, TOO_DEEP
-from sysmlc.language.names.unresolved import report, subject
-from sysmlc.language.tree import Document, Node, Relation
+from sysmlc.language.names.unresolved import report_unresolved
+from sysmlc.language.tree import Document, Node, Relation, find_root, make_subject
 
-_DEPTH = 20_000
-"""Names lead to names that lead to names: how deep Python may call itself meanwhile."""
+_RECURSION_LIMIT = 20_000
+"""Recursion limit during resolution: names lead to names that lead to further names."""
 
 
 def resolve(documents: Sequence[Document], library: Library, sink: Sink) -> Model:
-    """The model of the documents with every reference resolved; what leads nowhere is reported."""
+    """Return the model of the documents with every reference resolved; report unresolved names."""
     model = Model(documents, library)
     resolve_all(model, sink)
     return model
 
 
 def resolve_all(model: Model, sink: Sink) -> None:
-    """Resolve every reference that is not yet, and report all that lead nowhere."""
-    collecting, depth = gc.isenabled(), sys.getrecursionlimit()
+    """Resolve every reference that is not yet resolved, and report unresolved names."""
+    is_collecting, recursion_limit = gc.isenabled(), sys.getrecursionlimit()
     gc.disable()
-    sys.setrecursionlimit(max(depth, _DEPTH))
+    sys.setrecursionlimit(max(recursion_limit, _RECURSION_LIMIT))
     try:
         for document in model.documents:
             # The bundled core lacks units that sysmlc's own libraries refer to. That is no fault of
             # the model, and SM207 reports the missing library.
             is_foreign = model.library.is_core and document.path.startswith(SHIPPED)
-            _resolve(document, model, Sink() if is_foreign else sink)
+            _resolve_document(document, model, Sink() if is_foreign else sink)
         for document in model.documents:
-            _settle(document, model)
+            _resolve_generals(document, model)
         _report_cycles(model, sink)
         if model.library.is_core:
             _report_missing_library(model, sink)
     finally:
-        sys.setrecursionlimit(depth)
-        if collecting:
+        sys.setrecursionlimit(recursion_limit)
+        if is_collecting:
             gc.enable()
 
 
-def _resolve(document: Document, model: Model, sink: Sink) -> None:
+def _resolve_document(document: Document, model: Model, sink: Sink) -> None:
     for node in model.nodes(document):
         for relation in node.relations:
             if relation.reference.target is None:
@@ -54,37 +54,37 @@ def _resolve(document: Document, model: Model, sink: Sink) -> None:
 def _resolve_one(
     document: Document, node: Node, relation: Relation, model: Model, sink: Sink
 ) -> None:
-    if relation.reference in model.lookup.abandoned:
+    if relation.reference in model.lookup.abandoned_references:
         return
     try:
         if model.lookup.target(node, relation) is None:
-            report(model, document, node, relation, sink)
+            report_unresolved(model, document, node, relation, sink)
     except RecursionError:
         model.lookup.abandon()
-        place = subject(document, node, relation.reference.start)
+        place = make_subject(document, node, relation.reference.start)
         sink.report(TOO_DEEP, place, name=str(relation.reference))
 
 
-def _settle(document: Document, model: Model) -> None:
-    """Find out what leads through many elements while Python may still call itself that deep."""
+def _resolve_generals(document: Document, model: Model) -> None:
+    """Compute the generals of all nodes while the recursion limit is raised."""
     lookup = model.lookup
     for node in model.nodes(document):
         try:
             if node.relations:
                 lookup.generals(node)
-            lookup.by_position(node)
+            lookup.redefined_by_position(node)
         except RecursionError:
             lookup.abandon()
 
 
 def _report_cycles(model: Model, sink: Sink) -> None:
-    told: set[Node] = set()
+    reported: set[Node] = set()
     for node in model.lookup.cycles:
-        document, circle = model.document(node), model.lookup.circle(node)
-        if document in model.documents and told.isdisjoint({node, *circle}):
-            told.update((node, *circle))
-            names = " and ".join(f"'{model.name(one)}'" for one in circle)
-            place = subject(document, node, node.name_start)
+        document, cycle = model.document(node), model.lookup.find_cycle_path(node)
+        if document in model.documents and reported.isdisjoint({node, *cycle}):
+            reported.update((node, *cycle))
+            names = " and ".join(f"'{model.name(element)}'" for element in cycle)
+            place = make_subject(document, node, node.name_start)
             through = f" through {names}" if names else ""
             sink.report(CYCLE, place, name=model.name(node) or node.kind, through=through)
 
@@ -101,5 +101,5 @@ def _report_missing_library(model: Model, sink: Sink) -> None:
         for node in model.nodes(document)
         for relation in node.relations
     )
-    if any(target is not None and root(target) in core for target in targets):
+    if any(target is not None and find_root(target) in core for target in targets):
         sink.report(NO_STANDARD_LIBRARY, Subject())

@@ -1,12 +1,12 @@
-"""What a namespace owns by name: declared names, short names, aliases, effective names."""
+"""Symbol tables: the members of one namespace by declared, short and effective name."""
 
-from sysmlc.language.metaclasses import kinds_of
+from sysmlc.language.metaclasses import FEATURES
 from sysmlc.language.tree import Node, Reference
 
-Owned = dict[str, list[Node]]
-"""Members of one namespace by name; an alias stands for the element that it names."""
+SymbolTable = dict[str, list[Node]]
+"""Members of one namespace by name. The entry of an alias is its Membership node."""
 
-_REFERRING = frozenset(
+_NAMED_BY_REFERENCE = frozenset(
     {
         "AssertConstraintUsage",
         "EventOccurrenceUsage",
@@ -16,8 +16,8 @@ _REFERRING = frozenset(
         "SatisfyRequirementUsage",
     }
 )
-"""Usages named by what they reference (SysML 8.3.6.4 and the namingFeature of each)."""
-_REFERRING_MEMBERSHIPS = frozenset(
+"""Usages with the name of the feature that they reference (SysML 8.3.6.4, namingFeature)."""
+_MEMBERSHIPS_NAMED_BY_REFERENCE = frozenset(
     {
         "FramedConcernMembership",
         "RequirementConstraintMembership",
@@ -26,22 +26,19 @@ _REFERRING_MEMBERSHIPS = frozenset(
         "ViewRenderingMembership",
     }
 )
-FEATURES = kinds_of("Feature")
-TYPES = kinds_of("Type")
-NAMESPACES = kinds_of("Namespace")
 
 
-def owned(node: Node) -> Owned:
-    """The index of the members of ``node`` by their names.
+def build_symbol_table(node: Node) -> SymbolTable:
+    """Return the members of ``node`` by name.
 
-    A feature without a name is found by the last name of its naming reference (KerML 8.3.3.3.4,
-    effectiveName): what that leads to is looked up only when somebody asks.
+    A feature without a name is entered under the last name of its naming reference (KerML
+    8.3.3.3.4, effectiveName). The reference itself is resolved only when the feature is looked up.
     """
-    index: Owned = {}
+    index: SymbolTable = {}
     for member in node.members:
         name, short = member.name, member.short_name
         if name is None and short is None:
-            reference = naming(member)
+            reference = find_naming_reference(member)
             if reference is not None:
                 index.setdefault(reference.chain[-1][-1], []).append(member)
             continue
@@ -50,32 +47,34 @@ def owned(node: Node) -> Owned:
         if short is not None and short != name:
             index.setdefault(short, []).append(member)
     if node.kind == "TransitionUsage":
-        _add_payload(index, node)
+        _add_accepted_payload(index, node)
     return index
 
 
-def _add_payload(index: Owned, transition: Node) -> None:
-    """What a transition accepts is known in its guard and effect (SysML 8.3.17.9)."""
-    payload, accepted = payload_of(transition)
+def _add_accepted_payload(index: SymbolTable, transition: Node) -> None:
+    """Enter the payload of a transition, which guard and effect may name (SysML 8.3.17.9)."""
+    payload, accepted = find_payload(transition)
     if payload is not None and accepted is not None:
         for name in (accepted.name, accepted.short_name):
             if name is not None:
                 index.setdefault(name, []).append(payload)
 
 
-def payload_of(transition: Node) -> tuple[Node | None, Node | None]:
-    """The payload parameter of a transition and that of the accept action that triggers it."""
-    parameters = [m for m in transition.members if m.membership == "ParameterMembership"]
-    trigger = next((m for m in transition.members if m.role == "trigger"), None)
+def find_payload(transition: Node) -> tuple[Node | None, Node | None]:
+    """Return the payload parameter of a transition, and that of the action that triggers it."""
+    parameters = [
+        member for member in transition.members if member.membership == "ParameterMembership"
+    ]
+    trigger = next((member for member in transition.members if member.role == "trigger"), None)
     accepted = trigger.members[0] if trigger is not None and trigger.members else None
     return (parameters[1] if len(parameters) > 1 else accepted), accepted
 
 
-def naming(node: Node) -> Reference | None:
-    """The reference to the feature that gives a nameless one its name, if the text has one."""
+def find_naming_reference(node: Node) -> Reference | None:
+    """Return the reference to the feature that names a nameless feature, if any."""
     if node.kind not in FEATURES or not node.relations:
         return None
-    if node.kind in _REFERRING or node.membership in _REFERRING_MEMBERSHIPS:
+    if node.kind in _NAMED_BY_REFERENCE or node.membership in _MEMBERSHIPS_NAMED_BY_REFERENCE:
         for relation in node.relations:
             if relation.kind == "ReferenceSubsetting":
                 return relation.reference

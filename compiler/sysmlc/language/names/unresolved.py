@@ -1,19 +1,19 @@
-"""Diagnostics about names that lead nowhere, with advice."""
+"""Diagnostics about names that cannot be resolved, each with one sentence of advice."""
 
 import re
 
-from sysmlc.diagnostics import Sink, Subject
-from sysmlc.language.metaclasses import is_a, kinds_of
+from sysmlc.diagnostics import Sink
+from sysmlc.language.metaclasses import describe_kind, kinds_of
 from sysmlc.language.names import contexts
-from sysmlc.language.names.expression_results import result
-from sysmlc.language.names.generals import GENERAL
+from sysmlc.language.names.expression_results import find_result
+from sysmlc.language.names.generals import GENERALIZATION_KINDS
 from sysmlc.language.names.lookup import Lookup
 from sysmlc.language.names.model import Model
 from sysmlc.language.names.rules import TOO_CIRCULAR, UNRESOLVED
-from sysmlc.language.tree import Document, Node, Reference, Relation, locate
+from sysmlc.language.tree import Document, Node, Reference, Relation, make_subject
 from sysmlc.support.suggestions import did_you_mean
 
-_WANTED = {
+_EXPECTED_WORDS = {
     "Subclassification": "a definition",
     "FeatureTyping": "a definition",
     "ConjugatedPortTyping": "a port definition",
@@ -28,39 +28,40 @@ _WANTED = {
 }
 
 
-def advice(
+def make_advice(
     model: Model,
-    user: tuple[Node, Relation],
+    use: tuple[Node, Relation],
     names: tuple[str, ...],
-    start: contexts.Start,
-    within: Node | None,
+    context: contexts.LookupContext,
+    container: Node | None,
 ) -> str:
-    """One sentence for the help of the message; ``within`` is the element before a dot."""
-    relation = user[1]
+    """Return the help for a name that is not found; ``container`` is the element before a dot."""
+    relation = use[1]
     lookup = model.lookup
-    other = _search(lookup, names, start, within, everything=False)
-    if other is not None and relation.kind in _WANTED:
-        return f"'{names[-1]}' is {kind_of(other)}, {_WANTED[relation.kind]} is needed here"
-    hidden = _search(lookup, names, start, within, everything=True)
+    of_other_kind = _search_regardless(lookup, names, context, container, everything=False)
+    if of_other_kind is not None and relation.kind in _EXPECTED_WORDS:
+        kind, expected = describe_kind(of_other_kind), _EXPECTED_WORDS[relation.kind]
+        return f"'{names[-1]}' is {kind}, {expected} is needed here"
+    hidden = _search_regardless(lookup, names, context, container, everything=True)
     if hidden is not None and hidden.visibility in ("private", "protected"):
         owner = f" in '{hidden.owner.name}'" if hidden.owner and hidden.owner.name else ""
         return f"'{names[-1]}' is {hidden.visibility}{owner}"
-    if hidden is not None and other is None:
+    if hidden is not None and of_other_kind is None:
         return f"'{names[-1]}' is there by a private import only"
-    package = _elsewhere(model, user, names, start) if within is None else None
+    package = _find_unimported_package(model, use, names, context) if container is None else None
     if package is not None:
-        return _not_imported(names[0], package, lookup, start)
-    if relation.kind in _IMPORTED and lookup.search(start, names[:1], None) is None:
-        around = {one.name for one in _around(start)}
-        near = [name for name in model.packages() if name not in around]
-        said = did_you_mean(names[0], near) if near else ""
-        return said if said.startswith("did you mean") else _NOT_GIVEN
-    known = _known(lookup, names, start, within)
+        return _advise_import(names[0], package, lookup, context)
+    if relation.kind in _IMPORT_RELATIONS and lookup.search(context, names[:1], None) is None:
+        scope_names = {scope.name for scope in _list_scopes(context)}
+        candidates = [name for name in model.packages() if name not in scope_names]
+        suggestion = did_you_mean(names[0], candidates) if candidates else ""
+        return suggestion if suggestion.startswith("did you mean") else _NOT_GIVEN
+    known_names = _list_known_names(lookup, names, context, container)
     roots = model.packages() if len(names) > 1 else []
-    return did_you_mean(names[-1], known or roots) if known or roots else _UNNAMED
+    return did_you_mean(names[-1], known_names or roots) if known_names or roots else _UNNAMED
 
 
-_IMPORTED = frozenset({"importedNamespace", "importedMembership"})
+_IMPORT_RELATIONS = frozenset({"importedNamespace", "importedMembership"})
 _NOT_GIVEN = "give the file that has it as an input too, or the folder of all files"
 _UNNAMED = "declare it, or import the package that has it"
 
@@ -70,30 +71,33 @@ _UNITS_OF_LIBRARY = ("SI",)
 _CLASSIFIERS = kinds_of("Classifier")
 
 
-def _elsewhere(
-    model: Model, user: tuple[Node, Relation], names: tuple[str, ...], start: contexts.Start
+def _find_unimported_package(
+    model: Model,
+    use: tuple[Node, Relation],
+    names: tuple[str, ...],
+    context: contexts.LookupContext,
 ) -> Node | None:
-    """A package of the model or of the library that has the name, and something of that kind.
+    """Return a package of the model or of the library that has the name with a suitable kind.
 
-    In the library only types and units are looked for: no step or part 'b' means the unit bel.
+    In the library only types and units are considered: no step or part 'b' means the unit bel.
     """
     if len(names) > 1:
         return None
-    node, relation = user
-    around = _around(start)
-    wanted = contexts.WANTED.get(relation.kind)
+    node, relation = use
+    scopes = _list_scopes(context)
+    kinds = contexts.TARGET_KINDS.get(relation.kind)
     for package in model.own_packages():
-        if package not in around and _has(model.lookup, package, names[0], wanted):
+        if package not in scopes and _has_visible_member(model.lookup, package, names[0], kinds):
             return package
     if relation.kind == "FeatureTyping":
-        return _of_library(model, names[0], _TYPES_OF_LIBRARY, _CLASSIFIERS)
+        return _find_library_package(model, names[0], _TYPES_OF_LIBRARY, _CLASSIFIERS)
     if relation.kind == "Membership" and _is_unit(node):
-        return _of_library(model, names[0], _UNITS_OF_LIBRARY, None)
+        return _find_library_package(model, names[0], _UNITS_OF_LIBRARY, None)
     return None
 
 
 def _is_unit(node: Node) -> bool:
-    """Whether an expression stands in the brackets of a quantity."""
+    """Whether an expression is in the brackets of a quantity."""
     while node.owner is not None and node.owner.kind in _OPERATORS:
         if node.owner.attributes.get("operator") == "[":
             return node is not node.owner.members[0]
@@ -104,160 +108,159 @@ def _is_unit(node: Node) -> bool:
 _OPERATORS = frozenset({"OperatorExpression"})
 
 
-def _of_library(
-    model: Model, name: str, packages: tuple[str, ...], wanted: frozenset[str] | None
+def _find_library_package(
+    model: Model, name: str, packages: tuple[str, ...], kinds: frozenset[str] | None
 ) -> Node | None:
-    """A package of the library that gives the name: first those through which others are seen."""
-    for through in packages:
-        package, found = model.find(through), model.find(f"{through}::{name}")
-        if found is not None and (wanted is None or found.kind in wanted):
+    """Return a package of the library that has the name, first of those in ``packages``."""
+    for package_name in packages:
+        package, element = model.find(package_name), model.find(f"{package_name}::{name}")
+        if element is not None and (kinds is None or element.kind in kinds):
             return package
-    for package in model.library.packages(name) if wanted is not None else ():
-        if package.name and _has(model.lookup, package, name, wanted):
+    for package in model.library.packages(name) if kinds is not None else ():
+        if package.name and _has_visible_member(model.lookup, package, name, kinds):
             return package
     return None
 
 
-def _has(lookup: Lookup, package: Node, name: str, wanted: frozenset[str] | None) -> bool:
-    """Whether a package owns something by the name that others see."""
-    for hit in lookup.owned(package).get(name, ()):
-        element = lookup.element(hit)
-        is_wanted = element is not None and (wanted is None or element.kind in wanted)
+def _has_visible_member(
+    lookup: Lookup, package: Node, name: str, kinds: frozenset[str] | None
+) -> bool:
+    """Whether a package owns a public member with the name."""
+    for hit in lookup.symbol_table(package).get(name, ()):
+        element = lookup.resolve_alias(hit)
+        is_wanted = element is not None and (kinds is None or element.kind in kinds)
         if is_wanted and hit.visibility in ("", "public"):
             return True
     return False
 
 
-def _not_imported(name: str, package: Node, lookup: Lookup, start: contexts.Start) -> str:
-    """How to come by a name of a package; one imported itself does not bring its members."""
-    for scope in _around(start):
-        for one in lookup.imports(scope):
-            if one.kind in _MEMBERS and any(
-                lookup.target(one, relation) is package for relation in one.relations
+def _advise_import(
+    name: str, package: Node, lookup: Lookup, context: contexts.LookupContext
+) -> str:
+    """Return how to import a name; a package that is imported itself does not bring its members."""
+    for scope in _list_scopes(context):
+        for import_ in lookup.imports(scope):
+            if import_.kind in _MEMBERSHIP_IMPORTS and any(
+                lookup.target(import_, relation) is package for relation in import_.relations
             ):
                 return f"'{name}' is in '{package.name}': import {package.name}::*, not it alone"
     return f"'{name}' is in '{package.name}', which is not imported here"
 
 
-_MEMBERS = kinds_of("MembershipImport")
+_MEMBERSHIP_IMPORTS = kinds_of("MembershipImport")
 
 
-def _search(
+def _search_regardless(
     lookup: Lookup,
     names: tuple[str, ...],
-    start: contexts.Start,
-    within: Node | None,
+    context: contexts.LookupContext,
+    container: Node | None,
     *,
     everything: bool,
 ) -> Node | None:
-    if within is not None:
-        return lookup.descend(within, names, 0, None, everything)
-    if everything and start.inherited and start.scope is not None:
-        hits = (lookup.own_members(general, names[0]) for general in lookup.reached(start.scope))
-        return next((hit for found in hits for hit in found), None)
-    return lookup.search(start._replace(everything=everything), names, None)
+    if container is not None:
+        return lookup.descend(container, names, 0, None, everything)
+    if everything and context.inherited and context.scope is not None:
+        hits = (
+            lookup.own_members(general, names[0])
+            for general in lookup.known_ancestors(context.scope)
+        )
+        return next((hit for members in hits for hit in members), None)
+    return lookup.search(context._replace(everything=everything), names, None)
 
 
-def _known(
-    lookup: Lookup, names: tuple[str, ...], start: contexts.Start, within: Node | None
+def _list_known_names(
+    lookup: Lookup, names: tuple[str, ...], context: contexts.LookupContext, container: Node | None
 ) -> list[str]:
-    """Names that would be known instead: in what the name before leads to, else around."""
-    if within is None and len(names) > 1:
-        within = lookup.search(start, names[:-1], None)
-    if within is None and start.inherited and start.scope is not None:
-        scopes = lookup.reached(start.scope)
-    elif within is not None:
-        scopes = [within, *lookup.reached(within)]
+    """Return the names that are valid instead: in the element before, else in the scopes around."""
+    if container is None and len(names) > 1:
+        container = lookup.search(context, names[:-1], None)
+    if container is None and context.inherited and context.scope is not None:
+        scopes = lookup.known_ancestors(context.scope)
+    elif container is not None:
+        scopes = [container, *lookup.known_ancestors(container)]
     else:
-        scopes = _around(start)
-    return [name for scope in scopes for name in lookup.owned(scope) if name != names[-1]]
+        scopes = _list_scopes(context)
+    return [name for scope in scopes for name in lookup.symbol_table(scope) if name != names[-1]]
 
 
-def _around(start: contexts.Start) -> list[Node]:
-    """The namespaces in which a name is looked up, the nearest first."""
+def _list_scopes(context: contexts.LookupContext) -> list[Node]:
+    """Return the namespaces in which a name is looked up, nearest first."""
     scopes = []
-    scope = start.scope
+    scope = context.scope
     while scope is not None:
         scopes.append(scope)
-        scope = contexts.outer(scope)
+        scope = contexts.find_outer_scope(scope)
     return scopes
-
-
-def kind_of(node: Node) -> str:
-    """The kind of an element in words: ``a part definition``."""
-    if is_a(node.kind, "Package"):
-        return "a package"
-    words = "".join(f" {c.lower()}" if c.isupper() else c for c in node.kind).strip()
-    words = words.removesuffix(" usage")
-    return f"{'an' if words[0] in 'aeiou' else 'a'} {words}"
 
 
 _NAME = r"(?:'(?:[^'\\]|\\.)*'|[\w$~]+)"
 _LINK = re.compile(rf"{_NAME}(?:\s*::\s*{_NAME})*")
-"""A qualified name, one link of a chain."""
+"""A qualified name: one link of a feature chain."""
 
 
-def report(model: Model, document: Document, node: Node, relation: Relation, sink: Sink) -> None:
+def report_unresolved(
+    model: Model, document: Document, node: Node, relation: Relation, sink: Sink
+) -> None:
     """Report the first name of a chain that was not found."""
     lookup = model.lookup
     reference = relation.reference
     index = len(reference.targets or ())
-    start = contexts.start(node, relation)
-    before = _before(node, lookup, reference, start)
-    if before is None and (index or start.operand is not None or start.before is not None):
+    context = contexts.find_context(node, relation)
+    container = _find_containing(node, lookup, reference, context)
+    if container is None and (index or context.operand is not None or context.before is not None):
         return
-    if _is_incomplete(before or (start.scope if start.inherited else None), lookup):
+    if _is_incomplete(container or (context.scope if context.inherited else None), lookup):
         return
     name = "::".join(reference.chain[index])
-    if reference in lookup.given_up:
+    if reference in lookup.circular_references:
         sink.report(
-            TOO_CIRCULAR, subject(document, node, _place(document, reference, index)), name=name
+            TOO_CIRCULAR,
+            make_subject(document, node, _find_link_offset(document, reference, index)),
+            name=name,
         )
         return
-    inside = f" in '{before.name}'" if before is not None and before.name else ""
+    inside = f" in '{container.name}'" if container is not None and container.name else ""
     sink.report(
         UNRESOLVED,
-        subject(document, node, _place(document, reference, index)),
+        make_subject(document, node, _find_link_offset(document, reference, index)),
         name=name,
         inside=inside,
-        advice=advice(model, (node, relation), reference.chain[index], start, before),
+        advice=make_advice(model, (node, relation), reference.chain[index], context, container),
     )
 
 
-def _before(node: Node, lookup: Lookup, reference: Reference, start: contexts.Start) -> Node | None:
-    """The element in which the name that was not found should be, if it is not a scope."""
+def _find_containing(
+    node: Node, lookup: Lookup, reference: Reference, context: contexts.LookupContext
+) -> Node | None:
+    """Return the element that should have the name that was not found, unless it is a scope."""
     if reference.targets:
         return reference.targets[-1]
-    if start.operand is not None:
-        return result(start.operand, lookup)
-    return lookup.target(node, start.before) if start.before is not None else None
+    if context.operand is not None:
+        return find_result(context.operand, lookup)
+    return lookup.target(node, context.before) if context.before is not None else None
 
 
 def _is_incomplete(scope: Node | None, lookup: Lookup) -> bool:
-    """Whether a general of ``scope`` was not found: the name may come from it, once is enough."""
-    waiting = [scope] if scope is not None else []
-    seen = set(waiting)
-    while waiting:
-        node = waiting.pop()
+    """Whether a general of ``scope`` is unresolved, which is reported and may have the name."""
+    worklist = [scope] if scope is not None else []
+    seen = set(worklist)
+    while worklist:
+        node = worklist.pop()
         for relation in node.relations:
-            if relation.kind in GENERAL:
+            if relation.kind in GENERALIZATION_KINDS:
                 general = lookup.target(node, relation)
                 if general is None:
                     return True
                 if general not in seen:
                     seen.add(general)
-                    waiting.append(general)
+                    worklist.append(general)
     return False
 
 
-def _place(document: Document, reference: Reference, index: int) -> int:
-    """Where the link of a chain stands that was not found."""
+def _find_link_offset(document: Document, reference: Reference, index: int) -> int:
+    """Return the offset of the link of a chain that was not found."""
     if index == 0 or reference.start < 0:
         return reference.start
     links = list(_LINK.finditer(document.text, reference.start, reference.end))
     return links[index].start() if index < len(links) else reference.start
-
-
-def subject(document: Document, node: Node, start: int) -> Subject:
-    """The element, and the place of a name in it or, where that is not known, its own."""
-    return Subject(node.name or "", place=locate(document, start if start >= 0 else node.start))

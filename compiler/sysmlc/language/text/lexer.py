@@ -199,3 +199,14 @@ def unquote(written: str) -> str:
 
 def _unescape(match: re.Match[str]) -> str:
     return _ESCAPES.get(match[1], match[1])
+
+
+_BASIC_NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
+_NAME_ESCAPES = str.maketrans(
+    {"\\": "\\\\", "'": "\\'", "\n": "\\n", "\t": "\\t", "\r": "\\r", "\f": "\\f", "\b": "\\b"}
+)
+
+
+def quote_name(name: str) -> str:
+    """Return a name as a text writes it: in quotes unless it is basic (KerML 8.2.2.3)."""
+    return name if _BASIC_NAME.fullmatch(name) else f"'{name.translate(_NAME_ESCAPES)}'"
