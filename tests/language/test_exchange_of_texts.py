@@ -7,7 +7,7 @@ import pytest
 
 from long_runs import quick_first
 from sysmlc.diagnostics import Sink
-from sysmlc.language.interchange import Files, interchange_path, link, read, write
+from sysmlc.language.interchange import InterchangeFiles, interchange_path, link, read, write
 from sysmlc.language.library import find_library
 from sysmlc.language.names import resolve
 from sysmlc.language.names.implied_relations import implied_redefinitions
@@ -34,7 +34,7 @@ def written(folder, library):
     ]
     model = resolve(documents, library, sink)
     redefined, told = partial(implied_redefinitions, model), Sink()
-    known = Files([*documents, *library.loaded()], redefined=redefined)
+    known = InterchangeFiles([*documents, *library.loaded()], redefined=redefined)
     files = {interchange_path(one): write(one, known, told) for one in documents}
     return documents, files, [found.rule.code for found in told]
 

@@ -8,8 +8,8 @@ import zipfile
 import pytest
 
 from sysmlc.diagnostics import Sink
-from sysmlc.language.interchange import open_archive, project, used
-from sysmlc.language.interchange.projects import fits
+from sysmlc.language.interchange import open_archive, read_project, resolve_usages
+from sysmlc.language.interchange.projects import satisfies_version
 from sysmlc.sources import Source
 
 TEXT = b"package Robots;"
@@ -166,7 +166,7 @@ def test_a_folder_is_a_project_too():
     sink = Sink()
     about = Source("lib/.project.json", json.dumps(ABOUT).encode())
     said = Source("lib/.meta.json", json.dumps(meta()).encode())
-    found = project("lib", [about, said, Source("lib/Robots.sysml", TEXT)], sink)
+    found = read_project("lib", [about, said, Source("lib/Robots.sysml", TEXT)], sink)
     assert (messages(sink), found.name, len(found.files)) == ([], "Robots", 1)
 
 
@@ -175,7 +175,7 @@ def using(resource, constraint=""):
     usage = {"resource": resource, "versionConstraint": constraint}
     user = open_archive(archive({**ABOUT, "name": "Plant", "usage": [usage]}, name="P.kpar"), sink)
     robots = open_archive(archive(name="Robots-1.2.0.kpar"), sink)
-    found = used(user, [user, robots], sink)
+    found = resolve_usages(user, [user, robots], sink)
     return [one.name for one in found.values()], messages(sink)
 
 
@@ -222,7 +222,7 @@ def test_a_used_project_of_another_version_is_told():
     ],
 )
 def test_versions_fit_constraints(constraint, yes):
-    assert fits("1.2.0", constraint) == yes
+    assert satisfies_version("1.2.0", constraint) == yes
 
 
 @pytest.mark.long
@@ -231,7 +231,7 @@ def test_the_ten_library_archives_are_as_released(corpus):
     sink = Sink()
     paths = sorted((corpus / "sysml2/interchange/kpar").glob("*.kpar"))
     given = [open_archive(Source(path.name, path.read_bytes()), sink) for path in paths]
-    resolved = [len(used(one, given, sink)) for one in given]
+    resolved = [len(resolve_usages(one, given, sink)) for one in given]
     assert messages(sink) == []
     assert (len(given), sum(len(one.files) for one in given)) == (10, 94)
     assert resolved == [len(one.usages) for one in given]

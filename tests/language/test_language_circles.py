@@ -36,4 +36,4 @@ def test_no_module_imports_what_imports_it(folder):
 def test_a_circle_is_found():
     with pytest.raises(CycleError):
         list(TopologicalSorter({"a": {"b"}, "b": {"c"}, "c": {"a"}}).static_order())
-    assert "symbols" in imports(LANGUAGE / "names")["expression_results"]
+    assert "queries" in imports(LANGUAGE / "names")["expression_results"]

@@ -3,6 +3,7 @@
 from collections.abc import Callable
 
 from sysmlc.language.text.builders.operators import PRECEDENCE, PRECEDENCE_LEVELS
+from sysmlc.language.text.lexer import quote_name
 from sysmlc.language.tree import Node, Reference
 
 _CONDITIONAL = -1
@@ -54,8 +55,6 @@ def _write_name(node: Node) -> str:
 
 
 def _write_reference(reference: Reference) -> str:
-    from sysmlc.language.text.lexer import quote_name
-
     links = (
         "::".join(name if name == "$" else quote_name(name) for name in names)
         for names in reference.chain

@@ -10,7 +10,7 @@ from sysmlc.backends.base import EmitOptions
 from sysmlc.backends.sysmlx.rules import OWN_TEXT, TOO_DEEP
 from sysmlc.diagnostics import Diagnostic, Sink
 from sysmlc.ir import Element, Graph
-from sysmlc.language.interchange import Files, interchange_path, write
+from sysmlc.language.interchange import InterchangeFiles, interchange_path, write
 from sysmlc.language.library import SHIPPED, VARIABLE, Library, find_library, load_core
 from sysmlc.language.names import Model
 from sysmlc.language.names.implied_relations import implied_redefinitions
@@ -38,7 +38,9 @@ class SysmlxBackend(Struct, frozen=True):
             models = [] if said is None else [said]
         for model in models:
             library = _index_library(tuple(model.library.loaded()))
-            known = Files(model.documents, library, partial(implied_redefinitions, model))
+            known = InterchangeFiles(
+                model.documents, library, partial(implied_redefinitions, model)
+            )
             for document in model.documents:
                 path = f"sysmlx/{interchange_path(document)}"
                 # As for unresolved names, faults of our libraries are not those of the model.
@@ -126,13 +128,13 @@ def _find_library(asked: str) -> Library:
 
 
 @lru_cache(maxsize=1)
-def _index_library(documents: tuple[Document, ...]) -> Files:
+def _index_library(documents: tuple[Document, ...]) -> InterchangeFiles:
     """Return the interchange form of library documents.
 
     A process that compiles again reuses the parsed library, and the ids of its 10,000 elements
     take 0.5 s to compute.
     """
-    return Files(documents)
+    return InterchangeFiles(documents)
 
 
 BACKEND = SysmlxBackend()

@@ -5,7 +5,7 @@ from pathlib import Path
 
 from sysmlc.diagnostics import Sink
 from sysmlc.frontends.sysml.detect import is_description
-from sysmlc.language.interchange import open_archive, project, used
+from sysmlc.language.interchange import open_archive, read_project, resolve_usages
 from sysmlc.sources import DEFAULT_LIMITS, Source
 from sysmlc.sources.whole import read_whole
 
@@ -23,12 +23,12 @@ def examine(sources: Sequence[Source], sink: Sink, *, has_library: bool) -> None
         if mark:
             archives.setdefault(archive, []).append(source)
     found = [
-        project(archive, inside, sink)
+        read_project(archive, inside, sink)
         for archive, inside in archives.items()
         if archive.lower().endswith(_SUFFIX) or any(map(is_description, inside))
     ]
     for one in found:
-        used(one, found, sink, has_standard=has_library)
+        resolve_usages(one, found, sink, has_standard=has_library)
 
 
 def examine_library(path: Path, sink: Sink) -> None:

@@ -1,20 +1,26 @@
 """Interchange of KerML and SysML v2 models: XMI files and project archives, in and out."""
 
-from sysmlc.language.interchange.projects import Project, Usage, open_archive, project, used
+from sysmlc.language.interchange.projects import (
+    Project,
+    ProjectUsage,
+    open_archive,
+    read_project,
+    resolve_usages,
+)
 from sysmlc.language.interchange.reader import read
 from sysmlc.language.interchange.references import ExchangeDocument, link
-from sysmlc.language.interchange.writer import Files, interchange_path, write
+from sysmlc.language.interchange.writer import InterchangeFiles, interchange_path, write
 
 __all__ = [
     "ExchangeDocument",
-    "Files",
+    "InterchangeFiles",
     "Project",
-    "Usage",
+    "ProjectUsage",
     "interchange_path",
     "link",
     "open_archive",
-    "project",
     "read",
-    "used",
+    "read_project",
+    "resolve_usages",
     "write",
 ]

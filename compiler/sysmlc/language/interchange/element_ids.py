@@ -1,138 +1,148 @@
-"""Ids of elements: those that the standard gives its libraries, the same scheme for the rest.
+"""Ids of elements: those that the standard gives its libraries, and the same scheme for the rest.
 
-KerML 1.0, 9.1: an element of a standard library has a version 5 UUID (RFC 9562) of its path in
-the namespace of its package, whose UUID is that of its IRI.
+KerML 1.0, 9.1: an element of a standard library has a version 5 UUID (RFC 9562) of its path in the
+namespace of its package, whose UUID is that of its IRI.
 """
 
 from uuid import NAMESPACE_URL, UUID, uuid5
 
-from sysmlc.language.interchange.effective_names import Redefined, effective, nothing
-from sysmlc.language.interchange.elements import Element, walk
+from sysmlc.language.interchange.effective_names import (
+    RedefinitionQuery,
+    find_effective_name,
+    redefine_nothing,
+)
+from sysmlc.language.interchange.elements import Element, walk_elements
 from sysmlc.language.interchange.unfolding import unfold
 from sysmlc.language.metaclasses import is_a
 from sysmlc.language.text.lexer import quote_name
 from sysmlc.language.tree import Document, Node
 
 _STANDARD = {"kerml": "https://www.omg.org/spec/KerML/", "sysml": "https://www.omg.org/spec/SysML/"}
-_OPERANDS = {
+_OPERATOR_PARAMETERS = {
     **dict.fromkeys(("and", "or", "implies"), ("firstValue", "secondValue")),
     **dict.fromkeys(("<", ">", "<=", ">=", "==", "!=", "===", "!==", "xor", "not"), ("x", "y")),
     **dict.fromkeys(("+", "-", "*", "/", "%", "^", "**", "|", "&"), ("x", "y")),
 }
-"""Parameters of the functions of operators, which those of an expression redefine (KerML 9.4)."""
+"""Parameters of the functions of operators; operands redefine them (KerML 9.4)."""
 
 
-def ids(document: Document) -> dict[str, Node]:
-    """The elements of a document by the ids that they and their memberships have in interchange."""
+def map_ids(document: Document) -> dict[str, Node]:
+    """Return the nodes of a document by the ids that they and their memberships have."""
     root = unfold(document.root)
-    identify(root, document)
-    found: dict[str, Node] = {}
-    for element, owner in walk(root):
+    assign_ids(root, document)
+    nodes: dict[str, Node] = {}
+    for element, owner in walk_elements(root):
         node = element.node
         if element.kind == "ConjugatedPortDefinition" and owner is not None:
-            node = conjugated(element)
+            node = find_conjugated(element)
         if node is not None:
-            found[element.id] = node
-    return found
+            nodes[element.id] = node
+    return nodes
 
 
-def identify(root: Element, document: Document, redefined: Redefined = nothing) -> None:
-    """Give the element and all below it their ids."""
+def assign_ids(
+    root: Element, document: Document, redefined: RedefinitionQuery = redefine_nothing
+) -> None:
+    """Assign ids to the element and all below it."""
     package = next(
         (member for member in document.root.members if member.kind == "LibraryPackage"), None
     )
-    standard = package is not None and package.attributes.get("isStandard") is True
-    if package is not None and standard:
+    is_standard = package is not None and package.attributes.get("isStandard") is True
+    if package is not None and is_standard:
         name = package.name or ""
         base, path = uuid5(NAMESPACE_URL, _STANDARD[document.language] + name), f"{name}/owner"
     else:
         stem = document.path.rpartition(".")[0] or document.path
         base, path = uuid5(NAMESPACE_URL, f"urn:sysmlc:{stem}"), ""
-    _Ids(base, document.root, redefined).give(root, path)
-    if package is not None and standard:
-        _name_package(root, str(base))
+    _IdAssigner(base, document.root, redefined).assign(root, path)
+    if package is not None and is_standard:
+        _set_package_id(root, str(base))
 
 
-def _name_package(root: Element, id: str) -> None:
-    """A standard package has the UUID of its IRI itself."""
+def _set_package_id(root: Element, id: str) -> None:
+    """Set the id of a standard package, which is the UUID of its IRI."""
     for membership in root.owned:
-        for one in membership.owned:
-            if one.kind == "LibraryPackage":
-                one.id = id
+        for element in membership.owned:
+            if element.kind == "LibraryPackage":
+                element.id = id
 
 
 _RESULTS = frozenset({"ReturnParameterMembership"})
 
 
-class _Ids:
-    def __init__(self, base: UUID, root: Node, redefined: Redefined) -> None:
+class _IdAssigner:
+    def __init__(self, base: UUID, root: Node, redefined: RedefinitionQuery) -> None:
         self._redefined = redefined
         self._base = base
         self._root = root
-        self._todo: list[tuple[Element, str, str]] = []
+        self._worklist: list[tuple[Element, str, str]] = []
 
-    def give(self, root: Element, path: str) -> None:
-        """Give ids to the root namespace and to all below it."""
-        self._todo.append((root, path, ""))
-        while self._todo:
-            self._element(*self._todo.pop())
+    def assign(self, root: Element, path: str) -> None:
+        """Assign ids to the root namespace and all below it."""
+        self._worklist.append((root, path, ""))
+        while self._worklist:
+            self._assign_to_element(*self._worklist.pop())
 
-    def _of(self, path: str) -> str:
+    def _make_id(self, path: str) -> str:
         return str(uuid5(self._base, path))
 
-    def _element(self, element: Element, path: str, qualified: str) -> None:
-        """Ids of an element that is no owned relationship, and of all below it.
+    def _assign_to_element(self, element: Element, path: str, qualified: str) -> None:
+        """Assign ids to an element that is no owned relationship, and to its relationships.
 
-        ``qualified`` is its qualified name, empty when it has none.
+        ``qualified`` is its qualified name, empty if it has none.
         """
-        element.id = self._of(path)
+        element.id = self._make_id(path)
         is_root = element.node is self._root
-        taken: set[str] = set()
-        operands = iter(_OPERANDS.get(str(element.attributes.get("operator")), ()))
+        used_names: set[str] = set()
+        operands = iter(_OPERATOR_PARAMETERS.get(str(element.attributes.get("operator")), ()))
         for index, owned in enumerate(element.owned, 1):
-            name = _name(owned, self._redefined) if is_root or qualified else ""
+            name = _find_member_name(owned, self._redefined) if is_root or qualified else ""
             if element.kind == "OperatorExpression" and qualified:
                 name = "result" if owned.kind in _RESULTS else next(operands, "")
-            first = name if name not in taken else ""
-            taken.add(name)
-            inner = _joined("" if is_root else qualified, first)
-            self._relationship(owned, path, index, inner)
+            unique_name = name if name not in used_names else ""
+            used_names.add(name)
+            qualified_member = _join_names("" if is_root else qualified, unique_name)
+            self._assign_to_relationship(owned, path, index, qualified_member)
 
-    def _relationship(self, element: Element, above: str, index: int, qualified: str) -> None:
-        """Ids of an owned relationship, and of all below it; ``qualified`` names its member."""
-        path = f"{qualified}/owningMembership" if qualified else f"{above}/{index}"
-        element.id = self._of(path)
+    def _assign_to_relationship(
+        self, element: Element, owner_path: str, index: int, qualified: str
+    ) -> None:
+        """Assign ids to an owned relationship and all below it; ``qualified`` names its member."""
+        path = f"{qualified}/owningMembership" if qualified else f"{owner_path}/{index}"
+        element.id = self._make_id(path)
         for position, owned in enumerate(element.owned, 1):
             if _is_relationship(owned):
-                self._relationship(owned, path, position, "")
+                self._assign_to_relationship(owned, path, position, "")
             else:
-                inner = qualified if position == 1 else ""
-                self._todo.append((owned, inner or f"{path}/{position}", inner))
+                qualified_member = qualified if position == 1 else ""
+                self._worklist.append(
+                    (owned, qualified_member or f"{path}/{position}", qualified_member)
+                )
 
 
-def _joined(above: str, name: str) -> str:
+def _join_names(owner: str, name: str) -> str:
     if not name:
         return ""
-    return f"{above}::{quote_name(name)}" if above else quote_name(name)
+    return f"{owner}::{quote_name(name)}" if owner else quote_name(name)
 
 
 def _is_relationship(element: Element) -> bool:
     return element.kind == "Annotation"
 
 
-def _name(owned: Element, redefined: Redefined) -> str:
-    """The name of the member of a membership; nothing for other relationships."""
+def _find_member_name(owned: Element, redefined: RedefinitionQuery) -> str:
+    """Return the name of the member of a membership; empty for other relationships."""
     if not is_a(owned.kind, "OwningMembership") or not owned.owned:
         return ""
     member = owned.owned[0]
     if member.kind == "ConjugatedPortDefinition":
-        original = conjugated(member)
-        return f"~{effective(original, redefined)}" if original else ""
-    return effective(member.node, redefined) if member.node is not None else ""
+        original = find_conjugated(member)
+        return f"~{find_effective_name(original, redefined)}" if original else ""
+    return find_effective_name(member.node, redefined) if member.node is not None else ""
 
 
-def conjugated(definition: Element) -> Node | None:
-    """The port definition that a ConjugatedPortDefinition conjugates."""
+def find_conjugated(definition: Element) -> Node | None:
+    """Return the port definition that a ConjugatedPortDefinition conjugates."""
     targets = (target for _, target in definition.owned[0].targets)
     return next(
         (target.node for target in targets if isinstance(target, Element) and target.node), None

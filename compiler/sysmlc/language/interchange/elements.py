@@ -1,4 +1,4 @@
-"""Elements of interchange files before they are written."""
+"""Elements of interchange files, before they are written."""
 
 from collections.abc import Iterator
 
@@ -6,11 +6,11 @@ from sysmlc.language.tree import AttributeValue, Node, Reference
 
 
 class Element:
-    """An element of an interchange file: its metaclass, what it says, what it owns.
+    """An element of an interchange file: metaclass, attributes, references, owned elements.
 
-    ``node`` is what it comes from, for a membership its member; what the tree leaves out has
-    none. ``targets`` are the references by feature: the name of one, an element of the same
-    file, or a link of a reference of the tree.
+    ``node`` is the node that it represents, for a membership the node of its member. Elements that
+    the tree folds or omits have none. ``targets`` are the references: the name of a feature with an
+    element of the same file, or with a link of a reference of the tree.
     """
 
     __slots__ = ("attributes", "id", "kind", "node", "owned", "targets")
@@ -24,7 +24,7 @@ class Element:
         self.id = ""
 
     def add_owned(self, element: "Element") -> "Element":
-        """Take the element as the last of what is owned; it is returned."""
+        """Append ``element`` to the owned elements, and return it."""
         self.owned.append(element)
         return element
 
@@ -40,18 +40,18 @@ class Link:
 
     @property
     def node(self) -> Node | None:
-        """The element that the link leads to, if it was found."""
+        """The element that the link leads to, or None if it is unresolved."""
         targets = self.reference.targets
         return targets[self.index] if targets and self.index < len(targets) else None
 
     @property
     def text(self) -> str:
-        """How the reference names it."""
+        """The name that the reference has for the element."""
         return "::".join(self.reference.chain[self.index]) if self.reference.chain else ""
 
 
-def walk(root: Element) -> Iterator[tuple[Element, Element | None]]:
-    """The element and all below it, owners first, each with what owns it."""
+def walk_elements(root: Element) -> Iterator[tuple[Element, Element | None]]:
+    """Yield the element and all below it with their owners, owners first."""
     stack: list[tuple[Element, Element | None]] = [(root, None)]
     while stack:
         element, owner = stack.pop()

@@ -1,9 +1,9 @@
-"""XML elements of an interchange file while they are open, and what their attributes say."""
+"""Frames: open XML elements of an interchange file, and the meaning of their attributes."""
 
 from collections.abc import Mapping
 from functools import cache
 
-from sysmlc.language.interchange.metamodel import stated
+from sysmlc.language.interchange.metamodel import list_features
 from sysmlc.language.metaclasses import is_a
 from sysmlc.language.tree import AttributeValue, Node
 
@@ -31,9 +31,9 @@ _TYPES: dict[str, type[int] | type[float]] = {"LiteralInteger": int, "LiteralRat
 class Frame:
     """An open XML element that is an element of the model.
 
-    ``node`` is what it becomes, with the names and facts that it states; a relationship that is
-    folded has one too, which is thrown away. ``targets`` has the ids that its features refer
-    to, ``owned`` the closed ``ownedRelatedElement`` frames of a relationship.
+    ``node`` is the node that it becomes, with its names and attributes. A relationship that is
+    folded has a node too, which is discarded. ``targets`` has the ids that its features refer to,
+    ``owned`` the closed ``ownedRelatedElement`` frames of a relationship.
     """
 
     __slots__ = ("id", "is_chain", "kind", "node", "ordinal", "owned", "targets")
@@ -47,26 +47,26 @@ class Frame:
         self.owned: list[Frame] = []
         self.is_chain = False
 
-    def say(self, feature: str, value: str) -> str:
-        """Take one attribute; returns the type that the value is not of, else nothing."""
-        action = _plan(self.kind).get(feature)
+    def set_attribute(self, feature: str, value: str) -> str:
+        """Set one attribute; return the name of the expected type if the value has another one."""
+        action = _plan_actions(self.kind).get(feature)
         if action is None or action == "ignored":
             return ""
         if action == "reference":
             self.targets.setdefault(feature, []).extend(value.split())
         elif action == "name":
-            _name(self.node, feature, value)
+            _set_name(self.node, feature, value)
         else:
-            return _state(self.node, feature, value, action)
+            return _set_value(self.node, feature, value, action)
         return ""
 
 
 @cache
-def _plan(kind: str) -> Mapping[str, str]:
-    return {feature: _action(kind, feature) for feature in stated(kind)}
+def _plan_actions(kind: str) -> Mapping[str, str]:
+    return {feature: _choose_action(kind, feature) for feature in list_features(kind)}
 
 
-def _action(kind: str, feature: str) -> str:
+def _choose_action(kind: str, feature: str) -> str:
     if feature in _NAMES:
         return "name"
     if feature in _IGNORED or (feature == "operator" and kind != "OperatorExpression"):
@@ -78,23 +78,23 @@ def _action(kind: str, feature: str) -> str:
     return "boolean" if feature.startswith("is") or feature == "value" else "reference"
 
 
-def _name(node: Node, feature: str, value: str) -> None:
+def _set_name(node: Node, feature: str, value: str) -> None:
     if feature == "declaredName":
         node.name = value
     else:
         node.short_name = value
 
 
-def _state(node: Node, feature: str, value: str, action: str) -> str:
-    fact = _parsed(node.kind, value, action)
-    if fact is None:
+def _set_value(node: Node, feature: str, value: str, action: str) -> str:
+    parsed = _parse(node.kind, value, action)
+    if parsed is None:
         return "number" if action == "number" else "truth value"
-    if action != "boolean" or feature == "value" or fact != (feature in _TRUE_BY_DEFAULT):
-        node.attributes[feature] = fact
+    if action != "boolean" or feature == "value" or parsed != (feature in _TRUE_BY_DEFAULT):
+        node.attributes[feature] = parsed
     return ""
 
 
-def _parsed(kind: str, value: str, action: str) -> AttributeValue | None:
+def _parse(kind: str, value: str, action: str) -> AttributeValue | None:
     if action == "text":
         return value
     if action == "boolean":
@@ -105,8 +105,8 @@ def _parsed(kind: str, value: str, action: str) -> AttributeValue | None:
         return None
 
 
-def complete(node: Node) -> None:
-    """State the value of a literal that is the default of its type, so that files omit it."""
+def complete_literal(node: Node) -> None:
+    """Set the value of a literal that files omit because it is the default of its type."""
     if is_a(node.kind, "LiteralExpression") and "value" not in node.attributes:
         default = {"LiteralBoolean": False, "LiteralInteger": 0, "LiteralRational": 0.0}
         if node.kind in default:

@@ -57,7 +57,7 @@ _STATED = {
     "Unioning": "unioningType",
     "Usage": "isVariation",
 }
-"""What each metaclass states; ids and ownership included, what is derived from others not."""
+"""The features of each metaclass, with ids and ownership, without derived features."""
 
 _DERIVED = """
 action actionDefinition actorParameter allocation allocationDefinition analysisCaseDefinition
@@ -110,31 +110,31 @@ upperBound usage useCaseDefinition useCaseIncluded value valueExpression variant
 variantMembership verificationCaseDefinition verifiedRequirement view viewCondition
 viewDefinition viewRendering viewpointDefinition viewpointStakeholder whileArgument
 """
-"""What files may say again although it is derived: nothing is read from it."""
+"""Derived features, which files may contain and the reader ignores."""
 
 ABSTRACT = (
     "ConnectorAsUsage ControlNode Element Expose Import InstantiationExpression"
     " LoopActionUsage Relationship"
 )
-"""Metaclasses that no element is of."""
+"""Abstract metaclasses."""
 
 
 @cache
-def _derived() -> frozenset[str]:
+def _list_derived() -> frozenset[str]:
     return frozenset(_DERIVED.split())
 
 
 @cache
-def stated(kind: str) -> frozenset[str]:
-    """The features that elements of the metaclass can state, inherited ones included."""
+def list_features(kind: str) -> frozenset[str]:
+    """Return the features that elements of the metaclass may have, inherited ones included."""
     return frozenset(
         feature for general in ALL_GENERALS[kind] for feature in _STATED.get(general, "").split()
     )
 
 
-def is_known(kind: str, feature: str) -> bool:
-    """Whether the metaclass has the feature, or some metaclass has it derived."""
-    return feature in stated(kind) or feature in _derived()
+def has_feature(kind: str, feature: str) -> bool:
+    """Whether the metaclass has the feature, or some metaclass has it as a derived one."""
+    return feature in list_features(kind) or feature in _list_derived()
 
 
 @cache
@@ -143,7 +143,7 @@ def is_concrete(kind: str) -> bool:
     return kind in ALL_GENERALS and kind not in ABSTRACT.split()
 
 
-RELATIONS = {
+RELATION_TARGETS = {
     "Specialization": "general",
     "Subclassification": "superclassifier",
     "FeatureTyping": "type",
@@ -162,9 +162,9 @@ RELATIONS = {
     "TypeFeaturing": "featuringType",
     "Annotation": "annotatedElement",
 }
-"""Relationships that an element owns towards others, and the feature that says to which."""
+"""Owned relationships, and the feature that refers to their target."""
 
-ENDS = {
+RELATIONSHIP_ENDS = {
     "Dependency": ("client", "supplier"),
     "Specialization": ("specific", "general"),
     "Subclassification": ("subclassifier", "superclassifier"),
@@ -176,15 +176,15 @@ ENDS = {
     "FeatureInverting": ("featureInverted", "invertingFeature"),
     "TypeFeaturing": ("featureOfType", "featuringType"),
 }
-"""Relationships that stand for themselves, and their ends in the order of the text."""
+"""Relationships that may be elements of their own, with their ends in the order of the text."""
 
-NAMING = (
+REFERRING_KINDS = (
     kinds_of("InstantiationExpression")
     | kinds_of("FeatureReferenceExpression")
     | kinds_of("MetadataAccessExpression")
     | {"AssignmentActionUsage", "TransitionUsage"}
 )
-"""Elements whose memberships name what they refer to."""
+"""Elements that refer to others by a membership."""
 
 OWN_ENDS = {
     "Specialization": "specific",
@@ -198,4 +198,4 @@ OWN_ENDS = {
     "FeatureInverting": "featureInverted",
     "TypeFeaturing": "featureOfType",
 }
-"""The feature by which an owned relationship names its owner, where the owner does not say it."""
+"""The feature by which an owned relationship refers to its owner."""

@@ -25,19 +25,23 @@ _ALGORITHMS = {
     "SHA3512": "sha3_512",
     "MD5": "md5",
 }
-_BLAKE = {"BLAKE2B256": 32, "BLAKE2B384": 48, "BLAKE2B512": 64}
+_BLAKE_DIGEST_SIZES = {"BLAKE2B256": 32, "BLAKE2B384": 48, "BLAKE2B512": 64}
 
 
-def digest(source: Source, algorithm: str) -> str | None:
-    """The checksum in hex, or None for an algorithm that is not known; hyphens do not count."""
-    known = algorithm.upper().replace("-", "")
-    if known == "SHA256":
+def compute_checksum(source: Source, algorithm: str) -> str | None:
+    """Return the checksum in hex, or None for an unknown algorithm; hyphens are ignored."""
+    canonical_name = algorithm.upper().replace("-", "")
+    if canonical_name == "SHA256":
         return source.sha256
-    if known in _ALGORITHMS:
-        return hashlib.new(_ALGORITHMS[known], source.data, usedforsecurity=False).hexdigest()
-    if known in _BLAKE:
-        return hashlib.blake2b(source.data, digest_size=_BLAKE[known]).hexdigest()
-    if known == "ADLER32":
+    if canonical_name in _ALGORITHMS:
+        return hashlib.new(
+            _ALGORITHMS[canonical_name], source.data, usedforsecurity=False
+        ).hexdigest()
+    if canonical_name in _BLAKE_DIGEST_SIZES:
+        return hashlib.blake2b(
+            source.data, digest_size=_BLAKE_DIGEST_SIZES[canonical_name]
+        ).hexdigest()
+    if canonical_name == "ADLER32":
         return f"{zlib.adler32(source.data):08x}"
     return None
 
@@ -50,43 +54,43 @@ _FIELDS: dict[str, type] = {"name": str, "version": str, "usage": list}
 _LISTS: dict[str, type] = {"index": dict, "checksum": dict}
 
 
-class Usage(Struct, frozen=True):
-    """A project that another one uses: its IRI or path, and the versions that will do."""
+class ProjectUsage(Struct, frozen=True):
+    """A project that another one uses: its IRI or path, and the versions that are accepted."""
 
     resource: str
     constraint: str = ""
 
 
 class Project(Struct, frozen=True):
-    """A project: where it is, its name and version, what it uses, its model files.
+    """A project: its location, name and version, the projects that it uses, its model files.
 
-    ``index`` says which file has a root member of that name; ``place`` is where the project is
-    described, for messages.
+    ``index`` has the file of each root member by name. ``place`` is the location of the description
+    of the project, for messages.
     """
 
     path: str
     name: str
     version: str = ""
-    usages: tuple[Usage, ...] = ()
+    usages: tuple[ProjectUsage, ...] = ()
     index: Mapping[str, str] = field(default_factory=dict)
     files: tuple[Source, ...] = ()
     place: Place | None = None
 
 
 def open_archive(archive: Source, sink: Sink, limits: Limits = DEFAULT_LIMITS) -> Project | None:
-    """The project of a .kpar; a damaged one is reported and gives None.
+    """Return the project of a .kpar; a damaged archive is reported and gives None.
 
-    Raises SourceError for what exceeds the limits.
+    Raises SourceError for an archive that exceeds the limits.
     """
     try:
-        found = entries(archive, is_project_file, limits)
+        sources = entries(archive, is_project_file, limits)
     except SourceError as problem:
         if problem.fault is Fault.LIMIT:
             raise
         subject = Subject(archive.name, place=Place(archive.name))
         sink.report(rules.MALFORMED, subject, file=archive.name, problem=problem.message)
         return None
-    return project(archive.name, found, sink)
+    return read_project(archive.name, sources, sink)
 
 
 def is_project_file(entry: str) -> bool:
@@ -95,104 +99,117 @@ def is_project_file(entry: str) -> bool:
     return name in (PROJECT, META) or name.endswith(MODELS)
 
 
-def project(path: str, sources: Sequence[Source], sink: Sink) -> Project:
-    """The project at ``path`` with its sources: checksums examined, missing files told."""
-    files = {_inside(path, source.name): source for source in sources}
+def read_project(path: str, sources: Sequence[Source], sink: Sink) -> Project:
+    """Return the project at ``path``; check its checksums, report missing files."""
+    files = {_relative_name(path, source.name): source for source in sources}
     models = tuple(source for name, source in files.items() if name.endswith(MODELS))
-    said = _described(files.get(PROJECT), f"{path}!{PROJECT}", _FIELDS, sink)
-    name = said.get("name") or path
+    description = _read_json(files.get(PROJECT), f"{path}!{PROJECT}", _FIELDS, sink)
+    name = description.get("name") or path
     meta = files.get(META)
-    listed = _described(meta, f"{path}!{META}", _LISTS, sink)
+    meta_data = _read_json(meta, f"{path}!{META}", _LISTS, sink)
     place = Place(files[PROJECT].name, offset=0) if PROJECT in files else None
-    made = Project(path, str(name), str(said.get("version", "")), _usages(said), {}, models, place)
+    project = Project(
+        path,
+        str(name),
+        str(description.get("version", "")),
+        _read_usages(description),
+        {},
+        models,
+        place,
+    )
     if meta is None:
-        return made
-    _examine(made, meta, listed, files, sink)
-    index = {str(member): str(file) for member, file in listed.get("index", {}).items()}
-    return Project(path, made.name, made.version, made.usages, index, models, place)
+        return project
+    _check_files(project, meta, meta_data, files, sink)
+    index = {str(member): str(file) for member, file in meta_data.get("index", {}).items()}
+    return Project(path, project.name, project.version, project.usages, index, models, place)
 
 
-def _inside(path: str, name: str) -> str:
-    """The name of a source within the archive or folder."""
+def _relative_name(path: str, name: str) -> str:
+    """Return the name of a source within the archive or folder."""
     for separator in "!/":
         if name.startswith(path + separator):
             return name[len(path) + 1 :]
     return name
 
 
-def _described(
+def _read_json(
     source: Source | None, name: str, fields: Mapping[str, type], sink: Sink
 ) -> dict[str, Any]:
-    """What .project.json or .meta.json says; what is wrong with it is reported."""
+    """Return the content of .project.json or .meta.json; report its faults."""
     if source is None:
         _report(sink, rules.BAD_PROJECT, Place(name), file=name, problem="it is missing")
         return {}
     try:
-        said = json.loads(source.data)
+        content = json.loads(source.data)
     except (ValueError, RecursionError) as problem:
-        return _bad(sink, source, f"it is no JSON: {problem}")
-    if not isinstance(said, dict):
-        return _bad(sink, source, "it is no JSON object")
-    for wanted, kind in fields.items():
-        if wanted in said and not isinstance(said[wanted], kind):
-            _bad(sink, source, f"its '{wanted}' is of the wrong type", wanted)
-            del said[wanted]
-    if "name" in fields and not said.get("name"):
-        _bad(sink, source, "it has no name")
-    return said
+        return _report_bad_project(sink, source, f"it is no JSON: {problem}")
+    if not isinstance(content, dict):
+        return _report_bad_project(sink, source, "it is no JSON object")
+    for key, kind in fields.items():
+        if key in content and not isinstance(content[key], kind):
+            _report_bad_project(sink, source, f"its '{key}' is of the wrong type", key)
+            del content[key]
+    if "name" in fields and not content.get("name"):
+        _report_bad_project(sink, source, "it has no name")
+    return content
 
 
-def _bad(sink: Sink, source: Source, problem: str, near: str = "") -> dict[str, Any]:
-    place = _place(source, near) if near else Place(source.name, offset=0)
+def _report_bad_project(sink: Sink, source: Source, problem: str, near: str = "") -> dict[str, Any]:
+    place = _locate(source, near) if near else Place(source.name, offset=0)
     _report(sink, rules.BAD_PROJECT, place, file=source.name, problem=problem)
     return {}
 
 
-def _usages(said: Mapping[str, Any]) -> tuple[Usage, ...]:
-    stated = (one for one in said.get("usage", ()) if isinstance(one, dict) and "resource" in one)
+def _read_usages(description: Mapping[str, Any]) -> tuple[ProjectUsage, ...]:
+    usages = (
+        usage
+        for usage in description.get("usage", ())
+        if isinstance(usage, dict) and "resource" in usage
+    )
     return tuple(
-        Usage(str(one["resource"]), str(one.get("versionConstraint") or "")) for one in stated
+        ProjectUsage(str(usage["resource"]), str(usage.get("versionConstraint") or ""))
+        for usage in usages
     )
 
 
-def _examine(
-    made: Project,
+def _check_files(
+    project: Project,
     meta: Source,
-    listed: Mapping[str, Any],
+    meta_data: Mapping[str, Any],
     files: Mapping[str, Source],
     sink: Sink,
 ) -> None:
-    """Report files that are missing, are not what they were, or have no checksum."""
-    checksums = listed.get("checksum", {})
-    named = dict.fromkeys([*map(str, listed.get("index", {}).values()), *checksums])
-    for file in named:
+    """Report files that are missing, have a wrong checksum, or have none."""
+    checksums = meta_data.get("checksum", {})
+    listed_files = dict.fromkeys([*map(str, meta_data.get("index", {}).values()), *checksums])
+    for file in listed_files:
         if file not in files:
-            facts = {"project": made.name, "file": file}
-            _report(sink, rules.MISSING_FILE, _place(meta, file), **facts)
-    for file, stated in checksums.items():
-        if file in files and isinstance(stated, dict):
-            _compare(made, files[file], stated, _place(meta, file), sink)
-    for source in made.files:
-        file = _inside(made.path, source.name)
+            facts = {"project": project.name, "file": file}
+            _report(sink, rules.MISSING_FILE, _locate(meta, file), **facts)
+    for file, checksum in checksums.items():
+        if file in files and isinstance(checksum, dict):
+            _check_checksum(project, files[file], checksum, _locate(meta, file), sink)
+    for source in project.files:
+        file = _relative_name(project.path, source.name)
         if checksums and file not in checksums:
-            facts = {"project": made.name, "file": file}
+            facts = {"project": project.name, "file": file}
             _report(sink, rules.UNLISTED_FILE, Place(source.name), **facts)
 
 
-def _compare(
-    made: Project, source: Source, stated: Mapping[str, Any], place: Place, sink: Sink
+def _check_checksum(
+    project: Project, source: Source, checksum: Mapping[str, Any], place: Place, sink: Sink
 ) -> None:
-    algorithm, expected = str(stated.get("algorithm")), str(stated.get("value")).lower()
-    found = digest(source, algorithm)
-    if found is None:
+    algorithm, expected = str(checksum.get("algorithm")), str(checksum.get("value")).lower()
+    computed = compute_checksum(source, algorithm)
+    if computed is None:
         _report(sink, rules.UNKNOWN_ALGORITHM, place, file=source.name, algorithm=algorithm)
-    elif found != expected:
-        facts = {"file": source.name, "project": made.name, "algorithm": algorithm}
-        _report(sink, rules.CHECKSUM, place, found=found, expected=expected, **facts)
+    elif computed != expected:
+        facts = {"file": source.name, "project": project.name, "algorithm": algorithm}
+        _report(sink, rules.CHECKSUM, place, found=computed, expected=expected, **facts)
 
 
-def _place(source: Source, text: str) -> Place:
-    """Where a JSON file says the text."""
+def _locate(source: Source, text: str) -> Place:
+    """Return the location of a string in a JSON file."""
     return Place(source.name, offset=max(source.data.rfind(json.dumps(text).encode()), 0))
 
 
@@ -204,34 +221,42 @@ _STANDARD = ("https://www.omg.org/spec/KerML/", "https://www.omg.org/spec/SysML/
 _COMPARISON = re.compile(r"(>=|<=|>|<|==|=|\^|~)?\s*v?(\d+(?:\.\d+)*)$")
 
 
-def used(
-    project: Project, given: Sequence[Project], sink: Sink, *, has_standard: bool = False
-) -> Mapping[Usage, Project]:
-    """The project for each usage; one that is not among the given, or too old, is reported.
+def resolve_usages(
+    project: Project, projects: Sequence[Project], sink: Sink, *, has_standard: bool = False
+) -> Mapping[ProjectUsage, Project]:
+    """Return the project for each usage; report usages without a project, or with an old one only.
 
-    ``has_standard`` says that the standard libraries are known in another way.
+    ``has_standard`` means that the standard libraries are available in another way.
     """
-    found: dict[Usage, Project] = {}
+    resolved: dict[ProjectUsage, Project] = {}
     for usage in project.usages:
-        named = [one for one in given if one is not project and _is_named(one, usage.resource)]
-        fitting = [one for one in named if fits(one.version, usage.constraint)]
+        candidates = [
+            candidate
+            for candidate in projects
+            if candidate is not project and _matches_resource(candidate, usage.resource)
+        ]
+        fitting = [
+            candidate
+            for candidate in candidates
+            if satisfies_version(candidate.version, usage.constraint)
+        ]
         if fitting:
-            found[usage] = fitting[-1]
-        elif not (has_standard and not named and usage.resource.startswith(_STANDARD)):
-            _report_unresolved_usage(project, usage, named, sink)
-    return found
+            resolved[usage] = fitting[-1]
+        elif not (has_standard and not candidates and usage.resource.startswith(_STANDARD)):
+            _report_unresolved_usage(project, usage, candidates, sink)
+    return resolved
 
 
-def _is_named(project: Project, resource: str) -> bool:
+def _matches_resource(project: Project, resource: str) -> bool:
     """Whether an IRI or a path means the project: by its file, else by the words of its name.
 
-    The standard libraries are used as ``.../Semantic-Library.kpar`` and are called "Kernel
-    Semantic Library": the words of the one end those of the other.
+    The standard libraries are used as ``.../Semantic-Library.kpar`` and are called "Kernel Semantic
+    Library": the words of the file are the last words of the name.
     """
     wanted = _stem(resource)
     if unquote(resource) == project.path or wanted == _stem(project.path):
         return True
-    words, names = _words(wanted), _words(project.name)
+    words, names = _split_words(wanted), _split_words(project.name)
     return bool(words) and names[-len(words) :] == words
 
 
@@ -240,40 +265,50 @@ def _stem(resource: str) -> str:
     return last.removesuffix(".kpar")
 
 
-def _words(name: str) -> list[str]:
+def _split_words(name: str) -> list[str]:
     bare = re.sub(r"[-_ ]v?\d+(\.\d+)+$", "", name)
     return [word.lower() for word in re.split(r"[-_ .]+", bare) if word]
 
 
-def fits(version: str, constraint: str) -> bool:
-    """Whether a version is one that the constraint allows; several are divided by commas.
+def satisfies_version(version: str, constraint: str) -> bool:
+    """Whether a version satisfies a constraint, which may have several parts with commas.
 
-    A bare version means itself or a later one that is compatible (same first number), as ``^``
-    does; ``~`` keeps the second number too. What is no constraint of numbers allows everything.
+    A bare version means itself or a later compatible one (same first number), as ``^`` does. ``~``
+    fixes the second number too. A constraint that is no comparison of numbers accepts everything.
     """
-    return all(_fits(version, one.strip()) for one in constraint.split(",") if one.strip())
+    return all(
+        _satisfies_comparison(version, comparison.strip())
+        for comparison in constraint.split(",")
+        if comparison.strip()
+    )
 
 
-def _fits(version: str, constraint: str) -> bool:
-    stated, found = _COMPARISON.match(constraint), _COMPARISON.match(version)
-    if stated is None or found is None:
+def _satisfies_comparison(version: str, constraint: str) -> bool:
+    wanted_match, version_match = _COMPARISON.match(constraint), _COMPARISON.match(version)
+    if wanted_match is None or version_match is None:
         return True
-    sign, wanted, has = stated[1] or "^", _numbers(stated[2]), _numbers(found[2])
+    sign, wanted, actual = (
+        wanted_match[1] or "^",
+        _parse_version(wanted_match[2]),
+        _parse_version(version_match[2]),
+    )
     if sign in ("=", "=="):
-        return has == wanted
+        return actual == wanted
     if sign in ("<", "<=", ">", ">="):
-        return {"<": has < wanted, "<=": has <= wanted, ">": has > wanted}.get(sign, has >= wanted)
-    kept = 1 if sign == "^" else 2
-    return has >= wanted and has[:kept] == wanted[:kept]
+        return {"<": actual < wanted, "<=": actual <= wanted, ">": actual > wanted}.get(
+            sign, actual >= wanted
+        )
+    fixed_parts = 1 if sign == "^" else 2
+    return actual >= wanted and actual[:fixed_parts] == wanted[:fixed_parts]
 
 
-def _numbers(version: str) -> tuple[int, ...]:
+def _parse_version(version: str) -> tuple[int, ...]:
     numbers = [int(number) for number in version.split(".")]
     return tuple(numbers + [0] * (3 - len(numbers)))
 
 
 def _report_unresolved_usage(
-    project: Project, usage: Usage, candidates: Sequence[Project], sink: Sink
+    project: Project, usage: ProjectUsage, candidates: Sequence[Project], sink: Sink
 ) -> None:
     versions = ", ".join(candidate.version or "without a version" for candidate in candidates)
     problem = f"but the one given is {versions}" if candidates else "which is not given"

@@ -1,10 +1,19 @@
-"""What the tree leaves out because it follows: parameters, results, conjugates (KerML 8.2.5.8)."""
+"""Unfolding: the relationships and elements that the tree folds, as the metamodel has them.
+
+KerML 1.0, 8.3 and 8.2.5.8. The inverse of ``folding``.
+"""
 
 from collections.abc import Iterator
 
-from sysmlc.language.interchange.effective_names import accepted_by
+from sysmlc.language.interchange.effective_names import find_accepted
 from sysmlc.language.interchange.elements import Element, Link
-from sysmlc.language.interchange.metamodel import ENDS, NAMING, OWN_ENDS, RELATIONS, stated
+from sysmlc.language.interchange.metamodel import (
+    OWN_ENDS,
+    REFERRING_KINDS,
+    RELATION_TARGETS,
+    RELATIONSHIP_ENDS,
+    list_features,
+)
 from sysmlc.language.metaclasses import USAGES, is_a, is_composite, is_end, kinds_of
 from sysmlc.language.tree import AttributeValue, Node, Reference, Relation
 
@@ -12,29 +21,29 @@ _END = "EndFeatureMembership"
 _RESULTLESS = {"ConstructorExpression", "AssignmentActionUsage", "TransitionUsage"}
 
 
-def argument(value: Element) -> Element:
-    """The parameter that carries an argument (KerML 1.0, 8.2.5.8.1)."""
+def wrap_argument(value: Element) -> Element:
+    """Return the parameter that carries an argument (KerML 1.0, 8.2.5.8.1)."""
     parameter = Element("Feature")
     parameter.attributes["direction"] = "in"
     parameter.add_owned(Element("FeatureValue")).add_owned(value)
     return parameter
 
 
-def late(value: Element) -> Element:
-    """The reference to an expression that is only evaluated when others say so."""
-    made = Element("FeatureReferenceExpression")
-    made.add_owned(Element("FeatureMembership")).add_owned(value)
-    made.add_owned(_result())
-    return made
+def wrap_lazy_argument(value: Element) -> Element:
+    """Return the reference to an expression that is evaluated only on demand."""
+    reference = Element("FeatureReferenceExpression")
+    reference.add_owned(Element("FeatureMembership")).add_owned(value)
+    reference.add_owned(_make_result())
+    return reference
 
 
 def add_implicit(element: Element, node: Node) -> None:
-    """Own what follows for an element of its kind when its node owns nothing like it."""
-    if node.kind in NAMING and node.kind not in _RESULTLESS:
+    """Add the elements that follow from the kind of the node, unless the node owns them."""
+    if node.kind in REFERRING_KINDS and node.kind not in _RESULTLESS:
         if not any(member.membership == "ReturnParameterMembership" for member in node.members):
-            element.add_owned(_result())
+            element.add_owned(_make_result())
     elif node.kind == "PortDefinition":
-        element.add_owned(Element("OwningMembership")).add_owned(_conjugate(element))
+        element.add_owned(Element("OwningMembership")).add_owned(_make_conjugate(element))
     elif node.kind == "SuccessionAsUsage" and [member.membership for member in node.members] == [
         _END
     ]:
@@ -45,64 +54,66 @@ def add_implicit(element: Element, node: Node) -> None:
         element.add_owned(Element("OwningMembership")).add_owned(Element("Multiplicity"))
 
 
-def _result() -> Element:
-    made = Element("ReturnParameterMembership")
-    made.add_owned(Element("Feature")).attributes["direction"] = "out"
-    return made
+def _make_result() -> Element:
+    membership = Element("ReturnParameterMembership")
+    membership.add_owned(Element("Feature")).attributes["direction"] = "out"
+    return membership
 
 
-def _conjugate(definition: Element) -> Element:
-    """The conjugated port definition that every port definition has (SysML 2.0, 8.2.2.12)."""
-    made = Element("ConjugatedPortDefinition")
-    conjugation = made.add_owned(Element("PortConjugation"))
-    conjugation.targets += [("conjugatedType", made), ("originalPortDefinition", definition)]
-    return made
+def _make_conjugate(definition: Element) -> Element:
+    """Return the conjugated definition of a port definition (SysML 2.0, 8.2.2.12)."""
+    conjugate = Element("ConjugatedPortDefinition")
+    conjugation = conjugate.add_owned(Element("PortConjugation"))
+    conjugation.targets += [("conjugatedType", conjugate), ("originalPortDefinition", definition)]
+    return conjugate
 
 
 _INSTANTIATIONS = kinds_of("InstantiationExpression")
 _EXPRESSIONS = kinds_of("Expression")
 _PARAMETERS = kinds_of("ParameterMembership")
 _IMPORTS = {"MembershipImport": "importedMembership", "NamespaceImport": "importedNamespace"}
-_KINDS = kinds_of("StateSubactionMembership") | kinds_of("TransitionFeatureMembership")
+_MEMBERSHIPS_WITH_KIND = kinds_of("StateSubactionMembership") | kinds_of(
+    "TransitionFeatureMembership"
+)
 _REQUIREMENTS = kinds_of("RequirementConstraintMembership")
 
 
 def unfold(node: Node) -> Element:
-    """The element of a node with all that it owns, however deep it nests."""
+    """Return the element of a node with everything that it owns, without recursion."""
     root = Element(node.kind, node)
-    todo = [root]
-    while todo:
-        _fill(todo.pop(), todo)
+    worklist = [root]
+    while worklist:
+        _fill_element(worklist.pop(), worklist)
     return root
 
 
-def _fill(element: Element, todo: list[Element]) -> None:
-    """State what the element says and own what its node owns; ``todo`` gets what is empty yet."""
+def _fill_element(element: Element, worklist: list[Element]) -> None:
+    """Set the attributes and owned elements; unfinished elements are added to ``worklist``."""
     node = element.node
     if node is None:
         return
-    _state(element, node)
-    if node.kind in ENDS and node.membership:
-        _stand(element, node, todo)
+    _set_attributes(element, node)
+    if node.kind in RELATIONSHIP_ENDS and node.membership:
+        _unfold_ends(element, node, worklist)
     else:
-        for item in _in_order(node):
+        for item in _iter_in_order(node):
             if isinstance(item, Relation):
-                element.add_owned(_relationship(item, element))
+                element.add_owned(_make_relationship(item, element))
             else:
-                _own(element, item, todo)
+                _add_member(element, item, worklist)
     add_implicit(element, node)
 
 
-def _empty(node: Node, todo: list[Element]) -> Element:
-    made = Element(node.kind, node)
-    todo.append(made)
-    return made
+def _make_element(node: Node, worklist: list[Element]) -> Element:
+    element = Element(node.kind, node)
+    worklist.append(element)
+    return element
 
 
-def _in_order(node: Node) -> Iterator[Relation | Node]:
-    """Relations and members in the order in which the text or the file has them.
+def _iter_in_order(node: Node) -> Iterator[Relation | Node]:
+    """Yield relations and members in the order of the text or file.
 
-    The source of a transition is before its parameters, which no text has (SysML 8.2.2.18.3).
+    The source of a transition comes before its parameters, which no text has (SysML 8.2.2.18.3).
     """
     relations = list(node.relations)
     members = list(node.members)
@@ -110,8 +121,8 @@ def _in_order(node: Node) -> Iterator[Relation | Node]:
         yield from (relation for relation in relations if relation.kind == "Membership")
         relations = [relation for relation in relations if relation.kind != "Membership"]
     while relations and members:
-        before = relations[0].reference.start <= members[0].start
-        yield relations.pop(0) if before else members.pop(0)
+        is_relation_first = relations[0].reference.start <= members[0].start
+        yield relations.pop(0) if is_relation_first else members.pop(0)
     yield from relations
     yield from members
 
@@ -119,17 +130,17 @@ def _in_order(node: Node) -> Iterator[Relation | Node]:
 # -- what an element says --------------------------------------------------------------------
 
 
-def _state(element: Element, node: Node) -> None:
-    accepted = accepted_by(node)
+def _set_attributes(element: Element, node: Node) -> None:
+    accepted = find_accepted(node)
     name = node.name if accepted is None else accepted.name
     names = {"declaredName": name, "declaredShortName": node.short_name}
     element.attributes.update({name: text for name, text in names.items() if text is not None})
-    known = stated(node.kind)
+    features = list_features(node.kind)
     element.attributes.update(
-        {name: fact for name, fact in node.attributes.items() if name in known}
+        {name: fact for name, fact in node.attributes.items() if name in features}
     )
     if node.membership in _PARAMETERS and not _is_argument(node):
-        element.attributes.setdefault("direction", _direction(node))
+        element.attributes.setdefault("direction", _find_direction(node))
     if is_end(node):
         element.attributes["isEnd"] = True
     if node.attributes.get("isVariation") or node.kind == "EnumerationDefinition":
@@ -138,146 +149,150 @@ def _state(element: Element, node: Node) -> None:
         _complete_usage(element, node)
 
 
-def _direction(node: Node) -> str:
+def _find_direction(node: Node) -> str:
     return "out" if is_a(node.membership, "ReturnParameterMembership") else "in"
 
 
 def _complete_usage(element: Element, node: Node) -> None:
-    """What follows from the language: composition, and that ends are constant."""
+    """Set the attributes that follow from the language: composition, constancy of ends."""
     if is_composite(node):
         element.attributes["isComposite"] = True
     owner = node.owner.kind if node.owner else ""
-    varies = is_a(owner, "OccurrenceDefinition") or is_a(owner, "OccurrenceUsage")
-    if is_end(node) and varies:
+    owner_varies = is_a(owner, "OccurrenceDefinition") or is_a(owner, "OccurrenceUsage")
+    if is_end(node) and owner_varies:
         element.attributes["isConstant"] = True
 
 
-def _stand(element: Element, node: Node, todo: list[Element]) -> None:
-    """A relationship for itself: its ends are features, chains are owned by it."""
+def _unfold_ends(element: Element, node: Node, worklist: list[Element]) -> None:
+    """Unfold a relationship that is an element: its ends are features, and it owns chains."""
     for relation in node.relations:
         if len(relation.reference.chain) > 1:
-            element.targets.append((relation.kind, element.add_owned(_chain(relation.reference))))
+            element.targets.append(
+                (relation.kind, element.add_owned(_make_chain(relation.reference)))
+            )
         else:
             element.targets.append((relation.kind, Link(relation.reference)))
     for member in node.members:
-        _own(element, member, todo)
+        _add_member(element, member, worklist)
 
 
 # -- relationships ---------------------------------------------------------------------------
 
 
-def _relationship(relation: Relation, owner: Element) -> Element:
+def _make_relationship(relation: Relation, owner: Element) -> Element:
     reference = relation.reference
     if relation.kind == "Membership":
-        return _naming(reference)
-    made = Element(relation.kind)
+        return _make_reference_membership(reference)
+    relationship = Element(relation.kind)
     own_end = OWN_ENDS.get(relation.kind)
     if own_end:
-        made.targets.append((own_end, owner))
-    feature = RELATIONS.get(relation.kind, relation.kind)
+        relationship.targets.append((own_end, owner))
+    feature = RELATION_TARGETS.get(relation.kind, relation.kind)
     if len(reference.chain) > 1:
-        made.targets.append((feature, made.add_owned(_chain(reference))))
+        relationship.targets.append((feature, relationship.add_owned(_make_chain(reference))))
     else:
-        made.targets.append((feature, Link(reference)))
-    return made
+        relationship.targets.append((feature, Link(reference)))
+    return relationship
 
 
-def _naming(reference: Reference) -> Element:
-    """The membership by which an expression names what it refers to."""
+def _make_reference_membership(reference: Reference) -> Element:
+    """Return the membership by which an expression refers to an element."""
     if len(reference.chain) > 1:
-        made = Element("OwningMembership")
-        made.add_owned(_chain(reference))
-        return made
-    made = Element("Membership")
-    made.targets.append(("memberElement", Link(reference)))
-    return made
+        membership = Element("OwningMembership")
+        membership.add_owned(_make_chain(reference))
+        return membership
+    membership = Element("Membership")
+    membership.targets.append(("memberElement", Link(reference)))
+    return membership
 
 
-def _chain(reference: Reference) -> Element:
-    made = Element("Feature")
+def _make_chain(reference: Reference) -> Element:
+    feature = Element("Feature")
     for index in range(len(reference.chain)):
-        chaining = made.add_owned(Element("FeatureChaining"))
+        chaining = feature.add_owned(Element("FeatureChaining"))
         chaining.targets.append(("chainingFeature", Link(reference, index)))
-    return made
+    return feature
 
 
 # -- members ---------------------------------------------------------------------------------
 
 
-def _own(owner: Element, node: Node, todo: list[Element]) -> None:
+def _add_member(owner: Element, node: Node, worklist: list[Element]) -> None:
     if is_a(node.kind, "Import"):
-        owner.add_owned(_import(node, todo))
+        owner.add_owned(_make_import(node, worklist))
     elif node.kind == "Membership":
-        owner.add_owned(_alias(node, todo))
+        owner.add_owned(_make_alias(node, worklist))
     elif not node.membership:
-        owner.add_owned(_empty(node, todo))
+        owner.add_owned(_make_element(node, worklist))
     else:
-        owner.add_owned(_membership(owner, node, todo))
+        owner.add_owned(_make_membership(owner, node, worklist))
 
 
-def _import(node: Node, todo: list[Element]) -> Element:
-    """An import; the package of a filtered one is owned by it."""
-    made = Element(node.kind, node)
-    made.attributes.update(node.attributes)
+def _make_import(node: Node, worklist: list[Element]) -> Element:
+    """Return the element of an import; it owns the package of a filtered one."""
+    element = Element(node.kind, node)
+    element.attributes.update(node.attributes)
     if node.visibility:
-        made.attributes["visibility"] = node.visibility
+        element.attributes["visibility"] = node.visibility
     if is_a(node.kind, "Expose"):
-        made.attributes.update(isImportAll=True, visibility="protected")
+        element.attributes.update(isImportAll=True, visibility="protected")
     for relation in node.relations:
-        made.targets.append((relation.kind, Link(relation.reference)))
+        element.targets.append((relation.kind, Link(relation.reference)))
     feature = next(end for kind, end in _IMPORTS.items() if is_a(node.kind, kind))
     for member in node.members:
         if is_a(member.kind, "Package"):
-            made.targets.append((feature, made.add_owned(_empty(member, todo))))
+            element.targets.append((feature, element.add_owned(_make_element(member, worklist))))
         else:
-            _own(made, member, todo)
-    return made
+            _add_member(element, member, worklist)
+    return element
 
 
-def _alias(node: Node, todo: list[Element]) -> Element:
-    made = Element("Membership", node)
+def _make_alias(node: Node, worklist: list[Element]) -> Element:
+    alias = Element("Membership", node)
     names = {"memberName": node.name, "memberShortName": node.short_name}
     names["visibility"] = node.visibility or None
-    made.attributes.update({name: text for name, text in names.items() if text is not None})
+    alias.attributes.update({name: text for name, text in names.items() if text is not None})
     for relation in node.relations:
-        made.targets.append(("memberElement", Link(relation.reference)))
+        alias.targets.append(("memberElement", Link(relation.reference)))
     for member in node.members:
-        _own(made, member, todo)
-    return made
+        _add_member(alias, member, worklist)
+    return alias
 
 
-def _membership(owner: Element, node: Node, todo: list[Element]) -> Element:
-    made = Element(node.membership, node)
+def _make_membership(owner: Element, node: Node, worklist: list[Element]) -> Element:
+    membership = Element(node.membership, node)
     if node.visibility:
-        made.attributes["visibility"] = node.visibility
-    made.attributes.update(_role(node))
+        membership.attributes["visibility"] = node.visibility
+    membership.attributes.update(_make_role_attributes(node))
     if node.membership == "Annotation":
-        made.targets.append(("annotatedElement", owner))
-    inner = _empty(node, todo)
+        membership.targets.append(("annotatedElement", owner))
+    member = _make_element(node, worklist)
     if _is_argument(node):
-        inner = argument(late(inner) if node.role == "expression" else inner)
-    made.add_owned(inner)
-    return made
+        member = wrap_argument(wrap_lazy_argument(member) if node.role == "expression" else member)
+    membership.add_owned(member)
+    return membership
 
 
 def _is_argument(node: Node) -> bool:
-    """Whether it is an expression that a parameter carries to the one that owns it."""
+    """Whether a node is an expression that a parameter carries to its owner."""
     owner = node.owner
     if node.membership != "ParameterMembership" or node.kind not in _EXPRESSIONS or owner is None:
         return False
-    return owner.kind in _INSTANTIATIONS or _is_constructed(owner)
+    return owner.kind in _INSTANTIATIONS or _is_constructor_result(owner)
 
 
-def _is_constructed(node: Node) -> bool:
-    """Whether it is the result of a constructor, which has its arguments (KerML 8.2.5.8.3)."""
+def _is_constructor_result(node: Node) -> bool:
+    """Whether a node is the result of a constructor, which has its arguments (KerML 8.2.5.8.3)."""
     owner = node.owner
     return owner is not None and owner.kind == "ConstructorExpression" and node.kind == "Feature"
 
 
-def _role(node: Node) -> dict[str, AttributeValue]:
+def _make_role_attributes(node: Node) -> dict[str, AttributeValue]:
     if node.membership == "FeatureValue":
         signs = {"isDefault": "default" in node.role, "isInitial": ":=" in node.role}
-        return {name: True for name, said in signs.items() if said}
-    if node.membership in _KINDS or (node.membership in _REQUIREMENTS and node.role):
+        return {name: True for name, is_set in signs.items() if is_set}
+    if node.membership in _MEMBERSHIPS_WITH_KIND or (
+        node.membership in _REQUIREMENTS and node.role
+    ):
         return {"kind": node.role}
     return {"kind": "requirement"} if node.membership in _REQUIREMENTS else {}
