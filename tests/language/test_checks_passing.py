@@ -4,7 +4,7 @@ import pytest
 from resolving import documents, library
 
 from sysmlc.diagnostics import Sink
-from sysmlc.language.checks import check, passing
+from sysmlc.language.checks import behaviors, check
 from sysmlc.language.names import resolve
 
 
@@ -15,7 +15,7 @@ def found(text):
 
 
 @pytest.mark.parametrize(
-    ("rule", "code"), [(passing.TOO_MANY, "SM248"), (passing.NO_PARAMETER, "SM249")]
+    ("rule", "code"), [(behaviors.TOO_MANY, "SM248"), (behaviors.NO_PARAMETER, "SM249")]
 )
 def test_the_wrong_model_has_the_finding_and_the_right_one_nearly(rule, code):
     assert [one[:5] for one in found(rule.read_page().wrong)] == [code]

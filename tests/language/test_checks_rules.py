@@ -4,7 +4,14 @@ import pytest
 from resolving import documents, library
 
 from sysmlc.diagnostics import Sink
-from sysmlc.language.checks import check, member_rules, reference_rules, rules
+from sysmlc.language.checks import (
+    accessibility,
+    check,
+    memberships,
+    references,
+    single_members,
+    usage_types,
+)
 from sysmlc.language.names import resolve
 
 
@@ -23,25 +30,25 @@ def codes(text):
 @pytest.mark.parametrize(
     ("rule", "code"),
     [
-        (rules.TYPED_BY, "SM221"),
-        (rules.ONE_TYPE, "SM222"),
-        (rules.ONLY_ONE, "SM223"),
-        (rules.SUBJECT_FIRST, "SM224"),
-        (rules.NOT_ACCESSIBLE, "SM225"),
-        (reference_rules.OTHER_KIND, "SM236"),
-        (reference_rules.PART_OF_PORT, "SM237"),
-        (reference_rules.OTHER_DIRECTION, "SM238"),
-        (reference_rules.INDIVIDUAL, "SM239"),
-        (member_rules.VARIANT_ELSEWHERE, "SM226"),
-        (member_rules.NO_VARIANT, "SM227"),
-        (member_rules.VARIATION_OF_VARIATION, "SM228"),
-        (member_rules.VERIFY_ELSEWHERE, "SM229"),
-        (member_rules.PARALLEL, "SM230"),
-        (member_rules.PORTION_ELSEWHERE, "SM231"),
-        (member_rules.END_NO_PORT, "SM232"),
-        (member_rules.TOO_MANY_ENDS, "SM233"),
-        (member_rules.ABSTRACT_METADATA, "SM234"),
-        (member_rules.ENUMERATION_AND_MORE, "SM235"),
+        (usage_types.TYPED_BY, "SM221"),
+        (usage_types.ONE_TYPE, "SM222"),
+        (single_members.ONLY_ONE, "SM223"),
+        (single_members.SUBJECT_FIRST, "SM224"),
+        (accessibility.NOT_ACCESSIBLE, "SM225"),
+        (references.OTHER_KIND, "SM236"),
+        (references.PART_OF_PORT, "SM237"),
+        (references.OTHER_DIRECTION, "SM238"),
+        (references.INDIVIDUAL, "SM239"),
+        (memberships.VARIANT_ELSEWHERE, "SM226"),
+        (memberships.NO_VARIANT, "SM227"),
+        (memberships.VARIATION_OF_VARIATION, "SM228"),
+        (memberships.VERIFY_ELSEWHERE, "SM229"),
+        (memberships.PARALLEL, "SM230"),
+        (memberships.PORTION_ELSEWHERE, "SM231"),
+        (memberships.END_NO_PORT, "SM232"),
+        (memberships.TOO_MANY_ENDS, "SM233"),
+        (memberships.ABSTRACT_METADATA, "SM234"),
+        (memberships.ENUMERATION_AND_MORE, "SM235"),
     ],
 )
 def test_the_wrong_model_has_the_finding_and_the_right_one_nearly(rule, code):

@@ -1,13 +1,12 @@
-"""Checks of a resolved model: constraints of the specification that say what is well formed."""
+"""Checks of a resolved model: the constraints of the specifications on well-formed models."""
 
 from sysmlc.diagnostics import Sink
+from sysmlc.language.checks.registry import check_node
 from sysmlc.language.names import Model
 
 
 def check(model: Model, sink: Sink) -> None:
-    """Report what in the documents of the model breaks a constraint of the specification."""
-    from sysmlc.language.checks import families
-
+    """Report everything in the documents of the model that breaks a constraint."""
     for document in model.documents:
         for node in model.nodes(document):
-            families.check(model, document, node, sink)
+            check_node(model, document, node, sink)

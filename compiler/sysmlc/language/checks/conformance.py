@@ -1,10 +1,10 @@
-"""What subsets or redefines a feature keeps what the feature promises (KerML 8.3.3.3)."""
+"""Conformance of features to what they subset or redefine (KerML 8.3.3.3)."""
 
 from collections.abc import Iterator
 
 from sysmlc.diagnostics import Severity, rule
-from sysmlc.language.checks.found import DECLARED_FEATURES, Found, name_of, written
-from sysmlc.language.checks.reference_rules import OTHER_DIRECTION
+from sysmlc.language.checks.findings import DECLARED_FEATURES, Finding, iter_stated, name_of
+from sysmlc.language.checks.references import OTHER_DIRECTION
 from sysmlc.language.metaclasses import USAGES, is_end, kinds_of
 from sysmlc.language.names import Model
 from sysmlc.language.names.generals import GENERALIZATION_KINDS
@@ -49,39 +49,42 @@ OF_SAME_OWNER = rule(
 
 _REDEFINITION = frozenset({"Redefinition"})
 _SUBSETTINGS = kinds_of("Subsetting")
-_TURNING = frozenset({"Conjugation", "ConjugatedPortTyping"})
-_TURNED = {"in": "out", "out": "in"}
-_PLAIN = DECLARED_FEATURES - USAGES
+_CONJUGATIONS = frozenset({"Conjugation", "ConjugatedPortTyping"})
+_CONJUGATED_DIRECTIONS = {"in": "out", "out": "in"}
+_KERML_FEATURES = DECLARED_FEATURES - USAGES
 
 
-def check(model: Model, node: Node) -> Iterator[Found]:
-    """Report a feature that breaks what a feature promises that it subsets or redefines."""
-    for relation, target in written(node, _SUBSETTINGS):
+def check_conformance(model: Model, node: Node) -> Iterator[Finding]:
+    """Report a feature that violates a property of the feature that it subsets or redefines."""
+    for relation, target in iter_stated(node, _SUBSETTINGS):
         rules = (
             (NONUNIQUE, node.attributes.get("isUnique") is False and _is_unique(target)),
-            (NOT_CONSTANT, _may_change(node) and target.attributes.get("isConstant") is True),
-            (OF_PACKAGE, relation.kind == "Redefinition" and _are_free(model, node, target)),
-            (OF_SAME_OWNER, relation.kind == "Redefinition" and _are_of_one(node, target)),
+            (NOT_CONSTANT, _is_variable(node) and target.attributes.get("isConstant") is True),
+            (
+                OF_PACKAGE,
+                relation.kind == "Redefinition" and _have_no_owning_type(model, node, target),
+            ),
+            (OF_SAME_OWNER, relation.kind == "Redefinition" and _have_same_owner(node, target)),
             (NO_END, relation.kind == "Redefinition" and is_end(target) and not is_end(node)),
         )
         for broken_rule, is_broken in rules:
             if is_broken:
                 facts = {"name": name_of(model, node), "general": name_of(model, target)}
-                yield Found(broken_rule, relation.reference.start, facts)
+                yield Finding(broken_rule, relation.reference.start, facts)
 
 
 def _is_unique(feature: Node) -> bool:
     return feature.attributes.get("isUnique") is not False
 
 
-def _are_free(model: Model, feature: Node, general: Node) -> bool:
+def _have_no_owning_type(model: Model, feature: Node, general: Node) -> bool:
     if find_owning_type(feature) is not None or find_owning_type(general) is not None:
         return False
     return not (_is_featured(model, feature) or _is_featured(model, general))
 
 
 def _is_featured(model: Model, feature: Node) -> bool:
-    """Whether a type is said to have a feature that it does not own."""
+    """Whether a feature that no type owns is a feature of a type by a TypeFeaturing."""
     if any(relation.kind == "TypeFeaturing" for relation in feature.relations):
         return True
     return any(
@@ -93,74 +96,75 @@ def _is_featured(model: Model, feature: Node) -> bool:
     )
 
 
-def _are_of_one(feature: Node, general: Node) -> bool:
+def _have_same_owner(feature: Node, general: Node) -> bool:
     owner = find_owning_type(feature)
     return owner is not None and owner is find_owning_type(general)
 
 
-def _may_change(feature: Node) -> bool:
+def _is_variable(feature: Node) -> bool:
     return feature.attributes.get("isVariable") is True and not feature.attributes.get("isConstant")
 
 
-def check_direction(model: Model, node: Node) -> Iterator[Found]:
-    """Report a feature with another direction than what it redefines has where it is."""
+def check_direction(model: Model, node: Node) -> Iterator[Finding]:
+    """Report a feature whose direction differs from that of a redefined feature in its owner."""
     scope = find_owning_type(node)
     if scope is None or scope.kind == "FlowEnd":
         return
-    own = _said(node)
-    for start, target in _redefined(model, node):
-        wanted = direction(model, scope, target)
-        if (wanted in _TURNED and own != wanted) or (wanted == "inout" and own is None):
+    own_direction = _find_stated_direction(node)
+    for start, target in _iter_redefined(model, node):
+        expected = find_direction(model, scope, target)
+        if (expected in _CONJUGATED_DIRECTIONS and own_direction != expected) or (
+            expected == "inout" and own_direction is None
+        ):
             facts = {"name": name_of(model, target), "owner": name_of(model, target.owner)}
-            yield Found(OTHER_DIRECTION, start, facts)
+            yield Finding(OTHER_DIRECTION, start, facts)
 
 
-def _redefined(model: Model, node: Node) -> Iterator[tuple[int, Node]]:
-    """What a feature redefines, as its text says or by its position, and where it says so."""
-    for relation, target in written(node, _REDEFINITION):
+def _iter_redefined(model: Model, node: Node) -> Iterator[tuple[int, Node]]:
+    """Yield the redefined features, stated and by position, with the offset of the statement."""
+    for relation, target in iter_stated(node, _REDEFINITION):
         yield relation.reference.start, target
     for target in model.lookup.redefined_by_position(node):
         yield node.start, target
 
 
-def direction(model: Model, scope: Node, feature: Node) -> str:
-    """The direction of a feature as ``scope`` sees it: conjugation turns it around.
+def find_direction(model: Model, scope: Node, feature: Node) -> str:
+    """Return the direction of a feature as ``scope`` sees it: conjugation reverses it.
 
-    Empty where it has none and where ``scope`` does not inherit it (KerML 8.3.3.1.10,
-    directionOf).
+    Empty if the feature has none or ``scope`` does not inherit it (KerML 8.3.3.1.10, directionOf).
     """
-    said = _said(feature)
-    if said is None:
+    stated = _find_stated_direction(feature)
+    if stated is None:
         return ""
-    waiting = [(scope, False)]
-    seen = set(waiting)
-    for at, is_turned in waiting:
-        if at is feature.owner:
-            return _TURNED.get(said, said) if is_turned else said
-        for general, turns in _generals(model, at):
-            step = (general, is_turned ^ turns)
+    worklist = [(scope, False)]
+    seen = set(worklist)
+    for type_, is_conjugated in worklist:
+        if type_ is feature.owner:
+            return _CONJUGATED_DIRECTIONS.get(stated, stated) if is_conjugated else stated
+        for general, conjugates in _iter_generals(model, type_):
+            step = (general, is_conjugated ^ conjugates)
             if step not in seen:
                 seen.add(step)
-                waiting.append(step)
+                worklist.append(step)
     return ""
 
 
-def _generals(model: Model, node: Node) -> Iterator[tuple[Node, bool]]:
-    """What an element directly specialises, and whether that turns directions around."""
+def _iter_generals(model: Model, node: Node) -> Iterator[tuple[Node, bool]]:
+    """Yield the direct generals of an element, and whether they are conjugated."""
     for relation in node.relations:
         general = model.target(node, relation) if relation.kind in GENERALIZATION_KINDS else None
         if general is not None:
-            yield general, relation.kind in _TURNING
+            yield general, relation.kind in _CONJUGATIONS
     for general in model.needed_generals(node):
         yield general, False
 
 
-def _said(feature: Node) -> str | None:
-    """The direction that the text says; a result goes out."""
-    said = feature.attributes.get("direction")
+def _find_stated_direction(feature: Node) -> str | None:
+    """Return the direction that the text states; that of a result is ``out``."""
+    stated = feature.attributes.get("direction")
     is_result = feature.membership == "ReturnParameterMembership"
-    return str(said) if said is not None else "out" if is_result else None
+    return str(stated) if stated is not None else "out" if is_result else None
 
 
-CHECKS = ((_PLAIN, check_direction),)
-BY_RELATION = ((_SUBSETTINGS, check),)
+CHECKS = ((_KERML_FEATURES, check_direction),)
+BY_RELATION = ((_SUBSETTINGS, check_conformance),)

@@ -1,15 +1,137 @@
-"""Expressions name features: the names of types have no values (KerML 8.3.4.8)."""
+"""Expressions: constant values and types as far as known, and valid referents (KerML 8.3.4.8)."""
 
-from collections.abc import Iterator
+import operator as op
+from collections.abc import Callable, Iterator
 
 from sysmlc.diagnostics import Severity, rule
-from sysmlc.language.checks.found import Found, name_of, written
-from sysmlc.language.checks.values import arguments
+from sysmlc.language.checks.findings import Finding, iter_stated, name_of
 from sysmlc.language.metaclasses import FEATURES, TYPES, describe_kind, kinds_of
 from sysmlc.language.names import Model
-from sysmlc.language.names.expression_results import find_result
+from sysmlc.language.names.expression_results import (
+    find_named_element,
+    find_result,
+    find_result_parameter,
+)
 from sysmlc.language.names.implied import find_owning_type
 from sysmlc.language.tree import Node
+
+Value = bool | int | float | str
+EXPRESSIONS = kinds_of("Expression") - kinds_of("Usage")
+
+_MAX_DEPTH = 24
+"""Length of chains of features whose values name further features."""
+_LITERALS = {
+    "LiteralBoolean": "ScalarValues::Boolean",
+    "LiteralString": "ScalarValues::String",
+    "LiteralInteger": "ScalarValues::Integer",
+    "LiteralRational": "ScalarValues::Rational",
+    "LiteralInfinity": "ScalarValues::Positive",
+}
+_BOOLEAN_OPERATORS = frozenset(
+    {"==", "!=", "===", "!==", "<", ">", "<=", ">=", "and", "or", "xor", "implies", "not"}
+    | {"&", "|", "istype", "hastype", "@", "@@"}
+)
+"""Operators with a Boolean result (KerML 1.0, 9.4)."""
+_REFERRING_KINDS = frozenset(
+    {
+        "ConstructorExpression",
+        "FeatureChainExpression",
+        "FeatureReferenceExpression",
+        "InvocationExpression",
+    }
+)
+_OPERATIONS: dict[str, Callable[[float, float], Value]] = {
+    "+": op.add,
+    "-": op.sub,
+    "*": op.mul,
+    "<": op.lt,
+    ">": op.gt,
+    "<=": op.le,
+    ">=": op.ge,
+    "==": op.eq,
+    "!=": op.ne,
+}
+
+
+def list_arguments(expression: Node) -> list[Node]:
+    """Return the operands, or the positional arguments."""
+    return [member for member in expression.members if member.membership == "ParameterMembership"]
+
+
+def find_value(feature: Node) -> Node | None:
+    """Return the expression that a feature is bound to."""
+    return next((member for member in feature.members if member.membership == "FeatureValue"), None)
+
+
+def evaluate_constant(model: Model, expression: Node, depth: int = 0) -> Value | None:
+    """Return the constant value of an expression, also through bound features, or None."""
+    if "value" in expression.attributes:
+        return expression.attributes["value"]
+    if depth > _MAX_DEPTH:
+        return None
+    if expression.kind == "FeatureReferenceExpression":
+        feature = find_named_element(expression, model.lookup)
+        bound_value = find_value(feature) if feature is not None else None
+        return evaluate_constant(model, bound_value, depth + 1) if bound_value is not None else None
+    operands = list_arguments(expression)
+    if expression.kind != "OperatorExpression" or not 1 <= len(operands) <= 2:
+        return None
+    values = [evaluate_constant(model, operand, depth + 1) for operand in operands]
+    return _fold_constants(str(expression.attributes.get("operator")), values)
+
+
+def _fold_constants(operator: str, operands: list[Value | None]) -> Value | None:
+    numbers = [operand for operand in operands if isinstance(operand, int | float)]
+    if len(numbers) < len(operands) or operator not in _OPERATIONS:
+        return None
+    if len(numbers) == 1:
+        return {"-": -numbers[0], "+": numbers[0]}.get(operator)
+    return _OPERATIONS[operator](numbers[0], numbers[1])
+
+
+def find_types(model: Model, expression: Node, depth: int = 0) -> list[Node]:
+    """Return the types of the value of an expression; empty if they are unknown."""
+    name = _LITERALS.get(expression.kind)
+    if (
+        expression.kind == "OperatorExpression"
+        and expression.attributes.get("operator") in _BOOLEAN_OPERATORS
+    ):
+        name = "ScalarValues::Boolean"
+    if name is not None:
+        type_ = model.find(name)
+        return [type_] if type_ is not None else []
+    if depth > _MAX_DEPTH:
+        return []
+    source = _find_source(model, expression)
+    if source is None or source.kind not in FEATURES:
+        return [source] if source is not None else []
+    value = find_value(source) if not model.lookup.generals(source) else None
+    return model.types(source) if value is None else find_types(model, value, depth + 1)
+
+
+def _find_source(model: Model, expression: Node) -> Node | None:
+    """Return the feature or type that provides the values of an expression."""
+    if expression.kind not in _REFERRING_KINDS:
+        return None
+    element = find_named_element(expression, model.lookup)
+    is_called = expression.kind == "InvocationExpression"
+    return (
+        find_result_parameter(element, model.lookup, set())
+        if element is not None and is_called
+        else element
+    )
+
+
+def is_incompatible(model: Model, expression: Node, type_name: str) -> bool:
+    """Whether the value of an expression certainly has not the library type."""
+    target = model.find(type_name)
+    types = find_types(model, expression)
+    if target is None or not types:
+        return False
+    return not any(
+        model.specializes(type_, target) or model.specializes(target, type_) for type_ in types
+    )
+
 
 NO_FEATURE = rule(
     "SM272",
@@ -30,23 +152,23 @@ _MEMBERSHIP = frozenset({"Membership"})
 _REFERRING = frozenset({"FeatureReferenceExpression", "FeatureChainExpression"})
 
 
-def check(model: Model, node: Node) -> Iterator[Found]:
-    """Report an expression that names something else than a feature of what is before it."""
-    for relation, target in written(node, _MEMBERSHIP):
+def check_named_feature(model: Model, node: Node) -> Iterator[Finding]:
+    """Report an expression that names a type, or a feature of another element than its operand."""
+    for relation, target in iter_stated(node, _MEMBERSHIP):
         facts = {"name": name_of(model, target)}
         if target.kind in TYPES - FEATURES:
             facts["found"] = describe_kind(target)
-            yield Found(NO_FEATURE, relation.reference.start, facts)
-        elif len(relation.reference.chain[0]) > 1 and _is_elsewhere(model, node, target):
+            yield Finding(NO_FEATURE, relation.reference.start, facts)
+        elif len(relation.reference.chain[0]) > 1 and _is_not_in_operand(model, node, target):
             facts["owner"] = name_of(model, target.owner)
-            yield Found(OTHER_OWNER, relation.reference.start, facts)
+            yield Finding(OTHER_OWNER, relation.reference.start, facts)
 
 
-def _is_elsewhere(model: Model, node: Node, target: Node) -> bool:
-    """Whether what is before the dot is known, and has not the feature."""
+def _is_not_in_operand(model: Model, node: Node, target: Node) -> bool:
+    """Whether the expression before the dot is known and does not have the feature."""
     if node.kind != "FeatureChainExpression":
         return False
-    operand = next(iter(arguments(node)), None)
+    operand = next(iter(list_arguments(node)), None)
     source = find_result(operand, model.lookup) if operand is not None else None
     owner = find_owning_type(target)
     if source is None or owner is None or owner.kind not in FEATURES:
@@ -54,4 +176,4 @@ def _is_elsewhere(model: Model, node: Node, target: Node) -> bool:
     return owner not in model.supertype_set(source)
 
 
-CHECKS = ((_REFERRING & kinds_of("Expression"), check),)
+CHECKS = ((_REFERRING & kinds_of("Expression"), check_named_feature),)

@@ -1,9 +1,9 @@
-"""Members of a namespace have different names (KerML 8.3.2.4)."""
+"""Distinct names: members of a namespace have different names (KerML 8.3.2.4)."""
 
 from collections.abc import Iterator
 
 from sysmlc.diagnostics import Severity, rule
-from sysmlc.language.checks.found import DECLARED_TYPES, Found, name_of
+from sysmlc.language.checks.findings import DECLARED_TYPES, Finding, name_of
 from sysmlc.language.metaclasses import kinds_of
 from sysmlc.language.names import Model
 from sysmlc.language.names.members import is_in_library
@@ -26,44 +26,45 @@ HIDING = rule(
 )
 
 
-def check(model: Model, node: Node) -> Iterator[Found]:
-    """Report members that another member has the name or the short name of."""
-    named: dict[str, list[Node]] = {}
+def check_names(model: Model, node: Node) -> Iterator[Finding]:
+    """Report members that share a name or short name."""
+    members_by_name: dict[str, list[Node]] = {}
     for member in node.members:
         for name in {member.name, member.short_name} - {None}:
-            named.setdefault(str(name), []).append(member)
-    for name, members in named.items():
+            members_by_name.setdefault(str(name), []).append(member)
+    for name, members in members_by_name.items():
         for member in members if len(members) > 1 else ():
-            count = {"owner": name_of(model, node), "count": str(len(members)), "name": name}
-            yield Found(DUPLICATE, member.name_start, count)
+            facts = {"owner": name_of(model, node), "count": str(len(members)), "name": name}
+            yield Finding(DUPLICATE, member.name_start, facts)
 
 
-def check_inherited(model: Model, node: Node) -> Iterator[Found]:
+def check_inherited(model: Model, node: Node) -> Iterator[Finding]:
     """Report members with the name of an inherited member that they do not redefine.
 
-    Names such as `start` or `shape` that everything has from the library may be taken, and
-    parameters of steps are those of what is performed, by position or name (see ``passing``).
+    Names such as `start` or `shape` that everything inherits from the library may be reused.
+    Parameters of steps are those of the performed behaviour, by position or name (see
+    ``behaviors``).
     """
-    inherited = model.lookup.inherited
+    inherited_members = model.lookup.inherited
     if node.owner is not None and (node.owner.kind in _METADATA or node.kind in _METADATA):
         return
     for member in node.members:
         name = member.name
         if name is None or member.membership not in MEMBERSHIPS or find_role(member) == "parameter":
             continue
-        for hit in inherited(node, name):
-            is_ours = hit.name in (name, None) and not is_in_library(hit)
-            if is_ours and not _redefines(model, member, hit):
+        for hit in inherited_members(node, name):
+            is_from_model = hit.name in (name, None) and not is_in_library(hit)
+            if is_from_model and not _redefines(model, member, hit):
                 general = name_of(model, hit.owner)
                 facts = {"owner": name_of(model, node), "name": name, "general": general}
-                yield Found(HIDING, member.name_start, facts)
+                yield Finding(HIDING, member.name_start, facts)
                 break
 
 
 def _redefines(model: Model, member: Node, hit: Node) -> bool:
-    """Whether a member redefines what an inherited one stands for, or what that redefines too.
+    """Whether a member redefines an inherited one, or a feature that the inherited one redefines.
 
-    KerML 1.0, 8.3.3.1.10, removeRedefinedFeatures; the inherited one may be an alias.
+    KerML 1.0, 8.3.3.1.10, removeRedefinedFeatures. The inherited member may be an alias.
     """
     element, redefined = model.lookup.resolve_alias(hit), model.lookup.redefined_features(member)
     if element is None or element is member or element in redefined:
@@ -72,10 +73,10 @@ def _redefines(model: Model, member: Node, hit: Node) -> bool:
 
 
 MEMBERSHIPS = frozenset({"FeatureMembership", "OwningMembership", "EndFeatureMembership"})
-"""Members that have names of their own: parameters of cases are those of what is included."""
+"""Memberships of checked members. Parameters of cases are those of the included case."""
 _METADATA = kinds_of("MetadataFeature")
-"""What their bodies say of attributes is no declaration (SysML 2.0, 8.2.2.27)."""
+"""Their bodies give values to attributes and declare nothing (SysML 2.0, 8.2.2.27)."""
 CHECKS = (
-    (kinds_of("Namespace"), check),
+    (kinds_of("Namespace"), check_names),
     (DECLARED_TYPES, check_inherited),
 )

@@ -1,4 +1,4 @@
-"""What a check finds."""
+"""Findings of checks, and helpers that checks share."""
 
 from collections.abc import Callable, Iterable, Iterator
 from typing import NamedTuple
@@ -9,28 +9,28 @@ from sysmlc.language.names import Model
 from sysmlc.language.tree import Node, Relation
 
 
-class Found(NamedTuple):
-    """A rule that is broken, the offset of the text that breaks it, the facts of its phrase."""
+class Finding(NamedTuple):
+    """A broken rule, the offset of the text that breaks it, and the facts for its message."""
 
     rule: Rule
     start: int
     facts: dict[str, str]
 
 
-_WITHOUT_DECLARATION = (
+_EXPRESSION_KINDS = (
     kinds_of("InstantiationExpression")
     | kinds_of("LiteralExpression")
     | {"FeatureReferenceExpression", "MetadataAccessExpression", "NullExpression"}
 )
-DECLARED_TYPES = TYPES - _WITHOUT_DECLARATION
-DECLARED_FEATURES = FEATURES - _WITHOUT_DECLARATION
-"""Types and features that somebody declares: not those that only make up an expression."""
-Check = Callable[[Model, Node], Iterable[Found]]
-"""What is broken by one node; a check is called for the metaclasses that it is entered for."""
+DECLARED_TYPES = TYPES - _EXPRESSION_KINDS
+DECLARED_FEATURES = FEATURES - _EXPRESSION_KINDS
+"""Types and features that are declared, without those that only make up an expression."""
+Check = Callable[[Model, Node], Iterable[Finding]]
+"""Returns the findings about one node. ``registry`` has the metaclasses that a check is for."""
 
 
-def written(node: Node, kinds: frozenset[str]) -> Iterator[tuple[Relation, Node]]:
-    """The relations of some kinds that the text says, with what they lead to."""
+def iter_stated(node: Node, kinds: frozenset[str]) -> Iterator[tuple[Relation, Node]]:
+    """Yield the stated relations of some kinds with their targets; skip unresolved ones."""
     for relation in node.relations:
         if relation.kind in kinds:
             target = relation.reference.target
@@ -39,7 +39,7 @@ def written(node: Node, kinds: frozenset[str]) -> Iterator[tuple[Relation, Node]
 
 
 def name_of(model: Model, node: Node | None) -> str:
-    """The name of an element, else its kind in words; empty for none."""
+    """Return the name of an element, else its metaclass; empty for None."""
     if node is None:
         return ""
     return model.name(node) or node.kind

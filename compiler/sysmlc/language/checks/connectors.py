@@ -1,0 +1,227 @@
+"""Ends of associations and connectors, bindings, and cross features (KerML 8.3.3.3.5, 8.3.4.5)."""
+
+from collections.abc import Iterator
+
+from sysmlc.diagnostics import Severity, rule
+from sysmlc.language.checks.findings import Finding, iter_stated, name_of
+from sysmlc.language.checks.memberships import TOO_MANY_ENDS
+from sysmlc.language.metaclasses import is_a, is_end, kinds_of
+from sysmlc.language.names import Model
+from sysmlc.language.names.implied import find_owning_type
+from sysmlc.language.names.positional_redefinition import find_own_features
+from sysmlc.language.tree import Node, Reference, Relation
+
+END_TYPE = rule(
+    "SM269",
+    "end-types",
+    Severity.ERROR,
+    "the end '{name}' of '{owner}' has {count} types and needs one",
+    help="keep one type, or let it specialise the inherited one",
+)
+TOO_FEW = rule(
+    "SM270",
+    "connects-too-few",
+    Severity.ERROR,
+    "'{name}' connects {count} element{s}",
+    help="name what it connects at two ends at least",
+)
+NO_FLOW_END = rule(
+    "SM271",
+    "flow-end-without-dot",
+    Severity.ERROR,
+    "'{name}' does not say what of the flow's end it belongs to",
+    help="name the element, a dot, and its feature",
+)
+
+_ASSOCIATIONS = kinds_of("Association")
+_CONNECTORS = kinds_of("Connector") - kinds_of("Flow")
+_SUCCESSIONS = kinds_of("Succession")
+_PORTS = frozenset({"PortUsage", "ReferenceUsage"})
+"""Valid ends of interfaces; ``memberships`` reports others."""
+_FLOWS = kinds_of("FlowDefinition")
+
+
+def check_end_types(model: Model, node: Node) -> Iterator[Finding]:
+    """Report ends of an association with several types."""
+    for end in filter(is_end, node.members):
+        if node.kind == "InterfaceDefinition" and end.kind not in _PORTS:
+            continue
+        typings = [relation for relation in end.relations if relation.kind == "FeatureTyping"]
+        crosses = any(relation.kind == "CrossSubsetting" for relation in end.relations)
+        count = len(typings if crosses else model.types(end))
+        if count > 1:
+            facts = {"name": name_of(model, end), "owner": name_of(model, node)}
+            yield Finding(END_TYPE, end.start, {**facts, "count": str(count)})
+
+
+def check_related(model: Model, node: Node) -> Iterator[Finding]:
+    """Report a connector with ends of its own that has less than two related elements."""
+    ends = find_own_features(node, "end")
+    if not ends or node.attributes.get("isAbstract") or node.kind in _SUCCESSIONS:
+        return
+    ends += model.lookup.features_of_role(node, "end")
+    count = len({end for end in ends if _is_related(end)})
+    if count < 2:
+        facts = {"name": name_of(model, node), "count": str(count)}
+        yield Finding(TOO_FEW, node.start, {**facts, "s": "" if count == 1 else "s"})
+
+
+def _is_related(end: Node) -> bool:
+    return any(relation.kind == "ReferenceSubsetting" for relation in end.relations)
+
+
+def check_flow_end(model: Model, node: Node) -> Iterator[Finding]:
+    """Report an end of a flow without a dot that names a feature which no other feature owns.
+
+    A feature that a usage owns is reached through that usage, which is the end of the flow.
+    """
+    if _is_related(node):
+        return
+    for member in node.members:
+        for relation in member.relations:
+            if relation.kind == "Redefinition" and _is_owned_by_type(relation):
+                text = "::".join(relation.reference.chain[0])
+                yield Finding(NO_FLOW_END, node.start, {"name": text})
+
+
+def _is_owned_by_type(relation: Relation) -> bool:
+    target = relation.reference.target
+    owner = target.owner if target is not None else None
+    return owner is not None and not is_a(owner.kind, "Feature")
+
+
+def check_flow(model: Model, node: Node) -> Iterator[Finding]:
+    """Report a definition of flows that inherits more than two ends."""
+    ends = model.lookup.features_of_role(node, "end")
+    if len(ends) > 2 and len(find_own_features(node, "end")) <= 2:
+        facts = {"name": name_of(model, ends[2]), "owner": name_of(model, node)}
+        yield Finding(TOO_MANY_ENDS, node.start, facts)
+
+
+END_CHECKS = (
+    (_ASSOCIATIONS, check_end_types),
+    (_CONNECTORS, check_related),
+    (frozenset({"FlowEnd"}), check_flow_end),
+    (_FLOWS, check_flow),
+)
+
+
+BOUND_UNLIKE = rule(
+    "SM283",
+    "bound-unlike",
+    Severity.WARNING,
+    "'{one}' is bound to '{other}', and no value can be both: {types}",
+    help="bind features of types that conform",
+)
+
+
+def check_binding(model: Model, node: Node) -> Iterator[Finding]:
+    """Report a binding of features whose types have no common values."""
+    features = [
+        feature for end in find_own_features(node, "end") for feature in _list_referenced(end)
+    ]
+    if len(features) != 2:
+        return
+    left_types, right_types = (model.types(feature) for feature in features)
+    if not left_types or not right_types:
+        return
+    if not any(
+        _conform_either_way(model, left, right) for left in left_types for right in right_types
+    ):
+        types = " and ".join(f"'{name_of(model, group[0])}'" for group in (left_types, right_types))
+        left_name, right_name = (name_of(model, feature) for feature in features)
+        facts = {"one": left_name, "other": right_name, "types": types}
+        yield Finding(BOUND_UNLIKE, node.start, facts)
+
+
+def _list_referenced(end: Node) -> list[Node]:
+    references = [
+        relation.reference for relation in end.relations if relation.kind == "ReferenceSubsetting"
+    ]
+    return [reference.target for reference in references if reference.target is not None]
+
+
+def _conform_either_way(model: Model, left: Node, right: Node) -> bool:
+    return model.specializes(left, right) or model.specializes(right, left)
+
+
+BINDING_CHECKS = ((kinds_of("BindingConnector"), check_binding),)
+
+
+NOT_OPPOSITE = rule(
+    "SM285",
+    "crosses-own-end",
+    Severity.ERROR,
+    "'{name}' does not lead through the opposite end of '{owner}'",
+    help="name the other end, a dot, and its feature",
+)
+OTHER_TYPE = rule(
+    "SM286",
+    "crosses-other-type",
+    Severity.ERROR,
+    "'{name}' has another type than the end that crosses it",
+    help="let the end and the feature have one type",
+)
+NOT_SPECIAL = rule(
+    "SM287",
+    "crosses-unrelated",
+    Severity.ERROR,
+    "'{name}' does not specialise '{general}', which the redefined end crosses",
+    help="cross a feature that subsets '{general}'",
+)
+OTHER_OWN = rule(
+    "SM288",
+    "crosses-past-own",
+    Severity.ERROR,
+    "'{owner}' has the cross feature '{name}' and crosses another one",
+    help="cross '{name}', or leave it out",
+)
+
+_CROSSES = frozenset({"CrossSubsetting"})
+_TYPING = frozenset({"FeatureTyping"})
+
+
+def check_cross_feature(model: Model, node: Node) -> Iterator[Finding]:
+    """Report an end that crosses a feature which is not its cross feature."""
+    for relation, crossed in iter_stated(node, _CROSSES) if _is_binary(node.owner) else ():
+        facts = {"name": name_of(model, crossed), "owner": name_of(model, node.owner)}
+        start = relation.reference.start
+        if not _is_opposite(node, relation.reference):
+            yield Finding(NOT_OPPOSITE, start, {**facts, "name": str(relation.reference)})
+        types = {target for _, target in iter_stated(node, _TYPING)}
+        is_typed = bool(types and model.lookup.generals(crossed))
+        if is_typed and types != set(model.types(crossed)):
+            yield Finding(OTHER_TYPE, start, facts)
+        for general in _list_inherited_crossed(model, node):
+            if not model.specializes(crossed, general):
+                yield Finding(NOT_SPECIAL, start, {**facts, "general": name_of(model, general)})
+        for own_feature in _find_own_cross_features(node):
+            if own_feature is not crossed:
+                names = {"name": name_of(model, own_feature), "owner": name_of(model, node)}
+                yield Finding(OTHER_OWN, own_feature.start, names)
+
+
+def _is_binary(owner: Node | None) -> bool:
+    """Whether the owner has two ends. With more ends, crossing uses links between the others."""
+    return owner is not None and sum(map(is_end, owner.members)) == 2
+
+
+def _is_opposite(node: Node, reference: Reference) -> bool:
+    """Whether a chain leads from the other end to a feature of it."""
+    targets = reference.targets or []
+    is_other = bool(targets) and targets[0] is not node and is_end(targets[0])
+    return len(targets) == 2 and is_other and find_owning_type(targets[0]) is not None
+
+
+def _list_inherited_crossed(model: Model, node: Node) -> list[Node]:
+    """Return the cross features of the ends that an end redefines."""
+    ends = sorted(model.lookup.redefined_features(node), key=model.qualified_name)
+    return [target for end in ends for _, target in iter_stated(end, _CROSSES)]
+
+
+def _find_own_cross_features(node: Node) -> list[Node]:
+    members = (member for member in node.members if member.membership == "OwningMembership")
+    return [member for member in members if member.kind == "Feature"]
+
+
+BY_RELATION = ((_CROSSES, check_cross_feature),)

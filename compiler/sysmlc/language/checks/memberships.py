@@ -1,0 +1,236 @@
+"""What may be a member of what: variants, portions, ends, results, variable features, imports."""
+
+from collections.abc import Iterator
+
+from sysmlc.diagnostics import Rule, Severity, Sink, rule
+from sysmlc.language.checks.findings import DECLARED_FEATURES, DECLARED_TYPES, Finding, name_of
+from sysmlc.language.metaclasses import is_end, kinds_of
+from sysmlc.language.names import Model
+from sysmlc.language.names.implied import find_owning_type
+from sysmlc.language.names.positional_redefinition import find_own_features
+from sysmlc.language.tree import Document, Node, make_subject
+
+VARIANT_ELSEWHERE = rule(
+    "SM226",
+    "variant-elsewhere",
+    Severity.ERROR,
+    "'{name}' is a variant, and '{owner}' is no variation",
+    help="write 'variation' before '{owner}', or leave 'variant' out",
+)
+NO_VARIANT = rule(
+    "SM227",
+    "variation-member",
+    Severity.ERROR,
+    "'{name}' is a member of the variation '{owner}' and no variant",
+    help="write 'variant' before '{name}'",
+)
+VARIATION_OF_VARIATION = rule(
+    "SM228",
+    "variation-of-variation",
+    Severity.ERROR,
+    "the variation '{name}' specialises another variation",
+    help="specialise what is no variation",
+)
+VERIFY_ELSEWHERE = rule(
+    "SM229",
+    "verify-elsewhere",
+    Severity.ERROR,
+    "'{owner}' is not the objective of a verification, so it cannot verify '{name}'",
+    help="move 'verify' into the objective of a verification case",
+)
+PARALLEL = rule(
+    "SM230",
+    "parallel-succession",
+    Severity.ERROR,
+    "'{owner}' is parallel: its states have no order",
+    help="remove 'parallel', or the succession or transition",
+)
+PORTION_ELSEWHERE = rule(
+    "SM231",
+    "portion-elsewhere",
+    Severity.ERROR,
+    "'{name}' is a portion of no occurrence",
+    help="move it into an occurrence, item or part",
+)
+END_NO_PORT = rule(
+    "SM232",
+    "interface-end-no-port",
+    Severity.ERROR,
+    "'{name}' is an end of the interface '{owner}' and no port",
+    help="make it a port, or use a connection",
+)
+TOO_MANY_ENDS = rule(
+    "SM233",
+    "flow-ends",
+    Severity.ERROR,
+    "'{name}' is the third end of the flow '{owner}'",
+    help="keep two ends",
+)
+ABSTRACT_METADATA = rule(
+    "SM234",
+    "abstract-metadata",
+    Severity.ERROR,
+    "metadata '{name}' has an abstract type",
+    help="use a metadata definition that is not abstract",
+)
+ENUMERATION_AND_MORE = rule(
+    "SM235",
+    "enumeration-and-more",
+    Severity.ERROR,
+    "attribute '{name}' has an enumeration and another type",
+    help="keep one type",
+)
+
+
+_FEATURE_MEMBERSHIPS = kinds_of("FeatureMembership")
+_SUCCESSIONS = kinds_of("Succession") | {"TransitionUsage"}
+_OCCURRENCES = kinds_of("Class") | kinds_of("OccurrenceUsage")
+_INTERFACES = kinds_of("InterfaceDefinition") | kinds_of("InterfaceUsage")
+_WITH_ENDS = _INTERFACES | kinds_of("FlowDefinition")
+_WITH_TYPE_CHECKS = frozenset({"AttributeUsage", "MetadataUsage"})
+"""Usages whose types are checked here."""
+_VERIFICATIONS = kinds_of("VerificationCaseDefinition") | kinds_of("VerificationCaseUsage")
+_ENUMERATIONS = kinds_of("EnumerationDefinition")
+
+
+def check_member(model: Model, document: Document, node: Node, sink: Sink) -> None:
+    """Report a node that may not be a member of its owner, or has a type that it may not have."""
+    owner = node.owner
+    if owner is None:
+        return
+    broken = _find_broken_membership(node, owner)
+    if broken is None and node.kind in _WITH_TYPE_CHECKS:
+        broken = _find_broken_type(model, node)
+    if broken is not None:
+        place = make_subject(document, node, node.start)
+        name = model.name(node) or node.kind
+        sink.report(broken, place, name=name, owner=model.name(owner) or owner.kind)
+
+
+def _find_broken_membership(node: Node, owner: Node) -> Rule | None:
+    membership = node.membership
+    if membership == "VariantMembership":
+        return None if _is_variation(owner) else VARIANT_ELSEWHERE
+    if membership == "RequirementVerificationMembership":
+        return None if _is_objective(owner) else VERIFY_ELSEWHERE
+    if membership in _FEATURE_MEMBERSHIPS:
+        return _find_broken_feature_membership(node, owner)
+    return PORTION_ELSEWHERE if "portionKind" in node.attributes else None
+
+
+def _find_broken_feature_membership(node: Node, owner: Node) -> Rule | None:
+    if _is_variation(owner):
+        return NO_VARIANT
+    if node.kind in _SUCCESSIONS and owner.attributes.get("isParallel"):
+        return PARALLEL
+    if "portionKind" in node.attributes and owner.kind not in _OCCURRENCES:
+        return PORTION_ELSEWHERE
+    if owner.kind not in _WITH_ENDS or not is_end(node):
+        return None
+    if owner.kind in _INTERFACES:
+        is_port = node.kind in ("PortUsage", "ReferenceUsage")
+        return None if is_port else END_NO_PORT
+    return TOO_MANY_ENDS if find_own_features(owner, "end").index(node) > 1 else None
+
+
+def _find_broken_type(model: Model, node: Node) -> Rule | None:
+    if node.kind == "MetadataUsage":
+        types = model.lookup.generals(node)
+        return (
+            ABSTRACT_METADATA
+            if any(type_.attributes.get("isAbstract") for type_ in types)
+            else None
+        )
+    if node.kind == "AttributeUsage" and len(model.lookup.generals(node)) > 1:
+        types = model.types(node)
+        several = len(types) > 1 and any(type_.kind in _ENUMERATIONS for type_ in types)
+        return ENUMERATION_AND_MORE if several else None
+    return None
+
+
+def _is_variation(node: Node) -> bool:
+    return bool(node.attributes.get("isVariation")) or node.kind in _ENUMERATIONS
+
+
+def _is_objective(owner: Node) -> bool:
+    case = owner.owner
+    return (
+        owner.membership == "ObjectiveMembership"
+        and case is not None
+        and case.kind in _VERIFICATIONS
+    )
+
+
+SECOND_RESULT = rule(
+    "SM265",
+    "several-results",
+    Severity.ERROR,
+    "'{name}' has {count} result expressions, {whose}",
+    help="keep one of them",
+)
+VARIABLE_PORTION = rule(
+    "SM266",
+    "variable-portion",
+    Severity.ERROR,
+    "'{name}' is a portion and cannot change",
+    help="leave 'var' or 'portion' out",
+)
+VARIABLE_ELSEWHERE = rule(
+    "SM267",
+    "variable-elsewhere",
+    Severity.ERROR,
+    "'{name}' may change, and '{owner}' has no time in which it could",
+    help="leave 'var' out",
+)
+ROOT_IMPORT = rule(
+    "SM268",
+    "public-root-import",
+    Severity.ERROR,
+    "the import of '{name}' stands in no package and is not private",
+    help="write 'private' before 'import'",
+)
+
+_FUNCTIONS = kinds_of("Function") | (kinds_of("Expression") & DECLARED_TYPES)
+_IMPORTS = frozenset({"MembershipImport", "NamespaceImport"})
+
+
+def check_result(model: Model, node: Node) -> Iterator[Finding]:
+    """Report a result expression beside another one, owned or inherited."""
+    own = _list_results(node)
+    if not own and not model.lookup.generals(node):
+        return
+    inherited = [
+        result for general in model.all_supertypes(node)[1:] for result in _list_results(general)
+    ]
+    count = len(own) + len(inherited)
+    if count > 1:
+        start = own[-1].start if own else node.start
+        owners = "inherited ones" if not own else "its own and inherited ones"
+        facts = {"name": name_of(model, node), "count": str(count)}
+        yield Finding(SECOND_RESULT, start, {**facts, "whose": owners if inherited else "its own"})
+
+
+def _list_results(node: Node) -> list[Node]:
+    return [member for member in node.members if member.membership == "ResultExpressionMembership"]
+
+
+def check_variable(model: Model, node: Node) -> Iterator[Finding]:
+    """Report a feature that is declared variable and cannot be."""
+    if node.attributes.get("isVariable") is not True:
+        return
+    owner = find_owning_type(node)
+    facts = {"name": name_of(model, node), "owner": name_of(model, node.owner)}
+    if node.attributes.get("isPortion"):
+        yield Finding(VARIABLE_PORTION, node.start, facts)
+    elif owner is None or not model.specializes(owner, "Occurrences::Occurrence"):
+        yield Finding(VARIABLE_ELSEWHERE, node.start, facts)
+
+
+def check_import(model: Model, node: Node) -> Iterator[Finding]:
+    """Report a visible import of the root namespace."""
+    is_at_top = node.owner is not None and node.owner.owner is None
+    if is_at_top and node.visibility != "private" and node.relations:
+        yield Finding(ROOT_IMPORT, node.start, {"name": str(node.relations[0].reference)})
+
+
+CHECKS = ((_FUNCTIONS, check_result), (DECLARED_FEATURES, check_variable), (_IMPORTS, check_import))

@@ -1,0 +1,180 @@
+"""Types that specialise, unite or conjugate others (KerML 8.3.3, 8.3.4)."""
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+from sysmlc.diagnostics import Severity, rule
+from sysmlc.language.checks.findings import DECLARED_TYPES, Finding, iter_stated, name_of
+from sysmlc.language.checks.memberships import VARIATION_OF_VARIATION
+from sysmlc.language.metaclasses import describe_kind, kinds_of
+from sysmlc.language.names import Model
+from sysmlc.language.tree import Node, Relation
+
+OTHER_KIND = rule(
+    "SM259",
+    "specialises-other-kind",
+    Severity.ERROR,
+    "'{name}', {kind}, cannot specialise '{general}', {found}",
+    help="specialise {wanted}, or have a feature of that type",
+)
+
+_DATA = kinds_of("DataType")
+_CLASSES = kinds_of("Class")
+_LINKS = kinds_of("Association")
+_STRUCTURES = kinds_of("Structure")
+_BEHAVIORS = kinds_of("Behavior")
+_SUBCLASSIFICATION = frozenset({"Subclassification"})
+
+
+class Exclusion(NamedTuple):
+    """Metaclasses that cannot specialise the excluded ones, and what they can, in words."""
+
+    kinds: frozenset[str]
+    excluded: frozenset[str]
+    wanted: str
+
+
+_EXCLUSIONS = (
+    Exclusion(_DATA, _CLASSES | _LINKS, "an attribute definition or data type"),
+    Exclusion(_CLASSES - _LINKS, _DATA | _LINKS, "an item, part, port, action or another class"),
+    Exclusion(_CLASSES & _LINKS, _DATA, "an item, part, connection or another class"),
+    Exclusion(_STRUCTURES, _BEHAVIORS, "an item, part, port or another structure"),
+    Exclusion(_BEHAVIORS, _STRUCTURES, "an action or another behaviour"),
+)
+
+
+def check_other_kind(model: Model, node: Node) -> Iterator[Finding]:
+    """Report generals that can have no common instance with ``node``."""
+    for relation, target in iter_stated(node, _SUBCLASSIFICATION):
+        for exclusion in _EXCLUSIONS:
+            if node.kind in exclusion.kinds and target.kind in exclusion.excluded:
+                facts = {
+                    "name": name_of(model, node),
+                    "kind": describe_kind(node),
+                    "general": name_of(model, target),
+                    "found": describe_kind(target),
+                    "wanted": exclusion.wanted,
+                }
+                yield Finding(OTHER_KIND, relation.reference.start, facts)
+
+
+def check_variation(model: Model, node: Node) -> Iterator[Finding]:
+    """Report a variation that specialises another; ``references`` checks usages."""
+    for relation, target in iter_stated(node, _SUBCLASSIFICATION):
+        is_closed = target.attributes.get("isVariation") or target.kind == "EnumerationDefinition"
+        if node.attributes.get("isVariation") and is_closed:
+            facts = {"name": name_of(model, node), "owner": ""}
+            yield Finding(VARIATION_OF_VARIATION, relation.reference.start, facts)
+
+
+ALONE = rule(
+    "SM254",
+    "one-operand",
+    Severity.ERROR,
+    "'{name}' is {made} '{general}' alone",
+    help="name a second one, or specialise '{general}'",
+)
+ITSELF = rule(
+    "SM255",
+    "operand-itself",
+    Severity.ERROR,
+    "'{name}' is {made} itself",
+    help="take '{name}' out of its own definition",
+)
+SECOND_REFERENCE = rule(
+    "SM256",
+    "several-references",
+    Severity.ERROR,
+    "'{name}' references '{general}' too",
+    help="keep one 'references', and write 'subsets' for the others",
+)
+SECOND_MULTIPLICITY = rule(
+    "SM257",
+    "several-multiplicities",
+    Severity.ERROR,
+    "'{name}' has a second multiplicity",
+    help="keep one of them",
+)
+CONJUGATED = rule(
+    "SM258",
+    "conjugate-specialises",
+    Severity.ERROR,
+    "'{name}' is the conjugate of another type, and specialises '{general}' too",
+    help="let a type that specialises both have what is needed",
+)
+
+_COMPOSITIONS = {
+    "Unioning": "the union of",
+    "Intersecting": "the intersection of",
+    "Differencing": "the difference of",
+    "FeatureChaining": "a chain of",
+    "Conjugation": "the conjugate of",
+}
+_CONJUGATION = frozenset({"Conjugation"})
+_REFERENCE = frozenset({"ReferenceSubsetting"})
+_SPECIALIZATIONS = kinds_of("Specialization")
+_MULTIPLICITIES = kinds_of("Multiplicity")
+_SPECIFIC = frozenset({"specific", "subclassifier", "subsettingFeature", "redefiningFeature"})
+_GENERAL = frozenset({"general", "superclassifier", "subsettedFeature", "redefinedFeature"})
+
+
+def check_operands(model: Model, node: Node) -> Iterator[Finding]:
+    """Report a type that is composed of one other type only, or of itself."""
+    for kind, composition in _COMPOSITIONS.items():
+        operands = [relation for relation in node.relations if relation.kind == kind]
+        for relation in operands:
+            target = relation.reference.target
+            name, general = name_of(model, node), name_of(model, target)
+            facts = {"name": name, "made": composition, "general": general}
+            if target is node:
+                yield Finding(ITSELF, _find_offset(relation), facts)
+            elif kind != "Conjugation" and len(operands) == 1:
+                yield Finding(ALONE, relation.reference.start, facts)
+
+
+def _find_offset(relation: Relation) -> int:
+    """Return the offset of a name. Links of a chain have the offset of the whole chain."""
+    reference = relation.reference
+    if relation.kind == "FeatureChaining" and reference.start >= 0:
+        return reference.end - len(reference.chain[-1][-1])
+    return reference.start
+
+
+def check_reference(model: Model, node: Node) -> Iterator[Finding]:
+    """Report the references of a feature after its first."""
+    for relation, target in list(iter_stated(node, _REFERENCE))[1:]:
+        facts = {"name": name_of(model, node), "general": name_of(model, target)}
+        yield Finding(SECOND_REFERENCE, relation.reference.start, facts)
+
+
+def check_multiplicity(model: Model, node: Node) -> Iterator[Finding]:
+    """Report the multiplicities of a type after its first."""
+    for member in [member for member in node.members if member.kind in _MULTIPLICITIES][1:]:
+        yield Finding(SECOND_MULTIPLICITY, member.start, {"name": name_of(model, node)})
+
+
+def check_conjugate(model: Model, node: Node) -> Iterator[Finding]:
+    """Report generals of a conjugated type."""
+    for relation, target in iter_stated(node, _SPECIALIZATIONS):
+        facts = {"name": name_of(model, node), "general": name_of(model, target)}
+        yield Finding(CONJUGATED, relation.reference.start, facts)
+
+
+def check_separate_specialization(model: Model, node: Node) -> Iterator[Finding]:
+    """Report a specialisation element that is about a conjugated type."""
+    for relation, special in iter_stated(node, _SPECIFIC):
+        if any(True for _ in iter_stated(special, _CONJUGATION)):
+            for _, general in iter_stated(node, _GENERAL):
+                facts = {"name": name_of(model, special), "general": name_of(model, general)}
+                yield Finding(CONJUGATED, relation.reference.start, facts)
+
+
+CHECKS = ((DECLARED_TYPES, check_multiplicity),)
+BY_RELATION = (
+    (frozenset(_COMPOSITIONS), check_operands),
+    (_REFERENCE, check_reference),
+    (_CONJUGATION, check_conjugate),
+    (_SPECIFIC, check_separate_specialization),
+    (_SUBCLASSIFICATION, check_other_kind),
+    (_SUBCLASSIFICATION, check_variation),
+)
