@@ -8,8 +8,7 @@ from lxml import etree
 from sysmlc.diagnostics import Coverage, Sink
 from sysmlc.frontends.xmi import FRONTEND, lowering, metaclasses
 from sysmlc.ir import Edge, Graph, Kind
-from sysmlc.ir.query import interactions as sequence
-from sysmlc.ir.query import templates
+from sysmlc.ir.query import interactions, templates
 from sysmlc.passes import pipeline
 from sysmlc.sources import load
 
@@ -100,7 +99,7 @@ def test_messages_lead_between_lifelines_in_the_order_of_the_file(name, corpus):
     path = corpus / "xmi" / "papyrus" / name
     graph, _ = compiled(path)
     for interaction in graph.of_kind(Kind.INTERACTION):
-        happening = [e.id for e in sequence.happenings(graph, interaction)]
+        happening = [e.id for e in interactions.interaction_fragments(graph, interaction)]
         written = [
             _id(element)
             for tree in trees(path)
@@ -108,13 +107,15 @@ def test_messages_lead_between_lifelines_in_the_order_of_the_file(name, corpus):
             if _id(element.getparent()) == interaction.id
         ]
         assert happening == written
-        for message in sequence.messages(graph, interaction):
+        for message in interactions.messages(graph, interaction):
             for event, end in (
                 (Edge.SEND_EVENT, Edge.FLOW_SOURCE),
                 (Edge.RECEIVE_EVENT, Edge.FLOW_TARGET),
             ):
                 occurrence = graph.target(message, event)
-                assert sequence.covered(graph, occurrence) == [graph.target(message, end)]
+                assert interactions.covered_lifelines(graph, occurrence) == [
+                    graph.target(message, end)
+                ]
 
 
 def _id(element):
@@ -125,10 +126,10 @@ def test_the_combined_fragment_of_tank_control(corpus):
     graph, _ = compiled(corpus / "xmi" / "magicdraw" / "Tank_control_2.mdzip")
     (fragment,) = graph.of_kind(Kind.FRAGMENT)
     assert fragment.subkind == "neg"
-    (operand,) = sequence.operands(graph, fragment)
-    sent, received = sequence.happenings(graph, operand)
-    assert sequence.sent(graph, sent) is sequence.received(graph, received)
-    assert len(sequence.covered(graph, fragment)) == 1
+    (operand,) = interactions.operands(graph, fragment)
+    sent, received = interactions.interaction_fragments(graph, operand)
+    assert interactions.sent_message(graph, sent) is interactions.received_message(graph, received)
+    assert len(interactions.covered_lifelines(graph, fragment)) == 1
 
 
 @pytest.mark.long

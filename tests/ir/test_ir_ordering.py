@@ -2,11 +2,11 @@
 
 import pytest
 
-from sysmlc.ir.algorithms import in_topological_order
+from sysmlc.ir.algorithms import sort_topologically
 
 
 def order(nodes, *edges):
-    return " ".join(in_topological_order(nodes.split(), [tuple(edge) for edge in edges]))
+    return " ".join(sort_topologically(nodes.split(), [tuple(edge) for edge in edges]))
 
 
 def test_each_node_comes_after_those_that_lead_to_it_the_least_first():

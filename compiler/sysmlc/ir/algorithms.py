@@ -1,6 +1,6 @@
-"""Strongly connected components of a directed graph of ids (R. E. Tarjan, 1972).
+"""Algorithms on directed graphs of ids: strongly connected components and topological order.
 
-networkx has them, too, but takes longer to import than most models take to be compiled.
+networkx offers both, but its import takes longer than compiling most models.
 """
 
 from collections.abc import Iterable, Iterator, Mapping
@@ -10,62 +10,62 @@ from heapq import heappop, heappush
 Successors = Mapping[str, Iterable[str]]
 
 
-def strong_components(successors: Successors) -> Iterator[list[str]]:
-    """Nodes that reach each other, every component after those that it leads to.
+def strongly_connected_components(successors: Successors) -> Iterator[list[str]]:
+    """Iterate over the strongly connected components, each after those that it leads to.
 
-    Every node is a key of ``successors``; one that reaches none back is a component of its own.
+    Every node is a key of *successors*. A node that is on no cycle is a component of its own.
     """
-    search = _Search(successors)
+    search = _TarjanSearch(successors)
     for node in successors:
-        if node not in search.found:
-            yield from search.below(node)
+        if node not in search.index:
+            yield from search.run(node)
 
 
-class _Search:
-    """Tarjan's search without recursion, for paths may be long."""
+class _TarjanSearch:
+    """The algorithm of R. E. Tarjan (1972), without recursion because paths may be long."""
 
     def __init__(self, successors: Successors) -> None:
         self._successors = successors
-        self.found: dict[str, int] = {}
-        self._low: dict[str, int] = {}
-        self._waiting: dict[str, None] = {}
+        self.index: dict[str, int] = {}
+        self._low_link: dict[str, int] = {}
+        self._stack: dict[str, None] = {}
 
-    def below(self, root: str) -> Iterator[list[str]]:
-        """The components that the root reaches and that are not found yet."""
-        found, low, waiting = self.found, self._low, self._waiting
-        path = [(root, self._enter(root))]
+    def run(self, root: str) -> Iterator[list[str]]:
+        """Iterate over the components reachable from *root* that no earlier run has visited."""
+        index, low_link, stack = self.index, self._low_link, self._stack
+        path = [(root, self._visit(root))]
         while path:
-            node, left = path[-1]
-            for following in left:
-                if following not in found:
-                    path.append((following, self._enter(following)))
+            node, successors = path[-1]
+            for successor in successors:
+                if successor not in index:
+                    path.append((successor, self._visit(successor)))
                     break
-                if following in waiting:
-                    low[node] = min(low[node], found[following])
+                if successor in stack:
+                    low_link[node] = min(low_link[node], index[successor])
             else:
                 path.pop()
                 if path:
-                    above = path[-1][0]
-                    low[above] = min(low[above], low[node])
-                if low[node] == found[node]:
-                    yield self._taken(node)
+                    parent = path[-1][0]
+                    low_link[parent] = min(low_link[parent], low_link[node])
+                if low_link[node] == index[node]:
+                    yield self._pop_component(node)
 
-    def _enter(self, node: str) -> Iterator[str]:
-        self.found[node] = self._low[node] = len(self.found)
-        self._waiting[node] = None
+    def _visit(self, node: str) -> Iterator[str]:
+        self.index[node] = self._low_link[node] = len(self.index)
+        self._stack[node] = None
         return iter(self._successors[node])
 
-    def _taken(self, head: str) -> list[str]:
+    def _pop_component(self, root: str) -> list[str]:
         component: list[str] = []
-        while not component or component[-1] != head:
-            component.append(self._waiting.popitem()[0])
+        while not component or component[-1] != root:
+            component.append(self._stack.popitem()[0])
         return component
 
 
-def in_topological_order(nodes: Iterable[str], edges: Iterable[tuple[str, str]]) -> Iterator[str]:
-    """Iterate over nodes so that sources precede targets; the least id first where several can be.
+def sort_topologically(nodes: Iterable[str], edges: Iterable[tuple[str, str]]) -> Iterator[str]:
+    """Iterate over nodes so that sources precede targets, the least id first where several can be.
 
-    Raise graphlib.CycleError, a ValueError, for a graph with a cycle.
+    Ends of *edges* are nodes too. Raise graphlib.CycleError, a ValueError, for a cycle.
     """
     sorter: TopologicalSorter[str] = TopologicalSorter(dict.fromkeys(nodes, ()))
     for source, target in edges:

@@ -46,7 +46,11 @@ class Writers:
     # -- inside --------------------------------------------------------------------------------
 
     def _of(self, feature: Element) -> Iterator[Element]:
-        slots = (feature, *query.redefined(self._graph, feature), *self._redefining(feature))
+        slots = (
+            feature,
+            *query.redefined_features(self._graph, feature),
+            *self._redefining(feature),
+        )
         for slot in slots:
             for writer in self._candidates(slot.name):
                 if slot in self._written(writer, slot.name):

@@ -6,7 +6,7 @@ from msgspec import Struct
 
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Edge, Element, Graph, Kind
-from sysmlc.ir.query import BEHAVIORS, features, parameters, redefined
+from sysmlc.ir.query import BEHAVIORS, features, parameters, redefined_features
 
 CALL_OF_NOTHING = rule(
     "SM400",
@@ -109,7 +109,7 @@ class Behaviours(Struct, frozen=True):
 
 
 def _inherit_method(graph: Graph, operation: Element) -> None:
-    for one in (operation, *redefined(graph, operation)):
+    for one in (operation, *redefined_features(graph, operation)):
         methods = graph.targets(one, Edge.METHOD)
         if methods:
             if one is not operation or not _is_alone(graph, operation, methods):

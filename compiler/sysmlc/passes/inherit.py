@@ -7,7 +7,7 @@ from msgspec import Struct
 
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Edge, Element, Graph, Kind
-from sysmlc.ir.algorithms import strong_components
+from sysmlc.ir.algorithms import strongly_connected_components
 from sysmlc.ir.query import CLASSIFIERS, FEATURES, bounds, conforms, generals
 
 GENERALIZATION_CYCLE = rule(
@@ -87,7 +87,7 @@ class _Hierarchy:
         self.circles: list[list[Element]] = []
         self._features: dict[str, dict[Element, None]] = {}
         # Components come out general before specific: each is ready when it is needed.
-        for number, ids in enumerate(strong_components(_generals(graph))):
+        for number, ids in enumerate(strongly_connected_components(_generals(graph))):
             self._component.update(dict.fromkeys(ids, number))
             self._enter(ids)
 

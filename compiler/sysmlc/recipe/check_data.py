@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping
 
 from sysmlc.diagnostics import Severity, rule
-from sysmlc.ir.algorithms import in_topological_order
+from sysmlc.ir.algorithms import sort_topologically
 from sysmlc.recipe.checks import Finding, declared, graphs
 from sysmlc.recipe.derive import Tables
 from sysmlc.recipe.expression import Expr, unreadable, variables
@@ -183,7 +183,7 @@ def _definitely_set(graph: FlowGraph) -> dict[str, set[str]]:
     for source, target in pairs:
         before.setdefault(target, []).append(source)
     done: dict[str, set[str]] = {}
-    for id in in_topological_order(nodes, pairs):
+    for id in sort_topologically(nodes, pairs):
         ways = [done[one] for one in before.get(id, ())]
         joined = nodes[id].kind in ("join", "service", "function")
         have = set.union(*ways) if ways and joined else set.intersection(*ways) if ways else start

@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 
 from msgspec import Struct
 
-from sysmlc.ir.algorithms import in_topological_order, strong_components
+from sysmlc.ir.algorithms import sort_topologically, strongly_connected_components
 from sysmlc.recipe.model import FlowGraph, Node, Range
 
 Cost = Callable[[Node], Range | None]
@@ -44,7 +44,7 @@ def cycles(nodes: Iterable[str], edges: Iterable[tuple[str, str]]) -> list[list[
     rank = {id: number for number, id in enumerate(following)}
     found = [
         sorted(component, key=rank.__getitem__)
-        for component in strong_components(following)
+        for component in strongly_connected_components(following)
         if len(component) > 1 or component[0] in following[component[0]]
     ]
     return sorted(found, key=lambda component: rank[component[0]])
@@ -65,7 +65,7 @@ def forward_edges(graph: FlowGraph) -> list[tuple[str, str]]:
 
 def in_order(graph: FlowGraph) -> list[str]:
     """Ids of the nodes, each after those that lead to it; where that leaves a choice, sorted."""
-    return list(in_topological_order((node.id for node in graph.nodes), forward_edges(graph)))
+    return list(sort_topologically((node.id for node in graph.nodes), forward_edges(graph)))
 
 
 # -- times -------------------------------------------------------------------------------------
@@ -166,7 +166,7 @@ def _parts(ids: Iterable[str], pairs: _Pairs) -> Iterator[tuple[list[str], bool]
     parts.update({f"node {id}": [id] for id in ordered if id not in home})
     home.update({id: f"node {id}" for id in ordered if id not in home})
     between = ((home[a], home[b]) for a, b in pairs if home[a] != home[b])
-    for name in in_topological_order(parts, between):
+    for name in sort_topologically(parts, between):
         yield parts[name], name.startswith("cycle ")
 
 

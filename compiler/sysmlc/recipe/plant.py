@@ -73,7 +73,7 @@ class Plant:
 
     def _valued(self, part: Element) -> bool:
         """Whether an instance stands for the part, or for what it redefines there."""
-        parts = [part, *query.redefined(self.graph, part)]
+        parts = [part, *query.redefined_features(self.graph, part)]
         users = (one for p in parts for one in self.graph.sources(p, Edge.REPRESENTS))
         return any(one.kind is Kind.INSTANCE for one in users)
 

@@ -4,7 +4,7 @@ import re
 from collections.abc import Iterable
 
 from sysmlc.ir import Edge, Element, Graph, Kind
-from sysmlc.ir.query import applications, lineage, redefined, templates
+from sysmlc.ir.query import applications, lineage, redefined_features, templates
 
 _TOOL_ID = re.compile(r"_\d+_\d+_\d+_[0-9a-f]+_\d+_\d+_\d+|(EAID)?_[\w-]{20,}")
 """Ids as MagicDraw, Papyrus and Enterprise Architect make them."""
@@ -248,7 +248,7 @@ def _referred(graph: Graph, feature: Element) -> str:
     """
     if feature.name.strip():
         return name(feature)
-    known = next((one for one in redefined(graph, feature) if one.name.strip()), None)
+    known = next((one for one in redefined_features(graph, feature) if one.name.strip()), None)
     types = "" if known else type_name(graph, feature)
     return f": {types}" if types else name(known or feature)
 

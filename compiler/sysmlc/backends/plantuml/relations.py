@@ -138,7 +138,7 @@ def _bindings(graph: Graph) -> Iterator[Relation]:
     """From what is made of a template to the template (UML 2.5.1, 7.3.4)."""
     for item in graph.of_kind(Kind.TEMPLATE_BINDING):
         bound = graph.owner(item)
-        found = templates.binding(graph, bound, item) if bound is not None else None
+        found = templates.read_binding(graph, bound, item) if bound is not None else None
         if found is not None and found.template is not None:
             parts = ", ".join(_substitution(one) for one in found.substitutions)
             shows = (item.id, *(one.id for one in graph.owned(item)))

@@ -6,7 +6,7 @@ from sysmlc.backends.plantuml import labels
 from sysmlc.backends.plantuml.aliases import Aliases
 from sysmlc.backends.plantuml.views import Diagram, Participant, SequenceView
 from sysmlc.ir import Element, Graph, Kind
-from sysmlc.ir.query import interactions as sequence
+from sysmlc.ir.query import interactions
 from sysmlc.support.plantuml_text import label, plain, small, stack
 
 _WIDTH = 24
@@ -15,7 +15,7 @@ _WIDTH = 24
 def diagrams(graph: Graph) -> Iterator[Diagram]:
     """All sequence diagrams, in the order of the model."""
     for interaction in graph.of_kind(Kind.INTERACTION):
-        lifelines = sequence.lifelines(graph, interaction)
+        lifelines = interactions.lifelines(graph, interaction)
         if lifelines and not interaction.attrs.get("external"):
             yield _diagram(graph, interaction, lifelines)
 
@@ -42,7 +42,7 @@ _IN_FRAME = (Kind.PARAMETER,)
 
 
 def _participant(graph: Graph, lifeline: Element, aliases: Aliases) -> Participant:
-    represented = sequence.participant(graph, lifeline)
+    represented = interactions.participant(graph, lifeline)
     shows = [lifeline.id]
     if represented is not None and represented.owner == lifeline.owner:
         shows.append(represented.id)
@@ -60,7 +60,7 @@ def _title(graph: Graph, lifeline: Element) -> str:
     name = _name(graph, lifeline)
     if lifeline.attrs.get("selector"):
         name += f"[{lifeline.attrs['selector']}]"
-    type_ = sequence.type_of(graph, lifeline)
+    type_ = interactions.type_of(graph, lifeline)
     if type_ is None:
         return name or labels.name(lifeline)
     return f"{name} : {labels.name(type_)}".strip()
@@ -68,13 +68,13 @@ def _title(graph: Graph, lifeline: Element) -> str:
 
 def _name(graph: Graph, lifeline: Element) -> str:
     """The name of what it represents; tools number the lifelines themselves."""
-    represented = sequence.participant(graph, lifeline)
+    represented = interactions.participant(graph, lifeline)
     if represented is None:
         return lifeline.name.strip()
-    is_told = represented.name.strip() or sequence.type_of(graph, lifeline) is not None
+    is_told = represented.name.strip() or interactions.type_of(graph, lifeline) is not None
     return (represented.name if is_told else lifeline.name).strip()
 
 
 def _is_actor(graph: Graph, lifeline: Element) -> bool:
-    found = (sequence.participant(graph, lifeline), sequence.type_of(graph, lifeline))
+    found = (interactions.participant(graph, lifeline), interactions.type_of(graph, lifeline))
     return any(item is not None and item.kind is Kind.ACTOR for item in found)

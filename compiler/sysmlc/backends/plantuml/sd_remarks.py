@@ -2,7 +2,7 @@
 
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Edge, Element, Graph, Kind
-from sysmlc.ir.query import interactions as sequence
+from sysmlc.ir.query import interactions
 
 OVERTAKEN = rule(
     "SM710",
@@ -16,8 +16,8 @@ OVERTAKEN = rule(
 def report(graph: Graph, sink: Sink) -> None:
     """Report each message that something else overtakes on the lifeline that receives it."""
     for interaction in graph.of_kind(Kind.INTERACTION):
-        for container in sequence.containers(graph, interaction):
-            items = sequence.happenings(graph, container)
+        for container in interactions.iter_containers(graph, interaction):
+            items = interactions.interaction_fragments(graph, container)
             at = {item.id: number for number, item in enumerate(items)}
             for item in items:
                 _check(graph, sink, interaction, items, at, item)
@@ -31,13 +31,13 @@ def _check(
     at: dict[str, int],
     sent: Element,
 ) -> None:
-    message = sequence.sent(graph, sent)
+    message = interactions.sent_message(graph, sent)
     received = graph.target(message, Edge.RECEIVE_EVENT) if message is not None else None
     if message is None or received is None or received.id not in at:
         return
-    lifelines = {one.id for one in sequence.covered(graph, received)}
+    lifelines = {one.id for one in interactions.covered_lifelines(graph, received)}
     for other in items[at[sent.id] + 1 : at[received.id]]:
-        found = [one for one in sequence.covered(graph, other) if one.id in lifelines]
+        found = [one for one in interactions.covered_lifelines(graph, other) if one.id in lifelines]
         if found and _drawn(graph, at, other) > at[sent.id]:
             _report(graph, sink, interaction, message, other, found[0])
             return
@@ -47,7 +47,7 @@ def _drawn(graph: Graph, at: dict[str, int], other: Element) -> int:
     """Where it is drawn: a message at the first of its ends, an execution with its ends."""
     if other.kind is Kind.EXECUTION:
         return -1
-    message = sequence.received(graph, other)
+    message = interactions.received_message(graph, other)
     first = graph.target(message, Edge.SEND_EVENT) if message is not None else None
     return min(at[other.id], at.get(first.id, at[other.id]) if first is not None else at[other.id])
 

@@ -11,7 +11,7 @@ from sysmlc.backends.plantuml.sd_walk import Walk
 from sysmlc.backends.plantuml.views import Step
 from sysmlc.ir import Edge, Element, Kind
 from sysmlc.ir.graph import Graph
-from sysmlc.ir.query import interactions as sequence
+from sysmlc.ir.query import interactions
 from sysmlc.support.plantuml_text import label, lines, plain, stack
 
 _FRAMES = frozenset(["alt", "opt", "loop", "par", "break", "critical"])
@@ -33,15 +33,15 @@ def _every(walk: Walk, interaction: Element) -> Iterator[Step]:
     """All steps; PlantUML cannot create what is there already (SM447 reports it)."""
     graph, aliases = walk.graph, walk.aliases
     yield from walk.notes(interaction)
-    for lifeline in sequence.lifelines(graph, interaction):
+    for lifeline in interactions.lifelines(graph, interaction):
         yield from walk.notes(lifeline, [aliases[lifeline.id]])
     yield from _inside(walk, interaction)
-    for message in sequence.messages(graph, interaction):
+    for message in interactions.messages(graph, interaction):
         yield from message_steps(walk, message)
 
 
 def _inside(walk: Walk, container: Element) -> Iterator[Step]:
-    for item in sequence.happenings(walk.graph, container):
+    for item in interactions.interaction_fragments(walk.graph, container):
         if item.kind is Kind.OCCURRENCE:
             yield from _occurrence(walk, item)
         elif item.kind is Kind.FRAGMENT:
@@ -54,7 +54,10 @@ def _inside(walk: Walk, container: Element) -> Iterator[Step]:
 
 
 def _occurrence(walk: Walk, item: Element) -> Iterator[Step]:
-    found = (sequence.sent(walk.graph, item), sequence.received(walk.graph, item))
+    found = (
+        interactions.sent_message(walk.graph, item),
+        interactions.received_message(walk.graph, item),
+    )
     messages = [message for message in found if message is not None]
     for message in messages:
         yield from message_steps(walk, message)
@@ -97,7 +100,7 @@ def _finish(walk: Walk, execution: Element) -> Iterator[Step]:
 
 
 def _fragment(walk: Walk, item: Element) -> Iterator[Step]:
-    if item.subkind in sequence.USES:
+    if item.subkind in interactions.INTERACTION_USES:
         yield _use(walk, item)
     elif item.subkind == "state-invariant":
         yield _invariant(walk, item)
@@ -126,7 +129,7 @@ def _invariant(walk: Walk, item: Element) -> Step:
 
 
 def _combined(walk: Walk, item: Element) -> Iterator[Step]:
-    parts = sequence.operands(walk.graph, item)
+    parts = interactions.operands(walk.graph, item)
     contents = [[*walk.notes(part), *_inside(walk, part)] for part in parts]
     heads = [_head(walk, part) for part in parts] or [("", ())]
     is_group = item.subkind not in _FRAMES

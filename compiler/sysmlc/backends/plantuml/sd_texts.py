@@ -5,7 +5,7 @@ from collections.abc import Iterable
 
 from sysmlc.backends.plantuml import labels
 from sysmlc.ir import Edge, Element, Graph, Kind
-from sysmlc.ir.query import interactions as sequence
+from sysmlc.ir.query import interactions
 
 _TIMES = ("duration", "time")
 _TOOL_NAME = re.compile(r"(interaction ?)?operand[ _]?\d*", re.IGNORECASE)
@@ -55,7 +55,11 @@ def time_text(graph: Graph, item: Element) -> str:
 
 def event_name(graph: Graph, event: Element) -> str:
     """The message of an occurrence, else the name of the element."""
-    message = sequence.sent(graph, event) or sequence.received(graph, event) or event
+    message = (
+        interactions.sent_message(graph, event)
+        or interactions.received_message(graph, event)
+        or event
+    )
     return (message_text(graph, message) if message.kind is Kind.MESSAGE else "") or (
         labels.name(message)
     )

@@ -8,7 +8,7 @@ from sysmlc.backends.plantuml.aliases import Aliases
 from sysmlc.backends.plantuml.sd_texts import notes, time_text, times
 from sysmlc.backends.plantuml.views import Step
 from sysmlc.ir import Element, Graph
-from sysmlc.ir.query import interactions as sequence
+from sysmlc.ir.query import interactions
 from sysmlc.support.plantuml_text import label, lines, stack
 
 _WIDTH = 44
@@ -28,14 +28,14 @@ class Walk:
 
     def begin(self, interaction: Element) -> None:
         """Find what is said about the elements of the interaction."""
-        self._participants = sequence.lifelines(self.graph, interaction)
+        self._participants = interactions.lifelines(self.graph, interaction)
         self._times = times(self.graph, interaction)
         self._notes = notes(self.graph, interaction)
 
     def lifelines(self, item: Element) -> tuple[str, ...]:
         """Aliases of the lifelines that it covers; a use that names none covers all."""
-        covered = sequence.covered(self.graph, item)
-        if not covered and item.subkind in sequence.USES:
+        covered = interactions.covered_lifelines(self.graph, item)
+        if not covered and item.subkind in interactions.INTERACTION_USES:
             covered = self._participants
         return tuple(self.aliases[one.id] for one in covered if one.id in self.aliases)
 

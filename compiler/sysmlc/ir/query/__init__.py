@@ -1,4 +1,4 @@
-"""Questions that passes and back ends ask of a graph, answered without changing it."""
+"""Queries of passes and back ends to a graph; none of them changes it."""
 
 from sysmlc.ir.query.classifiers import (
     BEHAVIORS,
@@ -18,7 +18,7 @@ from sysmlc.ir.query.classifiers import (
     parameters,
     parts,
     ports,
-    redefined,
+    redefined_features,
     type_of,
 )
 from sysmlc.ir.query.names import (
@@ -90,7 +90,7 @@ __all__ = [
     "parameters",
     "parts",
     "ports",
-    "redefined",
+    "redefined_features",
     "role_of",
     "runs_both_ways",
     "stereotypes",

@@ -1,4 +1,4 @@
-"""Branches of a behaviour: whether those that a fork opens are joined before its end."""
+"""Activities: whether concurrent branches are joined, and UML's features for pins."""
 
 from collections.abc import Iterable, Mapping
 
@@ -9,150 +9,165 @@ from sysmlc.ir.kinds import Edge, Kind
 _STEPS = (Kind.ACTION, Kind.STRUCTURED, Kind.CONTROL)
 _CHOICES = ("decision", "merge")
 _EXIT = ""
-"""What stands behind every step that nothing follows."""
-_Ways = Mapping[str, list[str]]
+"""The virtual exit: the successor of every step without a successor."""
+_Successors = Mapping[str, list[str]]
 
 
 def is_joined(graph: Graph, end: Element) -> bool:
-    """Whether nothing goes on elsewhere when a token comes to a final node of an activity.
+    """Return whether no other token is left when a token reaches a final node of an activity.
 
-    Of every fork (or step that several control flows leave) before the end all ways must lead
-    through one node that waits for several flows. Where that holds, the end of the flow is the
+    This holds if all paths from every fork before the end (or step with several outgoing control
+    flows) lead through one node that waits for several flows. Then the end of the flow is the
     end of the activity (UML 2.5.1, 15.3.3.2).
     """
     owner = graph.owner(end)
-    steps = [] if owner is None else [one for one in graph.owned(owner) if one.kind in _STEPS]
-    if not any(_may_fork(graph, one) for one in steps):
+    steps = [] if owner is None else [node for node in graph.owned(owner) if node.kind in _STEPS]
+    # Most activities have no fork: the quick test looks at no flow.
+    if not any(_may_fork(graph, step) for step in steps):
         return True
-    ways = {one.id: _next(graph, one) for one in steps}
-    forks = [one.id for one in steps if len(ways[one.id]) > 1 and one.subkind not in _CHOICES]
+    successors = {step.id: _list_successors(graph, step) for step in steps}
+    forks = [s.id for s in steps if len(successors[s.id]) > 1 and s.subkind not in _CHOICES]
     if not forks:
         return True
-    joins = {one.id for one in steps if _waits(graph, one)}
-    return _are_closed(ways, end.id, forks, joins)
+    joins = {step.id for step in steps if _is_join(graph, step)}
+    return _are_forks_joined(successors, end.id, forks, joins)
 
 
 def _may_fork(graph: Graph, step: Element) -> bool:
-    """Whether several flows leave a step, whatever flows they are and wherever they lead."""
+    """Return whether several flows of any kind leave a step."""
     return len(graph.sources(step, Edge.FLOW_SOURCE)) > 1 and step.subkind not in _CHOICES
 
 
-def _next(graph: Graph, step: Element) -> list[str]:
-    flows = (one for one in graph.sources(step, Edge.FLOW_SOURCE) if _is_control(one))
-    found = (graph.target(one, Edge.FLOW_TARGET) for one in flows)
-    return [one.id for one in found if one and one.kind in _STEPS and one.owner == step.owner]
+def _list_successors(graph: Graph, step: Element) -> list[str]:
+    flows = [flow for flow in graph.sources(step, Edge.FLOW_SOURCE) if _is_control_flow(flow)]
+    targets = [graph.target(flow, Edge.FLOW_TARGET) for flow in flows]
+    return [
+        node.id for node in targets if node and node.kind in _STEPS and node.owner == step.owner
+    ]
 
 
-def _waits(graph: Graph, step: Element) -> bool:
-    """Whether a node goes on only when all flows that lead to it have come."""
+def _is_join(graph: Graph, step: Element) -> bool:
+    """Return whether a step waits for several control flows."""
     if step.subkind in _CHOICES or step.subkind.endswith("final"):
         return False
-    return sum(1 for one in graph.sources(step, Edge.FLOW_TARGET) if _is_control(one)) > 1
+    return sum(1 for flow in graph.sources(step, Edge.FLOW_TARGET) if _is_control_flow(flow)) > 1
 
 
-def _is_control(flow: Element) -> bool:
+def _is_control_flow(flow: Element) -> bool:
     return flow.kind is Kind.CONTROL_FLOW
 
 
-def _are_closed(ways: _Ways, end: str, forks: Iterable[str], joins: set[str]) -> bool:
-    back = _turned(ways)
-    leading = _reached(back, [end])
-    known = _reached(back, [_EXIT])
-    endless = _reached(back, [one for one in ways if one not in known])
-    behind = _behind(ways, back)
+def _are_forks_joined(
+    successors: _Successors, end: str, forks: Iterable[str], joins: set[str]
+) -> bool:
+    predecessors = _reverse(successors)
+    before_end = _reachable(predecessors, [end])
+    before_exit = _reachable(predecessors, [_EXIT])
+    # From these steps a path leads into an endless cycle.
+    endless = _reachable(predecessors, [step for step in successors if step not in before_exit])
+    post_dominators = _immediate_post_dominators(successors, predecessors)
     return all(
-        fork not in endless and not joins.isdisjoint(_chain(behind, fork))
+        fork not in endless and not joins.isdisjoint(_post_dominators(post_dominators, fork))
         for fork in forks
-        if fork in leading
+        if fork in before_end
     )
 
 
-def _turned(ways: _Ways) -> dict[str, list[str]]:
-    """The ways backwards; the exit follows what nothing else follows."""
-    back: dict[str, list[str]] = {_EXIT: [], **{one: [] for one in ways}}
-    for one, following in ways.items():
-        for after in following or [_EXIT]:
-            back[after].append(one)
-    return back
+def _reverse(successors: _Successors) -> dict[str, list[str]]:
+    predecessors: dict[str, list[str]] = {_EXIT: [], **{step: [] for step in successors}}
+    for step, following in successors.items():
+        for successor in following or [_EXIT]:
+            predecessors[successor].append(step)
+    return predecessors
 
 
-def _reached(ways: _Ways, starts: Iterable[str]) -> set[str]:
-    open_ones = list(starts)
-    seen = set(open_ones)
-    while open_ones:
-        found = [one for one in ways[open_ones.pop()] if one not in seen]
-        seen.update(found)
-        open_ones.extend(found)
-    return seen
+def _reachable(edges: _Successors, starts: Iterable[str]) -> set[str]:
+    worklist = list(starts)
+    visited = set(worklist)
+    while worklist:
+        new = [step for step in edges[worklist.pop()] if step not in visited]
+        visited.update(new)
+        worklist.extend(new)
+    return visited
 
 
-def _chain(behind: Mapping[str, str], step: str) -> set[str]:
-    """What all ways from a step lead through."""
-    found: set[str] = set()
+def _post_dominators(immediate: Mapping[str, str], step: str) -> set[str]:
+    """Return the steps that all paths from *step* to the exit lead through."""
+    post_dominators: set[str] = set()
     while step != _EXIT:
-        step = behind[step]
-        found.add(step)
-    return found
+        step = immediate[step]
+        post_dominators.add(step)
+    return post_dominators
 
 
-def _behind(ways: _Ways, back: _Ways) -> dict[str, str]:
-    """The nearest step that all ways from a step lead through (Cooper, Harvey, Kennedy 2001)."""
-    order = _finished(back)
-    rank = {one: number for number, one in enumerate(order)}
-    behind = {_EXIT: _EXIT}
+def _immediate_post_dominators(
+    successors: _Successors, predecessors: _Successors
+) -> dict[str, str]:
+    """Return the nearest post-dominator of each step (Cooper, Harvey and Kennedy, 2001)."""
+    order = _postorder(predecessors)
+    rank = {step: number for number, step in enumerate(order)}
+    immediate = {_EXIT: _EXIT}
     is_changed = True
     while is_changed:
         is_changed = False
-        for one in reversed(order[:-1]):
-            new = _common(behind, rank, [to for to in ways[one] or [_EXIT] if to in behind])
-            is_changed = is_changed or behind.get(one) != new
-            behind[one] = new
-    return behind
+        for step in reversed(order[:-1]):
+            following = [s for s in successors[step] or [_EXIT] if s in immediate]
+            common = _intersect(immediate, rank, following)
+            is_changed = is_changed or immediate.get(step) != common
+            immediate[step] = common
+    return immediate
 
 
-def _finished(back: _Ways) -> list[str]:
-    """Steps in the order in which a walk from the exit leaves them, the exit last."""
+def _postorder(predecessors: _Successors) -> list[str]:
+    """Return the steps in postorder of a depth-first search from the exit, the exit last."""
     order: list[str] = []
-    seen, walk = {_EXIT}, [(_EXIT, iter(back[_EXIT]))]
-    while walk:
-        one, rest = walk[-1]
-        found = next((before for before in rest if before not in seen), None)
-        if found is None:
-            order.append(one)
-            walk.pop()
+    visited, path = {_EXIT}, [(_EXIT, iter(predecessors[_EXIT]))]
+    while path:
+        step, remaining = path[-1]
+        new = next((predecessor for predecessor in remaining if predecessor not in visited), None)
+        if new is None:
+            order.append(step)
+            path.pop()
         else:
-            seen.add(found)
-            walk.append((found, iter(back[found])))
+            visited.add(new)
+            path.append((new, iter(predecessors[new])))
     return order
 
 
-def _common(behind: Mapping[str, str], rank: Mapping[str, int], found: list[str]) -> str:
-    """Where the chains of several steps meet."""
-    met, *others = found
-    for one in others:
-        while met != one:
-            if rank[met] < rank[one]:
-                met = behind[met]
+def _intersect(immediate: Mapping[str, str], rank: Mapping[str, int], steps: list[str]) -> str:
+    """Return the nearest common post-dominator of several steps."""
+    common, *rest = steps
+    for step in rest:
+        finger = step
+        while common != finger:
+            if rank[common] < rank[finger]:
+                common = immediate[common]
             else:
-                one = behind[one]
-    return met
+                finger = immediate[finger]
+    return common
 
 
-_OF_CALLS = {"in": "argument", "out": "result"}
-_OF_OPAQUE = {"in": "input-value", "out": "output-value"}
-_BY_ACTION = {
-    "call-behavior": _OF_CALLS,
-    "call-operation": _OF_CALLS,
-    "opaque": _OF_OPAQUE,
+# -- pins --------------------------------------------------------------------------------------
+
+_PINS_OF_CALLS = {"in": "argument", "out": "result"}
+_PINS_OF_OPAQUE_ACTIONS = {"in": "input-value", "out": "output-value"}
+_PINS = {
+    "call-behavior": _PINS_OF_CALLS,
+    "call-operation": _PINS_OF_CALLS,
+    "opaque": _PINS_OF_OPAQUE_ACTIONS,
     "send": {"in": "argument"},
     "accept": {"out": "result"},
     "value": {"out": "result"},
     "read": {"out": "result"},
 }
+"""Features of actions for pins, by the subkind of the action and the direction of the pin."""
 
 
 def pin_subkind(action: Element, pin: Element) -> str:
-    """The UML feature that a pin is for by its direction; empty for actions with several."""
+    """Return the feature of the action that owns the pin (UML 2.5.1, 16.2 and 16.3).
+
+    The result is empty if the direction of the pin does not decide it.
+    """
     if action.kind is not Kind.ACTION:
         return ""
-    return _BY_ACTION.get(action.subkind, {}).get(str(pin.attrs.get("direction", "")), "")
+    return _PINS.get(action.subkind, {}).get(str(pin.attrs.get("direction", "")), "")

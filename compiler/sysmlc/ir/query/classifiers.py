@@ -26,7 +26,7 @@ CLASSIFIERS = (
     Kind.STATE_MACHINE,
     Kind.INTERACTION,
 )
-"""Kinds of UML classifiers (UML 2.5.1 clause 9.9.4); behaviours are classes."""
+"""Kinds of classifiers (UML 2.5.1 clause 9.9.4); behaviours are classes."""
 
 BEHAVIORS = (Kind.ACTIVITY, Kind.STATE_MACHINE, Kind.INTERACTION)
 FLOW_DIRECTIONS = ("in", "out", "inout")
@@ -35,108 +35,104 @@ STRUCTURAL_FEATURES = (Kind.PROPERTY, Kind.PORT, Kind.FLOW_PROPERTY)
 FEATURES = (*STRUCTURAL_FEATURES, Kind.OPERATION, Kind.RECEPTION)
 DOMAINS = ("physical", "information")
 
-_PARAMETER = Kind.PARAMETER
-"""By a name of the module: in Python 3.11 that of a class takes twice as long."""
-
 
 def generals(graph: Graph, classifier: Element) -> list[Element]:
-    """Everything that the classifier specialises, nearest first; cycles do no harm."""
-    return _above(graph, classifier, Edge.SPECIALIZES)
+    """Return all general classifiers of *classifier*, nearest first, also in cyclic models."""
+    return _list_transitive_targets(graph, classifier, Edge.SPECIALIZES)
 
 
-def _above(graph: Graph, element: Element, edge: Edge) -> list[Element]:
+def _list_transitive_targets(graph: Graph, element: Element, edge: Edge) -> list[Element]:
+    """Return the elements that *element* reaches by edges of a kind, in breadth-first order."""
     level = graph.targets(element, edge)
     if not level:
         return level
-    found = dict.fromkeys(level)
+    reached = dict.fromkeys(level)
     while level:
         if len(level) == 1:
-            # Most have one above them, and chains can be thousands long.
-            level = [up for up in graph.targets(level[0], edge) if up not in found]
+            # Most classifiers have one general, and chains can be thousands of classifiers long.
+            level = [target for target in graph.targets(level[0], edge) if target not in reached]
         else:
-            ups = (up for one in level for up in graph.targets(one, edge))
-            level = [up for up in dict.fromkeys(ups) if up not in found]
-        found.update(dict.fromkeys(level))
-    found.pop(element, None)
-    return list(found)
+            targets = (target for source in level for target in graph.targets(source, edge))
+            level = [target for target in dict.fromkeys(targets) if target not in reached]
+        reached.update(dict.fromkeys(level))
+    reached.pop(element, None)
+    return list(reached)
 
 
 def conforms(graph: Graph, specific: Element, general: Element) -> bool:
-    """Whether the first classifier is the second, specialises it or realises it."""
+    """Return whether the first classifier is, specialises or realises the second one."""
     if specific is general:
         return True
     family = [specific, *generals(graph, specific)]
-    realised = [up for one in family for up in graph.targets(one, Edge.REALIZES)]
+    realised = [target for item in family for target in graph.targets(item, Edge.REALIZES)]
     return general in family or general in realised
 
 
 def features(graph: Graph, classifier: Element) -> list[Element]:
-    """Effective features: what ``inherit`` found, or the own ones before it has run."""
-    found = graph.targets(classifier, Edge.FEATURE)
-    return found or [one for one in graph.owned(classifier) if one.kind in FEATURES]
+    """Return the effective features, inherited ones included; before ``inherit`` the owned ones."""
+    effective = graph.targets(classifier, Edge.FEATURE)
+    return effective or [item for item in graph.owned(classifier) if item.kind in FEATURES]
 
 
 def type_of(graph: Graph, element: Element) -> Element | None:
-    """Type of a typed element; a feature without one has that of the feature it redefines."""
+    """Return the type of *element*; without one, that of the nearest feature it redefines."""
     own = graph.target(element, Edge.TYPED_BY)
     if own is not None:
         return own
-    types = (graph.target(one, Edge.TYPED_BY) for one in redefined(graph, element))
-    return next((one for one in types if one is not None), None)
+    redefined = redefined_features(graph, element)
+    types = (graph.target(feature, Edge.TYPED_BY) for feature in redefined)
+    return next((type_ for type_ in types if type_ is not None), None)
 
 
-def redefined(graph: Graph, feature: Element) -> list[Element]:
-    """Everything that the feature redefines, nearest first; cycles do no harm."""
-    return _above(graph, feature, Edge.REDEFINES)
+def redefined_features(graph: Graph, feature: Element) -> list[Element]:
+    """Return all features that *feature* redefines, nearest first, also in cyclic models."""
+    return _list_transitive_targets(graph, feature, Edge.REDEFINES)
 
 
 def parts(graph: Graph, block: Element) -> list[Element]:
-    """Effective parts of a block: composite properties typed by a class."""
-    return [one for one in features(graph, block) if one.role == "part"]
+    """Return the effective parts of a block: composite properties typed by a class."""
+    return [feature for feature in features(graph, block) if feature.role == "part"]
 
 
 def ports(graph: Graph, block: Element) -> list[Element]:
-    """Effective ports of a block."""
-    return [one for one in features(graph, block) if one.kind is Kind.PORT]
+    """Return the effective ports of a block."""
+    return [feature for feature in features(graph, block) if feature.kind is Kind.PORT]
 
 
 def flow_properties(graph: Graph, type_: Element) -> list[Element]:
-    """Effective flow properties of the type of a port."""
-    return [one for one in features(graph, type_) if is_flow_property(one)]
+    """Return the effective flow properties of the type of a port."""
+    return [feature for feature in features(graph, type_) if is_flow_property(feature)]
 
 
 def is_flow_property(feature: Element) -> bool:
-    """Whether the feature says what flows and in which direction (SysML 1.6 clause 9.3.2.7)."""
+    """Return whether *feature* is a flow property (SysML 1.6 clause 9.3.2.7)."""
     return feature.kind is Kind.FLOW_PROPERTY or feature.role == "flow property"
 
 
 def parameters(graph: Graph, owner: Element, *directions: str) -> list[Element]:
-    """Parameters of an operation or behaviour with one of the directions (all when none given).
-
-    A parameter without a direction is ``in`` (UML 2.5.1 clause 9.9.12).
-    """
-    found = [one for one in graph.owned(owner) if one.kind is _PARAMETER]
-    return [one for one in found if not directions or direction_of(one) in directions]
+    """Return the parameters of an operation or behaviour with these directions (all by default)."""
+    owned = [element for element in graph.owned(owner) if element.kind is Kind.PARAMETER]
+    return [item for item in owned if not directions or direction_of(item) in directions]
 
 
 def direction_of(parameter: Element) -> str:
-    """Direction of a parameter, with UML's default."""
+    """Return the direction of a parameter; the default is ``in`` (UML 2.5.1 clause 9.9.12)."""
     return str(parameter.attrs.get("direction", "in"))
 
 
 def classifier_behavior(graph: Graph, classifier: Element) -> Element | None:
-    """The classifier behaviour, its own or else the nearest inherited one."""
-    for one in (classifier, *generals(graph, classifier)):
-        found = graph.target(one, Edge.CLASSIFIER_BEHAVIOR)
-        if found is not None:
-            return found
+    """Return the classifier behaviour, else the nearest inherited one, else None."""
+    for item in (classifier, *generals(graph, classifier)):
+        behavior = graph.target(item, Edge.CLASSIFIER_BEHAVIOR)
+        if behavior is not None:
+            return behavior
     return None
 
 
 def domain_of(graph: Graph, classifier: Element) -> str | None:
-    """``physical`` or ``information``: its own or that of the nearest general one that has it."""
-    for one in (classifier, *generals(graph, classifier)):
-        given = one.attrs.get("domain") or tag(graph, one, "domain")
-        if given in DOMAINS:
-            return str(given)
+    """Return ``physical`` or ``information``: the own or the nearest inherited domain, or None."""
+    for item in (classifier, *generals(graph, classifier)):
+        domain = item.attrs.get("domain") or tag(graph, item, "domain")
+        if domain in DOMAINS:
+            return str(domain)
     return None

@@ -1,4 +1,4 @@
-"""Questions about interactions: what happens, in which order, on which lifeline.
+"""Interactions: lifelines, messages, and the interaction fragments in their order.
 
 UML 2.5.1 clause 17. The order of the fragments of an interaction is the order in which it owns
 them (docs/ir.md); it binds the occurrences on one lifeline.
@@ -10,59 +10,60 @@ from sysmlc.ir.element import Element
 from sysmlc.ir.graph import Graph
 from sysmlc.ir.kinds import Edge, Kind
 
-HAPPENINGS = (Kind.OCCURRENCE, Kind.EXECUTION, Kind.FRAGMENT)
-USES = ("ref", "part-decomposition")
+INTERACTION_FRAGMENTS = (Kind.OCCURRENCE, Kind.EXECUTION, Kind.FRAGMENT)
+INTERACTION_USES = ("ref", "part-decomposition")
+"""Subkinds of a fragment that refers to another interaction (UML 2.5.1, 17.7)."""
 
 
 def lifelines(graph: Graph, interaction: Element) -> list[Element]:
-    """The participants, in the order of the model."""
-    return [item for item in graph.owned(interaction) if item.kind is Kind.LIFELINE]
+    """Return the lifelines, in the order of the model."""
+    return [element for element in graph.owned(interaction) if element.kind is Kind.LIFELINE]
 
 
 def messages(graph: Graph, interaction: Element) -> list[Element]:
-    """All messages of the interaction, in the order of the model."""
-    return [item for item in graph.owned(interaction) if item.kind is Kind.MESSAGE]
+    """Return all messages of the interaction, in the order of the model."""
+    return [element for element in graph.owned(interaction) if element.kind is Kind.MESSAGE]
 
 
-def happenings(graph: Graph, container: Element) -> list[Element]:
-    """Occurrences, executions and fragments of an interaction or operand, in their order."""
-    return [item for item in graph.owned(container) if item.kind in HAPPENINGS]
+def interaction_fragments(graph: Graph, container: Element) -> list[Element]:
+    """Return the occurrences, executions and fragments of an interaction or operand, in order."""
+    return [element for element in graph.owned(container) if element.kind in INTERACTION_FRAGMENTS]
 
 
 def operands(graph: Graph, fragment: Element) -> list[Element]:
-    """The operands of a combined fragment, in order."""
-    return [item for item in graph.owned(fragment) if item.kind is Kind.OPERAND]
+    """Return the operands of a combined fragment, in order."""
+    return [element for element in graph.owned(fragment) if element.kind is Kind.OPERAND]
 
 
-def containers(graph: Graph, interaction: Element) -> Iterator[Element]:
-    """The interaction and all operands in it, outer before inner."""
+def iter_containers(graph: Graph, interaction: Element) -> Iterator[Element]:
+    """Iterate over the interaction and all operands in it, outer before inner."""
     yield interaction
-    for item in graph.subtree(interaction):
-        if item.kind is Kind.OPERAND:
-            yield item
+    for element in graph.subtree(interaction):
+        if element.kind is Kind.OPERAND:
+            yield element
 
 
-def covered(graph: Graph, happening: Element) -> list[Element]:
-    """The lifelines that it covers."""
-    return graph.targets(happening, Edge.COVERS)
+def covered_lifelines(graph: Graph, fragment: Element) -> list[Element]:
+    """Return the lifelines that an interaction fragment covers."""
+    return graph.targets(fragment, Edge.COVERS)
 
 
-def sent(graph: Graph, occurrence: Element) -> Element | None:
-    """The message that is sent at the occurrence."""
+def sent_message(graph: Graph, occurrence: Element) -> Element | None:
+    """Return the message that is sent at the occurrence, or None."""
     return graph.source(occurrence, Edge.SEND_EVENT)
 
 
-def received(graph: Graph, occurrence: Element) -> Element | None:
-    """The message that is received at the occurrence."""
+def received_message(graph: Graph, occurrence: Element) -> Element | None:
+    """Return the message that is received at the occurrence, or None."""
     return graph.source(occurrence, Edge.RECEIVE_EVENT)
 
 
 def participant(graph: Graph, lifeline: Element) -> Element | None:
-    """The part, port or parameter that the lifeline stands for."""
+    """Return the part, port or parameter that the lifeline represents, or None."""
     return graph.target(lifeline, Edge.REPRESENTS)
 
 
 def type_of(graph: Graph, lifeline: Element) -> Element | None:
-    """Type of what the lifeline stands for."""
+    """Return the type of the part, port or parameter that the lifeline represents, or None."""
     represented = participant(graph, lifeline)
     return graph.target(represented, Edge.TYPED_BY) if represented is not None else None

@@ -7,17 +7,15 @@ from sysmlc.ir.graph import Graph
 from sysmlc.ir.kinds import Edge, Kind
 from sysmlc.ir.query.classifiers import BEHAVIORS
 
-_REQUIREMENT = Kind.REQUIREMENT
-"""By a name of the module: in Python 3.11 that of a class takes twice as long."""
-
 
 def component_name(graph: Graph, element: Element) -> str:
-    """Qualified name of the component that a behaviour or requirement belongs to.
+    """Return the qualified name of the component that a behaviour or requirement specifies.
 
-    A classifier behaviour is its classifier, another behaviour ``<Owner>.<behaviour>``, one
-    that a package owns stands alone, a requirement is its subject (design, section 6).
+    A classifier behaviour specifies its classifier, a requirement its subject. Another behaviour
+    is a component ``<Owner>.<behaviour>`` of its own, named by its qualified name if a package owns
+    it.
     """
-    subject = _satisfier(graph, element) if element.role == "requirement" else None
+    subject = _find_subject(graph, element) if element.role == "requirement" else None
     component = subject or element
     if component.kind in BEHAVIORS:
         return _behavior_name(graph, component)
@@ -28,34 +26,34 @@ def _behavior_name(graph: Graph, behavior: Element) -> str:
     owner = graph.owner(behavior)
     if owner is None or owner.kind in (Kind.PACKAGE, Kind.PROFILE):
         return graph.qualified_name(behavior)
-    above = component_name(graph, owner)
+    owner_name = component_name(graph, owner)
     if behavior in graph.targets(owner, Edge.CLASSIFIER_BEHAVIOR):
-        return above
-    return f"{above}.{behavior.name or f'<{behavior.kind}>'}"
+        return owner_name
+    return f"{owner_name}.{behavior.name or f'<{behavior.kind}>'}"
 
 
-def _satisfier(graph: Graph, requirement: Element) -> Element | None:
+def _find_subject(graph: Graph, requirement: Element) -> Element | None:
     return graph.target(requirement, Edge.SUBJECT) or graph.source(requirement, Edge.SATISFIES)
 
 
 def is_requirement(element: Element) -> bool:
-    """Whether it is a requirement, in SysML v1 or v2."""
-    return element.attrs.get("role") == "requirement" or element.kind is _REQUIREMENT
+    """Return whether *element* is a requirement, in SysML v1 or v2."""
+    return element.attrs.get("role") == "requirement" or element.kind is Kind.REQUIREMENT
 
 
 def ids_in(value: object) -> Iterator[str]:
-    """The ids that an attribute holds, at whatever depth of tuples (docs/ir.md, ``clauses``)."""
+    """Iterate over the ids in the value of an attribute, nested tuples included (docs/ir.md)."""
     if isinstance(value, str):
         yield value
     elif isinstance(value, tuple):
-        for part in value:
-            yield from ids_in(part)
+        for item in value:
+            yield from ids_in(item)
 
 
 def bounds(multiplicity: AttrValue) -> tuple[int, int | None] | None:
-    """Lower and upper bound of a multiplicity; upper None is unlimited.
+    """Return the lower and upper bound of a multiplicity; the upper bound None is unlimited.
 
-    Absent means exactly 1. The result is None when the text is not numbers.
+    An absent multiplicity means exactly 1. Return None for a text without numbers.
     """
     lower, dots, upper = str("1" if multiplicity is None else multiplicity).partition("..")
     if not dots:

@@ -6,15 +6,15 @@ from sysmlc.ir.kinds import Edge, Kind
 
 
 def applications(graph: Graph, element: Element) -> list[Element]:
-    """Stereotype applications on the element, in order."""
-    found = graph.sources(element, Edge.SUBJECT)
-    return [one for one in found if one.kind is Kind.APPLICATION]
+    """Return the stereotype applications on *element*, in order."""
+    sources = graph.sources(element, Edge.SUBJECT)
+    return [source for source in sources if source.kind is Kind.APPLICATION]
 
 
 def lineage(application: Element) -> tuple[str, ...]:
-    """Local names from the applied stereotype to the most general one.
+    """Return the local names from the applied stereotype to the most general one.
 
-    Before ``classify`` has run it is the applied stereotype's name alone.
+    Before the pass ``classify``, this is the name of the applied stereotype alone.
     """
     names = application.attrs.get("lineage")
     if isinstance(names, tuple):
@@ -23,28 +23,28 @@ def lineage(application: Element) -> tuple[str, ...]:
 
 
 def stereotypes(graph: Graph, element: Element) -> tuple[str, ...]:
-    """Local names of the stereotypes that apply, general ones included, each once."""
-    names = (name for one in applications(graph, element) for name in lineage(one))
+    """Return the local names of the stereotypes of *element*, general ones included, each once."""
+    names = (name for item in applications(graph, element) for name in lineage(item))
     return tuple(dict.fromkeys(names))
 
 
 def has_stereotype(graph: Graph, element: Element, *names: str) -> bool:
-    """Whether one of the stereotypes, or one that specialises it, applies."""
+    """Return whether one of the stereotypes, or one that specialises it, applies to *element*."""
     return not set(names).isdisjoint(stereotypes(graph, element))
 
 
 def tag(graph: Graph, element: Element, name: str) -> AttrValue:
-    """First tagged value of this name on the element, or None; an exact name goes first.
+    """Return the first tagged value of this name on *element*, or None.
 
-    MagicDraw writes ``Text`` and ``Id`` where Papyrus writes ``text`` and ``id``, so that case
-    is ignored when no name fits exactly. Enterprise Architect may tell tags of the element
-    itself, beside a stereotype that has none.
+    Case is ignored if no tag has exactly this name, because MagicDraw writes ``Text`` and ``Id``
+    where Papyrus writes ``text`` and ``id``. Enterprise Architect can write tags on the element
+    itself, without a stereotype.
     """
-    found = applications(graph, element)
-    for application in found:
+    items = applications(graph, element)
+    for application in items:
         if f"tag.{name}" in application.attrs:
             return application.attrs[f"tag.{name}"]
-    for application in found:
+    for application in items:
         for key, value in application.attrs.items():
             if key.lower() == f"tag.{name.lower()}":
                 return value

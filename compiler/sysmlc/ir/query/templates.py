@@ -1,4 +1,4 @@
-"""Questions about templates: formal parameters, and what takes their places (UML 2.5.1, 7.3)."""
+"""Templates: formal parameters, bindings and substitutions (UML 2.5.1, 7.3)."""
 
 from msgspec import Struct
 
@@ -6,12 +6,9 @@ from sysmlc.ir.element import AttrValue, Element
 from sysmlc.ir.graph import Graph
 from sysmlc.ir.kinds import Edge, Kind
 
-_PARAMETER = Kind.TEMPLATE_PARAMETER
-"""By a name of the module: in Python 3.11 members of a class take twice as long."""
-
 
 class Substitution(Struct, frozen=True):
-    """What takes the place of one parameter; ``value`` when that is no element."""
+    """The actual parameter for one formal parameter: an element, else a value."""
 
     formal: Element | None
     actual: Element | None
@@ -19,7 +16,7 @@ class Substitution(Struct, frozen=True):
 
 
 class Binding(Struct, frozen=True):
-    """``bound`` is made of ``template`` (None when the model does not say which)."""
+    """``bound`` is derived from ``template``, None when the model does not name the template."""
 
     bound: Element
     template: Element | None
@@ -27,25 +24,25 @@ class Binding(Struct, frozen=True):
 
 
 def parameters(graph: Graph, template: Element) -> list[Element]:
-    """Formal parameters of the template, in order; none for what is no template."""
-    return [item for item in graph.owned(template) if item.kind is _PARAMETER]
+    """Return the formal parameters of a template in order; an empty list for other elements."""
+    return [element for element in graph.owned(template) if element.kind is Kind.TEMPLATE_PARAMETER]
 
 
 def bindings(graph: Graph, bound: Element) -> list[Binding]:
-    """The bindings by which the element is made of templates."""
-    owned = (item for item in graph.owned(bound) if item.kind is Kind.TEMPLATE_BINDING)
-    return [binding(graph, bound, item) for item in owned]
+    """Return the bindings that derive *bound* from templates."""
+    owned = graph.owned(bound)
+    return [read_binding(graph, bound, e) for e in owned if e.kind is Kind.TEMPLATE_BINDING]
 
 
-def binding(graph: Graph, bound: Element, item: Element) -> Binding:
-    """What one TemplateBinding of ``bound`` says."""
+def read_binding(graph: Graph, bound: Element, element: Element) -> Binding:
+    """Return the binding of *bound* that the TemplateBinding *element* states."""
     substitutions = tuple(
         Substitution(
-            graph.target(one, Edge.INSTANCE_OF),
-            graph.target(one, Edge.REFERENCES),
-            one.attrs.get("value"),
+            graph.target(substitution, Edge.INSTANCE_OF),
+            graph.target(substitution, Edge.REFERENCES),
+            substitution.attrs.get("value"),
         )
-        for one in graph.owned(item)
-        if one.kind is Kind.TEMPLATE_SUBSTITUTION
+        for substitution in graph.owned(element)
+        if substitution.kind is Kind.TEMPLATE_SUBSTITUTION
     )
-    return Binding(bound, graph.target(item, Edge.BINDS), substitutions)
+    return Binding(bound, graph.target(element, Edge.BINDS), substitutions)

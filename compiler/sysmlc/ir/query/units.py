@@ -9,31 +9,30 @@ from sysmlc.ir.query.classifiers import STRUCTURAL_FEATURES, generals, type_of
 
 
 def is_unit(element: Element) -> bool:
-    """Whether it is a measurement unit, in SysML v1 or v2."""
+    """Return whether *element* is a measurement unit, in SysML v1 or v2."""
     return element.kind is Kind.UNIT or element.role == "unit"
 
 
 def is_quantity_kind(element: Element) -> bool:
-    """Whether it is a kind of quantity, in SysML v1 or v2."""
+    """Return whether *element* is a kind of quantity, in SysML v1 or v2."""
     return element.kind is Kind.QUANTITY_KIND or element.role == "quantity kind"
 
 
 def unit_of(graph: Graph, feature: Element) -> Element | None:
-    """Unit of the values of a feature, or of a value type: its own or the nearest inherited one."""
-    found = _measures(graph, feature)
-    return next((one for one in found if is_unit(one)), None)
+    """Return the unit of a feature or a value type: its own or the nearest inherited one."""
+    return next(filter(is_unit, _iter_references(graph, feature)), None)
 
 
 def quantity_kind_of(graph: Graph, feature: Element) -> Element | None:
-    """Quantity kind of the values of a feature, or of a value type; else that of its unit."""
-    own = next((one for one in _measures(graph, feature) if is_quantity_kind(one)), None)
+    """Return the quantity kind of a feature or a value type; else that of its unit."""
+    own = next(filter(is_quantity_kind, _iter_references(graph, feature)), None)
     unit = None if own else unit_of(graph, feature)
-    referred = [] if unit is None else graph.targets(unit, Edge.REFERENCES)
-    return own or next((one for one in referred if is_quantity_kind(one)), None)
+    references = [] if unit is None else graph.targets(unit, Edge.REFERENCES)
+    return own or next(filter(is_quantity_kind, references), None)
 
 
-def _measures(graph: Graph, feature: Element) -> Iterator[Element]:
+def _iter_references(graph: Graph, feature: Element) -> Iterator[Element]:
     is_feature = feature.kind in (*STRUCTURAL_FEATURES, Kind.PARAMETER)
     type_ = type_of(graph, feature) if is_feature else feature
-    for one in () if type_ is None else (type_, *generals(graph, type_)):
-        yield from graph.targets(one, Edge.REFERENCES)
+    for classifier in () if type_ is None else (type_, *generals(graph, type_)):
+        yield from graph.targets(classifier, Edge.REFERENCES)

@@ -4,7 +4,7 @@ from collections.abc import Collection, Iterator
 
 from msgspec import Struct
 
-from sysmlc.ir.algorithms import strong_components
+from sysmlc.ir.algorithms import strongly_connected_components
 from sysmlc.logic import formula as f
 from sysmlc.logic.activities.step_formulas import Game, at
 from sysmlc.logic.activities.token_graph import (
@@ -75,7 +75,7 @@ def _components(graph: TokenGraph, nodes: Collection[str]) -> list[tuple[str, ..
     order = {node.id: place for place, node in enumerate(graph.nodes)}
     found = [
         tuple(sorted(part, key=order.__getitem__))
-        for part in strong_components(following)
+        for part in strongly_connected_components(following)
         if len(part) > 1 or part[0] in following[part[0]]
     ]
     return sorted(found, key=lambda part: order[part[0]])

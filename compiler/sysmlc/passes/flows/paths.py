@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Edge, Element, Graph, Kind
-from sysmlc.ir.query import ends, features, generals, redefined, type_of
+from sysmlc.ir.query import ends, features, generals, redefined_features, type_of
 
 BROKEN_PATH = rule(
     "SM318",
@@ -63,4 +63,4 @@ def _is_partly_known(graph: Graph, classifier: Element) -> bool:
 def _has(graph: Graph, classifier: Element, feature: Element) -> bool:
     """Whether it is an effective feature, or one that an effective feature redefines."""
     known = features(graph, classifier)
-    return feature in known or any(feature in redefined(graph, one) for one in known)
+    return feature in known or any(feature in redefined_features(graph, one) for one in known)

@@ -7,7 +7,7 @@ from msgspec import Struct
 
 from sysmlc.diagnostics import Rule, Sink
 from sysmlc.ir import Edge, Element, Graph, Kind, query
-from sysmlc.ir.query import interactions as sequence
+from sysmlc.ir.query import interactions
 from sysmlc.passes.interactions import rules
 
 _ONE_OPERAND = frozenset({"opt", "loop", "break", "assert", "neg"})
@@ -29,7 +29,7 @@ class Interactions(Struct, frozen=True):
         """Report what is wrong; see the class."""
         for interaction in graph.of_kind(Kind.INTERACTION):
             places = dict(_places(graph, interaction))
-            for message in sequence.messages(graph, interaction):
+            for message in interactions.messages(graph, interaction):
                 _message(graph, sink, interaction, message, places)
             for item in graph.subtree(interaction):
                 if item.kind is Kind.FRAGMENT:
@@ -41,8 +41,8 @@ class Interactions(Struct, frozen=True):
 
 
 def _places(graph: Graph, interaction: Element) -> Iterator[tuple[str, _Place]]:
-    for container in sequence.containers(graph, interaction):
-        for position, item in enumerate(sequence.happenings(graph, container)):
+    for container in interactions.iter_containers(graph, interaction):
+        for position, item in enumerate(interactions.interaction_fragments(graph, container)):
             yield item.id, (container.id, position)
 
 
@@ -86,8 +86,8 @@ def _signature(graph: Graph, sink: Sink, interaction: Element, message: Element)
     lifeline = graph.target(message, Edge.FLOW_TARGET)
     if operation is None or operation.kind is not Kind.OPERATION or lifeline is None:
         return
-    represented = sequence.participant(graph, lifeline)
-    type_ = sequence.type_of(graph, lifeline)
+    represented = interactions.participant(graph, lifeline)
+    type_ = interactions.type_of(graph, lifeline)
     if message.subkind == "reply" or represented is None or represented.kind is not Kind.PROPERTY:
         return
     if type_ is not None and not _offers(graph, type_, operation):
@@ -124,9 +124,9 @@ def _holds_type(owner: Element) -> bool:
 
 
 def _operands(graph: Graph, sink: Sink, interaction: Element, fragment: Element) -> None:
-    if fragment.subkind in (*sequence.USES, "state-invariant", "continuation"):
+    if fragment.subkind in (*interactions.INTERACTION_USES, "state-invariant", "continuation"):
         return
-    count = len(sequence.operands(graph, fragment))
+    count = len(interactions.operands(graph, fragment))
     is_single = fragment.subkind in _ONE_OPERAND
     if count == 0 or (is_single and count != 1):
         sink.report(
@@ -156,12 +156,12 @@ def _execution(
 
 
 def _destructions(graph: Graph, sink: Sink, interaction: Element) -> None:
-    for container in sequence.containers(graph, interaction):
+    for container in interactions.iter_containers(graph, interaction):
         destroyed: dict[str, Element] = {}
-        for item in sequence.happenings(graph, container):
+        for item in interactions.interaction_fragments(graph, container):
             if item.kind is not Kind.OCCURRENCE:
                 continue
-            for lifeline in sequence.covered(graph, item):
+            for lifeline in interactions.covered_lifelines(graph, item):
                 if lifeline.id in destroyed:
                     _report_destroyed(graph, sink, interaction, item, lifeline)
                 elif item.subkind == "destruction":
@@ -173,8 +173,8 @@ def _creations(graph: Graph, sink: Sink, interaction: Element) -> None:
     for item in graph.subtree(interaction):
         if item.kind is not Kind.OCCURRENCE:
             continue
-        message = sequence.received(graph, item)
-        for lifeline in sequence.covered(graph, item):
+        message = interactions.received_message(graph, item)
+        for lifeline in interactions.covered_lifelines(graph, item):
             is_created = message is not None and message.subkind == "create-message"
             if message is not None and is_created and lifeline.id in begun:
                 name = lifeline.name or "without name"

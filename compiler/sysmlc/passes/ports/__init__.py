@@ -20,7 +20,7 @@ from sysmlc.ir.query import (
     is_boundary,
     opposite,
     parameters,
-    redefined,
+    redefined_features,
     role_of,
     tag,
     type_of,
@@ -207,7 +207,7 @@ def _delegates(graph: Graph, connector: Element, port: Element) -> bool:
 
 
 def _redefined(graph: Graph, port: Element) -> str | None:
-    directions = (one.attrs.get("direction") for one in redefined(graph, port))
+    directions = (one.attrs.get("direction") for one in redefined_features(graph, port))
     return next((str(one) for one in directions if one), None)
 
 
