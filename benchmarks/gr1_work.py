@@ -9,12 +9,12 @@ from sysmlc.diagnostics import Sink, Subject
 from sysmlc.logic import formats
 from sysmlc.logic.contract import Contract
 from sysmlc.synthesis import Limits, Manager
-from sysmlc.synthesis.algebra.relations import refinement_failures
-from sysmlc.synthesis.algebra.systems import DomainError
+from sysmlc.synthesis.algebra.fair_systems import DomainError
+from sysmlc.synthesis.algebra.refinement import find_refinement_failures
+from sysmlc.synthesis.controller_synthesis import synthesised
 from sysmlc.synthesis.deadline import deadline
-from sysmlc.synthesis.decide import Options, decide
+from sysmlc.synthesis.decision import Options, decide
 from sysmlc.synthesis.games.game import make_game
-from sysmlc.synthesis.synthesise import synthesised
 from sysmlc.synthesis.unrealizable.core import unrealizable_core
 
 LIMIT = 600.0
@@ -74,7 +74,7 @@ def refined(concrete: str, abstract: str) -> str:
     """Whether the first contract refines the second one."""
     pair = (read("one.gr1.json", concrete), read("other.gr1.json", abstract))
     try:
-        failures = list(refinement_failures(*pair, Manager(limits=OPTIONS.limits)))
+        failures = list(find_refinement_failures(*pair, Manager(limits=OPTIONS.limits)))
     except DomainError as problem:
         return f"not comparable: {problem}"
     return f"no, {len(failures)} conjuncts fail" if failures else "refines"

@@ -18,13 +18,13 @@ from msgspec.structs import replace
 from sysmlc.diagnostics import Sink, Subject
 from sysmlc.logic.contract import Contract
 from sysmlc.robots.outcome import Outcome, allocated
-from sysmlc.robots.robot import robot_contract
-from sysmlc.robots.strategy import ANY, answers_of, measured, synthesise, travels
+from sysmlc.robots.robot_contract import robot_contract
+from sysmlc.robots.robot_controller import ANY, answers_of, measured, synthesise, travels
 from sysmlc.robots.study import Grid, Robot, Study, Target
-from sysmlc.robots.system import system_contract
+from sysmlc.robots.system_contract import system_contract
+from sysmlc.synthesis.controller_synthesis import Synthesis, synthesised
 from sysmlc.synthesis.controllers.mealy import Machine
-from sysmlc.synthesis.decide import Options
-from sysmlc.synthesis.synthesise import Synthesis, synthesised
+from sysmlc.synthesis.decision import Options
 
 ROWS = {
     (3, 2, 2): ("20.36", "6.85", "0.01"),

@@ -4,7 +4,8 @@ import pytest
 
 from sysmlc.driver import registry
 from sysmlc.passes import pipeline
-from sysmlc.synthesis import check, together
+from sysmlc.synthesis import composition_check as together
+from sysmlc.synthesis import contract_checks as check
 from sysmlc.synthesis.lints import rules
 
 

@@ -6,7 +6,7 @@ import re
 import pytest
 
 from sysmlc.synthesis import rules
-from sysmlc.synthesis.counter import machine
+from sysmlc.synthesis.counterstrategy import counter_machine as machine
 
 MACHINE = """
 StateMachine gate "Gate"
@@ -179,7 +179,7 @@ def test_there_is_nothing_to_play_when_a_contract_can_be_kept(here):
 
 
 def test_what_is_too_large_to_be_listed_is_told(here, monkeypatch):
-    monkeypatch.setattr(machine.counter, "__defaults__", (0,))
+    monkeypatch.setattr(machine.build_counterstrategy, "__defaults__", (0,))
     here.write("lamp.gr1.json", rules.UNREALIZABLE.read_page().wrong)
     made = here.sysmlc("synth", "lamp.gr1.json", "-o", "out")
     assert "warning[SM549 counter-strategy-not-written]" in made.stderr
@@ -224,7 +224,7 @@ def test_what_gr1c_cannot_list_is_said_and_not_written(here):
 
 
 def test_a_limit_in_the_making_of_a_machine_leaves_no_file(here, monkeypatch):
-    from sysmlc.synthesis import synthesise
+    from sysmlc.synthesis import controller_synthesis as synthesise
     from sysmlc.synthesis.bdd.limits import LimitError
 
     def beyond(*given):

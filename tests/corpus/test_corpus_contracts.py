@@ -8,9 +8,9 @@ from sysmlc.diagnostics import Sink
 from sysmlc.driver import Request, compile_model
 from sysmlc.logic.composition.derivation import compose
 from sysmlc.logic.contract import Contract
-from sysmlc.synthesis.check import check
-from sysmlc.synthesis.decide import Options
-from sysmlc.synthesis.together import check_together
+from sysmlc.synthesis.composition_check import check_compositions
+from sysmlc.synthesis.contract_checks import check
+from sysmlc.synthesis.decision import Options
 
 pytestmark = pytest.mark.corpus
 
@@ -38,7 +38,7 @@ def test_machines_of_the_ice_laboratory_exchange_nothing_that_a_contract_speaks_
     """Its services call OPC UA methods; connectors and flows lead to no behaviour."""
     sink = Sink()
     made = list(compose(laboratory, laboratory.derived(Contract), sink))
-    told = [one.text() for one in check_together(made, place(laboratory), sink, Options())]
+    told = [one.text() for one in check_compositions(made, place(laboratory), sink, Options())]
     assert told == [
         "PlantTopology::Cell1_FunctionalTesting: nothing joins its 2 parts",
         "PlantTopology::Cell2_Milling: nothing joins its 4 parts",

@@ -5,8 +5,8 @@ import pytest
 from examples.compiling import EXAMPLES, PLANT, TEXT, compile_example
 from sysmlc.diagnostics import Sink
 from sysmlc.logic.contract import Contract
-from sysmlc.synthesis.check import check
-from sysmlc.synthesis.decide import Options
+from sysmlc.synthesis.contract_checks import check
+from sysmlc.synthesis.decision import Options
 
 MODELS = [*EXAMPLES, PLANT, TEXT]
 

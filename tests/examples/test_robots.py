@@ -11,7 +11,7 @@ from sysmlc.logic.printing import print_formula
 from sysmlc.robots.outcome import studied
 from sysmlc.robots.report import files, summary
 from sysmlc.robots.study import Study
-from sysmlc.synthesis.decide import Options, decide
+from sysmlc.synthesis.decision import Options, decide
 
 MODELS = [ROOT / "examples" / "robots" / name for name in ("hall.sysml", "hall.uml")]
 

@@ -25,7 +25,7 @@ from sysmlc.logic.activities.token_graph import TokenGraph
 from sysmlc.logic.contract import Class, Contract, Owner
 from sysmlc.logic.evaluate import has_primes
 from sysmlc.passes import pipeline
-from sysmlc.synthesis.algebra.systems import Universe
+from sysmlc.synthesis.algebra.fair_systems import Universe
 from sysmlc.synthesis.bdd.manager import Manager
 
 ROUNDS = 10

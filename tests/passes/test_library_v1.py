@@ -10,8 +10,8 @@ from sysmlc.diagnostics import Sink
 from sysmlc.driver import Request, compile_model
 from sysmlc.logic.contract import Contract
 from sysmlc.logic.printing import print_formula
-from sysmlc.synthesis.check import check
-from sysmlc.synthesis.decide import Options
+from sysmlc.synthesis.contract_checks import check
+from sysmlc.synthesis.decision import Options
 
 XMI = "{http://www.omg.org/spec/XMI/20131001}"
 OPERATIONS = ("Clamping", "Dismantling", "Embedding", "Emptying", "Screwing", "Shifting")

@@ -9,7 +9,7 @@ from sysmlc.logic.printing import print_formula
 from sysmlc.passes import pipeline
 from sysmlc.synthesis.bdd.manager import Manager
 from sysmlc.synthesis.games.game import make_game
-from sysmlc.synthesis.games.solve import solve
+from sysmlc.synthesis.games.solver import solve
 
 pipeline.load("contracts")
 TANK = """\

@@ -2,9 +2,9 @@
 
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import Owner
-from sysmlc.robots import words
+from sysmlc.robots import contract_terms as words
 from sysmlc.robots.answers import Answers
-from sysmlc.robots.strategy import ANY, controller_contract
+from sysmlc.robots.robot_controller import ANY, controller_contract
 from sysmlc.robots.study import STAY, WAYS
 from sysmlc.synthesis.controllers.mealy import Machine, Move
 

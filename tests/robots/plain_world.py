@@ -1,7 +1,6 @@
 """The rules of docs/robots.md for one run, written plainly: what many runs at once are held to."""
 
-from sysmlc.robots.paths import path
-from sysmlc.robots.study import WAYS
+from sysmlc.robots.study import WAYS, shortest_path
 
 
 class Plain:
@@ -43,7 +42,7 @@ class Plain:
         return own[0] if ready else None
 
     def _way(self, r, target):
-        return set(path(self.grid, self.cells[r], self.study.targets[target].cell))
+        return set(shortest_path(self.grid, self.cells[r], self.study.targets[target].cell))
 
     def _dispatch(self, home):
         wanted = {r: self._next(r) for r in self.robots if home[r]}
@@ -52,7 +51,11 @@ class Plain:
         for r in self.robots:
             if not home[r]:
                 is_sent = self.targets[r] is not None
-                way = path(self.grid, self.cells[r], self.goals[r]) if is_sent else (self.goals[r],)
+                way = (
+                    shortest_path(self.grid, self.cells[r], self.goals[r])
+                    if is_sent
+                    else (self.goals[r],)
+                )
                 reserved |= set(way)
         held, leader = set(), asking[0] if asking else None
         for r in asking:

@@ -5,10 +5,10 @@ import re
 from pathlib import Path
 
 from sysmlc.logic.printing import print_formula
-from sysmlc.robots.environment import Sharing, environment_contract
-from sysmlc.robots.robot import robot_contract
+from sysmlc.robots.environment_contract import Sharing, environment_contract
+from sysmlc.robots.robot_contract import robot_contract
 from sysmlc.robots.study import Grid, Order, Robot, Study, Target
-from sysmlc.robots.system import Encoding, system_contract
+from sysmlc.robots.system_contract import Encoding, system_contract
 
 CORPUS = Path(os.environ.get("SYSMLC_CORPUS", "")) / "gr1" / "robots"
 _SHARING = {

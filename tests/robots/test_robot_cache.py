@@ -5,19 +5,18 @@ from small_floors import floor
 
 from sysmlc.diagnostics import Sink, Subject
 from sysmlc.logic.reduction.reduce import reduced
+from sysmlc.robots import claims
 from sysmlc.robots import outcome as flow
-from sysmlc.robots import relations as claims
 from sysmlc.robots.answers import Answers
-from sysmlc.robots.keeping import Keeper
+from sysmlc.robots.crew_cache import CrewCache, decode_controller, encode_controller
 from sysmlc.robots.outcome import studied
 from sysmlc.robots.report import files
-from sysmlc.robots.stored import controller_of, form_of
-from sysmlc.robots.strategy import ANY, controller_contract, measured
+from sysmlc.robots.robot_controller import ANY, controller_contract, measured
 from sysmlc.support.cache import Cache
 from sysmlc.synthesis import Limits
+from sysmlc.synthesis.controller_synthesis import Form, synthesised
 from sysmlc.synthesis.controllers.table import Table
-from sysmlc.synthesis.decide import Options
-from sysmlc.synthesis.synthesise import Form, synthesised
+from sysmlc.synthesis.decision import Options
 
 FIRST = floor(3, None, None, targets=(0, 8), deadline=40)
 OTHER = floor(3, 4, None, targets=(2, 6, 1), orders=((0, 1, True),), deadline=60)
@@ -30,7 +29,7 @@ def nowhere(origin):
 
 @pytest.fixture
 def keeper(tmp_path):
-    return Keeper(Cache(tmp_path), "this version")
+    return CrewCache(Cache(tmp_path), "this version")
 
 
 def made(study, keeper, has_relations=True, options=None):
@@ -97,7 +96,7 @@ def test_another_version_of_the_tool_makes_all_anew(keeper, monkeypatch):
     made(FIRST, keeper, has_relations=False)
     forbid(monkeypatch)
     with pytest.raises(AssertionError, match="done again"):
-        made(FIRST, Keeper(keeper.cache, "the next version"), has_relations=False)
+        made(FIRST, CrewCache(keeper.cache, "the next version"), has_relations=False)
 
 
 def test_claims_that_were_not_asked_for_are_decided_later(keeper):
@@ -111,7 +110,9 @@ def test_what_was_not_decided_is_tried_again(keeper):
     assert keeper.get(FIRST) is None
     made(FIRST, keeper, has_relations=False)
     crew = keeper.get(FIRST)
-    undecided = {one.claim: one for one in claims.relations(FIRST, flow.travels(FIRST, {}), short)}
+    undecided = {
+        one.claim: one for one in claims.decide_claims(FIRST, flow.travels(FIRST, {}), short)
+    }
     assert None in {one.holds for one in undecided.values()}
     keeper.put(FIRST, flow.replace(crew, claims=undecided))
     assert None not in {one.holds for one in keeper.get(FIRST).claims.values()}
@@ -138,7 +139,9 @@ def test_a_table_is_kept_as_well():
     contract = controller_contract(study)
     found = synthesised(contract, nowhere, Sink(), Options(), Form.TABLE)
     assert isinstance(found.machine, Table)
-    again = controller_of(form_of(found.machine), reduced(contract).contract.variables)
+    again = decode_controller(
+        encode_controller(found.machine), reduced(contract).contract.variables
+    )
     assert again == found.machine
     answers = Answers(again, ANY, study.grid)
     assert measured(study, (answers,))[3] == {0: 4, 1: 3, 2: 3, 3: 1}

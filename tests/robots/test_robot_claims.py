@@ -8,18 +8,18 @@ from msgspec.structs import replace
 from small_floors import floor
 
 from sysmlc.logic.formula import variables
-from sysmlc.robots import words
-from sysmlc.robots.among import among_all, breaks
-from sysmlc.robots.environment import environment_contract
-from sysmlc.robots.joined import missioned
-from sysmlc.robots.mission import mission_contract
-from sysmlc.robots.relations import relations
+from sysmlc.robots import contract_terms as words
+from sysmlc.robots.claims import decide_claims
+from sysmlc.robots.environment_contract import environment_contract
+from sysmlc.robots.joint_contracts import mission_guarantees
+from sysmlc.robots.joint_proof import JointProof
+from sysmlc.robots.mission_contract import mission_contract
+from sysmlc.robots.run_extension import extend_to_all_robots, violated_conjuncts
+from sysmlc.robots.schedule import shortest_travel_times
 from sysmlc.robots.study import WAYS
-from sysmlc.robots.together import Together
-from sysmlc.robots.travel import shortest
 from sysmlc.synthesis import Limits
 from sysmlc.synthesis.bdd.manager import Manager
-from sysmlc.synthesis.decide import Options
+from sysmlc.synthesis.decision import Options
 
 FLOORS = {
     "one cell": floor(1, None),
@@ -39,7 +39,7 @@ new_manager = partial(Manager, "", Limits(), lambda *given: None)
 
 
 def together(study):
-    return Together(study, new_manager)
+    return JointProof(study, new_manager)
 
 
 @pytest.mark.parametrize("name", FLOORS)
@@ -92,8 +92,8 @@ def test_floors_of_the_thesis_are_decided_one_robot_or_two_at_a_time(side, robot
     assert asked.recurring_failure() is None
     found = asked.offered_failure()
     assert found.conjunct.text == "Again and again 'r0' is in its target, or may go nearer."
-    assert list(breaks(found.run, (found.conjunct,))) == [found.conjunct]
-    promised = list(breaks(found.run, asked.joined.system.guarantees))
+    assert list(violated_conjuncts(found.run, (found.conjunct,))) == [found.conjunct]
+    promised = list(violated_conjuncts(found.run, asked.joined.system.guarantees))
     assert [one.text for one in promised] == ["'r0' reaches its targets."]
 
 
@@ -135,8 +135,8 @@ def test_others_rest_in_nobodys_way():
     study = floor(3, None, None, None)
     found = together(study).offered_failure()
     contract = environment_contract(study)
-    assert list(breaks(found.run, (*contract.assumptions, *contract.guarantees))) == []
-    assert list(breaks(found.run, missioned(study))) == []
+    assert list(violated_conjuncts(found.run, (*contract.assumptions, *contract.guarantees))) == []
+    assert list(violated_conjuncts(found.run, mission_guarantees(study))) == []
     assert {one["r2_command"] for one in found.run.steps} == {STAY}
 
 
@@ -145,14 +145,14 @@ def test_where_there_is_no_room_a_run_of_few_robots_is_none_of_all():
     few = replace(study, robots=study.robots[:1])
     run = together(few).offered_failure().run
     contract = environment_contract(study)
-    for one in among_all(study, few.robots, run):
-        assert list(breaks(one, contract.guarantees)) != []
+    for one in extend_to_all_robots(study, few.robots, run):
+        assert list(violated_conjuncts(one, contract.guarantees)) != []
 
 
 def test_a_floor_that_is_full_is_not_decided_in_no_time():
     study = floor(2, *(None,) * 4)
     options = Options(limits=Limits(seconds=0.1))
-    found = {one.claim: one for one in relations(study, shortest(study), options)}
+    found = {one.claim: one for one in decide_claims(study, shortest_travel_times(study), options)}
     whole = found["C_R, C_E and C_M together refine C_S"]
     assert whole.holds is None
     assert "limit" in whole.reason
@@ -161,5 +161,5 @@ def test_a_floor_that_is_full_is_not_decided_in_no_time():
 def test_the_mission_as_it_is_written_keeps_what_every_mission_does():
     """C_M of a study promises, of goals, what the study of all missions relies on."""
     study = floor(3, None, None, targets=(0, 4, 8), orders=((0, 1, True),))
-    texts = {one.text for one in mission_contract(study, shortest(study)).guarantees}
+    texts = {one.text for one in mission_contract(study, shortest_travel_times(study)).guarantees}
     assert {"At first 'r0' has no target.", "'r0' keeps a target until it has reached it."} <= texts

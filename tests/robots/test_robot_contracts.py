@@ -7,12 +7,12 @@ from small_floors import CORPUS, contract_like, floor, renamed, said
 
 from sysmlc.diagnostics import Sink, Subject
 from sysmlc.logic.formats import read
-from sysmlc.robots.environment import Sharing, environment_contract
-from sysmlc.robots.mission import mission_contract
-from sysmlc.robots.robot import robot_contract
-from sysmlc.robots.system import Encoding, system_contract
-from sysmlc.robots.travel import shortest
-from sysmlc.synthesis.decide import Options, decide
+from sysmlc.robots.environment_contract import Sharing, environment_contract
+from sysmlc.robots.mission_contract import mission_contract
+from sysmlc.robots.robot_contract import robot_contract
+from sysmlc.robots.schedule import shortest_travel_times
+from sysmlc.robots.system_contract import Encoding, system_contract
+from sysmlc.synthesis.decision import Options, decide
 
 FILES = sorted(CORPUS.glob("*.json")) if CORPUS.parent.name else []
 COSTLY = {"hol_16x4_move", "hol_16x3_thesis", "env_9x3_literal"}
@@ -111,20 +111,20 @@ def test_two_robots_on_9_cells_reach_each_target_within_4_steps(within, is_kept)
 @pytest.mark.parametrize(("deadline", "is_kept"), [(4, False), (5, True)])
 def test_a_mission_is_kept_when_its_deadline_leaves_time_for_the_way(deadline, is_kept):
     study = floor(3, 0, targets=(4,), deadline=deadline)
-    assert verdict(mission_contract(study, shortest(study))) is is_kept
+    assert verdict(mission_contract(study, shortest_travel_times(study))) is is_kept
 
 
 def test_the_order_of_targets_takes_time():
     free = floor(2, 0, 3, targets=(1, 2), deadline=5)
     ordered = floor(2, 0, 3, targets=(1, 2), orders=((0, 1),), deadline=5)
-    assert verdict(mission_contract(free, shortest(free)))
-    assert not verdict(mission_contract(ordered, shortest(ordered)))
+    assert verdict(mission_contract(free, shortest_travel_times(free)))
+    assert not verdict(mission_contract(ordered, shortest_travel_times(ordered)))
 
 
 def test_what_is_carried_is_carried_by_one_robot():
     free = floor(3, 0, 8, targets=(1, 7), orders=((0, 1),), deadline=9)
     carried = floor(3, 0, 8, targets=(1, 7), orders=((0, 1, True),), deadline=9)
-    assert verdict(mission_contract(free, shortest(free)))
-    assert verdict(mission_contract(carried, shortest(carried)))
+    assert verdict(mission_contract(free, shortest_travel_times(free)))
+    assert verdict(mission_contract(carried, shortest_travel_times(carried)))
     soon = floor(3, 0, 8, targets=(1, 7), orders=((0, 1, True),), deadline=7)
-    assert not verdict(mission_contract(soon, shortest(soon)))
+    assert not verdict(mission_contract(soon, shortest_travel_times(soon)))

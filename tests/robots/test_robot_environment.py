@@ -13,16 +13,16 @@ from test_robot_simulation import some_floor
 
 from sysmlc.diagnostics import Sink, Subject
 from sysmlc.logic.evaluate import violation
-from sysmlc.robots import words
-from sysmlc.robots.environment import environment_contract
-from sysmlc.robots.planes import Runs, but
-from sysmlc.robots.robot import robot_contract
-from sysmlc.robots.simulation import Simulation
-from sysmlc.robots.strategy import answers_of, synthesise
+from sysmlc.robots import contract_terms as words
+from sysmlc.robots.environment_contract import environment_contract
+from sysmlc.robots.robot_contract import robot_contract
+from sysmlc.robots.robot_controller import answers_of, synthesise
+from sysmlc.robots.run_sets import RunSpace, difference
 from sysmlc.robots.study import STAY, WAYS
-from sysmlc.robots.system import system_contract
+from sysmlc.robots.system_contract import system_contract
+from sysmlc.robots.validation import Simulation
 from sysmlc.robots.world import World
-from sysmlc.synthesis.decide import Options
+from sysmlc.synthesis.decision import Options
 
 
 class Told(World):
@@ -54,7 +54,7 @@ def run_of(study, allocation, answers, start, world=Told):
     """What the variables are in each step, and the step to which the last one returns."""
     cells = range(study.grid.size)
     placed = tuple(tuple(int(cell == one) for cell in cells) for one in start)
-    made = world(study, allocation, answers, Runs(1, 0, placed, but))
+    made = world(study, allocation, answers, RunSpace(1, 0, placed, difference))
     assert Simulation(made).run() is None
     period = len(study.robots)
     assert made.trace[-1] == made.trace[-1 - period]
@@ -148,4 +148,6 @@ def timers(study, trace):
 
 def placed(study, start):
     cells = range(study.grid.size)
-    return Runs(1, 0, tuple(tuple(int(cell == one) for cell in cells) for one in start), but)
+    return RunSpace(
+        1, 0, tuple(tuple(int(cell == one) for cell in cells) for one in start), difference
+    )

@@ -9,17 +9,16 @@ from small_floors import floor
 
 from sysmlc.diagnostics import Sink, Subject
 from sysmlc.robots import outcome as module
-from sysmlc.robots.mission import mission_contract
+from sysmlc.robots.claims import Claim, decide_claims
+from sysmlc.robots.mission_contract import mission_contract
+from sysmlc.robots.mission_run import sequence_diagram
 from sysmlc.robots.outcome import allocated, studied
-from sysmlc.robots.relations import Relation, relations
 from sysmlc.robots.report import files, markdown
-from sysmlc.robots.schedule import scheduled
-from sysmlc.robots.story import sequence_diagram
-from sysmlc.robots.strategy import answers_of, simulated, synthesise
-from sysmlc.robots.travel import shortest
-from sysmlc.robots.validate import validate
+from sysmlc.robots.robot_controller import answers_of, simulated, synthesise
+from sysmlc.robots.schedule import build_schedule, shortest_travel_times
+from sysmlc.robots.validation import validate_allocation
 from sysmlc.synthesis import Limits
-from sysmlc.synthesis.decide import Options, decide
+from sysmlc.synthesis.decision import Options, decide
 
 DOCS = Path(__file__).parents[2] / "docs"
 
@@ -46,7 +45,7 @@ def test_the_machine_of_a_robot_on_nine_cells_has_four_states_at_most(nine):
 
 def test_travel_times_are_measured_and_are_those_of_shortest_ways(nine):
     assert nine.travel.is_simulated
-    assert nine.travel.steps == shortest(nine.study).steps
+    assert nine.travel.steps == shortest_travel_times(nine.study).steps
 
 
 def test_the_mission_is_done_from_every_start(nine):
@@ -62,7 +61,9 @@ def test_the_synthesised_machine_and_one_written_by_hand_reach_the_same():
     study = floor(4, None, None, None, targets=(0, 5, 10), rows=3)
     lists = ((0,), (1,), (2,))
     machine = answers_of(study, synthesise(study, nowhere, Sink(), Options()))
-    assert validate(study, lists, machine) == validate(study, lists, greedy_answers(study))
+    assert validate_allocation(study, lists, machine) == validate_allocation(
+        study, lists, greedy_answers(study)
+    )
 
 
 def test_new_targets_are_given_to_the_robots_that_there_are(nine, monkeypatch):
@@ -83,7 +84,7 @@ def test_another_allocation_is_tried_when_one_fails(monkeypatch):
     best = made(study)[0].chosen.schedule.allocation
 
     def but_for_the_best(study, allocation, answers):
-        found = validate(study, allocation, answers)
+        found = validate_allocation(study, allocation, answers)
         return replace(found, failed=(0, 8), late=0) if allocation == best else found
 
     monkeypatch.setattr(module, "validate", but_for_the_best)
@@ -110,7 +111,7 @@ def test_a_deadline_that_leaves_no_time_is_told():
 
 
 def test_what_the_thesis_claims_on_nine_cells(nine):
-    found = {one.claim: one for one in relations(nine.study, nine.travel, Options())}
+    found = {one.claim: one for one in decide_claims(nine.study, nine.travel, Options())}
     assert {claim: one.holds for claim, one in found.items()} == {
         "C_S refines C_R": False,
         "C_S refines C_R among others": False,
@@ -132,7 +133,10 @@ def test_what_the_thesis_claims_on_nine_cells(nine):
 
 def test_one_robot_alone_gets_what_its_contract_assumes_of_the_environment():
     study = floor(2, None)
-    found = {one.claim: one.holds for one in relations(study, shortest(study), Options())}
+    found = {
+        one.claim: one.holds
+        for one in decide_claims(study, shortest_travel_times(study), Options())
+    }
     assert found["C_S refines C_R"] is False
     assert found["C_E as the thesis has it discharges what C_R assumes of it"] is True
     assert found["C_E discharges what C_R assumes of it"] is False
@@ -140,12 +144,12 @@ def test_one_robot_alone_gets_what_its_contract_assumes_of_the_environment():
 
 def test_what_is_not_decided_is_no_answer(nine):
     options = Options(limits=Limits(nodes=10))
-    found = list(relations(nine.study, nine.travel, options))
+    found = list(decide_claims(nine.study, nine.travel, options))
     assert {one.holds for one in found if "refines C_M" not in one.claim} == {None}
 
 
 def test_what_is_not_decided_is_told(monkeypatch):
-    monkeypatch.setattr(module, "relations", lambda *given: [Relation("x", None, "10 s")])
+    monkeypatch.setattr(module, "relations", lambda *given: [Claim("x", None, "10 s")])
     _, told = made(floor(2, None), has_relations=True)
     assert told == [("SM574", "on 'Hall' it is not decided whether x: 10 s")]
 
@@ -160,8 +164,8 @@ def test_a_report_is_the_same_each_time(nine):
 def test_a_schedule_is_what_a_robot_alone_does():
     study = floor(3, 0, targets=(8, 2, 6), deadline=60)
     answers = answers_of(study, synthesise(study, nowhere, Sink(), Options()))
-    schedule = scheduled(study, simulated(study, answers), ((0, 1, 2),))
-    found = validate(study, ((0, 1, 2),), answers)
+    schedule = build_schedule(study, simulated(study, answers), ((0, 1, 2),))
+    found = validate_allocation(study, ((0, 1, 2),), answers)
     assert found.reached == schedule.reached
 
 
@@ -176,7 +180,9 @@ PAGE = (
 def test_the_page_about_robots_shows_the_runs_in_which_claims_do_not_hold(claim):
     text = (DOCS / "robots.md").read_text(encoding="utf-8")
     study = floor(3, None, None)
-    found = {one.claim: one for one in relations(study, shortest(study), Options())}
+    found = {
+        one.claim: one for one in decide_claims(study, shortest_travel_times(study), Options())
+    }
     shown = found[claim]
     assert shown.reason.partition(": ")[2] in " ".join(text.split())
     assert "".join(f"    {line}\n" for line in shown.run) in text

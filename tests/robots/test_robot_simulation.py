@@ -9,13 +9,11 @@ from msgspec.structs import replace
 from plain_world import Plain
 from small_floors import floor
 
-from sysmlc.robots import validate as validating
-from sysmlc.robots.diagrams import started
+from sysmlc.robots import validation as validating
 from sysmlc.robots.merging import States
-from sysmlc.robots.planes import apart, patterns
-from sysmlc.robots.simulation import Simulation
-from sysmlc.robots.starts import chunks
-from sysmlc.robots.validate import symbolic, validate
+from sysmlc.robots.run_sets import digit_patterns, starts_without_collision
+from sysmlc.robots.starts import iter_start_chunks, symbolic_starts
+from sysmlc.robots.validation import Simulation, validate_allocation, validate_symbolically
 from sysmlc.robots.world import World
 
 STEPS = 60
@@ -40,7 +38,7 @@ def some_floor(seed):
 def test_every_run_is_the_plain_one(seed):
     study, allocation = some_floor(seed)
     answers = greedy_answers(study)
-    (runs,) = chunks(study)
+    (runs,) = iter_start_chunks(study)
     world = World(study, allocation, answers, runs)
     starts = list(permutations(study.grid.cells, len(study.robots)))
     plain = {start: Plain(study, allocation, start) for start in starts}
@@ -73,37 +71,39 @@ def _told(world, bit):
 def test_decision_diagrams_come_to_the_same(seed):
     study, allocation = some_floor(seed)
     answers = greedy_answers(study)
-    assert symbolic(study, allocation, answers) == validate(study, allocation, answers)
+    assert validate_symbolically(study, allocation, answers) == validate_allocation(
+        study, allocation, answers
+    )
 
 
 def test_starts_are_all_placements_of_robots_in_different_cells():
-    starts = patterns((3, 3))
+    starts = digit_patterns((3, 3))
     assert [f"{one:09b}" for one in starts[0]] == ["001001001", "010010010", "100100100"]
     assert [f"{one:09b}" for one in starts[1]] == ["000000111", "000111000", "111000000"]
-    assert apart(starts, (1 << 9) - 1).bit_count() == 6
-    runs, count = started(floor(3, None, 4, None))
+    assert starts_without_collision(starts, (1 << 9) - 1).bit_count() == 6
+    runs, count = symbolic_starts(floor(3, None, 4, None))
     assert count == 8 * 7
     assert runs.starts[1][3] == runs.none
 
 
 def test_given_starts_are_no_choice():
-    (runs,) = chunks(floor(3, 0, None))
+    (runs,) = iter_start_chunks(floor(3, 0, None))
     assert runs.all.bit_count() == 8
-    (runs,) = chunks(floor(3, 0, 1))
+    (runs,) = iter_start_chunks(floor(3, 0, 1))
     assert runs.all.bit_count() == 1
 
 
 def test_more_starts_than_one_operation_takes_are_simulated_in_parts(monkeypatch):
     study, allocation = some_floor(3)
-    whole = validate(study, allocation, greedy_answers(study))
+    whole = validate_allocation(study, allocation, greedy_answers(study))
     monkeypatch.setattr(validating, "CHUNK", 16)
-    assert validate(study, allocation, greedy_answers(study)) == whole
+    assert validate_allocation(study, allocation, greedy_answers(study)) == whole
 
 
 def merged(monkeypatch, steps, most=1 << 17):
     """States are gone on with once from this step on, so many in one operation."""
-    monkeypatch.setattr(validating, "MERGED", steps)
-    monkeypatch.setattr(validating, "FEW", 0)
+    monkeypatch.setattr(validating, "FIRST_MERGE_STEP", steps)
+    monkeypatch.setattr(validating, "MIN_MERGED_STARTS", 0)
     monkeypatch.setattr(validating, "CHUNK", most)
 
 
@@ -111,10 +111,10 @@ def merged(monkeypatch, steps, most=1 << 17):
 def test_states_that_many_runs_come_to_are_gone_on_with_once(seed, monkeypatch):
     study, allocation = some_floor(seed)
     answers = greedy_answers(study)
-    whole = validate(study, allocation, answers)
+    whole = validate_allocation(study, allocation, answers)
     for steps, most in ((1, 1 << 17), (3, 1 << 17), (2, 40), (5, 16)):
         merged(monkeypatch, steps, most)
-        found = validate(study, allocation, answers)
+        found = validate_allocation(study, allocation, answers)
         if whole.is_good:
             assert found == whole
         else:
@@ -123,7 +123,7 @@ def test_states_that_many_runs_come_to_are_gone_on_with_once(seed, monkeypatch):
 
 def test_states_are_fewer_than_runs():
     study, allocation = some_floor(3)
-    (runs,) = chunks(study)
+    (runs,) = iter_start_chunks(study)
     world = World(study, allocation, greedy_answers(study), runs)
     assert Simulation(world).run(until=6) is None
     states = States(len(study.robots))
@@ -141,17 +141,17 @@ def test_a_failing_state_leads_back_to_a_start_that_fails(deadline, monkeypatch)
     allocation = ((0, 3), (1,), (2,))
     answers = greedy_answers(study)
     merged(monkeypatch, 2, 50)
-    found = validate(study, allocation, answers)
+    found = validate_allocation(study, allocation, answers)
     assert found.late is not None
     robots = zip(study.robots, found.failed, strict=True)
     placed = replace(study, robots=tuple(replace(one, start=cell) for one, cell in robots))
-    again = validate(placed, allocation, answers)
+    again = validate_allocation(placed, allocation, answers)
     assert (again.failed, again.late, again.steps) == (found.failed, found.late, deadline)
 
 
 def test_robots_that_cannot_pass_one_another_fail_with_a_start():
     study = floor(3, None, None, rows=1, targets=(0, 2), deadline=30)
-    found = validate(study, ((0,), (1,)), greedy_answers(study))
+    found = validate_allocation(study, ((0,), (1,)), greedy_answers(study))
     assert not found.is_good
     first, second = found.failed
     assert first > second
@@ -159,7 +159,7 @@ def test_robots_that_cannot_pass_one_another_fail_with_a_start():
 
 def test_a_deadline_that_is_too_short_names_the_target_that_is_late():
     study = floor(3, 0, targets=(8,), deadline=5)
-    found = validate(study, ((0,),), greedy_answers(study))
+    found = validate_allocation(study, ((0,),), greedy_answers(study))
     assert (found.is_good, found.late, found.steps) == (False, 0, 5)
     study = floor(3, 0, targets=(8,), deadline=6)
-    assert validate(study, ((0,),), greedy_answers(study)).is_good
+    assert validate_allocation(study, ((0,),), greedy_answers(study)).is_good

@@ -11,14 +11,14 @@ from sysmlc.logic.contract import Class, Owner
 from sysmlc.logic.evaluate import evaluation, violation
 from sysmlc.logic.formula import Const, negate
 from sysmlc.synthesis import Manager, make_game
+from sysmlc.synthesis.controller_synthesis import Form, made
 from sysmlc.synthesis.controllers.mealy import Machine
 from sysmlc.synthesis.controllers.strategy import strategy
-from sysmlc.synthesis.controllers.verify import faults
+from sysmlc.synthesis.controllers.verification import faults
 from sysmlc.synthesis.games.arena import plain
-from sysmlc.synthesis.games.derived import without_derived
-from sysmlc.synthesis.games.shift import shifted
-from sysmlc.synthesis.games.solve import solve_arena
-from sysmlc.synthesis.synthesise import Form, made
+from sysmlc.synthesis.games.command_elimination import shifted
+from sysmlc.synthesis.games.solver import solve_arena
+from sysmlc.synthesis.games.variable_elimination import without_derived
 
 
 def planned(contract, engine="", is_encoded=True):

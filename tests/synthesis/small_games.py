@@ -22,9 +22,9 @@ from sysmlc.logic.contract import (
 )
 from sysmlc.logic.formula import Const, Formula, Op, Var, compare
 from sysmlc.synthesis import Manager, make_game, solve
-from sysmlc.synthesis.games.derived import without_derived
-from sysmlc.synthesis.games.shift import shifted
-from sysmlc.synthesis.games.solve import solve_arena
+from sysmlc.synthesis.games.command_elimination import shifted
+from sysmlc.synthesis.games.solver import solve_arena
+from sysmlc.synthesis.games.variable_elimination import without_derived
 
 DOMAINS = (
     BooleanDomain(),

@@ -14,9 +14,13 @@ from sysmlc.logic.evaluate import lasso_truth
 from sysmlc.logic.formats import read
 from sysmlc.logic.printing import print_formula
 from sysmlc.synthesis import Manager, OutsideGr1Error
-from sysmlc.synthesis.algebra.entail import Entailment
-from sysmlc.synthesis.algebra.relations import behaviour, environment, refinement_failures
-from sysmlc.synthesis.algebra.systems import DomainError, Universe
+from sysmlc.synthesis.algebra.fair_systems import DomainError, Universe
+from sysmlc.synthesis.algebra.refinement import (
+    Entailment,
+    find_contract_run,
+    find_environment_run,
+    find_refinement_failures,
+)
 from sysmlc.synthesis.algebra.traces import lasso, one
 
 DOOR = """
@@ -31,7 +35,7 @@ DOOR = """
 
 
 def failures(concrete, abstract):
-    found = refinement_failures(contract(concrete), contract(abstract), Manager())
+    found = find_refinement_failures(contract(concrete), contract(abstract), Manager())
     return [("assumes" if one.is_assumption else "promises", one) for one in found]
 
 
@@ -72,13 +76,13 @@ def test_a_recurring_promise_fails_in_a_loop():
 
 
 def test_a_contract_without_runs_is_not_consistent():
-    assert behaviour(contract(DOOR), Manager()) is not None
-    assert behaviour(contract(f"{DOOR}\n promise always at'=0"), Manager()) is None
+    assert find_contract_run(contract(DOOR), Manager()) is not None
+    assert find_contract_run(contract(f"{DOOR}\n promise always at'=0"), Manager()) is None
 
 
 def test_an_environment_that_cannot_exist():
-    assert environment(contract(DOOR), Manager()) is not None
-    assert environment(contract(f"{DOOR}\n assume always !open'"), Manager()) is None
+    assert find_environment_run(contract(DOOR), Manager()) is not None
+    assert find_environment_run(contract(f"{DOOR}\n assume always !open'"), Manager()) is None
 
 
 def test_variables_of_one_name_must_have_the_same_values():
@@ -189,7 +193,7 @@ def test_actions_of_din_8580_refine_their_variants_or_not(pair):
     (concrete,), (abstract,) = (
         read((folder / f"{name}.json").read_text(), name, Sink()) for name in pair
     )
-    found = refinement_failures(concrete, abstract, Manager())
+    found = find_refinement_failures(concrete, abstract, Manager())
     assert [print_formula(one.conjunct.formula) for one in found] == PAIRS[pair]
 
 

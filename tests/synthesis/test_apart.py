@@ -7,9 +7,11 @@ from msgspec.structs import replace
 from sysmlc.logic.printing import print_formula
 from sysmlc.synthesis import Manager, make_game
 from sysmlc.synthesis.bdd.groups import tied
-from sysmlc.synthesis.controllers.side_by_side import apart
+from sysmlc.synthesis.controllers.independent_games import (
+    combine_independent_strategies,
+    split_game,
+)
 from sysmlc.synthesis.controllers.table import tabled
-from sysmlc.synthesis.games.apart import independent
 
 LAMP = """
 env ask: bool
@@ -31,7 +33,7 @@ BOTH = LAMP + DOOR
 
 def made(text):
     """The table of the games of a contract."""
-    plan = apart(make_game(contract(text), Manager()))
+    plan = combine_independent_strategies(make_game(contract(text), Manager()))
     return plan and tabled(plan)
 
 
@@ -49,12 +51,10 @@ def test_names_are_tied_by_what_speaks_of_two():
 
 
 def test_a_game_is_several_where_nothing_is_said_of_both():
-    games = independent(make_game(contract(BOTH), Manager()))
+    games = split_game(make_game(contract(BOTH), Manager()))
     assert [sorted(one.symbols.variables) for one in games] == [["ask", "lamp"], ["door", "knock"]]
     assert [len(one.goals) for one in games] == [2, 1]
-    assert (
-        len(independent(make_game(contract(f"{BOTH}promise always ask -> door"), Manager()))) == 1
-    )
+    assert len(split_game(make_game(contract(f"{BOTH}promise always ask -> door"), Manager()))) == 1
 
 
 def test_strategies_side_by_side_keep_the_contract_of_all():

@@ -9,9 +9,10 @@ from test_routes import LIFT, fleet
 from sysmlc.diagnostics import Sink, Subject
 from sysmlc.synthesis import Manager, make_game
 from sysmlc.synthesis.deadline import deadline
-from sysmlc.synthesis.decide import Options, decide
-from sysmlc.synthesis.games import reach, routes
-from sysmlc.synthesis.games.solve import by_single_moves
+from sysmlc.synthesis.decision import Options, decide
+from sysmlc.synthesis.games import search_reductions as reach
+from sysmlc.synthesis.games import single_moves as routes
+from sysmlc.synthesis.games.solver import by_single_moves
 from sysmlc.synthesis.unrealizable.core import unrealizable_core
 
 PURE = Options(engine="autoref")
@@ -32,7 +33,7 @@ def test_random_games_have_the_verdict_of_listed_states(kind, monkeypatch):
 
 @pytest.mark.parametrize("kind", [small_games.contract, small_games.plant])
 def test_so_they_have_within_reached_states(kind, monkeypatch):
-    monkeypatch.setattr(reach, "MANY", 0)
+    monkeypatch.setattr(reach, "MIN_STATE_BITS", 0)
     found = [small_games.encoded_disagreement(kind(seed), "autoref") for seed in range(25)]
     assert [text for text in found if text] == []
 

@@ -7,8 +7,8 @@ from sysmlc.ir.text import parse_text
 from sysmlc.logic.contract import Contract
 from sysmlc.passes import pipeline
 from sysmlc.synthesis.bdd.limits import LimitError
-from sysmlc.synthesis.check import BREAKS, check
-from sysmlc.synthesis.decide import Options
+from sysmlc.synthesis.contract_checks import BREAKS, check
+from sysmlc.synthesis.decision import Options
 
 CODES = ("SM560", "SM561", "SM562")
 
@@ -49,7 +49,7 @@ def test_questions_that_take_too_long_are_told(monkeypatch):
     def give_up(*_):
         raise LimitError("of CPU time", "1 s")
 
-    monkeypatch.setattr("sysmlc.synthesis.check.lint", give_up)
+    monkeypatch.setattr("sysmlc.synthesis.contract_checks.lint", give_up)
     results, found = checked(BREAKS.read_page().right)
     assert results["Plant::Gate"].verdict.is_realizable
     assert next(one.message for one in found if one.rule.code == "SM563") == (

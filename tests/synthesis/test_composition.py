@@ -5,9 +5,9 @@ from contracts_in_lines import contract
 
 from sysmlc.logic.contract import Composite, Part
 from sysmlc.synthesis import Manager
-from sysmlc.synthesis.algebra.at_once import links
 from sysmlc.synthesis.algebra.composition import DriverError, composition
-from sysmlc.synthesis.algebra.systems import Universe
+from sysmlc.synthesis.algebra.fair_systems import Universe
+from sysmlc.synthesis.algebra.instantaneous_dependencies import links
 
 FEEDER = """
     env taken: bool

@@ -12,7 +12,7 @@ from msgspec.structs import replace
 from sysmlc.diagnostics import Sink, Subject
 from sysmlc.logic import formats
 from sysmlc.synthesis import Manager, make_game
-from sysmlc.synthesis.decide import Options, decide
+from sysmlc.synthesis.decision import Options, decide
 from sysmlc.synthesis.unrealizable import core
 from sysmlc.synthesis.unrealizable.core import unrealizable_core
 

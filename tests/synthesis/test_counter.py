@@ -12,14 +12,20 @@ from sysmlc.logic.contract import Class, Owner
 from sysmlc.logic.evaluate import evaluation
 from sysmlc.logic.reduction.reduce import reduced
 from sysmlc.synthesis import LimitError, Manager, make_game
-from sysmlc.synthesis.counter.defeat import environment_of
-from sysmlc.synthesis.counter.environment import Environment, NotLostError
-from sysmlc.synthesis.counter.files import files
-from sysmlc.synthesis.counter.machine import counter, example
-from sysmlc.synthesis.counter.play import Player
-from sysmlc.synthesis.counter.ranks import lost
-from sysmlc.synthesis.decide import Options
-from sysmlc.synthesis.witness import lines
+from sysmlc.synthesis.counterstrategy.counter_files import counterstrategy_files
+from sysmlc.synthesis.counterstrategy.counter_machine import (
+    build_counterstrategy,
+    example_run,
+    find_environment_strategy,
+)
+from sysmlc.synthesis.counterstrategy.environment_strategy import (
+    EnvironmentStrategy,
+    NotLostError,
+    find_ranks,
+)
+from sysmlc.synthesis.counterstrategy.play import Player
+from sysmlc.synthesis.decision import Options
+from sysmlc.synthesis.witnesses import describe_run
 
 LAMP = """
     env go: bool
@@ -38,18 +44,18 @@ STUCK = """
 
 
 def environment(text):
-    return Environment(lost(make_game(reduced(text).contract, Manager())))
+    return EnvironmentStrategy(find_ranks(make_game(reduced(text).contract, Manager())))
 
 
 def defeated(text):
     made = contract(text)
-    return counter(environment(made), made)
+    return build_counterstrategy(environment(made), made)
 
 
 def test_what_never_comes_is_prevented_for_ever():
     found = defeated(LAMP)
     assert [(one.given, len(one.moves)) for one in found.states] == [((False,), 1), ((True,), 1)]
-    assert list(lines(example(found))) == [
+    assert list(describe_run(example_run(found))) == [
         "step 1: go=false, at=0",
         "step 2: go=true",
         "then again from step 2",
@@ -58,15 +64,15 @@ def test_what_never_comes_is_prevented_for_ever():
 
 def test_a_component_without_an_answer_ends_the_run():
     found = defeated(STUCK)
-    assert list(lines(example(found)))[-1] == "then there is no answer"
+    assert list(describe_run(example_run(found)))[-1] == "then there is no answer"
     assert [one.given for one in found.states if not one.moves] == [(True,)]
 
 
 def test_the_environment_prevents_what_it_can_and_does_not_wait_for_other_goals():
     busy = contract(f"sys n: 0..1\nsys m: 0..1\n{LAMP}\npromise recurs n=1\npromise recurs m=1")
-    found = counter(environment_of(busy, Options()), busy)
+    found = build_counterstrategy(find_environment_strategy(busy, Options()), busy)
     assert len(found.states) == 2
-    assert "go=true" in list(lines(example(found)))[1]
+    assert "go=true" in list(describe_run(example_run(found)))[1]
 
 
 def test_a_contract_that_can_be_kept_is_not_defeated():
@@ -80,7 +86,7 @@ def test_what_is_assumed_is_kept_by_the_environment():
     )
     polite = f"{LAMP}\nassume recurs !go\npromise always !go' -> at'=0"
     found = defeated(polite)
-    trace = example(found)
+    trace = example_run(found)
     assert any(not one["go"] for one in trace.steps[trace.loop :])
 
 
@@ -142,10 +148,10 @@ def test_in_every_loop_of_the_machine_all_assumptions_recur_and_one_goal_does_no
     for seed in range(start, start + 50):
         made = random_contract(seed)
         try:
-            found = counter(environment(made), made)
+            found = build_counterstrategy(environment(made), made)
         except NotLostError:
             continue
-        trace = example(found)
+        trace = example_run(found)
         loop = trace.steps[trace.loop :]
         if not loop:
             continue
@@ -158,7 +164,7 @@ def test_in_every_loop_of_the_machine_all_assumptions_recur_and_one_goal_does_no
 def test_a_machine_beyond_the_limit_is_none():
     made = contract(LAMP)
     with pytest.raises(LimitError, match="answers of the system"):
-        counter(environment(made), made, most=0)
+        build_counterstrategy(environment(made), made, most=0)
 
 
 def played(text, *answers):
@@ -223,7 +229,11 @@ def test_history_bits_are_nobodys_business():
 
 def test_files_of_a_counter_strategy():
     made = contract(STUCK, "Plant::Lamp")
-    found = dict(files([(counter(environment(made), made), made)], lambda origin: origin))
+    found = dict(
+        counterstrategy_files(
+            [(build_counterstrategy(environment(made), made), made)], lambda origin: origin
+        )
+    )
     assert list(found) == [
         "Plant.Lamp.counter.puml",
         "Plant.Lamp.counter-run.puml",
@@ -236,7 +246,11 @@ def test_files_of_a_counter_strategy():
 @pytest.mark.plantuml
 def test_plantuml_draws_them(plantuml):
     made = contract(STUCK, "Plant::Lamp")
-    found = dict(files([(counter(environment(made), made), made)], lambda origin: origin))
+    found = dict(
+        counterstrategy_files(
+            [(build_counterstrategy(environment(made), made), made)], lambda origin: origin
+        )
+    )
     texts = {name: text for name, text in found.items() if name.endswith(".puml")}
     drawn = plantuml.render(texts)
     assert all(

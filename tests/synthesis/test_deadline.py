@@ -12,7 +12,7 @@ from sysmlc.logic import formats
 from sysmlc.logic.printing import print_formula
 from sysmlc.synthesis import Limits, rules
 from sysmlc.synthesis.deadline import bounded, deadline
-from sysmlc.synthesis.decide import Options
+from sysmlc.synthesis.decision import Options
 
 CORPUS = os.environ.get("SYSMLC_CORPUS")
 CART = """

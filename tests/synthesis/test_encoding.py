@@ -6,8 +6,8 @@ from contracts_in_lines import contract
 
 from sysmlc.logic.contract import Owner
 from sysmlc.synthesis import Manager, make_game
-from sysmlc.synthesis.games.derived import without_derived
-from sysmlc.synthesis.games.shift import shifted
+from sysmlc.synthesis.games.command_elimination import shifted
+from sysmlc.synthesis.games.variable_elimination import without_derived
 
 SUITE = 500
 ROBOT = """

@@ -15,7 +15,7 @@ from sysmlc.diagnostics import Sink, Subject
 from sysmlc.logic import formats
 from sysmlc.synthesis import Limits
 from sysmlc.synthesis.bdd import manager
-from sysmlc.synthesis.decide import Options, decide
+from sysmlc.synthesis.decision import Options, decide
 
 BENCHMARKS = Path(__file__).parents[2] / "benchmarks"
 MOST = {3: 60_000, 4: 130_000}

@@ -8,9 +8,9 @@ import pytest
 from sysmlc.diagnostics import Sink, Subject
 from sysmlc.logic import formats
 from sysmlc.synthesis import Limits
+from sysmlc.synthesis.controller_synthesis import synthesised
 from sysmlc.synthesis.controllers.mealy import Machine
-from sysmlc.synthesis.decide import Options
-from sysmlc.synthesis.synthesise import synthesised
+from sysmlc.synthesis.decision import Options
 
 CORPUS = os.environ.get("SYSMLC_CORPUS")
 OPTIONS = Options(limits=Limits(seconds=300))

@@ -14,7 +14,7 @@ from sysmlc.diagnostics import Sink, Subject
 from sysmlc.logic import formats
 from sysmlc.logic.contract import Contract
 from sysmlc.synthesis import Limits
-from sysmlc.synthesis.decide import Options, decide
+from sysmlc.synthesis.decision import Options, decide
 
 CORPUS = os.environ.get("SYSMLC_CORPUS")
 LIMITS = Limits(seconds=300)

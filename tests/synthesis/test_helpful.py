@@ -8,8 +8,7 @@ from small_games import contract as random_contract
 from sysmlc.logic.printing import print_formula
 from sysmlc.synthesis import Manager, make_game
 from sysmlc.synthesis.unrealizable.core import is_won
-from sysmlc.synthesis.unrealizable.helpful import helpful_assumptions
-from sysmlc.synthesis.unrealizable.reasons import reasons_of
+from sysmlc.synthesis.unrealizable.explanation import explain_unrealizability, helpful_assumptions
 
 TURN = """
     env wanted: 0..2
@@ -41,7 +40,7 @@ def test_what_the_component_could_make_impossible_is_no_help():
 
 def test_the_reasons_name_them():
     turn = contract(TURN)
-    said = list(reasons_of(make_game(turn, Manager()), turn))
+    said = list(explain_unrealizability(make_game(turn, Manager()), turn))
     assert "it could be kept if this were assumed, always: wanted'=wanted" in said
 
 

@@ -15,11 +15,11 @@ from sysmlc.diagnostics import Sink, Subject
 from sysmlc.logic import formats
 from sysmlc.logic.contract import Contract
 from sysmlc.synthesis import LimitError, Limits, Manager
-from sysmlc.synthesis import decide as deciding
-from sysmlc.synthesis.algebra.relations import refinement_failures
-from sysmlc.synthesis.bdd import inside
+from sysmlc.synthesis import decision as deciding
+from sysmlc.synthesis.algebra.refinement import find_refinement_failures
+from sysmlc.synthesis.bdd import limits as inside
 from sysmlc.synthesis.bdd.limits import Progress
-from sysmlc.synthesis.decide import Options, decide
+from sysmlc.synthesis.decision import Options, decide
 from sysmlc.synthesis.games.game import make_game
 
 RUNAWAY = """{
@@ -97,7 +97,7 @@ def test_comparing_contracts_keeps_limits_too() -> None:
     weaker = Contract(other.component, other.origin, other.variables, (), ())
 
     with pytest.raises(LimitError, match="CPU time"):
-        list(refinement_failures(weaker, other, Manager("cudd", Limits(seconds=0.3))))
+        list(find_refinement_failures(weaker, other, Manager("cudd", Limits(seconds=0.3))))
 
 
 @pytest.fixture

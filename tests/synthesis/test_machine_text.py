@@ -11,13 +11,20 @@ from contracts_in_lines import contract
 
 from sysmlc.diagnostics import Sink, Subject
 from sysmlc.support import resources
-from sysmlc.synthesis import LimitError, synthesise
-from sysmlc.synthesis.controllers import gr1c_text, table_text
-from sysmlc.synthesis.controllers.machine_text import has_diagram, json_of, plantuml_of
-from sysmlc.synthesis.controllers.verify import Fault
-from sysmlc.synthesis.decide import Options
-from sysmlc.synthesis.files import FORMS, written
-from sysmlc.synthesis.synthesise import Form, synthesised
+from sysmlc.synthesis import LimitError
+from sysmlc.synthesis import controller_synthesis as synthesise
+from sysmlc.synthesis.controller_synthesis import Form, synthesised
+from sysmlc.synthesis.controllers import controller_files as gr1c_text
+from sysmlc.synthesis.controllers import controller_files as table_text
+from sysmlc.synthesis.controllers.controller_files import (
+    FORMS,
+    has_diagram,
+    machine_diagram,
+    machine_json,
+    write_controllers,
+)
+from sysmlc.synthesis.controllers.verification import Fault
+from sysmlc.synthesis.decision import Options
 
 LAMP = contract(
     """
@@ -51,12 +58,14 @@ def made(contract, form=Form.ANY):
 def names(contract, form):
     result, _ = made(contract)
     sink = Sink()
-    return [name for name, _ in written([result], lambda origin: Subject(), sink, form).files]
+    return [
+        name for name, _ in write_controllers([result], lambda origin: Subject(), sink, form).files
+    ]
 
 
 def test_a_machine_as_json():
     machine = machines.controller(LAMP)
-    text = json_of(machine, LAMP)
+    text = machine_json(machine, LAMP)
     read = json.loads(text)
     jsonschema.validate(read, MACHINE)
     assert [read["name"], len(read["states"]), read["registers"]] == ["Plant::Lamp", 3, []]
@@ -65,7 +74,7 @@ def test_a_machine_as_json():
 
 
 def test_registers_have_names_and_are_counted_with():
-    read = json.loads(json_of(machines.controller(COUNTER), COUNTER))
+    read = json.loads(machine_json(machines.controller(COUNTER), COUNTER))
     jsonschema.validate(read, MACHINE)
     assert read["registers"] == [{"name": "last_n", "of": "n"}]
     moves = {json.dumps(one["output"]): one["when"] for one in read["states"][1]}
@@ -85,13 +94,13 @@ def test_a_register_gives_way_to_a_variable_of_its_name():
         promise always !(last_n' & n<20) -> n'=n
         """
     )
-    read = json.loads(json_of(machines.controller(taken), taken))
+    read = json.loads(machine_json(machines.controller(taken), taken))
     assert read["registers"] == [{"name": "last_n_", "of": "n"}]
 
 
 def test_a_table_as_json():
     table = machines.controller(LAMP, Form.TABLE)
-    read = json.loads(table_text.json_of(table, LAMP))
+    read = json.loads(table_text.table_json(table, LAMP))
     jsonschema.validate(read, TABLE)
     assert read["bits"] == [
         {"variable": "lamp", "bit": 0, "step": "before"},
@@ -116,13 +125,13 @@ def test_json_of_random_controllers_is_valid():
     for seed in range(60):
         contract = small_games.contract(seed)
         if machine := machines.controller(contract):
-            jsonschema.validate(json.loads(json_of(machine, contract)), MACHINE)
+            jsonschema.validate(json.loads(machine_json(machine, contract)), MACHINE)
             table = machines.controller(contract, Form.TABLE)
-            jsonschema.validate(json.loads(table_text.json_of(table, contract)), TABLE)
+            jsonschema.validate(json.loads(table_text.table_json(table, contract)), TABLE)
 
 
 def test_gr1c_lists_steps_with_the_ones_that_may_follow():
-    read = json.loads(gr1c_text.json_of(machines.controller(LAMP), LAMP))
+    read = json.loads(gr1c_text.gr1c_json(machines.controller(LAMP), LAMP))
     assert read["version"] == 1
     assert read["ENV"] == [{"press": "boolean"}, {"dark": "boolean"}]
     assert read["SYS"] == [{"lamp": [0, 1]}]
@@ -142,7 +151,7 @@ def test_gr1c_lists_only_what_the_assumptions_allow():
         controller = machines.controller(told)
         if controller is None:
             continue
-        nodes = json.loads(gr1c_text.json_of(controller, told))["nodes"]
+        nodes = json.loads(gr1c_text.gr1c_json(controller, told))["nodes"]
         judge = machines.Closed(controller, told)
         assert len(nodes) == len(judge.graph)
         assert sum(len(node["trans"]) for node in nodes.values()) == judge.graph.size()
@@ -151,7 +160,8 @@ def test_gr1c_lists_only_what_the_assumptions_allow():
 
 def test_gr1c_of_a_table_is_that_of_the_machine():
     texts = [
-        gr1c_text.json_of(machines.controller(LAMP, form), LAMP) for form in (Form.ANY, Form.TABLE)
+        gr1c_text.gr1c_json(machines.controller(LAMP, form), LAMP)
+        for form in (Form.ANY, Form.TABLE)
     ]
     nodes = [json.loads(text)["nodes"] for text in texts]
     assert len({len(one) for one in nodes}) == 1
@@ -160,14 +170,14 @@ def test_gr1c_of_a_table_is_that_of_the_machine():
 def test_what_is_too_large_for_gr1c_is_said():
     machine = machines.controller(COUNTER)
     with pytest.raises(LimitError, match="the limit of 10 steps of the strategy"):
-        gr1c_text.json_of(machine, COUNTER, most=10)
+        gr1c_text.gr1c_json(machine, COUNTER, most=10)
 
 
 def test_a_form_that_cannot_say_a_controller_is_told(monkeypatch):
-    monkeypatch.setattr(gr1c_text, "json_of", partial(gr1c_text.json_of, most=10))
+    monkeypatch.setattr(gr1c_text, "gr1c_json", partial(gr1c_text.gr1c_json, most=10))
     result, _ = made(COUNTER)
     sink = Sink()
-    told = written([result], lambda origin: Subject(), sink, "gr1c")
+    told = write_controllers([result], lambda origin: Subject(), sink, "gr1c")
     assert [told.files, [one.exit_code for one in told.made]] == [(), [2]]
     assert [one.rule.code for one in sink] == ["SM543"]
 
@@ -180,7 +190,7 @@ def test_files_have_the_name_of_the_component_and_of_the_form(form):
 
 
 def test_a_diagram_tells_only_the_inputs_that_matter():
-    text = plantuml_of(machines.controller(LAMP), LAMP)
+    text = machine_diagram(machines.controller(LAMP), LAMP)
     assert text.splitlines()[:3] == ["@startuml", "title Plant::Lamp", "hide empty description"]
     assert "S0 --> S1 : any\\n/ lamp=off" in text
     assert "S1 --> S2 : press\\n/ lamp=on" in text
@@ -190,26 +200,26 @@ def test_a_diagram_tells_only_the_inputs_that_matter():
 
 def test_conditions_have_as_few_words_as_they_need():
     both = contract("env a: bool\nenv b: bool\nsys x: bool\npromise always x' <-> a' & b'")
-    text = plantuml_of(machines.controller(both), both)
+    text = machine_diagram(machines.controller(both), both)
     assert "S1 --> S1 : !b\\n!a\\n/ x=false" in text
     assert "S1 --> S1 : a & b\\n/ x=true" in text
 
 
 def test_bounds_are_as_far_as_they_can_be():
     wide = contract("env n: 0..15\nsys x: bool\npromise always x' <-> n'>=3 & n'!=9")
-    text = plantuml_of(machines.controller(wide), wide)
+    text = machine_diagram(machines.controller(wide), wide)
     assert "S1 --> S1 : n>=3 & n<=8\\nn>=10\\n/ x=true" in text
     assert "S1 --> S1 : n<=2\\nn=9\\n/ x=false" in text
 
 
 def test_many_conditions_are_cut():
     wide = contract("env n: 0..15\nsys x: bool\npromise always x' <-> n' mod 2 = 0")
-    text = plantuml_of(machines.controller(wide), wide)
+    text = machine_diagram(machines.controller(wide), wide)
     assert "S1 --> S1 : n<=0\\nn=2\\nn=4\\nor more\\n/ x=true" in text
 
 
 def test_a_diagram_tells_what_registers_are():
-    text = plantuml_of(machines.controller(COUNTER), COUNTER)
+    text = machine_diagram(machines.controller(COUNTER), COUNTER)
     assert "S1 --> S1 : last_n<=19 & go\\n/ n=last_n + 1" in text
     assert "/ as before" in text
     assert "  last_n is what n was in the step before" in text
@@ -266,6 +276,6 @@ def test_a_machine_that_cannot_be_listed_is_a_table(monkeypatch):
     assert told == []
     assert "; controller: " in result.text()
     sink = Sink()
-    (name, text), *_ = written([result], lambda origin: Subject(), sink).files
+    (name, text), *_ = write_controllers([result], lambda origin: Subject(), sink).files
     assert name == "Plant.Lamp.controller.json"
     jsonschema.validate(json.loads(text), TABLE)

@@ -3,7 +3,7 @@
 from contracts_in_lines import contract
 
 from sysmlc.synthesis import Manager, Symbols, make_game, solve
-from sysmlc.synthesis.bdd.order import laid
+from sysmlc.synthesis.bdd.variable_order import laid
 
 
 def order(text: str) -> list[str]:

@@ -6,9 +6,9 @@ from contracts_in_lines import contract
 from explicit import Explicit
 
 from sysmlc.synthesis import Manager, make_game
-from sysmlc.synthesis.games import reach
+from sysmlc.synthesis.games import search_reductions as reach
 from sysmlc.synthesis.games.arena import Steps, plain
-from sysmlc.synthesis.games.solve import solve_arena
+from sysmlc.synthesis.games.solver import solve_arena
 
 GAMES = 200
 
@@ -33,7 +33,7 @@ def arena(text: str):
 
 def test_the_token_is_in_one_place():
     found = arena(tokens(60))
-    reached = reach.reachable(found)
+    reached = reach.find_reachable_states(found)
     assert found.manager.count(reached, (*found.symbols.all_bits(found.symbols.variables),)) == 120
 
 
@@ -45,27 +45,27 @@ def test_a_ring_of_many_places_is_decided():
 
 
 def test_small_games_are_not_searched():
-    assert reach.reachable(arena(tokens(20))) is None
+    assert reach.find_reachable_states(arena(tokens(20))) is None
 
 
 def test_what_is_reached_in_too_many_steps_is_left(monkeypatch):
-    monkeypatch.setattr(reach, "LONG", 10)
-    assert reach.reachable(arena(tokens(60))) is None
+    monkeypatch.setattr(reach, "MAX_STEPS", 10)
+    assert reach.find_reachable_states(arena(tokens(60))) is None
 
 
 @pytest.mark.parametrize("kind", [small_games.contract, small_games.plant])
 def test_the_verdict_within_reached_states_is_that_of_listed_states(kind, monkeypatch):
-    monkeypatch.setattr(reach, "MANY", 0)
+    monkeypatch.setattr(reach, "MIN_STATE_BITS", 0)
     found = [small_games.encoded_disagreement(kind(seed)) for seed in range(GAMES)]
     assert [text for text in found if text] == []
 
 
 def test_no_turn_leads_out_of_the_reached_states(monkeypatch):
-    monkeypatch.setattr(reach, "MANY", 0)
+    monkeypatch.setattr(reach, "MIN_STATE_BITS", 0)
     for seed in range(60):
         listed = Explicit(small_games.contract(seed))
         game = make_game(small_games.contract(seed), Manager())
-        reached = reach.reachable(plain(game))
+        reached = reach.find_reachable_states(plain(game))
         inside = {s for s in listed.states if game.symbols.encode(listed.value[s]) <= reached}
         after = {one for s in inside for found in listed.moves[s].values() for one in found}
         assert after <= inside
@@ -73,7 +73,7 @@ def test_no_turn_leads_out_of_the_reached_states(monkeypatch):
 
 def test_steps_within_states_are_right_in_them():
     found = arena(tokens(50))
-    reached = reach.reachable(found)
+    reached = reach.find_reachable_states(found)
     goal = found.goals[0] & reached
     inside, everywhere = Steps(found, reached), Steps(found)
     assert inside.controllable(goal) & reached == everywhere.controllable(goal) & reached

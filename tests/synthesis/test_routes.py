@@ -17,8 +17,8 @@ from sysmlc.logic.contract import (
     Variable,
 )
 from sysmlc.logic.formula import Var
-from sysmlc.synthesis.games import routes
-from sysmlc.synthesis.games.solve import by_single_moves, solve_arena
+from sysmlc.synthesis.games import single_moves as routes
+from sysmlc.synthesis.games.solver import by_single_moves, solve_arena
 
 FLEETS = 150
 LIFT = """

@@ -11,17 +11,18 @@ from msgspec.structs import replace
 from sysmlc.logic.contract import Class
 from sysmlc.logic.formula import TRUE, Const, Var
 from sysmlc.logic.printing import print_formula
-from sysmlc.synthesis import LimitError, Manager, make_game, solve, synthesise
+from sysmlc.synthesis import LimitError, Manager, make_game, solve
+from sysmlc.synthesis import controller_synthesis as synthesise
 from sysmlc.synthesis.bdd.limits import TooLargeError
+from sysmlc.synthesis.controller_synthesis import Form
 from sysmlc.synthesis.controllers.conditions import machine as written
-from sysmlc.synthesis.controllers.listing import listed
+from sysmlc.synthesis.controllers.explicit_states import listed
 from sysmlc.synthesis.controllers.mealy import Move
-from sysmlc.synthesis.controllers.memory import reached, registers
-from sysmlc.synthesis.controllers.minimise import minimised
-from sysmlc.synthesis.controllers.settled import settled
+from sysmlc.synthesis.controllers.minimisation import minimised
 from sysmlc.synthesis.controllers.strategy import strategy
+from sysmlc.synthesis.controllers.strategy_memory import reached, registers
+from sysmlc.synthesis.controllers.table import rebuild_in_variable_order
 from sysmlc.synthesis.games.arena import nodes
-from sysmlc.synthesis.synthesise import Form
 
 SUITE = 200
 KINDS = [small_games.contract, small_games.plant]
@@ -142,7 +143,10 @@ def test_the_controller_answers_the_same_without_cudd(form):
         made = small_games.contract(seed)
         one, other = (machines.controller(made, form, engine) for engine in ("", "autoref"))
         if form is Form.TABLE and one:
-            one, other = settled(one, Manager()), settled(other, Manager())
+            one, other = (
+                rebuild_in_variable_order(one, Manager()),
+                rebuild_in_variable_order(other, Manager()),
+            )
         assert one == other
         plays = [
             machines.play(made, machines.followed(each), 20, seed) for each in (one, other) if each
@@ -164,7 +168,7 @@ def test_the_controller_is_the_same_in_any_order_of_bits(form):
 
 def written_in(made, game, plan, form):
     controller = synthesise.made(made, game, plan, form)
-    return settled(controller, Manager()) if form is Form.TABLE else controller
+    return rebuild_in_variable_order(controller, Manager()) if form is Form.TABLE else controller
 
 
 @pytest.mark.parametrize("kind", KINDS)

@@ -12,8 +12,8 @@ from sysmlc.logic.contract import BooleanDomain, Class, Conjunct, Contract, Owne
 from sysmlc.logic.formula import Apply, Formula, Var
 from sysmlc.synthesis import Manager, make_game
 from sysmlc.synthesis.games.arena import plain
-from sysmlc.synthesis.games.solve import solve_arena
-from sysmlc.synthesis.games.symmetry import orbits
+from sysmlc.synthesis.games.search_reductions import group_symmetric_goals
+from sysmlc.synthesis.games.solver import solve_arena
 
 TWINS = """
     env a: 0..2
@@ -34,7 +34,7 @@ NAMES = {"a": "b", "b": "a", "x": "y", "y": "x"}
 def kinds(text: str) -> list[int]:
     """How many goals there are of each kind."""
     arena = plain(make_game(contract(text), Manager()))
-    return [1 + len(exchanges) for exchanges in orbits(arena).values()]
+    return [1 + len(exchanges) for exchanges in group_symmetric_goals(arena).values()]
 
 
 def test_twins_are_alike():
@@ -98,7 +98,7 @@ def test_the_verdict_on_random_twins_is_that_of_listed_states():
     for seed in range(150):
         made = twins(seed)
         arena = plain(make_game(made, Manager()))
-        alike += any(orbits(arena).values())
+        alike += any(group_symmetric_goals(arena).values())
         verdict = solve_arena(arena, is_complete=False).is_realizable
         if verdict != Explicit(made).is_realizable():
             wrong.append(seed)

@@ -7,7 +7,7 @@ from msgspec.structs import replace
 
 from sysmlc.logic.contract import Contract
 from sysmlc.synthesis import Manager, OutsideGr1Error
-from sysmlc.synthesis.algebra.relations import refinement_failures
+from sysmlc.synthesis.algebra.refinement import find_refinement_failures
 from sysmlc.synthesis.algebra.viewpoints import conjunction, viewpoints
 
 VARIABLES = "env power: bool\nenv door: bool\nsys lit: bool\n"
@@ -41,12 +41,12 @@ def test_a_conjunction_refines_every_viewpoint():
     whole = together(powered=POWERED, shines=SHINES)
     made = conjunction(whole)
     for name in ("powered", "shines"):
-        assert list(refinement_failures(made, alone(whole, name), Manager())) == []
+        assert list(find_refinement_failures(made, alone(whole, name), Manager())) == []
 
 
 def test_all_together_need_not_keep_one_alone():
     whole = together(powered=POWERED, shines=SHINES)
-    failures = list(refinement_failures(whole, alone(whole, "shines"), Manager()))
+    failures = list(find_refinement_failures(whole, alone(whole, "shines"), Manager()))
     assert {one.is_assumption for one in failures} == {True}
 
 

@@ -6,7 +6,7 @@ from contracts_in_lines import contract
 from sysmlc.logic.contract import BooleanDomain, Class, Conjunct
 from sysmlc.logic.ltl import parse_formula
 from sysmlc.synthesis.algebra.traces import Trace
-from sysmlc.synthesis.witness import Party, Witness, diagram, files, lines
+from sysmlc.synthesis.witnesses import Party, Witness, describe_run, witness_diagram, witness_files
 
 FEEDER = contract("env power: bool\nsys ready: bool")
 PICKER = contract("env ready: bool\nsys arm: 0..3")
@@ -23,7 +23,7 @@ WITNESS = Witness("Line::Cell", BROKEN, RUN, (Party("feeder", FEEDER), Party("pi
 
 
 def test_a_run_shows_only_what_changes_and_where_it_goes_on():
-    assert list(lines(RUN)) == [
+    assert list(describe_run(RUN)) == [
         "step 1: power=true, ready=false, arm=0",
         "step 2: ready=true, arm=1",
         "step 3: nothing changes",
@@ -32,19 +32,19 @@ def test_a_run_shows_only_what_changes_and_where_it_goes_on():
 
 
 def test_what_never_changes_is_told_only_when_it_is_spoken_of():
-    assert next(lines(RUN, BROKEN)) == "step 1: ready=false, arm=0"
+    assert next(describe_run(RUN, BROKEN)) == "step 1: ready=false, arm=0"
     about = Conjunct(parse_formula("power", {"power": BooleanDomain()}), Class.LIVENESS, "")
-    assert next(lines(RUN, about)) == "step 1: power=true, ready=false, arm=0"
+    assert next(describe_run(RUN, about)) == "step 1: power=true, ready=false, arm=0"
 
 
 def test_a_long_run_is_cut():
-    shown = list(lines(Trace(tuple({"n": number} for number in range(30)), 0)))
+    shown = list(describe_run(Trace(tuple({"n": number} for number in range(30)), 0)))
     assert shown[-2:] == ["and 18 more", "then again from step 1"]
     assert len(shown) == 14
 
 
 def test_inputs_are_messages_and_what_nobody_reads_is_an_invariant():
-    assert diagram(WITNESS).splitlines() == [
+    assert witness_diagram(WITNESS).splitlines() == [
         "@startuml",
         "title Line::Cell\\nnot kept: G F (!ready)",
         "hide footbox",
@@ -66,7 +66,7 @@ def test_inputs_are_messages_and_what_nobody_reads_is_an_invariant():
 
 def test_the_runs_of_a_component_are_numbered():
     other = Witness("Line::Belt", BROKEN, RUN, WITNESS.parties)
-    assert [name for name, _ in files([WITNESS, other, WITNESS])] == [
+    assert [name for name, _ in witness_files([WITNESS, other, WITNESS])] == [
         "Line.Cell.run1.puml",
         "Line.Cell.run2.puml",
         "Line.Belt.run1.puml",
@@ -75,5 +75,5 @@ def test_the_runs_of_a_component_are_numbered():
 
 @pytest.mark.plantuml
 def test_plantuml_draws_them(plantuml):
-    drawn = plantuml.render({"run": diagram(WITNESS)})["run"]
+    drawn = plantuml.render({"run": witness_diagram(WITNESS)})["run"]
     assert all(name in drawn for name in (b"environment", b"feeder", b"picker", b"arm=1"))

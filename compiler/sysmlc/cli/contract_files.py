@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from sysmlc.diagnostics.render import Finding
     from sysmlc.logic.contract import Composite, Contract
     from sysmlc.sources import Source
-    from sysmlc.synthesis.decide import Place
+    from sysmlc.synthesis.decision import Place
 
 _PLACE = re.compile(r"(?P<file>.*):(?P<line>\d+):(?P<column>\d+)")
 

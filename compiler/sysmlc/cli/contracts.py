@@ -10,8 +10,8 @@ from sysmlc.cli import options
 if TYPE_CHECKING:
     from sysmlc.cli.contract_files import ContractFile
     from sysmlc.cli.session import Settings
-    from sysmlc.synthesis.check import Checked
-    from sysmlc.synthesis.decide import Options
+    from sysmlc.synthesis.contract_checks import Checked
+    from sysmlc.synthesis.decision import Options
 
 
 @click.group("contracts", short_help="Check contracts, by themselves and against one another.")
@@ -62,7 +62,7 @@ def check_command(
     from sysmlc.cli.contract_files import read_contracts
     from sysmlc.cli.progress import Progress
     from sysmlc.synthesis import Limits
-    from sysmlc.synthesis.decide import Options
+    from sysmlc.synthesis.decision import Options
 
     settings = session.Settings(**given)
     config = session.load_config((file,), settings)
@@ -87,17 +87,17 @@ def _checked(
     from sysmlc.cli.contract_files import chosen, show
     from sysmlc.cli.result_files import write_files
     from sysmlc.diagnostics import Severity
-    from sysmlc.synthesis.check import check
-    from sysmlc.synthesis.together import check_together
-    from sysmlc.synthesis.witness import files
+    from sysmlc.synthesis.composition_check import check_compositions
+    from sysmlc.synthesis.contract_checks import check
+    from sysmlc.synthesis.witnesses import witness_files
 
     contracts = chosen(read.contracts, component, read.composites) if read.contracts else ()
     composites = [one for one in read.composites if component in ("", one.component)]
     alone = list(check(contracts, read.contracts, read.place, read.sink, options))
-    together = list(check_together(composites, read.place, read.sink, options))
+    together = list(check_compositions(composites, read.place, read.sink, options))
     if output is not None:
         runs = [*(one.witnesses for one in alone), *(one.witnesses for one in together)]
-        write_files(files(run for some in runs for run in some), output)
+        write_files(witness_files(run for some in runs for run in some), output)
     show(read, settings, (*map(_line, alone), *(one.text() for one in together)))
     is_undecided = any(one.verdict.is_realizable is None for one in alone)
     found = (*read.sink, *(one.diagnostic for one in read.findings))

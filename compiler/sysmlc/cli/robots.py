@@ -12,9 +12,9 @@ if TYPE_CHECKING:
 
     from sysmlc.config import Config
     from sysmlc.driver import Compilation
-    from sysmlc.robots.keeping import Keeper
+    from sysmlc.robots.crew_cache import CrewCache
     from sysmlc.robots.outcome import Outcome
-    from sysmlc.synthesis.decide import Options
+    from sysmlc.synthesis.decision import Options
 
 
 @click.command(
@@ -61,7 +61,7 @@ def command(
     from sysmlc.cli import session
     from sysmlc.cli.progress import Progress
     from sysmlc.synthesis import Limits
-    from sysmlc.synthesis.decide import Options
+    from sysmlc.synthesis.decision import Options
 
     settings = session.Settings(**given)
     config = session.load_config(models, settings)
@@ -84,7 +84,7 @@ def _studied(
     output: Path | None,
     has_relations: bool,
     chosen: "Options",
-    keeper: "Keeper | None",
+    keeper: "CrewCache | None",
 ) -> int:
     from sysmlc.cli import session
     from sysmlc.cli.result_files import write_files
@@ -114,14 +114,14 @@ def _studied(
     return max(code, _code(outcomes, has_errors))
 
 
-def _open_keeper(models: "Sequence[Path]", config: "Config") -> "Keeper | None":
+def _open_keeper(models: "Sequence[Path]", config: "Config") -> "CrewCache | None":
     """Return the store of controllers and travel times in the user's cache, if there is a cache."""
     from sysmlc.cli import session
     from sysmlc.driver.cache_key import compute_tool_digest
-    from sysmlc.robots.keeping import Keeper
+    from sysmlc.robots.crew_cache import CrewCache
 
     cache = session.open_cache(models, config)
-    return None if cache is None else Keeper(cache, compute_tool_digest())
+    return None if cache is None else CrewCache(cache, compute_tool_digest())
 
 
 def _code(outcomes: "Sequence[Outcome]", has_errors: bool) -> int:

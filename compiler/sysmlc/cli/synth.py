@@ -14,9 +14,9 @@ if TYPE_CHECKING:
 
     from sysmlc.cli.contract_files import ContractFile
     from sysmlc.cli.session import Settings
+    from sysmlc.synthesis.controller_synthesis import Synthesis
     from sysmlc.synthesis.deadline import Deadline
-    from sysmlc.synthesis.decide import Options, Verdict
-    from sysmlc.synthesis.synthesise import Synthesis
+    from sysmlc.synthesis.decision import Options, Verdict
 
 _GIBIBYTE = 1 << 30
 
@@ -102,7 +102,7 @@ def command(
     from sysmlc.cli.progress import Progress
     from sysmlc.logic.formats.lower import unambiguous
     from sysmlc.synthesis import Limits
-    from sysmlc.synthesis.decide import Options
+    from sysmlc.synthesis.decision import Options
 
     if (is_decided_only or timers) and output is not None:
         word = "--deadline" if timers else "--realizable"
@@ -130,7 +130,7 @@ def command(
 
 def _decided(read: "ContractFile", component: str, settings: "Settings", options: "Options") -> int:
     from sysmlc.cli.contract_files import chosen
-    from sysmlc.synthesis.decide import decide
+    from sysmlc.synthesis.decision import decide
 
     contracts = chosen(read.contracts, component) if read.contracts else ()
     return _told(read, settings, [decide(one, read.place, read.sink, options) for one in contracts])
@@ -161,13 +161,13 @@ def _synthesised(
 ) -> int:
     from sysmlc.cli.contract_files import chosen
     from sysmlc.cli.result_files import write_files
-    from sysmlc.synthesis.files import TABLE, written
-    from sysmlc.synthesis.synthesise import Form, synthesised
+    from sysmlc.synthesis.controller_synthesis import Form, synthesised
+    from sysmlc.synthesis.controllers.controller_files import TABLE, write_controllers
 
     contracts = chosen(read.contracts, component) if read.contracts else ()
     kind = Form.TABLE if form == TABLE else Form.ANY
     made = [synthesised(one, read.place, read.sink, options, kind) for one in contracts]
-    told = written(made, read.place, read.sink, form)
+    told = write_controllers(made, read.place, read.sink, form)
     if output is not None:
         write_files((*told.files, *_counters(read, made, options)), output)
     return _told(read, settings, told.made)
@@ -177,11 +177,13 @@ def _counters(
     read: "ContractFile", made: "Sequence[Synthesis]", options: "Options"
 ) -> "Iterable[tuple[str, str]]":
     """What defeats the contracts that cannot be kept; of what is beyond the limits nothing."""
-    from sysmlc.synthesis.counter.defeat import defeats
-    from sysmlc.synthesis.counter.files import files
+    from sysmlc.synthesis.counterstrategy.counter_files import counterstrategy_files
+    from sysmlc.synthesis.counterstrategy.counter_machine import find_counterstrategies
 
     lost = [one.contract for one in made if one.verdict.is_realizable is False]
-    return files(defeats(lost, read.place, read.sink, options), lambda id: read.place(id).name)
+    return counterstrategy_files(
+        find_counterstrategies(lost, read.place, read.sink, options), lambda id: read.place(id).name
+    )
 
 
 def _played(read: "ContractFile", component: str, options: "Options") -> int:
@@ -189,16 +191,16 @@ def _played(read: "ContractFile", component: str, options: "Options") -> int:
     from sysmlc.cli.contract_files import chosen
     from sysmlc.cli.session import fail
     from sysmlc.synthesis import LimitError
-    from sysmlc.synthesis.counter.defeat import environment_of
-    from sysmlc.synthesis.counter.environment import NotLostError
-    from sysmlc.synthesis.counter.play import Player
+    from sysmlc.synthesis.counterstrategy.counter_machine import find_environment_strategy
+    from sysmlc.synthesis.counterstrategy.environment_strategy import NotLostError
+    from sysmlc.synthesis.counterstrategy.play import Player
     from sysmlc.synthesis.games.game import OutsideGr1Error
 
     contracts = chosen(read.contracts, component)
     if len(contracts) != 1:
         fail(f"{len(contracts)} contracts are in the file: choose one with -c")
     try:
-        environment = environment_of(contracts[0], options)
+        environment = find_environment_strategy(contracts[0], options)
     except NotLostError:
         terminal.echo(f"{contracts[0].component}: realizable, nothing defeats it")
         return 0

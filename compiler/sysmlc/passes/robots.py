@@ -11,8 +11,8 @@ from msgspec import Struct
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Graph, Kind
 from sysmlc.logic.contract import Contract
-from sysmlc.robots.contracts import contracts_of
-from sysmlc.robots.reading import studies
+from sysmlc.robots.contracts import study_contracts
+from sysmlc.robots.floor_reader import read_studies
 from sysmlc.robots.study import Study
 
 
@@ -28,8 +28,8 @@ class Robots(Struct, frozen=True):
         if not any(one.name == "Floors" for one in graph.of_kind(Kind.PACKAGE)):
             return
 
-        found = list(studies(graph, sink))
-        made = [contract for study in found for contract in contracts_of(study)]
+        found = list(read_studies(graph, sink))
+        made = [contract for study in found for contract in study_contracts(study)]
         names = {one.component for one in made}
         others = (one for one in graph.derived(Contract) if one.component not in names)
         graph.store(Study, found)

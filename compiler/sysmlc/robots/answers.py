@@ -5,8 +5,8 @@ from typing import NamedTuple
 
 from sysmlc.logic.evaluate import evaluation
 from sysmlc.logic.formula import Literal
-from sysmlc.robots import words
-from sysmlc.robots.study import WAYS, Grid, Robot
+from sysmlc.robots import contract_terms as words
+from sysmlc.robots.study import WAYS, Grid, Robot, next_move
 from sysmlc.synthesis.controllers.mealy import Machine
 from sysmlc.synthesis.controllers.table import Table
 
@@ -98,3 +98,20 @@ def _steps(machine: Machine | Table) -> Step:
         raise LookupError(state)
 
     return step
+
+
+def exceeds_travel_limit(grid: Grid, answers: Answers, cell: int, goal: int, within: int) -> bool:
+    """Whether a robot that is given a target has it for more steps than that.
+
+    It is not stopped on its way (``traffic``), so that the steps are those of one that is alone.
+    """
+    known = Memory(cell, cell)
+    for _ in range(within + 1):
+        step = next_move(grid, known.cell, goal)
+        if step is None:
+            return known.cell != goal
+        answer = answers.get(known, goal, step[0])
+        if answer is None:
+            return False
+        known = answer.memory
+    return True

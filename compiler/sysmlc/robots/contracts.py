@@ -3,15 +3,15 @@
 from collections.abc import Iterator
 
 from sysmlc.logic.contract import Contract
-from sysmlc.robots.environment import environment_contract
-from sysmlc.robots.mission import mission_contract
-from sysmlc.robots.robot import robot_contract
+from sysmlc.robots.environment_contract import environment_contract
+from sysmlc.robots.mission_contract import mission_contract
+from sysmlc.robots.robot_contract import robot_contract
+from sysmlc.robots.schedule import TravelTimes, shortest_travel_times
 from sysmlc.robots.study import Study
-from sysmlc.robots.system import system_contract
-from sysmlc.robots.travel import Travel, shortest
+from sysmlc.robots.system_contract import system_contract
 
 
-def contracts_of(study: Study, travel: Travel | None = None) -> Iterator[Contract]:
+def study_contracts(study: Study, travel: TravelTimes | None = None) -> Iterator[Contract]:
     """C_S, C_E, C_R of each robot (alone, and among others), and C_M when there are targets.
 
     Without travel times that were measured the mission assumes those of shortest ways.
@@ -22,4 +22,4 @@ def contracts_of(study: Study, travel: Travel | None = None) -> Iterator[Contrac
         yield robot_contract(study, robot)
         yield robot_contract(study, robot, is_alone=False)
     if study.targets:
-        yield mission_contract(study, travel or shortest(study))
+        yield mission_contract(study, travel or shortest_travel_times(study))

@@ -12,7 +12,7 @@ from typing import NamedTuple, TypeVar
 from msgspec import Struct
 
 from sysmlc.robots.answers import Memory
-from sysmlc.robots.planes import Runs, but
+from sysmlc.robots.run_sets import RunSpace, difference
 from sysmlc.robots.world import Body, State, World
 
 _T = TypeVar("_T")
@@ -34,7 +34,7 @@ class _Known(NamedTuple):
 class Batch(Struct, frozen=True):
     """Some states to go on with; a bit of a condition is one of them."""
 
-    runs: Runs[int]
+    runs: RunSpace[int]
     state: State[int]
     origins: Sequence[int]
     """By bit a run that came to this state."""
@@ -95,7 +95,7 @@ class States:
         reached = columns[len(bodies) * _WIDTH :]
         done = [_bit_plane(column, bit) for column in reached for bit in range(_BYTE)]
         starts = tuple(tuple(body.places) for body in bodies)
-        runs = Runs((1 << len(rows)) - 1, 0, starts, but)
+        runs = RunSpace((1 << len(rows)) - 1, 0, starts, difference)
         state = State(bodies, done[: len(like.done)])
         return Batch(runs, state, [self._origins[row] for row in reversed(rows)])
 

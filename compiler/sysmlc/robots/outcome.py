@@ -7,21 +7,23 @@ from msgspec import Struct, field
 from msgspec.structs import replace
 
 from sysmlc.diagnostics import Severity, Sink, Subject, rule
-from sysmlc.robots.allocate import greedy
+from sysmlc.robots.allocation import (
+    BestAllocation,
+    allocate_greedily,
+    allocate_optimally,
+    neighbour_allocations,
+)
 from sysmlc.robots.answers import Answers
-from sysmlc.robots.environment import Sharing, environment_contract
-from sysmlc.robots.keeping import Crew, Keeper
-from sysmlc.robots.optimal import Best, best, near
-from sysmlc.robots.relations import Relation, relations
-from sysmlc.robots.schedule import Schedule, in_time
-from sysmlc.robots.simulation import Validation
-from sysmlc.robots.story import Moment, lines, story
-from sysmlc.robots.strategy import Times, answers_of, measured, synthesise, travels
+from sysmlc.robots.claims import Claim, decide_claims
+from sysmlc.robots.crew_cache import CrewCache, RobotCrew
+from sysmlc.robots.environment_contract import Sharing, environment_contract
+from sysmlc.robots.mission_run import Moment, describe_moments, record_run
+from sysmlc.robots.robot_controller import Times, answers_of, measured, synthesise, travels
+from sysmlc.robots.schedule import Schedule, TravelTimes, meets_deadlines
 from sysmlc.robots.study import Study
-from sysmlc.robots.travel import Travel
-from sysmlc.robots.validate import validate
-from sysmlc.synthesis.decide import Options, Place, decide
-from sysmlc.synthesis.synthesise import Synthesis
+from sysmlc.robots.validation import Validation, validate_allocation
+from sysmlc.synthesis.controller_synthesis import Synthesis
+from sysmlc.synthesis.decision import Options, Place, decide
 
 MOST_TRIED = 12
 """Allocations that are validated before it is given up."""
@@ -79,14 +81,14 @@ class Outcome(Struct, frozen=True):
 
     study: Study
     controller: Synthesis
-    travel: Travel
+    travel: TravelTimes
     answers: tuple[Answers, ...] = ()
     """Of the controller, for each robot: what was asked once is known."""
     times: Times = field(default_factory=dict)
     """How long a robot travels from any cell to any other."""
-    relations: tuple[Relation, ...] = ()
+    relations: tuple[Claim, ...] = ()
     greedy: Schedule | None = None
-    best: Best | None = None
+    best: BestAllocation | None = None
     tried: tuple[Tried, ...] = ()
     run: tuple[Moment, ...] = ()
     """The longest mission of the allocation that does, from one start; or a failing one."""
@@ -111,7 +113,7 @@ def studied(
     sink: Sink,
     options: Options,
     has_relations: bool = True,
-    keeper: Keeper | None = None,
+    keeper: CrewCache | None = None,
 ) -> Outcome:
     """Synthesise, measure, decide what is claimed, allocate, validate; what fails is reported.
 
@@ -131,9 +133,9 @@ def studied(
     return allocated(made, place, sink)
 
 
-def _crew(study: Study, place: Place, sink: Sink, options: Options) -> Crew:
+def _crew(study: Study, place: Place, sink: Sink, options: Options) -> RobotCrew:
     controller = synthesise(study, place, sink, options)
-    return Crew(controller, measured(study, answers_of(study, controller)))
+    return RobotCrew(controller, measured(study, answers_of(study, controller)))
 
 
 def allocated(made: Outcome, place: Place, sink: Sink, study: Study | None = None) -> Outcome:
@@ -144,9 +146,9 @@ def allocated(made: Outcome, place: Place, sink: Sink, study: Study | None = Non
     if not answers or not study.targets:
         return replace(made, study=study)
     travel = travels(study, made.times)
-    first, found = greedy(study, travel), best(study, travel)
+    first, found = allocate_greedily(study, travel), allocate_optimally(study, travel)
     made = replace(made, study=study, travel=travel, greedy=first, best=found, tried=(), run=())
-    if found is None or not in_time(study, found.schedule):
+    if found is None or not meets_deadlines(study, found.schedule):
         _report_no_allocation(study, found, place, sink)
         return made
     return _validated(made, answers, _candidates(study, travel, found.schedule, first), place, sink)
@@ -163,12 +165,12 @@ def _validated(
     study = made.study
     tried: list[Tried] = []
     for schedule in islice(candidates, MOST_TRIED):
-        tried.append(Tried(schedule, validate(study, schedule.allocation, answers)))
+        tried.append(Tried(schedule, validate_allocation(study, schedule.allocation, answers)))
         if tried[-1].validation.is_good:
             break
     last = tried[-1]
     starts = last.validation.failed or _some_start(study)
-    told = story(study, last.schedule.allocation, answers, starts, last.validation.steps)
+    told = record_run(study, last.schedule.allocation, answers, starts, last.validation.steps)
     made = replace(made, tried=tuple(tried), run=told)
     if not last.validation.is_good:
         _report_failure(made, place, sink)
@@ -176,13 +178,15 @@ def _validated(
 
 
 def _candidates(
-    study: Study, travel: Travel, found: Schedule, first: Schedule | None
+    study: Study, travel: TravelTimes, found: Schedule, first: Schedule | None
 ) -> Iterator[Schedule]:
     """The best allocation, the thesis's, and those near the best one, the better ones first."""
     known: set[object] = set()
-    others = sorted(near(study, travel, found), key=lambda one: (one.cost, one.allocation))
+    others = sorted(
+        neighbour_allocations(study, travel, found), key=lambda one: (one.cost, one.allocation)
+    )
     for one in (found, *(() if first is None else (first,)), *others):
-        if one.allocation not in known and in_time(study, one):
+        if one.allocation not in known and meets_deadlines(study, one):
             known.add(one.allocation)
             yield one
 
@@ -194,24 +198,24 @@ def _some_start(study: Study) -> tuple[int, ...]:
     return tuple(next(left) if one.start is None else one.start for one in study.robots)
 
 
-def _related(made: Outcome, known: Mapping[str, Relation], options: Options) -> Iterator[Relation]:
+def _related(made: Outcome, known: Mapping[str, Claim], options: Options) -> Iterator[Claim]:
     study = made.study
     if len(study.robots) > 1:
         yield known[SHARED] if SHARED in known else _arbitrated(study, options)
-    yield from relations(study, made.travel, options, known)
+    yield from decide_claims(study, made.travel, options, known)
 
 
-def _arbitrated(study: Study, options: Options) -> Relation:
+def _arbitrated(study: Study, options: Options) -> Claim:
     """Decide C_E as the thesis has it, for two of the robots: with more it is no easier."""
     two = replace(study, robots=tuple(replace(one, start=None) for one in study.robots[:2]))
     literal = environment_contract(two, Sharing.LITERAL)
     # Nobody is told why: that would take longer than all the rest.
     short = replace(options, is_explained=False)
     verdict = decide(literal, lambda origin: Subject(), Sink(), short)
-    return Relation(SHARED, verdict.is_realizable)
+    return Claim(SHARED, verdict.is_realizable)
 
 
-def _report_claims(study: Study, claims: Iterable[Relation], place: Place, sink: Sink) -> None:
+def _report_claims(study: Study, claims: Iterable[Claim], place: Place, sink: Sink) -> None:
     subject, floor = place(study.origin), study.component
     for one in claims:
         facts = {"floor": floor, "claim": one.claim, "reason": one.reason}
@@ -224,7 +228,9 @@ def _report_claims(study: Study, claims: Iterable[Relation], place: Place, sink:
             sink.report(NO_RELATION, subject, notes=one.run, help="", **facts)
 
 
-def _report_no_allocation(study: Study, found: Best | None, place: Place, sink: Sink) -> None:
+def _report_no_allocation(
+    study: Study, found: BestAllocation | None, place: Place, sink: Sink
+) -> None:
     reason = "some target is out of the reach of all robots, or waits for what is never done"
     if found is not None:
         reason = f"the best one that was found takes {told_steps(found.schedule.duration)}"
@@ -246,5 +252,5 @@ def _report_failure(made: Outcome, place: Place, sink: Sink) -> None:
         if last.validation.is_slow:
             reason = f"a robot that is sent to '{name}' takes more than {study.within} steps"
     subject = place(study.targets[late].origin if late is not None else study.origin)
-    notes = tuple(lines(study, made.run))
+    notes = tuple(describe_moments(study, made.run))
     sink.report(NOT_VALIDATED, subject, notes=notes, floor=study.component, reason=reason)

@@ -5,16 +5,15 @@ from collections.abc import Iterator
 from msgspec.structs import replace
 
 from sysmlc.logic.formats import write
-from sysmlc.robots.mission import mission_contract
+from sysmlc.robots.mission_contract import mission_contract
+from sysmlc.robots.mission_run import describe_cell, describe_moments, sequence_diagram
 from sysmlc.robots.outcome import Outcome, told_steps
-from sysmlc.robots.schedule import Schedule
-from sysmlc.robots.story import cell_text, lines, sequence_diagram
+from sysmlc.robots.schedule import START, Schedule
 from sysmlc.robots.study import Study
-from sysmlc.robots.travel import START
 from sysmlc.support.escapes import escape_markdown
 from sysmlc.support.file_names import assign_file_names
+from sysmlc.synthesis.controllers.controller_files import controller_files
 from sysmlc.synthesis.controllers.mealy import Machine
-from sysmlc.synthesis.files import files_of
 
 
 def files(outcome: Outcome) -> Iterator[tuple[str, str]]:
@@ -29,7 +28,7 @@ def files(outcome: Outcome) -> Iterator[tuple[str, str]]:
     if outcome.controller.machine is not None:
         contract = outcome.controller.contract
         machine = names[contract.component]
-        for file, text in files_of(machine, outcome.controller.machine, contract, "own"):
+        for file, text in controller_files(machine, outcome.controller.machine, contract, "own"):
             # Conditions over all cells make arrows that nobody can read.
             if file.endswith(".json"):
                 yield f"robots/{file}", text
@@ -71,7 +70,12 @@ def markdown(outcome: Outcome) -> str:
     if outcome.relations:
         text += _claims(outcome)
     if outcome.run:
-        text += ["", "## One run", "", *(f"- {one}" for one in lines(study, outcome.run))]
+        text += [
+            "",
+            "## One run",
+            "",
+            *(f"- {one}" for one in describe_moments(study, outcome.run)),
+        ]
     return "\n".join((*text, ""))
 
 
@@ -122,7 +126,7 @@ def _travel(outcome: Outcome) -> Iterator[str]:
     yield f"| from | {' | '.join(one.name for one in study.targets)} |"
     yield f"|---|{'---|' * len(study.targets)}"
     for robot, one in enumerate(study.robots):
-        where = "any start" if one.start is None else cell_text(study, one.start)
+        where = "any start" if one.start is None else describe_cell(study, one.start)
         yield f"| {one.name}: {where} | {_row(outcome, robot, START)} |"
     for place, target in enumerate(study.targets):
         yield f"| {target.name} | {_row(outcome, 0, place)} |"

@@ -141,3 +141,37 @@ class Study(Struct, frozen=True):
     def carried(self) -> dict[int, int]:
         """The target that the robot goes on to, by the one that it has reached."""
         return {one.earlier: one.later for one in self.orders if one.is_carried}
+
+
+def possible_starts(study: Study, robot: int) -> tuple[int, ...]:
+    """The cells that a robot may start in."""
+    taken = {one.start for at, one in enumerate(study.robots) if at != robot}
+    start = study.robots[robot].start
+    return (start,) if start is not None else tuple(c for c in study.grid.cells if c not in taken)
+
+
+@lru_cache(1 << 14)
+def next_move(grid: Grid, cell: int, goal: int) -> tuple[str, int] | None:
+    """The command that leads on to the target, and where it leads; None in it or without a way."""
+    ways = grid.nearer(cell, goal)
+    there = grid.after(cell, ways[0]) if ways else None
+    return None if there is None else (ways[0], there)
+
+
+@lru_cache(1 << 12)
+def successors_by_distance(grid: Grid, goal: int) -> tuple[tuple[int, int], ...]:
+    """Each cell with the next one on the way to the target, the farthest first."""
+    known = grid.distances(goal)
+    farthest_first = sorted(known, key=lambda cell: -known[cell])
+    found = ((cell, next_move(grid, cell, goal)) for cell in farthest_first)
+    return tuple((cell, step[1]) for cell, step in found if step is not None)
+
+
+def shortest_path(grid: Grid, cell: int, goal: int) -> tuple[int, ...]:
+    """All cells of the way, both ends included; empty when there is none."""
+    if cell not in grid.distances(goal):
+        return ()
+    found = [cell]
+    while (step := next_move(grid, found[-1], goal)) is not None:
+        found.append(step[1])
+    return tuple(found)

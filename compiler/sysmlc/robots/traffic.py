@@ -8,9 +8,8 @@ robots that stand in its way are sent aside, with those who stand in their way (
 from dataclasses import dataclass
 from typing import Generic
 
-from sysmlc.robots.paths import chain
-from sysmlc.robots.planes import P, Runs, any_of
-from sysmlc.robots.study import Grid
+from sysmlc.robots.run_sets import P, RunSpace, union
+from sysmlc.robots.study import Grid, successors_by_distance
 
 
 @dataclass(slots=True)
@@ -29,7 +28,7 @@ class Traffic(Generic[P]):
     def __init__(
         self,
         grid: Grid,
-        runs: Runs[P],
+        runs: RunSpace[P],
         places: list[list[P]],
         taken: list[P],
         is_idle: list[P],
@@ -50,7 +49,7 @@ class Traffic(Generic[P]):
             if wants == self.none:
                 continue
             one = [wants & here for here in self.places[robot]]
-            for cell, after in chain(self.grid, goal):
+            for cell, after in successors_by_distance(self.grid, goal):
                 if one[cell] != self.none:
                     one[after] = one[after] | one[cell]
             found = self._joined(found, one)
@@ -68,11 +67,11 @@ class Traffic(Generic[P]):
     def send(self, open_: list[list[P]]) -> Sent[P]:
         """Who sets out and who is sent aside; ``open_`` by robot and place in its list."""
         robots = range(len(self.places))
-        wants = [any_of(one, self.none) for one in open_]
+        wants = [union(one, self.none) for one in open_]
         ways = [self.ways(robot, open_[robot]) for robot in robots]
         leads = self._leading(wants)
         leading = [
-            any_of([leads[robot] & ways[robot][cell] for robot in robots], self.none)
+            union([leads[robot] & ways[robot][cell] for robot in robots], self.none)
             for cell in range(self.grid.size)
         ]
         waits = self.none
@@ -155,7 +154,7 @@ class _Aside(Generic[P]):
     def _standing(self, robot: int, cells: list[P]) -> P:
         """In which runs an idle robot that does not lead stands in one of the cells."""
         places = self.traffic.places[robot]
-        standing = any_of(
+        standing = union(
             [one & cell for one, cell in zip(places, cells, strict=True)], self.traffic.none
         )
         return self.traffic.but(standing & self.traffic.is_idle[robot], self.leads[robot])
@@ -165,11 +164,11 @@ class _Aside(Generic[P]):
         grid, none = self.traffic.grid, self.traffic.none
         them = [robot for robot in self.robots if stuck[robot] != none]
         here = [
-            any_of([stuck[robot] & self.traffic.places[robot][cell] for robot in them], none)
+            union([stuck[robot] & self.traffic.places[robot][cell] for robot in them], none)
             for cell in range(grid.size)
         ]
         return [
-            any_of([here[near] for _, near in grid.neighbours(cell)], none)
+            union([here[near] for _, near in grid.neighbours(cell)], none)
             for cell in range(grid.size)
         ]
 

@@ -10,11 +10,9 @@ from typing import Generic
 
 from msgspec import Struct
 
-from sysmlc.robots.answers import Answers, Memory
-from sysmlc.robots.journeys import is_slow
-from sysmlc.robots.paths import hop
-from sysmlc.robots.planes import P, Runs, any_of
-from sysmlc.robots.study import WAYS, Study
+from sysmlc.robots.answers import Answers, Memory, exceeds_travel_limit
+from sysmlc.robots.run_sets import P, RunSpace, union
+from sysmlc.robots.study import WAYS, Study, next_move
 from sysmlc.robots.traffic import Traffic
 
 Allocation = tuple[tuple[int, ...], ...]
@@ -50,7 +48,7 @@ class World(Generic[P]):
         study: Study,
         allocation: Allocation,
         answers: Sequence[Answers],
-        runs: Runs[P],
+        runs: RunSpace[P],
         state: State[P] | None = None,
         time: int = 0,
     ) -> None:
@@ -113,7 +111,7 @@ class World(Generic[P]):
 
     def _moved(self, body: Body[P]) -> list[P]:
         none, grid = self.runs.none, self.study.grid
-        goes = any_of(list(body.commands.values()), none)
+        goes = union(list(body.commands.values()), none)
         if goes == none:
             return body.places
         found = [self._but(one, goes) for one in body.places]
@@ -155,7 +153,7 @@ class World(Generic[P]):
     def _resting(self, number: int) -> P:
         """In which runs a robot has no target but the cell that it is in."""
         body, none = self.bodies[number], self.runs.none
-        return self._but(self.runs.all, any_of([*body.sent, *body.aside], none))
+        return self._but(self.runs.all, union([*body.sent, *body.aside], none))
 
     def _at_goal(self, number: int) -> P:
         """In which runs a robot is in its target."""
@@ -192,7 +190,7 @@ class World(Generic[P]):
             for target, sent in zip(own, out[number], strict=True):
                 for cell, here in enumerate(self.bodies[number].places):
                     both, goal = here & sent, self.study.targets[target].cell
-                    if both != self.runs.none and is_slow(
+                    if both != self.runs.none and exceeds_travel_limit(
                         self.study.grid, self.answers[number], cell, goal, within
                     ):
                         self.slow[target] = self.slow[target] | both
@@ -279,7 +277,7 @@ class World(Generic[P]):
     def _hop(self, cell: int, goal: int) -> tuple[str, int] | None:
         key = cell, goal
         if key not in self.hops:
-            self.hops[key] = hop(self.study.grid, cell, goal)
+            self.hops[key] = next_move(self.study.grid, cell, goal)
         return self.hops[key]
 
     def _offer(self, cell: int, given: P) -> None:
@@ -288,7 +286,7 @@ class World(Generic[P]):
         self._offered[cell] = self._offered[cell] | given
 
 
-def _first(study: Study, allocation: Allocation, runs: Runs[P]) -> State[P]:
+def _first(study: Study, allocation: Allocation, runs: RunSpace[P]) -> State[P]:
     """Robots in their starts, which are their targets."""
     none, size = runs.none, study.grid.size
     bodies: list[Body[P]] = [

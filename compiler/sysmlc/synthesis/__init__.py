@@ -8,8 +8,7 @@ from sysmlc.synthesis.bdd.limits import LimitError, Limits
 from sysmlc.synthesis.bdd.manager import Manager, Node
 from sysmlc.synthesis.bdd.symbols import SymbolError, Symbols
 from sysmlc.synthesis.games.game import Game, OutsideGr1Error, Part, make_game
-from sysmlc.synthesis.games.layers import Layer
-from sysmlc.synthesis.games.solve import Solution, solve
+from sysmlc.synthesis.games.solver import Layer, Solution, solve
 
 __all__ = [
     "Game",

@@ -15,7 +15,7 @@ from sysmlc.logic import formula as f
 from sysmlc.logic.contract import Class, Conjunct, Contract, Domain, IntegerDomain
 from sysmlc.logic.formula import Apply, Const, Op, Var
 from sysmlc.synthesis import rules
-from sysmlc.synthesis.decide import Options, Place, Verdict, decide
+from sysmlc.synthesis.decision import Options, Place, Verdict, decide
 
 
 class Deadline(Struct, frozen=True):

@@ -8,8 +8,8 @@ from sysmlc.ir.text import parse_text
 from sysmlc.logic.contract import Class, Contract, Owner
 from sysmlc.logic.printing import print_formula
 from sysmlc.passes import pipeline
-from sysmlc.synthesis.check import check
-from sysmlc.synthesis.decide import Options
+from sysmlc.synthesis.contract_checks import check
+from sysmlc.synthesis.decision import Options
 
 pipeline.load("contracts")
 

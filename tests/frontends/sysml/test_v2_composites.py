@@ -10,8 +10,8 @@ from sysmlc.logic.contract import Contract, IntegerDomain
 from sysmlc.logic.printing import print_formula
 from sysmlc.passes import pipeline
 from sysmlc.synthesis import Limits
-from sysmlc.synthesis.decide import Options
-from sysmlc.synthesis.together import check_together
+from sysmlc.synthesis.composition_check import check_compositions
+from sysmlc.synthesis.decision import Options
 
 pipeline.load("contracts")
 PANEL = """
@@ -276,7 +276,7 @@ def told(text):
     graph, sink = reading.graph, Sink()
     made = list(compose(graph, graph.derived(Contract), sink))
     place = lambda it: graph.subject(graph[it])  # noqa: E731
-    (result,) = check_together(made, place, sink, Options("", Limits()))
+    (result,) = check_compositions(made, place, sink, Options("", Limits()))
     return [f"{one.rule.code} {one.message}" for one in sink], result.text()
 
 

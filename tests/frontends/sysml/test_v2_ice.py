@@ -8,8 +8,8 @@ from sysmlc.config import load
 from sysmlc.diagnostics import Sink
 from sysmlc.driver import Request, compile_model, select_backends
 from sysmlc.logic.contract import Contract
-from sysmlc.synthesis.check import check
-from sysmlc.synthesis.decide import Options
+from sysmlc.synthesis.contract_checks import check
+from sysmlc.synthesis.decision import Options
 
 pytestmark = pytest.mark.corpus
 LEVELS = """\

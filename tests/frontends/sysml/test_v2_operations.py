@@ -11,9 +11,9 @@ from sysmlc.logic.composition.derivation import compose
 from sysmlc.logic.contract import Contract, Owner
 from sysmlc.logic.printing import print_formula
 from sysmlc.passes import pipeline
-from sysmlc.synthesis import together
-from sysmlc.synthesis.check import check
-from sysmlc.synthesis.decide import Options
+from sysmlc.synthesis import composition_check as together
+from sysmlc.synthesis.contract_checks import check
+from sysmlc.synthesis.decision import Options
 
 STEPS = {
     "Dismantling": ["decompose"],
@@ -105,7 +105,7 @@ def composed(text):
     graph, sink = compiled(text), Sink()
     made = list(compose(graph, graph.derived(Contract), sink))
     place = lambda id: graph.subject(graph[id])  # noqa: E731
-    (result,) = together.check_together(made, place, sink, Options())
+    (result,) = together.check_compositions(made, place, sink, Options())
     return result.text(), [(one.rule.code, one.message) for one in sink]
 
 

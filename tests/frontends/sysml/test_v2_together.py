@@ -7,9 +7,11 @@ from sysmlc.diagnostics import Sink, catalogue
 from sysmlc.logic.composition.derivation import compose
 from sysmlc.logic.contract import Contract
 from sysmlc.passes import pipeline
-from sysmlc.synthesis import Limits, together, together_rules
-from sysmlc.synthesis.check import check
-from sysmlc.synthesis.decide import Options
+from sysmlc.synthesis import Limits
+from sysmlc.synthesis import composition_check as together
+from sysmlc.synthesis import composition_rules as together_rules
+from sysmlc.synthesis.contract_checks import check
+from sysmlc.synthesis.decision import Options
 
 CODES = ("SM506", "SM548", "SM595", "SM596", "SM597", "SM598")
 
@@ -20,7 +22,7 @@ def checked(text, limits=None):
     graph, sink = reading.graph, Sink()
     options = Options("", limits or Limits())
     made = list(compose(graph, graph.derived(Contract), sink))
-    results = together.check_together(made, lambda it: graph.subject(graph[it]), sink, options)
+    results = together.check_compositions(made, lambda it: graph.subject(graph[it]), sink, options)
     return list(results), list(sink)
 
 

@@ -14,12 +14,10 @@ from msgspec.structs import replace
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import Composite, Conjunct, Contract, Owner, Part, Variable
 from sysmlc.synthesis.algebra.discharge import Open, discharge, outputs
-from sysmlc.synthesis.algebra.entail import Entailment
-from sysmlc.synthesis.algebra.observed import observed
-from sysmlc.synthesis.algebra.relations import Failure
-from sysmlc.synthesis.algebra.systems import Universe
+from sysmlc.synthesis.algebra.fair_systems import Universe, observe_histories
+from sysmlc.synthesis.algebra.refinement import Entailment, Failure
 from sysmlc.synthesis.bdd.manager import Manager
-from sysmlc.synthesis.unrealizable.explain import conflict
+from sysmlc.synthesis.unrealizable.core import minimal_conflict
 
 
 class Composition(Struct, frozen=True):
@@ -61,7 +59,7 @@ def _composed(composite: Composite, manager: Manager) -> Composition:
     _one_driver_each(composite.parts)
     whole = composite.whole or _open_to_outside(composite)
     wiring = Contract("", "", (), composite.wiring, ())
-    made = observed((*(one.contract for one in composite.parts), wiring, whole))
+    made = observe_histories((*(one.contract for one in composite.parts), wiring, whole))
     *contracts, joined, seen = made.contracts
     parts = tuple(_with(p, c) for p, c in zip(composite.parts, contracts, strict=True))
     universe = Universe(made.contracts, manager)
@@ -90,7 +88,7 @@ def _contradiction(
     def is_impossible(some: Sequence[Conjunct]) -> bool:
         return not Entailment(universe, universe.system((*some, *definitions))).is_possible
 
-    return conflict(every, is_impossible) if is_impossible(every) else ()
+    return minimal_conflict(every, is_impossible) if is_impossible(every) else ()
 
 
 def _open_to_outside(composite: Composite) -> Contract:

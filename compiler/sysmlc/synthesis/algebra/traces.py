@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from msgspec import Struct
 
 from sysmlc.logic.formula import Literal
-from sysmlc.synthesis.algebra.fair import Runs
+from sysmlc.synthesis.algebra.fair_systems import Runs
 from sysmlc.synthesis.bdd.manager import Node
 
 

@@ -5,11 +5,16 @@ went through, they the manager and its diagrams, and the manager the exception. 
 left to the collector, which may take the manager away before its diagrams.
 """
 
+import ctypes
 import signal
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from types import FrameType
+from functools import partial
+from itertools import count
+from types import FrameType, ModuleType
+from typing import Protocol
+from weakref import WeakValueDictionary
 
 from msgspec import Struct
 
@@ -77,3 +82,60 @@ def interrupts(handler: Callable[[int, FrameType | None], None]) -> Iterator[Non
         yield
     finally:
         signal.signal(signal.SIGINT, before)
+
+
+_ATTRIBUTES = ("vars", "_index_of_var", "_var_with_index")
+"""What ``dd.cudd.BDD`` declares right behind the manager (dd 0.6)."""
+_WORD = ctypes.sizeof(ctypes.c_void_p)
+
+
+class Watched(Protocol):
+    """Somebody whose operations may have to end early."""
+
+    def is_over(self) -> bool:
+        """Whether the operation that runs is to be given up."""
+        ...
+
+
+_watched: WeakValueDictionary[int, Watched] = WeakValueDictionary()
+_numbers = count(1)
+
+
+def watch(library: ModuleType, bdd: object, watched: Watched) -> Callable[[], int] | None:
+    """Have CUDD ask whether an operation of ``bdd`` is to be given up.
+
+    Returns what counts the nodes alive, in no time; None if nothing of this can be done. An
+    operation that is given up raises what ``dd`` raises when CUDD has no result: RuntimeError or
+    ValueError.
+    """
+    manager = _manager(bdd)
+    try:
+        known = ctypes.CDLL(library.__file__)
+        register, counted = known.Cudd_RegisterTerminationCallback, known.Cudd_ReadNodeCount
+    except (OSError, AttributeError):
+        return None
+    if manager is None:
+        return None
+    counted.restype = ctypes.c_long
+    number = next(_numbers)
+    _watched[number] = watched
+    register(ctypes.c_void_p(manager), _ASKED, ctypes.c_void_p(number))
+    return partial(counted, ctypes.c_void_p(manager))
+
+
+def _manager(bdd: object) -> int | None:
+    """The address that stands before those of the attributes, if they stand there in a row."""
+    size = type(bdd).__basicsize__ // _WORD
+    words = list((ctypes.c_size_t * size).from_address(id(bdd)))
+    known = [id(getattr(bdd, name, None)) for name in _ATTRIBUTES]
+    places = [at for at in range(1, size) if words[at : at + len(known)] == known]
+    return words[places[0] - 1] or None if len(places) == 1 else None
+
+
+def _asked(number: int) -> int:
+    watched = _watched.get(number)
+    return 0 if watched is None else int(watched.is_over())
+
+
+_ASKED = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_void_p)(_asked)
+"""One function for all managers, never freed: diagrams may outlive whoever made them."""

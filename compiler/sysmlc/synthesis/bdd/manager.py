@@ -14,7 +14,6 @@ from types import FrameType, ModuleType
 from typing import Any, Protocol, Self, cast
 from weakref import WeakKeyDictionary
 
-from sysmlc.synthesis.bdd.inside import watch
 from sysmlc.synthesis.bdd.limits import (
     End,
     LimitError,
@@ -24,6 +23,7 @@ from sysmlc.synthesis.bdd.limits import (
     Usage,
     exceeded,
     interrupts,
+    watch,
 )
 
 ENGINES = ("cudd", "autoref")

@@ -11,10 +11,10 @@ from copy import copy
 from sysmlc.logic import domains
 from sysmlc.logic.contract import BooleanDomain, EnumerationDomain, IntegerDomain, Owner, Variable
 from sysmlc.logic.formula import Apply, Const, Formula, Literal, Op, Var
-from sysmlc.synthesis.bdd import vectors
+from sysmlc.synthesis.bdd import bit_vectors as vectors
+from sysmlc.synthesis.bdd.bit_vectors import Vector
 from sysmlc.synthesis.bdd.manager import Manager, Node
-from sysmlc.synthesis.bdd.order import ordered
-from sysmlc.synthesis.bdd.vectors import Vector
+from sysmlc.synthesis.bdd.variable_order import ordered
 
 
 class SymbolError(ValueError):

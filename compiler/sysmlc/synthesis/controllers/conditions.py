@@ -28,11 +28,11 @@ from sysmlc.logic.formula import (
     negate,
 )
 from sysmlc.logic.formula import variables as variables_of
-from sysmlc.synthesis.bdd.choice import least
 from sysmlc.synthesis.bdd.limits import TooLargeError
 from sysmlc.synthesis.bdd.manager import Node
+from sysmlc.synthesis.bdd.skolem_functions import least
 from sysmlc.synthesis.bdd.symbols import Symbols
-from sysmlc.synthesis.controllers.listing import Answer, Draft
+from sysmlc.synthesis.controllers.explicit_states import Answer, Draft
 from sysmlc.synthesis.controllers.mealy import Machine, Move
 
 MOST_CASES = 5_000

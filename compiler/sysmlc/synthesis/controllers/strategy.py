@@ -7,20 +7,19 @@ contract: a command is chosen with the answers of its step, in which the arena a
 it is; variables that follow from others are computed from them.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 
 from msgspec import Struct
 
 from sysmlc.logic.contract import Owner
-from sysmlc.synthesis.bdd.choice import chosen, joined, substituted
 from sysmlc.synthesis.bdd.manager import Manager, Node
+from sysmlc.synthesis.bdd.skolem_functions import chosen, joined, substituted
 from sysmlc.synthesis.bdd.symbols import Symbols, next_bit
-from sysmlc.synthesis.controllers.aims import aims
-from sysmlc.synthesis.controllers.determined import answers
+from sysmlc.synthesis.controllers.determined_outputs import answers
 from sysmlc.synthesis.games.arena import Steps, played, products
 from sysmlc.synthesis.games.game import Game
-from sysmlc.synthesis.games.image import Product
-from sysmlc.synthesis.games.solve import Solution
+from sysmlc.synthesis.games.relational_product import Product
+from sysmlc.synthesis.games.solver import Layer, Solution
 
 Functions = Mapping[str, Node]
 
@@ -180,3 +179,50 @@ class _Maker:
             if self.symbols.variables[name].owner is Owner.SYSTEM:
                 found |= {bit: self._after(node, found) for bit, node in bits.items()}
         return found
+
+
+def aims(
+    solution: Solution,
+    steps: Steps,
+    goal: int,
+    leading: Callable[[Node], Node],
+    bits: Collection[str],
+) -> Iterator[Node]:
+    """What may be chosen on the way to a goal: each says it of other places.
+
+    ``steps`` are those of the arena. ``leading`` gives all choices of values of ``bits`` that lead
+    to given states for certain; what leads nowhere leaves the environment without a next input,
+    which is best of all. A state in which this goal holds and another does not has no aim: the
+    other one is in turn.
+    """
+    manager = solution.arena.manager
+    done = waiting = before = manager.false
+    nowhere = Layer(manager.false, ())
+    for layer in (nowhere, *solution.layers[goal]):
+        manager.check("looking for what to do")
+        for here, there in _waits(solution, steps, goal, layer, before):
+            where = here & ~done
+            yield where & leading(there)
+            waiting = waiting | here
+        possible = leading(layer.states)
+        able = manager.exist(manager.support(possible).intersection(bits), possible)
+        where = able & ~done & ~waiting
+        yield where & possible
+        done, before = done | able, layer.states
+
+
+def _waits(
+    solution: Solution, steps: Steps, goal: int, layer: Layer, before: Node
+) -> Iterator[tuple[Node, Node]]:
+    """From which states of a layer the system may wait, and where."""
+    if not layer.waiting:
+        return
+    arena = solution.arena
+    met = arena.goals[goal] if arena.goals else arena.manager.true
+    left = layer.states & solution.winning & ~before & ~met
+    left = left & ~steps.controllable(before)
+    for waiting in layer.waiting:
+        here = left & waiting
+        if here != arena.manager.false:
+            yield here, waiting | before
+        left = left & ~waiting

@@ -12,9 +12,9 @@ from msgspec import Struct
 from sysmlc.logic import domains
 from sysmlc.logic.contract import Variable
 from sysmlc.logic.formula import Literal
-from sysmlc.synthesis.bdd.limits import TooLargeError
-from sysmlc.synthesis.bdd.manager import Node
-from sysmlc.synthesis.bdd.symbols import width
+from sysmlc.synthesis.bdd.limits import LimitError, TooLargeError
+from sysmlc.synthesis.bdd.manager import Manager, Node
+from sysmlc.synthesis.bdd.symbols import Symbols, width
 from sysmlc.synthesis.controllers.strategy import Mode, Strategy
 
 MOST_NODES = 1_000_000
@@ -153,3 +153,49 @@ def _shared(variables: Sequence[Variable], bits: Sequence[bool]) -> Iterator[tup
         number = sum(bit << at for at, bit in enumerate(reversed(own)))
         yield variable.name, domains.values(variable.domain)[number]
         place += width(variable)
+
+
+def rebuild_in_variable_order(table: Table, manager: Manager) -> Table:
+    """The same table in the order of its variables; the manager must be new.
+
+    Where that is beyond the manager's limits the table is what it was.
+    """
+    try:
+        with manager.guard(), manager.calm():
+            return _Rebuild(table, manager).table()
+    except LimitError:
+        return table
+
+
+class _Rebuild:
+    def __init__(self, table: Table, manager: Manager) -> None:
+        self._table = table
+        self._symbols = Symbols(manager, (*table.inputs, *table.outputs))
+        self._nodes = nodes_of(table, self._symbols)
+
+    def table(self) -> Table:
+        """Functions of the nodes, and a table of them."""
+        inputs, outputs = (
+            tuple(one.name for one in side) for side in (self._table.inputs, self._table.outputs)
+        )
+        modes = tuple(map(self._mode, self._table.modes))
+        return tabled(
+            Strategy(self._symbols, inputs, outputs, self._mode(self._table.first), modes)
+        )
+
+    def _mode(self, entry: Entry) -> Mode:
+        bits = self._symbols.all_bits(one.name for one in self._table.outputs)
+        outputs = {bit: self._nodes[place] for bit, place in zip(bits, entry.outputs, strict=True)}
+        return Mode(outputs, tuple(self._nodes[place] for place in entry.onward))
+
+
+def nodes_of(table: Table, symbols: Symbols) -> list[Node]:
+    """The diagram of each place; the first two are false and true."""
+    manager = symbols.manager
+    found = [manager.false, manager.true]
+    for bit, low, high in table.nodes:
+        one = table.bits[bit]
+        name = symbols.bits(one.variable, primed=not one.is_before)[one.place]
+        found.append(manager.ite(manager.var(name), found[high], found[low]))
+        manager.check("translating the controller")
+    return found

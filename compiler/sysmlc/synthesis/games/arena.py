@@ -14,7 +14,7 @@ from sysmlc.logic.contract import Owner
 from sysmlc.synthesis.bdd.manager import Manager, Node
 from sysmlc.synthesis.bdd.symbols import Symbols
 from sysmlc.synthesis.games.game import Game, Part
-from sysmlc.synthesis.games.image import Product
+from sysmlc.synthesis.games.relational_product import Product
 
 
 class Turn(Struct, frozen=True):

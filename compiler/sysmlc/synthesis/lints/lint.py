@@ -5,22 +5,25 @@ from collections.abc import Callable, Iterator
 from sysmlc.diagnostics import Sink, Subject
 from sysmlc.logic.contract import Contract
 from sysmlc.logic.printing import print_formula
-from sysmlc.synthesis.algebra.relations import environment
+from sysmlc.synthesis.algebra.refinement import find_environment_run
 from sysmlc.synthesis.lints import rules
-from sysmlc.synthesis.lints.games import NewManager, of_games
-from sysmlc.synthesis.lints.runs import of_runs
-from sysmlc.synthesis.lints.words import Remark, of_words, timely
+from sysmlc.synthesis.lints.game_checks import ManagerFactory, check_games, check_runs
+from sysmlc.synthesis.lints.text_checks import (
+    LintFinding,
+    check_ownership,
+    state_assumptions_of_next_step,
+)
 
 Place = Callable[[str], Subject]
 """From the origin of a contract or of a conjunct to what findings are about."""
 
 
-def lint(contract: Contract, place: Place, sink: Sink, new: NewManager) -> None:
+def lint(contract: Contract, place: Place, sink: Sink, new: ManagerFactory) -> None:
     """Report what is suspicious in a contract; ``new`` makes a manager for each question.
 
     Raises OutsideGr1Error for a contract that GR(1) cannot say, LimitError.
     """
-    for remark in _remarks(contract, new):
+    for remark in _find_all(contract, new):
         origin = contract.origin if remark.conjunct is None else remark.conjunct.origin
         formula = "" if remark.conjunct is None else print_formula(remark.conjunct.formula)
         sink.report(
@@ -33,13 +36,13 @@ def lint(contract: Contract, place: Place, sink: Sink, new: NewManager) -> None:
         )
 
 
-def _remarks(contract: Contract, new: NewManager) -> Iterator[Remark]:
-    said = list(of_words(contract))
+def _find_all(contract: Contract, new: ManagerFactory) -> Iterator[LintFinding]:
+    said = list(check_ownership(contract))
     yield from said
     if any(one.rule is rules.NEXT_IN_LIVENESS for one in said):
         return
-    if environment(contract, new()) is None:
-        yield Remark(rules.NO_ENVIRONMENT)
+    if find_environment_run(contract, new()) is None:
+        yield LintFinding(rules.NO_ENVIRONMENT)
         return
-    yield from of_runs(timely(contract), new())
-    yield from of_games(contract, new)
+    yield from check_runs(state_assumptions_of_next_step(contract), new())
+    yield from check_games(contract, new)

@@ -1,0 +1,169 @@
+"""Whether a contract can be kept: verdict, figures, and findings for what cannot be decided."""
+
+from collections.abc import Callable
+
+from msgspec import Struct
+
+from sysmlc.diagnostics import Sink, Subject
+from sysmlc.logic.contract import Conjunct, Contract
+from sysmlc.logic.printing import print_formula
+from sysmlc.logic.reduction.reduce import reduced
+from sysmlc.synthesis import rules
+from sysmlc.synthesis.bdd.limits import LimitError, Limits, Progress
+from sysmlc.synthesis.bdd.manager import Manager
+from sysmlc.synthesis.games.arena import Arena
+from sysmlc.synthesis.games.command_elimination import shifted
+from sysmlc.synthesis.games.game import Game, OutsideGr1Error, make_game
+from sysmlc.synthesis.games.solver import Solution, solve_arena
+from sysmlc.synthesis.games.variable_elimination import without_derived
+from sysmlc.synthesis.unrealizable.explanation import explain_unrealizability
+
+Place = Callable[[str], Subject]
+"""From the origin of a contract or of a conjunct to what findings are about."""
+
+
+class Options(Struct, frozen=True):
+    """How a contract is decided."""
+
+    engine: str = ""
+    limits: Limits = Limits()
+    progress: Progress | None = None
+    is_explained: bool = False
+    """Whether guarantees that cannot be kept together are looked for and named."""
+
+
+class Figures(Struct, frozen=True):
+    """What a decision took."""
+
+    variables: int
+    bits: int
+    """Bits of one step."""
+    conjuncts: int
+    rounds: int
+    """Times a goal was computed."""
+    steps: int
+    """Predecessors computed."""
+    nodes: int
+    """Most nodes of decision diagrams alive at once."""
+    seconds: float
+    """CPU time."""
+
+    def text(self) -> str:
+        """The figures on one line."""
+        return (
+            f"{self.variables} variables, {self.bits} bits, {self.conjuncts} conjuncts; "
+            f"{self.rounds} rounds, {self.steps} steps, {self.nodes:,} nodes, {self.seconds:.2f} s"
+        )
+
+
+class Verdict(Struct, frozen=True):
+    """Whether a contract can be kept; None when that is not decided."""
+
+    component: str
+    is_realizable: bool | None
+    figures: Figures | None = None
+
+    @property
+    def exit_code(self) -> int:
+        """0 realizable, 1 unrealizable, 2 not decided."""
+        return 2 if self.is_realizable is None else int(not self.is_realizable)
+
+    def text(self) -> str:
+        """The verdict on one line, with figures."""
+        words = {None: "not decided", True: "realizable", False: "unrealizable"}
+        figures = f" ({self.figures.text()})" if self.figures else ""
+        return f"{self.component}: {words[self.is_realizable]}{figures}"
+
+
+class Decision(Struct, frozen=True):
+    """A verdict, with the game that it is about when one was made."""
+
+    verdict: Verdict
+    game: Game | None = None
+    """Without variables that follow from others."""
+    arena: Arena | None = None
+    """The game as it was decided."""
+
+
+def decide(contract: Contract, place: Place, sink: Sink, options: Options) -> Verdict:
+    """Decide a contract; what is outside GR(1), beyond the limits or unrealizable is reported.
+
+    What LTL says beyond GR(1) is said with history bits where that is known (``logic.reduction``).
+    """
+    return decided(contract, place, sink, options).verdict
+
+
+def decided(contract: Contract, place: Place, sink: Sink, options: Options) -> Decision:
+    """``decide``, with the game for those who go on with it."""
+    doing = ["translating the contract"]
+
+    def progress(step: str) -> None:
+        doing[0] = step
+        if options.progress is not None:
+            options.progress(step)
+
+    manager = Manager(options.engine, options.limits, progress)
+    try:
+        game = make_game(reduced(contract).contract, manager)
+        with manager.guard(), manager.calm():
+            encoded = without_derived(game)
+            arena = shifted(encoded)
+        solution = solve_arena(arena, is_complete=False)
+    except OutsideGr1Error as problem:
+        _report_outside(contract, problem, place, sink)
+        return Decision(Verdict(contract.component, None))
+    except LimitError as problem:
+        _report_limit(contract, problem, manager, doing[0], place, sink)
+        return Decision(Verdict(contract.component, None))
+    if not solution.is_realizable:
+        reasons = tuple(explain_unrealizability(game, contract)) if options.is_explained else ()
+        sink.report(
+            rules.UNREALIZABLE,
+            place(contract.origin),
+            notes=reasons,
+            component=contract.component,
+        )
+    figures = _figures(contract, game, solution)
+    return Decision(Verdict(contract.component, solution.is_realizable, figures), encoded, arena)
+
+
+def _report_outside(contract: Contract, problem: OutsideGr1Error, place: Place, sink: Sink) -> None:
+    outside = reduced(contract).outside
+    for conjunct in outside if problem.conjunct in outside else (problem.conjunct,):
+        sink.report(
+            rules.OUTSIDE_GR1,
+            place(conjunct.origin or contract.origin),
+            component=contract.component,
+            formula=_said(conjunct),
+            why=problem.why,
+        )
+
+
+def _report_limit(
+    contract: Contract, problem: LimitError, manager: Manager, doing: str, place: Place, sink: Sink
+) -> None:
+    sink.report(
+        rules.LIMIT,
+        place(contract.origin),
+        component=contract.component,
+        reached=str(problem),
+        seconds=f"{manager.usage().seconds:.1f}",
+        doing=doing,
+    )
+
+
+def _said(conjunct: Conjunct) -> str:
+    return print_formula(conjunct.formula)
+
+
+def _figures(contract: Contract, game: Game, solution: Solution) -> Figures:
+    used = game.manager.usage()
+    return Figures(
+        variables=len(game.symbols.variables),
+        bits=len(game.inputs) + len(game.outputs),
+        conjuncts=len(contract.assumptions) + len(contract.guarantees),
+        rounds=solution.rounds,
+        steps=solution.steps,
+        nodes=used.peak,
+        seconds=used.seconds,
+    )
