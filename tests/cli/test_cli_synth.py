@@ -230,7 +230,7 @@ def test_a_limit_in_the_making_of_a_machine_leaves_no_file(here, monkeypatch):
     def beyond(*given):
         raise LimitError("of CPU time", "1 s")
 
-    for step in ("reached", "listed", "machine", "faults"):
+    for step in ("explore_strategy", "enumerate_states", "build_machine", "find_faults"):
         with monkeypatch.context() as patch:
             patch.setattr(synthesise, step, beyond)
             here.write("counter.gr1.json", json.dumps(COUNTER))

@@ -48,9 +48,9 @@ def forbid(monkeypatch):
         (flow, "synthesise"),
         (flow, "measured"),
         (flow, "decide"),
-        (claims, "refinement_failures"),
+        (claims, "find_refinement_failures"),
         (claims, "Entailment"),
-        (claims, "Together"),
+        (claims, "JointProof"),
     ):
         monkeypatch.setattr(module, name, fail)
 

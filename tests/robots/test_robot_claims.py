@@ -48,7 +48,7 @@ def test_what_is_decided_is_what_listed_states_say(name):
     asked, listed = together(study), Listed(study)
     assert (asked.stepwise_failure() is None) == listed.is_safe()
     assert (asked.offered_failure() is not None) == listed.is_ever_stuck()
-    assert (asked.endless() is not None) == listed.is_ever_away()
+    assert (asked.find_endless_travel() is not None) == listed.is_ever_away()
 
 
 @pytest.mark.parametrize("name", FLOORS)
@@ -81,7 +81,10 @@ def state(study, values):
 def test_floors_of_both_kinds_are_judged():
     answers = {together(study).offered_failure() is None for study in FLOORS.values()}
     assert answers == {True, False}
-    assert {together(study).endless() is None for study in FLOORS.values()} == {True, False}
+    assert {together(study).find_endless_travel() is None for study in FLOORS.values()} == {
+        True,
+        False,
+    }
 
 
 @pytest.mark.parametrize(("side", "robots"), [(3, 2), (4, 2), (5, 2), (4, 4), (5, 5)])

@@ -87,7 +87,7 @@ def test_another_allocation_is_tried_when_one_fails(monkeypatch):
         found = validate_allocation(study, allocation, answers)
         return replace(found, failed=(0, 8), late=0) if allocation == best else found
 
-    monkeypatch.setattr(module, "validate", but_for_the_best)
+    monkeypatch.setattr(module, "validate_allocation", but_for_the_best)
     found, told = made(study)
     assert found.is_good
     assert [one.validation.is_good for one in found.tried] == [False, True]
@@ -149,7 +149,7 @@ def test_what_is_not_decided_is_no_answer(nine):
 
 
 def test_what_is_not_decided_is_told(monkeypatch):
-    monkeypatch.setattr(module, "relations", lambda *given: [Claim("x", None, "10 s")])
+    monkeypatch.setattr(module, "decide_claims", lambda *given: [Claim("x", None, "10 s")])
     _, told = made(floor(2, None), has_relations=True)
     assert told == [("SM574", "on 'Hall' it is not decided whether x: 10 s")]
 

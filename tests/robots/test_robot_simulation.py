@@ -96,7 +96,7 @@ def test_given_starts_are_no_choice():
 def test_more_starts_than_one_operation_takes_are_simulated_in_parts(monkeypatch):
     study, allocation = some_floor(3)
     whole = validate_allocation(study, allocation, greedy_answers(study))
-    monkeypatch.setattr(validating, "CHUNK", 16)
+    monkeypatch.setattr(validating, "MAX_CHUNK_RUNS", 16)
     assert validate_allocation(study, allocation, greedy_answers(study)) == whole
 
 
@@ -104,7 +104,7 @@ def merged(monkeypatch, steps, most=1 << 17):
     """States are gone on with once from this step on, so many in one operation."""
     monkeypatch.setattr(validating, "FIRST_MERGE_STEP", steps)
     monkeypatch.setattr(validating, "MIN_MERGED_STARTS", 0)
-    monkeypatch.setattr(validating, "CHUNK", most)
+    monkeypatch.setattr(validating, "MAX_CHUNK_RUNS", most)
 
 
 @pytest.mark.parametrize("seed", range(12))

@@ -13,20 +13,20 @@ from sysmlc.logic.formula import Const, negate
 from sysmlc.synthesis import Manager, make_game
 from sysmlc.synthesis.controller_synthesis import Form, made
 from sysmlc.synthesis.controllers.mealy import Machine
-from sysmlc.synthesis.controllers.strategy import strategy
-from sysmlc.synthesis.controllers.verification import faults
-from sysmlc.synthesis.games.arena import plain
-from sysmlc.synthesis.games.command_elimination import shifted
+from sysmlc.synthesis.controllers.strategy import extract_strategy
+from sysmlc.synthesis.controllers.verification import find_faults
+from sysmlc.synthesis.games.arena import build_plain_arena
+from sysmlc.synthesis.games.command_elimination import eliminate_commands
 from sysmlc.synthesis.games.solver import solve_arena
-from sysmlc.synthesis.games.variable_elimination import without_derived
+from sysmlc.synthesis.games.variable_elimination import eliminate_determined_variables
 
 
 def planned(contract, engine="", is_encoded=True):
     """The game and its strategy, or None when there is none."""
     game = make_game(contract, Manager(engine))
-    game = without_derived(game) if is_encoded else game
-    solution = solve_arena(shifted(game) if is_encoded else plain(game))
-    return (game, strategy(game, solution)) if solution.is_realizable else None
+    game = eliminate_determined_variables(game) if is_encoded else game
+    solution = solve_arena(eliminate_commands(game) if is_encoded else build_plain_arena(game))
+    return (game, extract_strategy(game, solution)) if solution.is_realizable else None
 
 
 def controller(contract, form=Form.ANY, engine="", is_encoded=True):
@@ -37,7 +37,7 @@ def controller(contract, form=Form.ANY, engine="", is_encoded=True):
 
 def said(machine, contract):
     """What the check says: conjuncts by their formula, and where there is no answer."""
-    return list(faults(machine, contract, Manager()))
+    return list(find_faults(machine, contract, Manager()))
 
 
 def play(contract, answer, length, seed):

@@ -22,9 +22,9 @@ from sysmlc.logic.contract import (
 )
 from sysmlc.logic.formula import Const, Formula, Op, Var, compare
 from sysmlc.synthesis import Manager, make_game, solve
-from sysmlc.synthesis.games.command_elimination import shifted
+from sysmlc.synthesis.games.command_elimination import eliminate_commands
 from sysmlc.synthesis.games.solver import solve_arena
-from sysmlc.synthesis.games.variable_elimination import without_derived
+from sysmlc.synthesis.games.variable_elimination import eliminate_determined_variables
 
 DOMAINS = (
     BooleanDomain(),
@@ -182,7 +182,7 @@ def encoded_disagreement(made: Contract, engine: str = "") -> str:
 
 
 def encoded(made: Contract, engine: str = ""):
-    return shifted(without_derived(make_game(made, Manager(engine))))
+    return eliminate_commands(eliminate_determined_variables(make_game(made, Manager(engine))))
 
 
 if __name__ == "__main__":

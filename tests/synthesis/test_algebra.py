@@ -21,7 +21,7 @@ from sysmlc.synthesis.algebra.refinement import (
     find_environment_run,
     find_refinement_failures,
 )
-from sysmlc.synthesis.algebra.traces import lasso, one
+from sysmlc.synthesis.algebra.traces import build_lasso, pick_state
 
 DOOR = """
     env open: bool
@@ -116,7 +116,7 @@ def test_answers_and_runs_agree_with_listed_states(start):
     for seed in range(start, start + 20):
         for made, given, wanted, asked in entailments(seed):
             listed = Listed(made.variables, given)
-            trace = asked.violation(wanted)
+            trace = asked.find_violation(wanted)
             assert (trace is not None) == listed.is_violated(wanted), (seed, wanted)
             assert asked.is_possible == listed.is_possible(), (seed, wanted)
             if trace is not None:
@@ -126,7 +126,7 @@ def test_answers_and_runs_agree_with_listed_states(start):
 
 def test_the_random_questions_have_both_answers():
     answers = {
-        (w.class_, a.violation(w) is None) for s in range(60) for _, _, w, a in entailments(s)
+        (w.class_, a.find_violation(w) is None) for s in range(60) for _, _, w, a in entailments(s)
     }
     assert answers == {(c, t) for c in (Class.INIT, Class.SAFETY, Class.LIVENESS) for t in (0, 1)}
 
@@ -145,8 +145,8 @@ def wanted(lines):
 
 def test_what_is_wanted_at_first_is_looked_for_at_first_only():
     turns = asked("sys x: 0..1\npromise at first x=0\npromise always x'=1-x")
-    assert turns.violation(wanted("sys x: 0..1\npromise at first x=0")) is None
-    assert turns.violation(wanted("sys x: 0..1\npromise at first x=1")) is not None
+    assert turns.find_violation(wanted("sys x: 0..1\npromise at first x=0")) is None
+    assert turns.find_violation(wanted("sys x: 0..1\npromise at first x=1")) is not None
 
 
 DEAD_END = "sys a: bool\nsys b: bool\npromise always a & a'"
@@ -160,14 +160,14 @@ def test_an_example_begins_where_a_run_goes_on():
 
 def test_a_way_that_no_run_goes_on_from_is_no_violation():
     never = asked(DEAD_END)
-    assert never.violation(wanted("sys a: bool\nsys b: bool\npromise at first a")) is None
-    assert never.violation(wanted("sys a: bool\nsys b: bool\npromise always a'")) is None
+    assert never.find_violation(wanted("sys a: bool\nsys b: bool\npromise at first a")) is None
+    assert never.find_violation(wanted("sys a: bool\nsys b: bool\npromise always a'")) is None
 
 
 def test_from_what_has_no_run_none_is_shown():
     runs = asked(DEAD_END).runs
     with pytest.raises(ValueError, match="no fair run"):
-        lasso(runs, [one(runs, runs.system.init & ~runs.fair)], runs.fair)
+        build_lasso(runs, [pick_state(runs, runs.system.init & ~runs.fair)], runs.fair)
 
 
 PAIRS = {

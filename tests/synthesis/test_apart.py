@@ -11,7 +11,7 @@ from sysmlc.synthesis.controllers.independent_games import (
     combine_independent_strategies,
     split_game,
 )
-from sysmlc.synthesis.controllers.table import tabled
+from sysmlc.synthesis.controllers.table import build_table
 
 LAMP = """
 env ask: bool
@@ -34,7 +34,7 @@ BOTH = LAMP + DOOR
 def made(text):
     """The table of the games of a contract."""
     plan = combine_independent_strategies(make_game(contract(text), Manager()))
-    return plan and tabled(plan)
+    return plan and build_table(plan)
 
 
 def broken(table, text):

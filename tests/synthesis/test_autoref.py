@@ -12,7 +12,7 @@ from sysmlc.synthesis.deadline import deadline
 from sysmlc.synthesis.decision import Options, decide
 from sysmlc.synthesis.games import search_reductions as reach
 from sysmlc.synthesis.games import single_moves as routes
-from sysmlc.synthesis.games.solver import by_single_moves
+from sysmlc.synthesis.games.solver import solve_by_single_moves
 from sysmlc.synthesis.unrealizable.core import unrealizable_core
 
 PURE = Options(engine="autoref")
@@ -26,7 +26,7 @@ def verdict(text: str) -> bool | None:
 
 @pytest.mark.parametrize("kind", [small_games.contract, small_games.plant, fleet])
 def test_random_games_have_the_verdict_of_listed_states(kind, monkeypatch):
-    monkeypatch.setattr(routes, "FEWEST", 2)
+    monkeypatch.setattr(routes, "MIN_COMPONENTS", 2)
     found = [small_games.encoded_disagreement(kind(seed), "autoref") for seed in range(25)]
     assert [text for text in found if text] == []
 
@@ -39,7 +39,9 @@ def test_so_they_have_within_reached_states(kind, monkeypatch):
 
 
 def test_single_moves_are_found():
-    found = by_single_moves(small_games.encoded(contract(LIFTS.replace("!=3", "!=2")), "autoref"))
+    found = solve_by_single_moves(
+        small_games.encoded(contract(LIFTS.replace("!=3", "!=2")), "autoref")
+    )
     assert found is not None
 
 

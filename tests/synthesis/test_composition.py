@@ -5,9 +5,9 @@ from contracts_in_lines import contract
 
 from sysmlc.logic.contract import Composite, Part
 from sysmlc.synthesis import Manager
-from sysmlc.synthesis.algebra.composition import DriverError, composition
+from sysmlc.synthesis.algebra.composition import DriverError, compose_parts
 from sysmlc.synthesis.algebra.fair_systems import Universe
-from sysmlc.synthesis.algebra.instantaneous_dependencies import links
+from sysmlc.synthesis.algebra.instantaneous_dependencies import find_dependencies
 
 FEEDER = """
     env taken: bool
@@ -30,7 +30,7 @@ OTHERS = {"feeder": FEEDER, "picker": PICKER}
 def composed(whole="", **parts):
     made = tuple(Part(name, contract(text, name), name) for name, text in parts.items())
     stated = contract(whole) if whole else None
-    return composition(Composite("Cell", "", made, (), stated), Manager())
+    return compose_parts(Composite("Cell", "", made, (), stated), Manager())
 
 
 def open_ones(found):
@@ -135,7 +135,7 @@ def test_not_when_both_read_in_the_step_what_the_other_writes():
 def read_at_once(text):
     """The inputs that have a say in the outputs of each step after the first one."""
     made = contract(text)
-    found = links(made, Universe((made,), Manager()))
+    found = find_dependencies(made, Universe((made,), Manager()))
     return [(sorted(one.outputs), sorted(one.inputs)) for one in found if not one.is_first]
 
 

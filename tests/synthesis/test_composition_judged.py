@@ -9,7 +9,7 @@ from listed_runs import Listed
 from sysmlc.logic.contract import Class, Composite, Contract, Part
 from sysmlc.logic.evaluate import evaluation
 from sysmlc.synthesis import Manager
-from sysmlc.synthesis.algebra.composition import composition
+from sysmlc.synthesis.algebra.composition import compose_parts
 
 NAMES = ("x", "y", "e")
 TRIED = 60
@@ -50,9 +50,9 @@ def pair(seed):
 def told(parts):
     """Every condition of the parts, and whether it is said to hold in every run."""
     every = tuple(c for one in parts for c in (*one.contract.assumptions, *one.contract.guarantees))
-    outside = composition(Composite("c", "", parts), Manager()).contract
+    outside = compose_parts(Composite("c", "", parts), Manager()).contract
     whole = Contract("c", "", outside.variables, outside.assumptions, every)
-    found = composition(Composite("c", "", parts, (), whole), Manager())
+    found = compose_parts(Composite("c", "", parts, (), whole), Manager())
     failed = every if found.conflict else [one.conjunct for one in found.failures]
     return outside, {one: one not in failed for one in every}
 

@@ -98,9 +98,9 @@ def losing(seed):
     except NotLostError:
         return made, None
     state, fair, given, steps, marks = None, 0, playing.first, [], {}
-    decode = playing.lost.arena.symbols.decode
+    decode = playing.lost_game.arena.symbols.decode
     while True:
-        answers = list(playing.answers(state, given))
+        answers = list(playing.iter_answers(state, given))
         if not answers:
             return made, ([*steps, decode(given)], None)
         state = {**given, **die.choice(answers)}
@@ -109,7 +109,7 @@ def losing(seed):
         if key in marks and len(steps) > 60:
             return made, (steps, marks[key])
         marks[key] = len(steps)
-        given, fair = playing.next(state, fair)
+        given, fair = playing.next_inputs(state, fair)
 
 
 @pytest.mark.parametrize("start", range(0, 300, 50))
@@ -164,7 +164,7 @@ def test_in_every_loop_of_the_machine_all_assumptions_recur_and_one_goal_does_no
 def test_a_machine_beyond_the_limit_is_none():
     made = contract(LAMP)
     with pytest.raises(LimitError, match="answers of the system"):
-        build_counterstrategy(environment(made), made, most=0)
+        build_counterstrategy(environment(made), made, max_moves=0)
 
 
 def played(text, *answers):

@@ -6,8 +6,8 @@ from contracts_in_lines import contract
 
 from sysmlc.logic.contract import Owner
 from sysmlc.synthesis import Manager, make_game
-from sysmlc.synthesis.games.command_elimination import shifted
-from sysmlc.synthesis.games.variable_elimination import without_derived
+from sysmlc.synthesis.games.command_elimination import eliminate_commands
+from sysmlc.synthesis.games.variable_elimination import eliminate_determined_variables
 
 SUITE = 500
 ROBOT = """
@@ -62,14 +62,16 @@ def moved(arena, name: str) -> bool:
 
 
 def test_inputs_that_follow_from_others_leave_the_game():
-    game = without_derived(make_game(contract(ROBOT), Manager()))
+    game = eliminate_determined_variables(make_game(contract(ROBOT), Manager()))
     assert game.names(Owner.ENVIRONMENT) == ("pos", "target")
     left = game.definitions["left"]["left.0"]
     assert all((game.symbols.encode({"pos": pos}) <= left) == (pos != 0) for pos in range(3))
 
 
 def test_the_command_is_the_chosen_step():
-    arena = shifted(without_derived(make_game(contract(ROBOT), Manager())))
+    arena = eliminate_commands(
+        eliminate_determined_variables(make_game(contract(ROBOT), Manager()))
+    )
     assert [(turn.owner.value, turn.bits) for turn in arena.turns] == [
         ("sys", ("pos.0'", "pos.1'")),
         ("env", ("target.0'", "target.1'")),
@@ -87,7 +89,7 @@ def test_the_command_is_the_chosen_step():
     ],
 )
 def test_a_command_stays_in_the_state_when(line, why):
-    arena = shifted(make_game(contract(f"{ROBOT}\n{line}"), Manager()))
+    arena = eliminate_commands(make_game(contract(f"{ROBOT}\n{line}"), Manager()))
     assert len(arena.turns) == 2, why
 
 
@@ -101,10 +103,12 @@ def test_a_command_stays_in_the_state_when(line, why):
 )
 def test_an_input_with_a_choice_stays(old, new):
     text = ROBOT.replace(f"assume {old}", f"assume {new}").replace(old, new)
-    assert "left" in without_derived(make_game(contract(text), Manager())).names(Owner.ENVIRONMENT)
+    assert "left" in eliminate_determined_variables(make_game(contract(text), Manager())).names(
+        Owner.ENVIRONMENT
+    )
 
 
 def test_a_plant_with_a_choice_stays_with_the_environment():
     text = ROBOT.replace("command=stay -> pos'=pos", "command=stay -> pos'<=pos")
-    arena = shifted(without_derived(make_game(contract(text), Manager())))
+    arena = eliminate_commands(eliminate_determined_variables(make_game(contract(text), Manager())))
     assert not moved(arena, "pos")

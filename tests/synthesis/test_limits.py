@@ -151,7 +151,7 @@ def test_an_unknown_library_is_left_alone() -> None:
 
     library = SimpleNamespace(__file__="no library.so")
 
-    assert not inside.watch(library, Other(), Other())  # type: ignore[arg-type]
+    assert not inside.install_termination_callback(library, Other(), Other())  # type: ignore[arg-type]
 
 
 def test_what_was_given_up_leaves_no_circle_behind(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -13,15 +13,15 @@ from sysmlc.diagnostics import Sink, Subject
 from sysmlc.support import resources
 from sysmlc.synthesis import LimitError
 from sysmlc.synthesis import controller_synthesis as synthesise
+from sysmlc.synthesis.controller_files import FORMS, write_controllers
 from sysmlc.synthesis.controller_synthesis import Form, synthesised
-from sysmlc.synthesis.controllers import controller_files as gr1c_text
-from sysmlc.synthesis.controllers import controller_files as table_text
-from sysmlc.synthesis.controllers.controller_files import (
-    FORMS,
+from sysmlc.synthesis.controllers import controller_formats
+from sysmlc.synthesis.controllers.controller_formats import (
+    gr1c_json,
     has_diagram,
     machine_diagram,
     machine_json,
-    write_controllers,
+    table_json,
 )
 from sysmlc.synthesis.controllers.verification import Fault
 from sysmlc.synthesis.decision import Options
@@ -100,7 +100,7 @@ def test_a_register_gives_way_to_a_variable_of_its_name():
 
 def test_a_table_as_json():
     table = machines.controller(LAMP, Form.TABLE)
-    read = json.loads(table_text.table_json(table, LAMP))
+    read = json.loads(table_json(table, LAMP))
     jsonschema.validate(read, TABLE)
     assert read["bits"] == [
         {"variable": "lamp", "bit": 0, "step": "before"},
@@ -127,11 +127,11 @@ def test_json_of_random_controllers_is_valid():
         if machine := machines.controller(contract):
             jsonschema.validate(json.loads(machine_json(machine, contract)), MACHINE)
             table = machines.controller(contract, Form.TABLE)
-            jsonschema.validate(json.loads(table_text.table_json(table, contract)), TABLE)
+            jsonschema.validate(json.loads(table_json(table, contract)), TABLE)
 
 
 def test_gr1c_lists_steps_with_the_ones_that_may_follow():
-    read = json.loads(gr1c_text.gr1c_json(machines.controller(LAMP), LAMP))
+    read = json.loads(gr1c_json(machines.controller(LAMP), LAMP))
     assert read["version"] == 1
     assert read["ENV"] == [{"press": "boolean"}, {"dark": "boolean"}]
     assert read["SYS"] == [{"lamp": [0, 1]}]
@@ -151,7 +151,7 @@ def test_gr1c_lists_only_what_the_assumptions_allow():
         controller = machines.controller(told)
         if controller is None:
             continue
-        nodes = json.loads(gr1c_text.gr1c_json(controller, told))["nodes"]
+        nodes = json.loads(gr1c_json(controller, told))["nodes"]
         judge = machines.Closed(controller, told)
         assert len(nodes) == len(judge.graph)
         assert sum(len(node["trans"]) for node in nodes.values()) == judge.graph.size()
@@ -159,10 +159,7 @@ def test_gr1c_lists_only_what_the_assumptions_allow():
 
 
 def test_gr1c_of_a_table_is_that_of_the_machine():
-    texts = [
-        gr1c_text.gr1c_json(machines.controller(LAMP, form), LAMP)
-        for form in (Form.ANY, Form.TABLE)
-    ]
+    texts = [gr1c_json(machines.controller(LAMP, form), LAMP) for form in (Form.ANY, Form.TABLE)]
     nodes = [json.loads(text)["nodes"] for text in texts]
     assert len({len(one) for one in nodes}) == 1
 
@@ -170,11 +167,11 @@ def test_gr1c_of_a_table_is_that_of_the_machine():
 def test_what_is_too_large_for_gr1c_is_said():
     machine = machines.controller(COUNTER)
     with pytest.raises(LimitError, match="the limit of 10 steps of the strategy"):
-        gr1c_text.gr1c_json(machine, COUNTER, most=10)
+        gr1c_json(machine, COUNTER, most=10)
 
 
 def test_a_form_that_cannot_say_a_controller_is_told(monkeypatch):
-    monkeypatch.setattr(gr1c_text, "gr1c_json", partial(gr1c_text.gr1c_json, most=10))
+    monkeypatch.setattr(controller_formats, "gr1c_json", partial(gr1c_json, most=10))
     result, _ = made(COUNTER)
     sink = Sink()
     told = write_controllers([result], lambda origin: Subject(), sink, "gr1c")
@@ -252,7 +249,7 @@ def test_history_bits_are_outputs_of_the_machine():
 
 def test_a_machine_that_fails_the_check_is_none(monkeypatch):
     fault = Fault(LAMP.guarantees[0])
-    monkeypatch.setattr(synthesise, "faults", lambda *_: iter([fault]))
+    monkeypatch.setattr(synthesise, "find_faults", lambda *_: iter([fault]))
     result, (told,) = made(LAMP)
     assert [result.machine, result.exit_code, told.rule.code] == [None, 2, "SM543"]
     assert told.message == (
@@ -262,16 +259,16 @@ def test_a_machine_that_fails_the_check_is_none(monkeypatch):
 
 
 def test_a_controller_beyond_limits_is_none(monkeypatch):
-    tabled = synthesise.tabled
-    monkeypatch.setattr(synthesise, "tabled", lambda one: tabled(one, 2))
+    tabled = synthesise.build_table
+    monkeypatch.setattr(synthesise, "build_table", lambda one: tabled(one, 2))
     result, (told,) = made(COUNTER, Form.TABLE)
     assert result.machine is None
     assert told.message.endswith("the limit of 2 nodes of the controller was reached")
 
 
 def test_a_machine_that_cannot_be_listed_is_a_table(monkeypatch):
-    listed = synthesise.listed
-    monkeypatch.setattr(synthesise, "listed", lambda *given: listed(*given, most_states=1))
+    enumerate_states = partial(synthesise.enumerate_states, most_states=1)
+    monkeypatch.setattr(synthesise, "enumerate_states", enumerate_states)
     result, told = made(LAMP)
     assert told == []
     assert "; controller: " in result.text()

@@ -3,7 +3,7 @@
 from contracts_in_lines import contract
 
 from sysmlc.synthesis import Manager, Symbols, make_game, solve
-from sysmlc.synthesis.bdd.variable_order import laid
+from sysmlc.synthesis.bdd.variable_order import order_by_force
 
 
 def order(text: str) -> list[str]:
@@ -28,12 +28,12 @@ def test_few_numbers_and_other_variables_stay_as_declared():
 def test_in_a_crowd_what_is_spoken_of_together_is_close():
     names = [f"{kind}{number}" for kind in ("run", "done") for number in range(30)]
     pairs = [(f"run{number}", f"done{number}") for number in range(30)]
-    found = laid(names, pairs)
+    found = order_by_force(names, pairs)
     assert all(abs(found.index(one) - found.index(other)) == 1 for one, other in pairs)
 
 
 def test_what_nothing_is_said_of_stays_where_it_is():
-    assert laid(["a", "b", "c"], []) == ("a", "b", "c")
+    assert order_by_force(["a", "b", "c"], []) == ("a", "b", "c")
 
 
 def test_the_order_of_a_crowd_is_that_of_its_conjuncts():

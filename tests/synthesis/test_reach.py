@@ -7,7 +7,7 @@ from explicit import Explicit
 
 from sysmlc.synthesis import Manager, make_game
 from sysmlc.synthesis.games import search_reductions as reach
-from sysmlc.synthesis.games.arena import Steps, plain
+from sysmlc.synthesis.games.arena import PredecessorOperator, build_plain_arena
 from sysmlc.synthesis.games.solver import solve_arena
 
 GAMES = 200
@@ -28,7 +28,7 @@ def tokens(count: int, more: str = "") -> str:
 
 
 def arena(text: str):
-    return plain(make_game(contract(text), Manager()))
+    return build_plain_arena(make_game(contract(text), Manager()))
 
 
 def test_the_token_is_in_one_place():
@@ -65,7 +65,7 @@ def test_no_turn_leads_out_of_the_reached_states(monkeypatch):
     for seed in range(60):
         listed = Explicit(small_games.contract(seed))
         game = make_game(small_games.contract(seed), Manager())
-        reached = reach.find_reachable_states(plain(game))
+        reached = reach.find_reachable_states(build_plain_arena(game))
         inside = {s for s in listed.states if game.symbols.encode(listed.value[s]) <= reached}
         after = {one for s in inside for found in listed.moves[s].values() for one in found}
         assert after <= inside
@@ -75,5 +75,8 @@ def test_steps_within_states_are_right_in_them():
     found = arena(tokens(50))
     reached = reach.find_reachable_states(found)
     goal = found.goals[0] & reached
-    inside, everywhere = Steps(found, reached), Steps(found)
-    assert inside.controllable(goal) & reached == everywhere.controllable(goal) & reached
+    inside, everywhere = PredecessorOperator(found, reached), PredecessorOperator(found)
+    assert (
+        inside.controllable_predecessors(goal) & reached
+        == everywhere.controllable_predecessors(goal) & reached
+    )

@@ -18,7 +18,7 @@ from sysmlc.logic.contract import (
 )
 from sysmlc.logic.formula import Var
 from sysmlc.synthesis.games import single_moves as routes
-from sysmlc.synthesis.games.solver import by_single_moves, solve_arena
+from sysmlc.synthesis.games.solver import solve_arena, solve_by_single_moves
 
 FLEETS = 150
 LIFT = """
@@ -44,8 +44,12 @@ def arena(text: str):
 def moving(text: str) -> list[list[str]]:
     """The numbers that change in each of the ways."""
     found = arena(text)
-    ways = routes.routes(found)
-    return [[name for name in "abc" if f"{name}.0" in bits] for bits in ways.moving] if ways else []
+    ways = routes.find_single_moves(found)
+    return (
+        [[name for name in "abc" if f"{name}.0" in bits] for bits in ways.moving_bits]
+        if ways
+        else []
+    )
 
 
 def test_each_number_moves_alone():
@@ -67,7 +71,7 @@ def test_rules_about_two_that_leave_one_free_to_move_tie_nothing(line):
 def test_what_cannot_move_without_another_moves_with_it(monkeypatch):
     tied = f"{LIFTS}\npromise always move_a'=move_b'"
     assert moving(tied) == []
-    monkeypatch.setattr(routes, "FEWEST", 2)
+    monkeypatch.setattr(routes, "MIN_COMPONENTS", 2)
     assert moving(tied) == [["c"], ["a", "b"]]
 
 
@@ -93,33 +97,33 @@ def test_where_nothing_has_to_be_reached_there_are_none():
 
 def test_what_needs_two_moves_at_once_is_found_with_all_moves():
     together = arena(f"{LIFTS}\nassume at first a=0 & b=0\npromise always a=b")
-    assert by_single_moves(together) is None
+    assert solve_by_single_moves(together) is None
     assert solve_arena(together, is_complete=False).is_realizable
 
 
 def test_what_is_won_by_single_moves_is_won():
-    found = by_single_moves(arena(f"{LIFTS}\nassume at first b=0\npromise always a=0 -> b=0"))
+    found = solve_by_single_moves(arena(f"{LIFTS}\nassume at first b=0\npromise always a=0 -> b=0"))
     assert found is not None
     assert found.is_realizable
 
 
 def test_what_no_move_wins_is_lost():
     lost = arena(f"{LIFTS}\npromise always a!=3")
-    assert by_single_moves(lost) is None
+    assert solve_by_single_moves(lost) is None
     assert not solve_arena(lost, is_complete=False).is_realizable
 
 
 def test_random_fleets_are_of_all_kinds(monkeypatch):
-    monkeypatch.setattr(routes, "FEWEST", 2)
+    monkeypatch.setattr(routes, "MIN_COMPONENTS", 2)
     arenas = [small_games.encoded(fleet(seed)) for seed in range(FLEETS)]
-    apart = [one for one in arenas if routes.routes(one)]
-    won = sum(by_single_moves(one) is not None for one in apart)
+    apart = [one for one in arenas if routes.find_single_moves(one)]
+    won = sum(solve_by_single_moves(one) is not None for one in apart)
     assert [len(apart) > 50, won > 10, won < len(apart) - 10] == [True, True, True]
 
 
 @pytest.mark.parametrize("start", range(0, FLEETS, 50))
 def test_the_verdict_on_random_fleets_is_that_of_listed_states(start, monkeypatch):
-    monkeypatch.setattr(routes, "FEWEST", 2)
+    monkeypatch.setattr(routes, "MIN_COMPONENTS", 2)
     found = [small_games.encoded_disagreement(fleet(seed)) for seed in range(start, start + 50)]
     assert [text for text in found if text] == []
 

@@ -15,14 +15,14 @@ from sysmlc.synthesis import LimitError, Manager, make_game, solve
 from sysmlc.synthesis import controller_synthesis as synthesise
 from sysmlc.synthesis.bdd.limits import TooLargeError
 from sysmlc.synthesis.controller_synthesis import Form
-from sysmlc.synthesis.controllers.conditions import machine as written
-from sysmlc.synthesis.controllers.explicit_states import listed
+from sysmlc.synthesis.controllers.conditions import build_machine as written
+from sysmlc.synthesis.controllers.explicit_states import enumerate_states
 from sysmlc.synthesis.controllers.mealy import Move
-from sysmlc.synthesis.controllers.minimisation import minimised
-from sysmlc.synthesis.controllers.strategy import strategy
-from sysmlc.synthesis.controllers.strategy_memory import reached, registers
+from sysmlc.synthesis.controllers.minimisation import minimise
+from sysmlc.synthesis.controllers.strategy import extract_strategy
+from sysmlc.synthesis.controllers.strategy_memory import choose_registers, explore_strategy
 from sysmlc.synthesis.controllers.table import rebuild_in_variable_order
-from sysmlc.synthesis.games.arena import nodes
+from sysmlc.synthesis.games.arena import nodes_of
 
 SUITE = 200
 KINDS = [small_games.contract, small_games.plant]
@@ -88,8 +88,8 @@ def realizable(kind, seeds, form=Form.ANY, is_encoded=True):
 def drafted(made, **limits):
     """The draft of a contract's machine, not minimised."""
     game, plan = machines.planned(made)
-    found = reached(plan, nodes(game.init_assumptions), nodes(game.assumptions))
-    return listed(found, registers(found), **limits)
+    found = explore_strategy(plan, nodes_of(game.init_assumptions), nodes_of(game.assumptions))
+    return enumerate_states(found, choose_registers(found), **limits)
 
 
 def test_a_controller_answers_step_by_step():
@@ -112,7 +112,7 @@ def test_goals_take_turns_and_waiting_is_for_what_recurs(form):
 def test_a_lost_game_has_no_strategy():
     lost = make_game(contract("env a: bool\nsys x: bool\npromise always x <-> a'"), Manager())
     with pytest.raises(ValueError, match="was won"):
-        strategy(lost, solve(lost))
+        extract_strategy(lost, solve(lost))
 
 
 @pytest.mark.parametrize("start", range(0, SUITE, 50))
@@ -214,7 +214,7 @@ def test_too_many_states_moves_or_conditions_are_said():
     with pytest.raises(TooLargeError, match="the limit of 5 moves of the machine"):
         drafted(door, most_moves=5)
     with pytest.raises(TooLargeError, match="the limit of 4 cases in the conditions"):
-        written(minimised(drafted(door)), door, most=4)
+        written(minimise(drafted(door)), door, most=4)
 
 
 def test_states_that_no_allowed_input_tells_apart_are_one():
@@ -224,7 +224,7 @@ def test_states_that_no_allowed_input_tells_apart_are_one():
 
 def test_what_time_does_not_suffice_to_join_stays_apart():
     made = contract(TURNS)
-    hasty = written(minimised(drafted(made), most=0), made)
+    hasty = written(minimise(drafted(made), max_comparisons=0), made)
     assert hasty.size > machines.controller(made).size
     assert machines.said(hasty, made) == []
 

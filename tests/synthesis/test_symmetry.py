@@ -11,7 +11,7 @@ from sysmlc.logic import formula as f
 from sysmlc.logic.contract import BooleanDomain, Class, Conjunct, Contract, Owner, Variable
 from sysmlc.logic.formula import Apply, Formula, Var
 from sysmlc.synthesis import Manager, make_game
-from sysmlc.synthesis.games.arena import plain
+from sysmlc.synthesis.games.arena import build_plain_arena
 from sysmlc.synthesis.games.search_reductions import group_symmetric_goals
 from sysmlc.synthesis.games.solver import solve_arena
 
@@ -33,7 +33,7 @@ NAMES = {"a": "b", "b": "a", "x": "y", "y": "x"}
 
 def kinds(text: str) -> list[int]:
     """How many goals there are of each kind."""
-    arena = plain(make_game(contract(text), Manager()))
+    arena = build_plain_arena(make_game(contract(text), Manager()))
     return [1 + len(exchanges) for exchanges in group_symmetric_goals(arena).values()]
 
 
@@ -97,7 +97,7 @@ def test_the_verdict_on_random_twins_is_that_of_listed_states():
     wrong, alike = [], 0
     for seed in range(150):
         made = twins(seed)
-        arena = plain(make_game(made, Manager()))
+        arena = build_plain_arena(make_game(made, Manager()))
         alike += any(group_symmetric_goals(arena).values())
         verdict = solve_arena(arena, is_complete=False).is_realizable
         if verdict != Explicit(made).is_realizable():

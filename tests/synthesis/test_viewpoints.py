@@ -8,7 +8,7 @@ from msgspec.structs import replace
 from sysmlc.logic.contract import Contract
 from sysmlc.synthesis import Manager, OutsideGr1Error
 from sysmlc.synthesis.algebra.refinement import find_refinement_failures
-from sysmlc.synthesis.algebra.viewpoints import conjunction, viewpoints
+from sysmlc.synthesis.algebra.viewpoints import conjoin_viewpoints, list_viewpoints
 
 VARIABLES = "env power: bool\nenv door: bool\nsys lit: bool\n"
 POWERED = "assume always power'\nassume at first power\npromise always lit' -> power'"
@@ -33,13 +33,13 @@ def together(**sides):
 
 def alone(whole, name):
     """The contract of one viewpoint."""
-    view = next(one for one in viewpoints(whole) if one.name == name)
+    view = next(one for one in list_viewpoints(whole) if one.name == name)
     return replace(whole, assumptions=view.assumptions, guarantees=view.guarantees)
 
 
 def test_a_conjunction_refines_every_viewpoint():
     whole = together(powered=POWERED, shines=SHINES)
-    made = conjunction(whole)
+    made = conjoin_viewpoints(whole)
     for name in ("powered", "shines"):
         assert list(find_refinement_failures(made, alone(whole, name), Manager())) == []
 
@@ -54,18 +54,18 @@ def test_what_only_holds_with_the_assumptions_of_another_cannot_be_kept_in_conju
     strict = f"promise always lit' -> power'\n{SHINES}"
     whole = together(powered=POWERED, shines=strict)
     assert Explicit(whole).is_realizable()
-    assert not Explicit(conjunction(whole)).is_realizable()
-    assert Explicit(conjunction(together(powered=POWERED, shines=SHINES))).is_realizable()
+    assert not Explicit(conjoin_viewpoints(whole)).is_realizable()
+    assert Explicit(conjoin_viewpoints(together(powered=POWERED, shines=SHINES))).is_realizable()
 
 
 def test_viewpoints_that_assume_the_same_are_one_contract():
     whole = together(powered=POWERED, again=POWERED)
-    assert conjunction(whole) is whole
+    assert conjoin_viewpoints(whole) is whole
 
 
 def test_what_recurs_for_one_viewpoint_recurs_in_the_conjunction():
     whole = together(powered=f"{POWERED}\nassume recurs door\npromise recurs lit", shines=SHINES)
-    made = conjunction(whole)
+    made = conjoin_viewpoints(whole)
     assert [one.text for one in made.assumptions] == ["door"]
     assert [one.name for one in made.variables][-1] == "broken"
 
@@ -76,4 +76,4 @@ def test_different_recurrences_are_more_than_gr1():
         shines="assume recurs door\npromise recurs !lit",
     )
     with pytest.raises(OutsideGr1Error, match="more than GR"):
-        conjunction(whole)
+        conjoin_viewpoints(whole)

@@ -161,8 +161,8 @@ def _synthesised(
 ) -> int:
     from sysmlc.cli.contract_files import chosen
     from sysmlc.cli.result_files import write_files
+    from sysmlc.synthesis.controller_files import TABLE, write_controllers
     from sysmlc.synthesis.controller_synthesis import Form, synthesised
-    from sysmlc.synthesis.controllers.controller_files import TABLE, write_controllers
 
     contracts = chosen(read.contracts, component) if read.contracts else ()
     kind = Form.TABLE if form == TABLE else Form.ANY

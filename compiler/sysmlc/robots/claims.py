@@ -156,7 +156,7 @@ def _find_undischarged(
         universe = Universe((environment, robot), manager)
         runs = Entailment(universe, universe.system(given))
         for conjunct in (*asked, *open_):
-            trace = runs.violation(conjunct)
+            trace = runs.find_violation(conjunct)
             if trace is not None:
                 return conjunct, trace
     return None
@@ -180,7 +180,7 @@ def _decide_whole(study: Study, claim: str, new_manager: ManagerFactory) -> Clai
 
 
 def _decide_travel_time(study: Study, claim: str, new_manager: ManagerFactory) -> Claim:
-    run = JointProof(study, new_manager).endless()
+    run = JointProof(study, new_manager).find_endless_travel()
     if run is None:
         return Claim(claim, True)
     reason = f"'{study.robots[0].name}' may go on like that for any time"

@@ -37,7 +37,7 @@ def encode_controller(made: Controller) -> EncodedController:
     return names | {
         "bits": [[one.variable, one.place, one.is_before] for one in made.bits],
         "nodes": made.nodes,
-        "entries": [[one.outputs, one.onward] for one in (made.first, *made.modes)],
+        "entries": [[one.outputs, one.successors] for one in (made.first, *made.modes)],
     }
 
 

@@ -27,7 +27,7 @@ from sysmlc.robots.study import Robot, Study
 from sysmlc.synthesis.algebra.discharge import Recurrence
 from sysmlc.synthesis.algebra.fair_systems import Runs, Universe
 from sysmlc.synthesis.algebra.refinement import Entailment
-from sysmlc.synthesis.algebra.traces import Trace, lasso, shortest
+from sysmlc.synthesis.algebra.traces import Trace, build_lasso, shortest_path
 from sysmlc.synthesis.bdd.manager import Manager
 
 
@@ -87,7 +87,7 @@ class JointProof:
                 return runs.system.init & broken == none
             if not has_primes(conjunct.formula):
                 return runs.reachable & broken == none
-            found = runs.before_by(runs.manager.true, broken)
+            found = runs.predecessors_by(runs.manager.true, broken)
             return found == none or runs.reachable & found == none
 
     def _alone(self, robots: tuple[Robot, ...]) -> tuple[Universe, Runs]:
@@ -105,7 +105,7 @@ class JointProof:
         not kept."""
         for few in self._groups(conjunct):
             group = _RobotGroup(replace(self.study, robots=few), self.new_manager())
-            run = group.violation(conjunct)
+            run = group.find_violation(conjunct)
             full = None if run is None else self._checked(few, run, conjunct)
             if full is not None:
                 return full
@@ -165,7 +165,7 @@ class JointProof:
 
     # -- how long it takes ---------------------------------------------------------------------
 
-    def endless(self) -> Trace | None:
+    def find_endless_travel(self) -> Trace | None:
         """Steps in which a robot may go on for any time without coming to its target; None when it
         is always there in a known time."""
         robot = self.study.robots[0]
@@ -180,7 +180,7 @@ class JointProof:
             found = runs.fair_within(runs.reachable & away)
             if found == manager.false:
                 return None
-            run = lasso(runs, shortest(runs, found), found)
+            run = build_lasso(runs, shortest_path(runs, found), found)
         return next(extend_to_all_robots(self.study, (robot,), run))
 
 
@@ -210,14 +210,14 @@ class _RobotGroup:
         with manager.guard():
             self.universe = Universe((contract,), manager)
 
-    def violation(self, conjunct: Conjunct) -> Trace | None:
+    def find_violation(self, conjunct: Conjunct) -> Trace | None:
         """A run in which robots are offered ways again and again, and reach their targets."""
         every = (
             one for part in self.joined.robots for one in (*part.assumptions, *part.guarantees)
         )
         with self.manager.guard():
             system = self.universe.system((*self.facts, *self.goals, *liveness_conjuncts(every)))
-            return Entailment(self.universe, system).violation(conjunct)
+            return Entailment(self.universe, system).find_violation(conjunct)
 
     def unoffered(self, conjunct: Conjunct, more: Sequence[Conjunct]) -> Trace | None:
         """A run in which all robots keep their contracts, and what is assumed does not recur."""
@@ -225,7 +225,7 @@ class _RobotGroup:
         parts = [Part(one.component, one, one.origin) for one in self.joined.robots]
         with self.manager.guard():
             runs = Runs(self.universe.system(facts))
-            return Recurrence(runs, parts, self.universe).violation(conjunct)
+            return Recurrence(runs, parts, self.universe).find_violation(conjunct)
 
 
 def _induction_obligations(conjunct: Conjunct) -> tuple[Conjunct, Conjunct]:

@@ -12,7 +12,7 @@ from sysmlc.robots.schedule import START, Schedule
 from sysmlc.robots.study import Study
 from sysmlc.support.escapes import escape_markdown
 from sysmlc.support.file_names import assign_file_names
-from sysmlc.synthesis.controllers.controller_files import controller_files
+from sysmlc.synthesis.controller_files import controller_files
 from sysmlc.synthesis.controllers.mealy import Machine
 
 

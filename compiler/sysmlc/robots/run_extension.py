@@ -26,11 +26,12 @@ Offers = Mapping[Robot, Set[str]]
 def extend_to_all_robots(
     study: Study, few: Sequence[Robot], run: Trace, is_exact: bool = False
 ) -> Iterator[Trace]:
-    """The run of a few robots with all others at rest, where these robots are in nobody's way.
+    """Extend a run of a few robots to all robots: the others rest in nobody's way.
 
-    First with a cell beside each of them that is always offered to it; then each is shown a way
-    in its turn, if one is free, in a loop that is as often as long. With ``is_exact`` all are shown
-    what is free. Where there is no room for them the run is none of all contracts (``violated_conjuncts``).
+    First each of the others is always offered a cell next to it. Then the others are offered a free
+    cell in turn, in a loop that is repeated for each of them. With *is_exact* they are offered
+    every free cell. If there is no room for them, the result violates a contract
+    (``violated_conjuncts``).
     """
     grid, others = study.grid, [one for one in study.robots if one not in few]
     used = {cell for step in run.steps for cell in _occupied_cells(grid, step, few)}

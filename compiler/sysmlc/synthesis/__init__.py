@@ -7,10 +7,11 @@
 from sysmlc.synthesis.bdd.limits import LimitError, Limits
 from sysmlc.synthesis.bdd.manager import Manager, Node
 from sysmlc.synthesis.bdd.symbols import SymbolError, Symbols
-from sysmlc.synthesis.games.game import Game, OutsideGr1Error, Part, make_game
+from sysmlc.synthesis.games.game import Constraint, Game, OutsideGr1Error, make_game
 from sysmlc.synthesis.games.solver import Layer, Solution, solve
 
 __all__ = [
+    "Constraint",
     "Game",
     "Layer",
     "LimitError",
@@ -18,7 +19,6 @@ __all__ = [
     "Manager",
     "Node",
     "OutsideGr1Error",
-    "Part",
     "Solution",
     "SymbolError",
     "Symbols",

@@ -10,8 +10,8 @@ from sysmlc.logic import formula as f
 from sysmlc.logic.contract import Composite, Conjunct, Contract
 from sysmlc.logic.printing import print_formula
 from sysmlc.support.disjoint_sets import DisjointSets
-from sysmlc.synthesis.algebra.composition import Composition, DriverError, composition
-from sysmlc.synthesis.algebra.discharge import Open
+from sysmlc.synthesis.algebra.composition import Composition, DriverError, compose_parts
+from sysmlc.synthesis.algebra.discharge import OpenAssumption
 from sysmlc.synthesis.algebra.fair_systems import DomainError
 from sysmlc.synthesis.algebra.traces import Trace
 from sysmlc.synthesis.bdd.limits import LimitError
@@ -81,7 +81,7 @@ def _compose(
     composite: Composite, place: Place, sink: Sink, options: Options
 ) -> Composition | None:
     try:
-        found = composition(composite, manager_factory(options)())
+        found = compose_parts(composite, manager_factory(options)())
     except (OutsideGr1Error, DomainError, DriverError, LimitError) as problem:
         subject, reason = place(composite.origin), describe_problem(problem)
         sink.report(NOT_COMPOSED, subject, component=composite.component, reason=reason)
@@ -109,14 +109,15 @@ def _unreliable(found: Composition) -> tuple[str, ...]:
 def _report_conflict(composite: Composite, found: Composition, place: Place, sink: Sink) -> None:
     names = {one: part.name for part in composite.parts for one in part.contract.guarantees}
     notes = (
-        f"{names.get(one, composite.component)}: '{print_formula(one.formula)}'{text_in_parentheses(one)}"
-        for one in found.conflict
+        f"{names.get(conjunct, composite.component)}: "
+        f"'{print_formula(conjunct.formula)}'{text_in_parentheses(conjunct)}"
+        for conjunct in found.conflict
     )
     subject = place(composite.origin)
     sink.report(CONTRADICT, subject, notes=tuple(notes), component=composite.component)
 
 
-def _report_open(composite: Composite, one: Open, place: Place, sink: Sink) -> None:
+def _report_open(composite: Composite, one: OpenAssumption, place: Place, sink: Sink) -> None:
     sink.report(
         CIRCLE if one.is_circular else OPEN,
         place(one.conjunct.origin or one.part.origin),

@@ -12,17 +12,17 @@ from sysmlc.synthesis import rules
 from sysmlc.synthesis.bdd.limits import LimitError, Limits, TooLargeError
 from sysmlc.synthesis.bdd.manager import Manager
 from sysmlc.synthesis.controllers.closed_loop import Controller
-from sysmlc.synthesis.controllers.conditions import machine
-from sysmlc.synthesis.controllers.explicit_states import listed
+from sysmlc.synthesis.controllers.conditions import build_machine
+from sysmlc.synthesis.controllers.explicit_states import enumerate_states
 from sysmlc.synthesis.controllers.independent_games import combine_independent_strategies
 from sysmlc.synthesis.controllers.mealy import Machine
-from sysmlc.synthesis.controllers.minimisation import minimised
-from sysmlc.synthesis.controllers.strategy import Strategy, strategy
-from sysmlc.synthesis.controllers.strategy_memory import reached, registers
-from sysmlc.synthesis.controllers.table import Table, rebuild_in_variable_order, tabled
-from sysmlc.synthesis.controllers.verification import Fault, faults
+from sysmlc.synthesis.controllers.minimisation import minimise
+from sysmlc.synthesis.controllers.strategy import Strategy, extract_strategy
+from sysmlc.synthesis.controllers.strategy_memory import choose_registers, explore_strategy
+from sysmlc.synthesis.controllers.table import Table, build_table, rebuild_in_variable_order
+from sysmlc.synthesis.controllers.verification import Fault, find_faults
 from sysmlc.synthesis.decision import Options, Place, Verdict, decided
-from sysmlc.synthesis.games.arena import Arena, nodes
+from sysmlc.synthesis.games.arena import Arena, nodes_of
 from sysmlc.synthesis.games.game import Game
 from sysmlc.synthesis.games.solver import solve_arena
 
@@ -101,33 +101,33 @@ def controller(
     LimitError.
     """
     with game.manager.guard():
-        plan = strategy(game, solve_arena(arena))
+        plan = extract_strategy(game, solve_arena(arena))
         found = made(contract, game, plan, form)
     if isinstance(found, Table):
         found = rebuild_in_variable_order(found, _fresh(game.manager, options))
-    fault = next(faults(found, contract, _fresh(game.manager, options)), None)
+    fault = next(find_faults(found, contract, _fresh(game.manager, options)), None)
     return _said(fault) if fault else found
 
 
 def made(contract: Contract, game: Game, plan: Strategy, form: Form = Form.ANY) -> Controller:
     """A strategy in the form that is wanted, not checked yet. Raises LimitError."""
     if form is Form.TABLE:
-        return tabled(combine_independent_strategies(game) or plan)
+        return build_table(combine_independent_strategies(game) or plan)
     try:
-        with game.manager.at_most(MOST_NODES):
+        with game.manager.limit_nodes(MOST_NODES):
             return _listed(contract, game, plan, form)
     except TooLargeError:
         if form is Form.LISTED:
             raise
-    return tabled(combine_independent_strategies(game) or plan)
+    return build_table(combine_independent_strategies(game) or plan)
 
 
 def _listed(contract: Contract, game: Game, plan: Strategy, form: Form) -> Machine:
-    found = reached(plan, nodes(game.init_assumptions), nodes(game.assumptions))
-    counting = () if form is Form.LISTED else registers(found)
+    found = explore_strategy(plan, nodes_of(game.init_assumptions), nodes_of(game.assumptions))
+    counting = () if form is Form.LISTED else choose_registers(found)
     # What is listed are many small diagrams: to look for a better order takes longer than they do.
-    with game.manager.calm():
-        return machine(minimised(listed(found, counting)), contract)
+    with game.manager.without_reordering():
+        return build_machine(minimise(enumerate_states(found, counting)), contract)
 
 
 def _fresh(manager: Manager, options: Options) -> Manager:

@@ -12,10 +12,10 @@ from sysmlc.synthesis import rules
 from sysmlc.synthesis.bdd.limits import LimitError, Limits, Progress
 from sysmlc.synthesis.bdd.manager import Manager
 from sysmlc.synthesis.games.arena import Arena
-from sysmlc.synthesis.games.command_elimination import shifted
+from sysmlc.synthesis.games.command_elimination import eliminate_commands
 from sysmlc.synthesis.games.game import Game, OutsideGr1Error, make_game
 from sysmlc.synthesis.games.solver import Solution, solve_arena
-from sysmlc.synthesis.games.variable_elimination import without_derived
+from sysmlc.synthesis.games.variable_elimination import eliminate_determined_variables
 from sysmlc.synthesis.unrealizable.explanation import explain_unrealizability
 
 Place = Callable[[str], Subject]
@@ -105,9 +105,9 @@ def decided(contract: Contract, place: Place, sink: Sink, options: Options) -> D
     manager = Manager(options.engine, options.limits, progress)
     try:
         game = make_game(reduced(contract).contract, manager)
-        with manager.guard(), manager.calm():
-            encoded = without_derived(game)
-            arena = shifted(encoded)
+        with manager.guard(), manager.without_reordering():
+            encoded = eliminate_determined_variables(game)
+            arena = eliminate_commands(encoded)
         solution = solve_arena(arena, is_complete=False)
     except OutsideGr1Error as problem:
         _report_outside(contract, problem, place, sink)

@@ -4,7 +4,7 @@ from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.logic.contract import Contract
 from sysmlc.logic.printing import print_formula
 from sysmlc.logic.reduction.reduce import reduced
-from sysmlc.synthesis.algebra.viewpoints import conjunction
+from sysmlc.synthesis.algebra.viewpoints import conjoin_viewpoints
 from sysmlc.synthesis.bdd.limits import LimitError
 from sysmlc.synthesis.bdd.manager import Manager
 from sysmlc.synthesis.decision import Options, Place
@@ -28,7 +28,7 @@ def check_viewpoints(contract: Contract, place: Place, sink: Sink, options: Opti
     """
     try:
         game = make_game(
-            conjunction(reduced(contract).contract),
+            conjoin_viewpoints(reduced(contract).contract),
             Manager(options.engine, options.limits, options.progress),
         )
         is_kept = is_won(game)

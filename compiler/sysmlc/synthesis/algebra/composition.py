@@ -1,8 +1,7 @@
-"""Parallel composition: what the parts of a block keep together, and whether that is enough.
+"""Parallel composition: what the parts of a block guarantee together, and whether that suffices.
 
-Parts run in step, each with the values of the others (thesis 2.2.1; Benveniste et al. 2018,
-section 6). What a part assumes of the others is discharged by what they promise; what is left is
-assumed by the composition.
+Parts run in step and read each other's values (thesis 2.2.1; Benveniste et al. 2018, section 6).
+Guarantees of the other parts discharge the assumptions of a part; the composition assumes the rest.
 """
 
 from collections import Counter
@@ -13,7 +12,7 @@ from msgspec.structs import replace
 
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import Composite, Conjunct, Contract, Owner, Part, Variable
-from sysmlc.synthesis.algebra.discharge import Open, discharge, outputs
+from sysmlc.synthesis.algebra.discharge import OpenAssumption, discharge, outputs_of
 from sysmlc.synthesis.algebra.fair_systems import Universe, observe_histories
 from sysmlc.synthesis.algebra.refinement import Entailment, Failure
 from sysmlc.synthesis.bdd.manager import Manager
@@ -21,23 +20,23 @@ from sysmlc.synthesis.unrealizable.core import minimal_conflict
 
 
 class Composition(Struct, frozen=True):
-    """What became of a composition.
+    """The result of a composition.
 
-    ``contract`` is that of the parts together; ``open`` are the assumptions of parts that nothing
-    discharges, ``failures`` what the whole promises and the parts do not keep, ``losses`` runs in
-    which something that is sent is lost. Where there is no
-    run in which all parts keep what they promise, ``conflict`` says what cannot be had together.
+    ``contract`` is the contract of the parts together. ``open`` are assumptions of parts that
+    nothing discharges, ``failures`` guarantees of the whole that the parts violate, ``losses`` runs
+    in which a sent event is lost. If no run satisfies the guarantees of all parts, ``conflict`` is
+    a minimal contradiction.
     """
 
     contract: Contract
-    open: tuple[Open, ...] = ()
+    open: tuple[OpenAssumption, ...] = ()
     failures: tuple[Failure, ...] = ()
     losses: tuple[Failure, ...] = ()
     conflict: tuple[Conjunct, ...] = ()
 
 
 class DriverError(Exception):
-    """Two parts decide the same variable."""
+    """Two parts assign the same variable."""
 
     def __init__(self, variable: str, parts: tuple[str, ...]) -> None:
         super().__init__(f"'{variable}' is decided by {' and '.join(parts)}")
@@ -45,100 +44,113 @@ class DriverError(Exception):
         self.parts = parts
 
 
-def composition(composite: Composite, manager: Manager) -> Composition:
-    """Compose the parts, in the environment of the whole where that has a contract.
+def compose_parts(composite: Composite, manager: Manager) -> Composition:
+    """Compose the parts in the environment that the contract of the whole assumes.
 
-    Without one, what parts assume of things that no part decides is assumed by the composition.
-    Raises DriverError, DomainError, OutsideGr1Error, LimitError.
+    If the whole has no contract, the composition assumes whatever parts assume of things that no
+    part assigns. Raises DriverError, DomainError, OutsideGr1Error, LimitError.
     """
     with manager.guard():
-        return _composed(composite, manager)
+        return _compose(composite, manager)
 
 
-def _composed(composite: Composite, manager: Manager) -> Composition:
-    _one_driver_each(composite.parts)
-    whole = composite.whole or _open_to_outside(composite)
+def _compose(composite: Composite, manager: Manager) -> Composition:
+    _check_drivers(composite.parts)
+    whole = composite.whole or _contract_with_environment(composite)
     wiring = Contract("", "", (), composite.wiring, ())
-    made = observe_histories((*(one.contract for one in composite.parts), wiring, whole))
-    *contracts, joined, seen = made.contracts
-    parts = tuple(_with(p, c) for p, c in zip(composite.parts, contracts, strict=True))
-    universe = Universe(made.contracts, manager)
-    inside = replace(composite, parts=parts, wiring=joined.assumptions)
-    contract = _together(composite, whole)
-    contradiction = _contradiction(inside, seen.assumptions, made.definitions, universe)
+    observed = observe_histories((*(one.contract for one in composite.parts), wiring, whole))
+    *contracts, wiring_contract, whole_contract = observed.contracts
+    parts = tuple(
+        _with_contract(part, reduced_contract)
+        for part, reduced_contract in zip(composite.parts, contracts, strict=True)
+    )
+    universe = Universe(observed.contracts, manager)
+    reduced_composite = replace(composite, parts=parts, wiring=wiring_contract.assumptions)
+    contract = _compose_contract(composite, whole)
+    contradiction = _find_contradiction(
+        reduced_composite, whole_contract.assumptions, observed.definitions, universe
+    )
     if contradiction:
         return Composition(contract, conflict=contradiction)
-    found = discharge(inside, (*seen.assumptions, *made.definitions), universe)
-    runs = Entailment(universe, universe.system(found.facts))
-    failures = tuple(_broken(seen.guarantees, runs))
-    losses = tuple(_broken(composite.crowding, runs))
-    return Composition(contract, found.open, failures, losses)
+    discharge_result = discharge(
+        reduced_composite, (*whole_contract.assumptions, *observed.definitions), universe
+    )
+    runs = Entailment(universe, universe.system(discharge_result.facts))
+    failures = tuple(_find_violations(whole_contract.guarantees, runs))
+    losses = tuple(_find_violations(composite.crowding, runs))
+    return Composition(contract, discharge_result.open, failures, losses)
 
 
-def _contradiction(
+def _find_contradiction(
     composite: Composite,
-    assumed: Sequence[Conjunct],
+    assumptions: Sequence[Conjunct],
     definitions: Sequence[Conjunct],
     universe: Universe,
 ) -> tuple[Conjunct, ...]:
-    """What of promises, wiring and assumptions no run keeps; nothing when some run keeps all."""
-    promised = (one for part in composite.parts for one in part.contract.guarantees)
-    every = tuple(dict.fromkeys((*assumed, *composite.wiring, *promised)))
-
-    def is_impossible(some: Sequence[Conjunct]) -> bool:
-        return not Entailment(universe, universe.system((*some, *definitions))).is_possible
-
-    return minimal_conflict(every, is_impossible) if is_impossible(every) else ()
-
-
-def _open_to_outside(composite: Composite) -> Contract:
-    """The contract of a whole that has none: what parts assume of things that no part decides.
-
-    What a part assumes may speak of its own outputs, too: only then has the environment to act.
+    """Return a minimal set of guarantees, wiring and assumptions that no run satisfies, or
+    nothing.
     """
-    inside = {name for part in composite.parts for name in outputs(part)}
-    assumed = tuple(
-        one
+    guarantees = (conjunct for part in composite.parts for conjunct in part.contract.guarantees)
+    conjuncts = tuple(dict.fromkeys((*assumptions, *composite.wiring, *guarantees)))
+
+    def is_impossible(subset: Sequence[Conjunct]) -> bool:
+        return not Entailment(universe, universe.system((*subset, *definitions))).is_possible
+
+    return minimal_conflict(conjuncts, is_impossible) if is_impossible(conjuncts) else ()
+
+
+def _contract_with_environment(composite: Composite) -> Contract:
+    """Return a contract for a whole without one: the assumptions about things that no part assigns.
+
+    Such an assumption may read outputs of its own part too; only then the environment has to act.
+    """
+    inner_names = {name for part in composite.parts for name in outputs_of(part)}
+    assumptions = tuple(
+        conjunct
         for part in composite.parts
-        for one in part.contract.assumptions
-        if _is_of_outside(one, inside, outputs(part))
+        for conjunct in part.contract.assumptions
+        if _is_about_outside(conjunct, inner_names, outputs_of(part))
     )
-    return Contract(composite.component, composite.origin, (), assumed, ())
+    return Contract(composite.component, composite.origin, (), assumptions, ())
 
 
-def _is_of_outside(conjunct: Conjunct, inside: set[str], own: set[str]) -> bool:
-    used = {one.name for one in f.variables(conjunct.formula)}
-    return not used <= inside and not used & (inside - own)
+def _is_about_outside(conjunct: Conjunct, inner_names: set[str], own_names: set[str]) -> bool:
+    names = {variable.name for variable in f.variables(conjunct.formula)}
+    return not names <= inner_names and not names & (inner_names - own_names)
 
 
-def _with(part: Part, contract: Contract) -> Part:
-    """The part with a contract in GR(1); its history bits are nobody's outputs."""
+def _with_contract(part: Part, contract: Contract) -> Part:
+    """Replace the contract of a part by one in GR(1); history bits are nobody's outputs."""
     return replace(part, contract=replace(contract, variables=part.contract.variables))
 
 
-def _together(composite: Composite, whole: Contract) -> Contract:
-    """What the parts promise, where the whole's assumptions hold."""
-    promised = tuple(one for part in composite.parts for one in part.contract.guarantees)
-    variables = _variables(composite.parts)
-    kept = (*promised, *composite.wiring)
-    return Contract(composite.component, composite.origin, variables, whole.assumptions, kept)
+def _compose_contract(composite: Composite, whole: Contract) -> Contract:
+    """Return the contract of the parts together under the assumptions of the whole."""
+    guarantees = tuple(
+        conjunct for part in composite.parts for conjunct in part.contract.guarantees
+    )
+    variables = _merge_variables(composite.parts)
+    all_guarantees = (*guarantees, *composite.wiring)
+    return Contract(
+        composite.component, composite.origin, variables, whole.assumptions, all_guarantees
+    )
 
 
-def _one_driver_each(parts: Sequence[Part]) -> None:
-    deciding = Counter(name for part in parts for name in sorted(outputs(part)))
-    for name, number in deciding.items():
-        if number > 1:
-            raise DriverError(name, tuple(one.name for one in parts if name in outputs(one)))
+def _check_drivers(parts: Sequence[Part]) -> None:
+    driver_counts = Counter(name for part in parts for name in sorted(outputs_of(part)))
+    for name, count in driver_counts.items():
+        if count > 1:
+            raise DriverError(name, tuple(part.name for part in parts if name in outputs_of(part)))
 
 
-def _broken(wanted: Iterable[Conjunct], runs: Entailment) -> Iterator[Failure]:
-    for conjunct in wanted:
-        trace = runs.violation(conjunct)
+def _find_violations(conjuncts: Iterable[Conjunct], runs: Entailment) -> Iterator[Failure]:
+    for conjunct in conjuncts:
+        trace = runs.find_violation(conjunct)
         if trace is not None:
             yield Failure(conjunct, False, trace)
 
 
-def _variables(parts: Sequence[Part]) -> tuple[Variable, ...]:
+def _merge_variables(parts: Sequence[Part]) -> tuple[Variable, ...]:
     """All variables; one that a part decides is the composition's own."""
     found: dict[str, Variable] = {}
     for one in (one for part in parts for one in part.contract.variables):

@@ -1,12 +1,9 @@
-"""Which parts of a composition can be relied on: what each assumes follows from what others keep.
+"""Discharge of the assumptions of parts by the guarantees of other parts in a composition.
 
-A part keeps its promises once its assumptions follow from what holds already. Parts that wait for
-one another are taken together, step by step: when no run of steps that all of them keep comes to
-one that breaks an assumption of theirs, none of them is the first to fail (Misra and Chandy 1981;
-Abadi and Lamport 1993). That is sound for initial conditions and safety, of parts that do not
-read in the same step what they write for one another. What recurs is looked for in the runs in
-which each part keeps its promise (``recurrence``): parts that only wait for one another wait for
-ever.
+Safety is established step by step, also for parts that assume safety of one another. For liveness,
+each part guarantees: if all its liveness assumptions recur, then its liveness guarantees recur. A
+run satisfies this if for each part some assumption no longer recurs or every guarantee does: a
+Streett condition, which is examined case by case.
 """
 
 from collections.abc import Iterable, Iterator, Sequence
@@ -19,76 +16,79 @@ from msgspec.structs import replace
 from sysmlc.logic.contract import Class, Composite, Conjunct, Owner, Part
 from sysmlc.logic.evaluate import has_primes
 from sysmlc.synthesis.algebra.fair_systems import Runs, Universe
-from sysmlc.synthesis.algebra.instantaneous_dependencies import Readings, readings
+from sysmlc.synthesis.algebra.instantaneous_dependencies import (
+    DependencyGraph,
+    build_dependency_graph,
+)
 from sysmlc.synthesis.algebra.refinement import Entailment
-from sysmlc.synthesis.algebra.traces import Trace, lasso, shortest
+from sysmlc.synthesis.algebra.traces import Trace, build_lasso, shortest_path
 from sysmlc.synthesis.bdd.manager import Node
 
 MOST_CASES = 256
 
 
-class Case(Struct, frozen=True):
-    """Something that recurs, and where the run stays from some step on."""
+class StreettCase(Struct, frozen=True):
+    """Conditions that recur, and a set in which the run stays from some step on."""
 
     recurring: tuple[Node, ...]
     stay: Node
 
 
 class Recurrence:
-    """The runs of a system in which parts keep what they promise to recur."""
+    """The runs of a system in which parts satisfy their liveness guarantees."""
 
     def __init__(self, runs: Runs, parts: Sequence[Part], universe: Universe) -> None:
-        """``runs`` keep what the parts promise of each step."""
+        """*runs* must satisfy the safety guarantees of the parts."""
         self._runs = runs
         self._universe = universe
-        self._cases = [tuple(self._of(part)) for part in parts]
+        self._cases = [tuple(self._cases_of(part)) for part in parts]
 
     @property
     def is_decided(self) -> bool:
-        """Whether there are few enough cases."""
+        """Whether there are few enough cases to examine."""
         return prod(map(len, self._cases)) <= MOST_CASES
 
-    def violation(self, conjunct: Conjunct) -> Trace | None:
-        """A run in which a conjunct does not recur; None when it does in all."""
-        broken = ~self._universe.node(conjunct)
+    def find_violation(self, conjunct: Conjunct) -> Trace | None:
+        """Return a run in which a conjunct does not recur, or None if there is none."""
+        violation = ~self._universe.node(conjunct)
         for cases in product(*self._cases):
-            stay = broken
-            for one in cases:
-                stay = stay & one.stay
-            found = self._run(tuple(goal for one in cases for goal in one.recurring), stay)
-            if found is not None:
-                return found
+            stay = violation
+            for case in cases:
+                stay = stay & case.stay
+            trace = self._find_run(tuple(goal for case in cases for goal in case.recurring), stay)
+            if trace is not None:
+                return trace
         return None
 
-    def _run(self, recurring: tuple[Node, ...], stay: Node) -> Trace | None:
-        """A run that comes to stay somewhere, in which more recurs."""
+    def _find_run(self, recurring: tuple[Node, ...], stay: Node) -> Trace | None:
+        """Return a run that eventually stays in a set and satisfies more fairness."""
         system = self._runs.system
         runs = Runs(replace(system, fairness=(*system.fairness, *recurring)))
-        found = runs.fair_within(self._runs.reachable & stay)
-        if found == runs.manager.false:
+        states = runs.fair_within(self._runs.reachable & stay)
+        if states == runs.manager.false:
             return None
-        return lasso(runs, shortest(runs, found), found)
+        return build_lasso(runs, shortest_path(runs, states), states)
 
-    def _of(self, part: Part) -> Iterator[Case]:
-        """The ways in which a part keeps its promise."""
+    def _cases_of(self, part: Part) -> Iterator[StreettCase]:
+        """Yield the ways in which a part satisfies its liveness guarantees."""
         true = self._runs.manager.true
-        promised = self._recurring(part.contract.guarantees)
-        yield Case(promised, true)
-        if promised:
-            for one in self._recurring(part.contract.assumptions):
-                yield Case((), ~one)
+        guarantees = self._liveness_nodes(part.contract.guarantees)
+        yield StreettCase(guarantees, true)
+        if guarantees:
+            for assumption in self._liveness_nodes(part.contract.assumptions):
+                yield StreettCase((), ~assumption)
 
-    def _recurring(self, conjuncts: Sequence[Conjunct]) -> tuple[Node, ...]:
-        found = (one for one in conjuncts if one.class_ is Class.LIVENESS)
-        return tuple(self._universe.node(one) for one in found)
+    def _liveness_nodes(self, conjuncts: Sequence[Conjunct]) -> tuple[Node, ...]:
+        liveness = (conjunct for conjunct in conjuncts if conjunct.class_ is Class.LIVENESS)
+        return tuple(self._universe.node(conjunct) for conjunct in liveness)
 
 
-class Open(Struct, frozen=True):
-    """An assumption of a part that does not follow from what holds around it.
+class OpenAssumption(Struct, frozen=True):
+    """An assumption of a part that its surroundings do not entail.
 
-    With ``is_circular`` it does follow from what the others promise, but they wait for this part
-    in turn. ``trace`` is a run in which it is broken, and all others keep their contracts; None
-    where there is no such run, but no proof that it cannot be broken either.
+    If ``is_circular``, the guarantees of the other parts entail it, but these wait for this part in
+    turn. ``trace`` is a run that violates the assumption while all others satisfy their contracts;
+    None if no such run was found, although none was excluded either.
     """
 
     part: Part
@@ -98,185 +98,249 @@ class Open(Struct, frozen=True):
 
 
 class Discharge(Struct, frozen=True):
-    """The conjuncts that hold in every run of the composition, and what is left open."""
+    """The conjuncts that hold in every run of the composition, and the open assumptions."""
 
     facts: tuple[Conjunct, ...]
-    open: tuple[Open, ...]
+    open: tuple[OpenAssumption, ...]
 
 
-class _Known:
-    """What holds in every run, and what follows from it."""
+class _Facts:
+    """Conjuncts that hold in every run, and their consequences."""
 
     def __init__(self, universe: Universe, facts: Iterable[Conjunct]) -> None:
         self._universe = universe
         self.facts = tuple(dict.fromkeys(facts))
-        self._asked: Entailment | None = None
+        self._entailment: Entailment | None = None
 
-    def adding(self, conjuncts: Iterable[Conjunct]) -> "_Known":
-        """The same with more."""
-        return _Known(self._universe, (*self.facts, *conjuncts))
+    def extended_by(self, conjuncts: Iterable[Conjunct]) -> "_Facts":
+        """Return these facts and more."""
+        return _Facts(self._universe, (*self.facts, *conjuncts))
 
     @property
     def runs(self) -> Entailment:
         """The runs in which all facts hold."""
-        if self._asked is None:
-            self._asked = Entailment(self._universe, self._universe.system(self.facts))
-        return self._asked
+        if self._entailment is None:
+            self._entailment = Entailment(self._universe, self._universe.system(self.facts))
+        return self._entailment
 
-    def gives(self, conjuncts: Iterable[Conjunct]) -> bool:
-        """Whether all conjuncts hold in every run."""
-        wanted = [one for one in conjuncts if one not in self.facts]
-        return all(self.runs.violation(one) is None for one in wanted)
+    def entails(self, conjuncts: Iterable[Conjunct]) -> bool:
+        """Return whether all conjuncts hold in every run."""
+        new_conjuncts = [conjunct for conjunct in conjuncts if conjunct not in self.facts]
+        return all(self.runs.find_violation(conjunct) is None for conjunct in new_conjuncts)
 
     def recurrence(self, parts: Sequence[Part]) -> Recurrence:
-        """What recurs when these parts keep what they promise to recur, too."""
+        """Return the runs in which these parts also satisfy their liveness guarantees."""
         return Recurrence(self.runs.runs, parts, self._universe)
 
-    def can_break(self, conjunct: Conjunct, own: Iterable[Conjunct] = ()) -> bool:
-        """Whether steps that keep all facts come to one that breaks an initial condition or a
-        condition of every step, however it may go on from there.
+    def can_break(self, conjunct: Conjunct, own_guarantees: Iterable[Conjunct] = ()) -> bool:
+        """Return whether steps that satisfy the facts can reach a violation of an initial or safety
+        condition.
 
-        In that step whoever assumes the condition need not keep ``own``: it owes nothing then.
+        The run need not continue after the violation. In the violating step the part that assumes
+        the condition need not satisfy *own* guarantees, because it owes nothing any more.
         """
-        last = _Known(self._universe, (one for one in self.facts if one not in set(own)))
-        runs, then = self.runs.runs, last.runs.runs
-        broken, kept = ~self._universe.node(conjunct), last._invariant()
+        facts_of_last_step = _Facts(
+            self._universe, (fact for fact in self.facts if fact not in set(own_guarantees))
+        )
+        runs_before, runs_of_last_step = self.runs.runs, facts_of_last_step.runs.runs
+        violation, invariant = ~self._universe.node(conjunct), facts_of_last_step._invariant()
         if conjunct.class_ is not Class.INIT and has_primes(conjunct.formula):
-            return runs.reachable & then.before_by(kept, broken) != runs.manager.false
-        begins = then.system.init & kept & broken != runs.manager.false
-        if begins or conjunct.class_ is Class.INIT:
-            return begins
+            return (
+                runs_before.reachable & runs_of_last_step.predecessors_by(invariant, violation)
+                != runs_before.manager.false
+            )
+        can_begin = (
+            runs_of_last_step.system.init & invariant & violation != runs_before.manager.false
+        )
+        if can_begin or conjunct.class_ is Class.INIT:
+            return can_begin
         return (
-            runs.reachable & then.before_by(kept & broken, runs.manager.true) != runs.manager.false
+            runs_before.reachable
+            & runs_of_last_step.predecessors_by(invariant & violation, runs_before.manager.true)
+            != runs_before.manager.false
         )
 
     def _invariant(self) -> Node:
-        """What the facts say of each step alone."""
-        found = self._universe.manager.true
-        for one in self.facts:
-            if one.class_ is Class.SAFETY and not has_primes(one.formula):
-                found = found & self._universe.node(one)
-        return found
+        """Return the conjunction of the facts about a single step."""
+        invariant = self._universe.manager.true
+        for fact in self.facts:
+            if fact.class_ is Class.SAFETY and not has_primes(fact.formula):
+                invariant = invariant & self._universe.node(fact)
+        return invariant
 
 
-def discharge(composite: Composite, given: Iterable[Conjunct], universe: Universe) -> Discharge:
-    """Establish as many parts as can be, from what is given and how they are wired.
+def discharge(
+    composite: Composite, assumptions: Iterable[Conjunct], universe: Universe
+) -> Discharge:
+    """Establish as many parts as possible from the assumptions of the whole and the wiring.
 
-    The contracts are in GR(1). Raises OutsideGr1Error, LimitError.
+    The contracts must be in GR(1). Raises OutsideGr1Error, LimitError.
     """
-    reading = readings(composite, universe)
-    known = _Known(universe, (*given, *composite.wiring))
-    waiting = stepwise = composite.parts
+    dependencies = build_dependency_graph(composite, universe)
+    facts = _Facts(universe, (*assumptions, *composite.wiring))
+    open_parts = unsafe_parts = composite.parts
     while True:
-        found = _established(waiting, stepwise, known, reading)
-        if not found:
-            return Discharge(known.facts, tuple(_open(waiting, stepwise, known, reading)))
-        done, steady = found
-        known = known.adding(one for part in done for one in part.contract.guarantees)
-        known = known.adding(one for part in steady for one in _stepwise(part, is_assumed=False))
-        waiting = tuple(part for part in waiting if part not in done)
-        stepwise = tuple(part for part in stepwise if part not in (*done, *steady))
+        established = _next_established(open_parts, unsafe_parts, facts, dependencies)
+        if not established:
+            return Discharge(
+                facts.facts,
+                tuple(_find_open_assumptions(open_parts, unsafe_parts, facts, dependencies)),
+            )
+        complete, safe = established
+        facts = facts.extended_by(
+            conjunct for part in complete for conjunct in part.contract.guarantees
+        )
+        facts = facts.extended_by(
+            conjunct for part in safe for conjunct in _safety_conjuncts(part, is_assumed=False)
+        )
+        open_parts = tuple(part for part in open_parts if part not in complete)
+        unsafe_parts = tuple(part for part in unsafe_parts if part not in (*complete, *safe))
 
 
-_Parts = Sequence[Part]
+_PartSequence = Sequence[Part]
 
 
-def _established(
-    waiting: _Parts, stepwise: _Parts, known: "_Known", reading: Readings
-) -> tuple[_Parts, _Parts] | None:
-    """The next parts that keep all they promise, or what they promise of each step.
+def _next_established(
+    open_parts: _PartSequence,
+    unsafe_parts: _PartSequence,
+    facts: "_Facts",
+    dependencies: DependencyGraph,
+) -> tuple[_PartSequence, _PartSequence] | None:
+    """Return the parts whose guarantees are established next, completely or only their safety part.
 
-    First one by one, then steps of several, then what recurs when all wait for something.
+    Single parts come first, then sets of parts step by step, then recurrence if all wait for
+    something.
     """
-    done = [part for part in waiting if known.gives(part.contract.assumptions)]
-    if done:
-        return done, ()
-    steady = [part for part in stepwise if known.gives(_stepwise(part, is_assumed=True))]
-    steady = steady or _together(stepwise, reading, known)
-    if steady:
-        return (), steady
-    done = _recurring([part for part in waiting if part not in stepwise], known)
-    return (done, ()) if done else None
+    complete = [part for part in open_parts if facts.entails(part.contract.assumptions)]
+    if complete:
+        return complete, ()
+    safe = [
+        part for part in unsafe_parts if facts.entails(_safety_conjuncts(part, is_assumed=True))
+    ]
+    safe = safe or _largest_inductive_set(unsafe_parts, dependencies, facts)
+    if safe:
+        return (), safe
+    complete = _parts_with_recurring_assumptions(
+        [part for part in open_parts if part not in unsafe_parts], facts
+    )
+    return (complete, ()) if complete else None
 
 
-def _recurring(parts: _Parts, known: "_Known") -> list[Part]:
-    """Those whose assumptions recur in all runs in which all of them keep their promises."""
-    recurrence = known.recurrence(parts)
+def _parts_with_recurring_assumptions(parts: _PartSequence, facts: "_Facts") -> list[Part]:
+    """Return the parts whose liveness assumptions recur in all runs in which all parts keep their
+    guarantees.
+    """
+    recurrence = facts.recurrence(parts)
     if not recurrence.is_decided:
         return []
     return [
         part
         for part in parts
-        if not any(recurrence.violation(one) for one in _liveness(part.contract.assumptions))
+        if not any(
+            recurrence.find_violation(conjunct)
+            for conjunct in _liveness_conjuncts(part.contract.assumptions)
+        )
     ]
 
 
-def _liveness(conjuncts: Iterable[Conjunct]) -> list[Conjunct]:
-    return [one for one in conjuncts if one.class_ is Class.LIVENESS]
+def _liveness_conjuncts(conjuncts: Iterable[Conjunct]) -> list[Conjunct]:
+    return [conjunct for conjunct in conjuncts if conjunct.class_ is Class.LIVENESS]
 
 
-def _stepwise(part: Part, is_assumed: bool) -> list[Conjunct]:
-    """What a part assumes or promises at first and in each step."""
+def _safety_conjuncts(part: Part, is_assumed: bool) -> list[Conjunct]:
+    """Return the initial and safety conjuncts that a part assumes or guarantees."""
     contract = part.contract
-    every = contract.assumptions if is_assumed else contract.guarantees
-    return [one for one in every if one.class_ in (Class.INIT, Class.SAFETY)]
+    conjuncts = contract.assumptions if is_assumed else contract.guarantees
+    return [conjunct for conjunct in conjuncts if conjunct.class_ in (Class.INIT, Class.SAFETY)]
 
 
-def _together(parts: Sequence[Part], reading: Readings, known: _Known) -> list[Part]:
-    """The most parts whose safety holds step by step when all of them keep theirs."""
-    circular = reading.circular(parts)
-    chosen = [part for part in parts if part not in circular]
-    while chosen:
-        steps = known.adding(one for part in chosen for one in _stepwise(part, is_assumed=False))
-        kept = [
+def _largest_inductive_set(
+    parts: Sequence[Part], dependencies: DependencyGraph, facts: _Facts
+) -> list[Part]:
+    """Return the largest set of parts whose safety holds step by step if all of them keep
+    theirs.
+    """
+    circular = dependencies.circular_parts(parts)
+    candidates = [part for part in parts if part not in circular]
+    while candidates:
+        steps = facts.extended_by(
+            conjunct
+            for part in candidates
+            for conjunct in _safety_conjuncts(part, is_assumed=False)
+        )
+        remaining = [
             part
-            for part in chosen
+            for part in candidates
             if not any(
-                _breaks_first(part, one, steps, reading) for one in _stepwise(part, is_assumed=True)
+                _breaks_first(part, conjunct, steps, dependencies)
+                for conjunct in _safety_conjuncts(part, is_assumed=True)
             )
         ]
-        if len(kept) == len(chosen):
+        if len(remaining) == len(candidates):
             break
-        chosen = kept
-    return chosen
+        candidates = remaining
+    return candidates
 
 
-def _breaks_first(part: Part, assumed: Conjunct, steps: _Known, reading: Readings) -> bool:
-    """Whether the others, keeping their steps, can be the first to break what a part assumes.
+def _breaks_first(
+    part: Part, assumption: Conjunct, steps: _Facts, dependencies: DependencyGraph
+) -> bool:
+    """Return whether the other parts, keeping their safety guarantees, can break an assumption
+    first.
 
-    Outputs that the part chooses before it sees any input of the step it chooses as it has to.
+    Outputs that the part chooses before it sees an input of the same step remain bound by
+    guarantees.
     """
-    return steps.can_break(assumed, reading.seeing(part))
+    return steps.can_break(assumption, dependencies.guarantees_after_inputs(part))
 
 
-def outputs(part: Part) -> set[str]:
-    """The variables that the part decides."""
-    return {one.name for one in part.contract.variables if one.owner is Owner.SYSTEM}
+def outputs_of(part: Part) -> set[str]:
+    """Return the variables that the part assigns."""
+    return {variable.name for variable in part.contract.variables if variable.owner is Owner.SYSTEM}
 
 
-def _open(waiting: _Parts, stepwise: _Parts, known: _Known, reading: Readings) -> Iterator[Open]:
-    """What is missing for the parts that are not established.
+def _find_open_assumptions(
+    open_parts: _PartSequence,
+    unsafe_parts: _PartSequence,
+    facts: _Facts,
+    dependencies: DependencyGraph,
+) -> Iterator[OpenAssumption]:
+    """Yield the assumptions that are missing for the parts that are not established.
 
-    Of what several parts do step by step only what breaks first is told: with it, the rest holds.
+    Of several parts with safety assumptions, only those that break first are open: with them, the
+    others hold.
     """
-    circular = reading.circular(stepwise)
-    ordered = [part for part in stepwise if part not in circular]
-    steps = known.adding(one for part in ordered for one in _stepwise(part, is_assumed=False))
-    steady = steps.adding(one for part in circular for one in _stepwise(part, is_assumed=False))
-    recurrence = steady.recurrence(waiting)
-    for part in waiting:
-        others = (one for other in waiting if other != part for one in other.contract.guarantees)
-        around = known.adding((*others, *_stepwise(part, is_assumed=False)))
-        for one in part.contract.assumptions:
-            recurs = one.class_ is Class.LIVENESS
-            if known.gives([one]) or not (
-                recurs or part in circular or _breaks_first(part, one, steps, reading)
+    circular = dependencies.circular_parts(unsafe_parts)
+    acyclic = [part for part in unsafe_parts if part not in circular]
+    steps = facts.extended_by(
+        assumption for part in acyclic for assumption in _safety_conjuncts(part, is_assumed=False)
+    )
+    all_steps = steps.extended_by(
+        assumption for part in circular for assumption in _safety_conjuncts(part, is_assumed=False)
+    )
+    recurrence = all_steps.recurrence(open_parts)
+    for part in open_parts:
+        other_guarantees = (
+            assumption
+            for other_part in open_parts
+            if other_part != part
+            for assumption in other_part.contract.guarantees
+        )
+        surroundings = facts.extended_by(
+            (*other_guarantees, *_safety_conjuncts(part, is_assumed=False))
+        )
+        for assumption in part.contract.assumptions:
+            is_liveness = assumption.class_ is Class.LIVENESS
+            if facts.entails([assumption]) or not (
+                is_liveness
+                or part in circular
+                or _breaks_first(part, assumption, steps, dependencies)
             ):
                 continue
-            trace = around.runs.violation(one)
+            trace = surroundings.runs.find_violation(assumption)
             is_circular = trace is None
-            if is_circular and recurs and recurrence.is_decided:
-                trace = recurrence.violation(one)
+            if is_circular and is_liveness and recurrence.is_decided:
+                trace = recurrence.find_violation(assumption)
                 if trace is None:
                     continue
-            yield Open(part, one, trace, is_circular)
+            yield OpenAssumption(part, assumption, trace, is_circular)

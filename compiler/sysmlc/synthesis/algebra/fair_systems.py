@@ -1,4 +1,8 @@
-"""Conjuncts as fair transition systems: where runs start, what a step is, what must recur."""
+"""Contracts as fair transition systems: initial states, steps, recurring conditions, and their fair
+runs (Emerson and Lei 1986).
+
+Conjuncts outside GR(1) are first reduced with history bits that observe the run.
+"""
 
 from collections.abc import Iterable, Iterator, Sequence
 
@@ -15,7 +19,7 @@ from sysmlc.synthesis.games.relational_product import Product
 
 
 class DomainError(Exception):
-    """Two contracts have a variable of one name with different values."""
+    """Two contracts have a variable of one name with different domains."""
 
     def __init__(self, name: str, domains: tuple[Domain, Domain]) -> None:
         super().__init__(f"'{name}' has different values in the two contracts")
@@ -24,43 +28,48 @@ class DomainError(Exception):
 
 
 class FairSystem(Struct, frozen=True):
-    """Infinite runs from ``init`` by steps in all ``parts`` that are again and again in each of
-    ``fairness``."""
+    """Infinite runs from ``init`` whose steps satisfy ``parts`` and that visit each of ``fairness``
+    infinitely often.
+    """
 
     symbols: Symbols
     init: Node
     parts: tuple[Node, ...]
-    """Over the bits of a step and the next one."""
+    """Relations over the bits of a step and the next one."""
     fairness: tuple[Node, ...]
 
 
 class Universe:
-    """The variables of some contracts in one manager; those of one name are one variable."""
+    """The variables of some contracts in one manager; variables of one name are the same
+    variable.
+    """
 
     def __init__(self, contracts: Iterable[Contract], manager: Manager) -> None:
         """Declare the variables; the manager must be new. Raises DomainError."""
         self.manager = manager
-        self.symbols = Symbols(manager, _merged(contracts))
-        self._now = self._ranges(primed=False)
-        self._then = self._ranges(primed=True)
+        self.symbols = Symbols(manager, _merge_variables(contracts))
+        self._current_ranges = self._compute_ranges(primed=False)
+        self._next_ranges = self._compute_ranges(primed=True)
 
     def system(self, conjuncts: Iterable[Conjunct]) -> FairSystem:
-        """The runs in which all conjuncts hold, each variable within its range.
+        """Return the runs in which all conjuncts hold and each variable stays in its range.
 
-        Raises OutsideGr1Error for a conjunct that is neither initial, nor for every step, nor
-        recurring.
+        Raises OutsideGr1Error for a conjunct that is neither initial, nor a safety, nor a liveness
+        conjunct.
         """
-        found: dict[Class, list[Node]] = {class_: [] for class_ in Class}
+        nodes: dict[Class, list[Node]] = {class_: [] for class_ in Class}
         for conjunct in conjuncts:
-            found[conjunct.class_].append(self.node(conjunct))
+            nodes[conjunct.class_].append(self.node(conjunct))
         init = self.manager.true
-        for node in (*self._now, *found[Class.INIT]):
+        for node in (*self._current_ranges, *nodes[Class.INIT]):
             init = init & node
-        parts = (*self._now, *self._then, *found[Class.SAFETY])
-        return FairSystem(self.symbols, init, parts, tuple(found[Class.LIVENESS]))
+        parts = (*self._current_ranges, *self._next_ranges, *nodes[Class.SAFETY])
+        return FairSystem(self.symbols, init, parts, tuple(nodes[Class.LIVENESS]))
 
     def node(self, conjunct: Conjunct) -> Node:
-        """The diagram of a conjunct without the temporal operators that its class implies."""
+        """Return the diagram of a conjunct without the temporal operators that its class
+        implies.
+        """
         if conjunct.class_ is Class.OTHER:
             why = "it is neither initial, nor for every step (G), nor recurring (GF)"
             raise OutsideGr1Error(conjunct, why)
@@ -69,25 +78,25 @@ class Universe:
         except SymbolError as problem:
             raise OutsideGr1Error(conjunct, str(problem)) from None
 
-    def _ranges(self, primed: bool) -> tuple[Node, ...]:
+    def _compute_ranges(self, primed: bool) -> tuple[Node, ...]:
         nodes = (self.symbols.domain(name, primed) for name in self.symbols.variables)
         return tuple(node for node in nodes if node != self.manager.true)
 
 
-def _merged(contracts: Iterable[Contract]) -> Iterator[Variable]:
-    known: dict[str, Variable] = {}
-    for variable in (one for contract in contracts for one in contract.variables):
-        other = known.setdefault(variable.name, variable)
-        if other.domain != variable.domain:
-            raise DomainError(variable.name, (other.domain, variable.domain))
-    yield from known.values()
+def _merge_variables(contracts: Iterable[Contract]) -> Iterator[Variable]:
+    merged: dict[str, Variable] = {}
+    for variable in (variable for contract in contracts for variable in contract.variables):
+        first = merged.setdefault(variable.name, variable)
+        if first.domain != variable.domain:
+            raise DomainError(variable.name, (first.domain, variable.domain))
+    yield from merged.values()
 
 
 class Runs:
-    """The runs of a system, explored as far as they are asked for."""
+    """The runs of a system, explored on demand."""
 
     def __init__(self, system: FairSystem) -> None:
-        """Settle the order in which relations are joined; nothing is explored yet."""
+        """Prepare the relational products; nothing is explored yet."""
         self.system = system
         symbols = system.symbols
         names = tuple(symbols.variables)
@@ -103,84 +112,84 @@ class Runs:
         """Owner of all diagrams."""
         return self.system.symbols.manager
 
-    def after(self, states: Node) -> Node:
-        """The states that one step leads to."""
+    def successors(self, states: Node) -> Node:
+        """Return the states that one step reaches."""
         return self.system.symbols.unprime(self._forward(states))
 
-    def before(self, states: Node) -> Node:
-        """The states from which one step leads there."""
+    def predecessors(self, states: Node) -> Node:
+        """Return the states from which one step leads to *states*."""
         return self._backward(self.system.symbols.prime(states))
 
-    def before_by(self, states: Node, step: Node) -> Node:
-        """The same for steps that also satisfy ``step``."""
+    def predecessors_by(self, states: Node, step: Node) -> Node:
+        """Return the states from which one step that satisfies *step* leads to *states*."""
         return self._backward(self.system.symbols.prime(states) & step)
 
     @property
     def reachable(self) -> Node:
-        """All states that some run of steps leads to."""
+        """The states that some run reaches."""
         if self._reachable is None:
-            self._reachable = self._closed(self.system.init)
+            self._reachable = self._compute_closure(self.system.init)
         return self._reachable
 
     @property
     def fair(self) -> Node:
-        """Reachable states from which a fair run goes on for ever."""
+        """The reachable states from which a fair run continues."""
         if self._fair is None:
             self._fair = self.fair_within(self.reachable)
         return self._fair
 
     @property
-    def endless(self) -> Node:
-        """States, reachable or not, from which steps go on for ever."""
-        found = self.manager.true
-        while (fewer := found & self.before(found)) != found:
-            found = fewer
-        return found
+    def states_with_infinite_runs(self) -> Node:
+        """The states, reachable or not, from which an infinite run continues."""
+        states = self.manager.true
+        while (shrunk := states & self.predecessors(states)) != states:
+            states = shrunk
+        return states
 
     def fair_within(self, states: Node) -> Node:
-        """States from which a fair run goes on for ever without leaving ``states``."""
-        found = states
+        """Return the states from which a fair run continues inside *states*."""
+        result = states
         while True:
-            fewer = found
+            shrunk = result
             for goal in self.goals:
-                fewer = fewer & self.before(self.leading(fewer, fewer & goal))
-            if fewer == found:
-                return found
-            found = fewer
+                shrunk = shrunk & self.predecessors(self.states_reaching(shrunk, shrunk & goal))
+            if shrunk == result:
+                return result
+            result = shrunk
             self.manager.check("looking for fair runs")
 
     @property
     def goals(self) -> tuple[Node, ...]:
-        """What a fair run meets again and again; to go on, when nothing else is asked."""
+        """The conditions that a fair run satisfies infinitely often; true if there are none."""
         return self.system.fairness or (self.manager.true,)
 
-    def leading(self, within: Node, target: Node) -> Node:
-        """States from which steps within ``within`` lead to the target."""
-        found = target
+    def states_reaching(self, within: Node, target: Node) -> Node:
+        """Return the states from which steps inside *within* lead to *target*."""
+        reached = target
         while True:
-            more = found | (within & self.before(found))
-            if more == found:
-                return found
-            found = more
+            extended = reached | (within & self.predecessors(reached))
+            if extended == reached:
+                return reached
+            reached = extended
 
     def rings(self, within: Node, target: Node) -> list[Node]:
-        """The same as sets of states by the number of steps, the target first."""
-        found = [target]
-        known = target
+        """Return these states as layers by the number of steps, beginning with *target*."""
+        layers = [target]
+        reached = target
         while True:
-            ring = within & self.before(found[-1]) & ~known
-            if ring == self.manager.false:
-                return found
-            found.append(ring)
-            known = known | ring
+            layer = within & self.predecessors(layers[-1]) & ~reached
+            if layer == self.manager.false:
+                return layers
+            layers.append(layer)
+            reached = reached | layer
 
-    def _closed(self, states: Node) -> Node:
-        found, front = states, states
-        while front != self.manager.false:
-            front = self.after(front) & ~found
-            found = found | front
+    def _compute_closure(self, states: Node) -> Node:
+        reached, frontier = states, states
+        while frontier != self.manager.false:
+            frontier = self.successors(frontier) & ~reached
+            reached = reached | frontier
             self.manager.check("exploring what can be reached")
-        return found
+        return reached
 
 
 class ObservedContracts(Struct, frozen=True):
@@ -188,42 +197,42 @@ class ObservedContracts(Struct, frozen=True):
 
     contracts: tuple[Contract, ...]
     definitions: tuple[Conjunct, ...]
-    """What the bits follow: true of every run, and no restriction of any."""
+    """The transition functions of the history bits, which restrict no run."""
 
 
 def observe_histories(contracts: Iterable[Contract]) -> ObservedContracts:
-    """The contracts with history bits where they are needed.
+    """Return the contracts in GR(1), with history bits where they are needed.
 
     Raises OutsideGr1Error for a conjunct that no known reduction brings into GR(1).
     """
-    given = tuple(contracts)
-    history = History(one.name for contract in given for one in contract.variables)
-    sides = [
+    contracts = tuple(contracts)
+    history = History(variable.name for contract in contracts for variable in contract.variables)
+    reduced_sides = [
         (
-            tuple(_reduce_conjuncts(one.assumptions, history)),
-            tuple(_reduce_conjuncts(one.guarantees, history)),
+            tuple(_reduce_conjuncts(contract.assumptions, history)),
+            tuple(_reduce_conjuncts(contract.guarantees, history)),
         )
-        for one in given
+        for contract in contracts
     ]
-    made = tuple(
+    observed = tuple(
         replace(
             contract,
             variables=(*contract.variables, *history.variables),
-            assumptions=assumed,
-            guarantees=promised,
+            assumptions=assumptions,
+            guarantees=guarantees,
         )
-        for contract, (assumed, promised) in zip(given, sides, strict=True)
+        for contract, (assumptions, guarantees) in zip(contracts, reduced_sides, strict=True)
     )
-    return ObservedContracts(made, tuple(history.conjuncts))
+    return ObservedContracts(observed, tuple(history.conjuncts))
 
 
 def _reduce_conjuncts(conjuncts: Iterable[Conjunct], history: History) -> Iterator[Conjunct]:
-    for one in conjuncts:
-        if is_plain(one):
-            yield one
+    for conjunct in conjuncts:
+        if is_plain(conjunct):
+            yield conjunct
             continue
         try:
-            parts = parts_of(as_ltl(one), history, one.origin)
+            parts = parts_of(as_ltl(conjunct), history, conjunct.origin)
         except NotReducibleError as problem:
-            raise OutsideGr1Error(one, str(problem)) from None
-        yield from (replace(one, formula=part, class_=class_) for class_, part in parts)
+            raise OutsideGr1Error(conjunct, str(problem)) from None
+        yield from (replace(conjunct, formula=part, class_=class_) for class_, part in parts)

@@ -1,8 +1,9 @@
-"""Refinement, compatibility and consistency of contracts (thesis 2.2.1; Benveniste et al. 2018).
+"""Entailment of conjuncts, and refinement, compatibility and consistency of contracts (thesis
+2.2.1; Benveniste et al. 2018).
 
-A contract is a set of environments (its assumptions) and of systems (what keeps its guarantees in
-these environments). Everything is decided conjunct by conjunct on fair runs, so that an answer
-names the conjunct that fails and shows a run.
+A contract is a set of environments (its assumptions) and of systems (those that satisfy its
+guarantees in these environments). Questions are decided conjunct by conjunct on fair runs, so an
+answer names the conjunct that fails and shows a run.
 """
 
 from collections.abc import Iterator, Sequence
@@ -11,15 +12,15 @@ from msgspec import Struct
 
 from sysmlc.logic.contract import Class, Conjunct, Contract
 from sysmlc.synthesis.algebra.fair_systems import FairSystem, Runs, Universe, observe_histories
-from sysmlc.synthesis.algebra.traces import Trace, lasso, one, shortest
+from sysmlc.synthesis.algebra.traces import Trace, build_lasso, pick_state, shortest_path
 from sysmlc.synthesis.bdd.manager import Manager, Node
 
 
 class Entailment:
-    """The runs in which some conjuncts hold, asked whether others hold in them too."""
+    """The runs that satisfy some conjuncts, and the question whether others hold in them too."""
 
     def __init__(self, universe: Universe, given: FairSystem) -> None:
-        """Nothing is explored until something is asked."""
+        """Prepare the runs of a system; nothing is explored yet."""
         self._universe = universe
         self.runs = Runs(given)
 
@@ -28,47 +29,51 @@ class Entailment:
         """Whether there is a run at all."""
         return self.runs.fair & self.runs.system.init != self.runs.manager.false
 
-    def example(self) -> Trace | None:
-        """A run; None when there is none."""
+    def find_example(self) -> Trace | None:
+        """Return a run, or None if there is none."""
         runs = self.runs
         start = runs.fair & runs.system.init
-        return lasso(runs, [one(runs, start)], runs.fair) if self.is_possible else None
+        return build_lasso(runs, [pick_state(runs, start)], runs.fair) if self.is_possible else None
 
-    def violation(self, conjunct: Conjunct) -> Trace | None:
-        """A run in which the conjunct does not hold; None when it holds in all.
+    def find_violation(self, conjunct: Conjunct) -> Trace | None:
+        """Return a run that violates the conjunct, or None if it holds in all runs.
 
         Raises OutsideGr1Error for a conjunct of general LTL.
         """
-        broken = ~self._universe.node(conjunct)
-        if broken == self.runs.manager.false:
+        violation = ~self._universe.node(conjunct)
+        if violation == self.runs.manager.false:
             return None
-        return _VIOLATION_SEARCHES[conjunct.class_](self.runs, broken)
+        return _VIOLATION_SEARCHES[conjunct.class_](self.runs, violation)
 
 
-def _find_initial_violation(runs: Runs, broken: Node) -> Trace | None:
-    found = runs.system.init & runs.fair & broken
-    return lasso(runs, [one(runs, found)], runs.fair) if found != runs.manager.false else None
+def _find_initial_violation(runs: Runs, violation: Node) -> Trace | None:
+    states = runs.system.init & runs.fair & violation
+    return (
+        build_lasso(runs, [pick_state(runs, states)], runs.fair)
+        if states != runs.manager.false
+        else None
+    )
 
 
-def _find_step_violation(runs: Runs, broken: Node) -> Trace | None:
-    """A reachable step that breaks it and from which a fair run goes on."""
-    found = runs.fair & runs.before_by(runs.fair, broken)
-    if found == runs.manager.false:
+def _find_step_violation(runs: Runs, violation: Node) -> Trace | None:
+    """Return a run through a reachable step that violates the conjunct."""
+    states = runs.fair & runs.predecessors_by(runs.fair, violation)
+    if states == runs.manager.false:
         return None
-    way = shortest(runs, found)
+    path = shortest_path(runs, states)
     symbols = runs.system.symbols
-    # The state after the step: those that this state and the broken condition allow.
-    after = symbols.unprime(runs.manager.exist(runs.bits, way[-1] & broken))
-    way.append(one(runs, runs.after(way[-1]) & after & runs.fair))
-    return lasso(runs, way, runs.fair)
+    # Restrict the successors to those for which the last step violates the conjunct.
+    successors = symbols.unprime(runs.manager.exist(runs.bits, path[-1] & violation))
+    path.append(pick_state(runs, runs.successors(path[-1]) & successors & runs.fair))
+    return build_lasso(runs, path, runs.fair)
 
 
-def _find_fair_violation(runs: Runs, broken: Node) -> Trace | None:
-    """A fair run that from some step on is never where it should be again and again."""
-    found = runs.fair_within(runs.reachable & broken)
-    if found == runs.manager.false:
+def _find_fair_violation(runs: Runs, violation: Node) -> Trace | None:
+    """Return a fair run that violates the condition forever from some step on."""
+    states = runs.fair_within(runs.reachable & violation)
+    if states == runs.manager.false:
         return None
-    return lasso(runs, shortest(runs, found), found)
+    return build_lasso(runs, shortest_path(runs, states), states)
 
 
 _VIOLATION_SEARCHES = {
@@ -79,22 +84,22 @@ _VIOLATION_SEARCHES = {
 
 
 class Failure(Struct, frozen=True):
-    """A conjunct that does not follow, with a run in which it does not hold."""
+    """A conjunct that is not entailed, with a run that violates it."""
 
     conjunct: Conjunct
     is_assumption: bool
-    """Whether it is assumed by the contract that should refine, or promised by the other."""
+    """Whether the refining contract assumes it; otherwise the refined contract guarantees it."""
     trace: Trace
 
 
 def find_refinement_failures(
     concrete: Contract, abstract: Contract, manager: Manager
 ) -> Iterator[Failure]:
-    """Why ``concrete`` does not refine ``abstract``; nothing when it does.
+    """Yield the reasons why *concrete* does not refine *abstract*; none if it does.
 
-    A contract refines another when it assumes no more and promises no less: the other's
-    assumptions entail its own, and with the other's assumptions its guarantees entail the other's.
-    Raises DomainError, OutsideGr1Error, LimitError.
+    A contract refines another one if it assumes no more and guarantees no less: the other's
+    assumptions entail its own, and together with the other's assumptions its guarantees entail the
+    other's. Raises DomainError, OutsideGr1Error, LimitError.
     """
     with manager.guard():
         yield from _find_all_failures(concrete, abstract, manager)
@@ -103,48 +108,50 @@ def find_refinement_failures(
 def _find_all_failures(
     concrete: Contract, abstract: Contract, manager: Manager
 ) -> Iterator[Failure]:
-    both = observe_histories((concrete, abstract))
-    (concrete, abstract), seen = both.contracts, both.definitions
-    universe = Universe(both.contracts, manager)
-    given = Entailment(universe, universe.system((*abstract.assumptions, *seen)))
+    observed = observe_histories((concrete, abstract))
+    (concrete, abstract), definitions = observed.contracts, observed.definitions
+    universe = Universe(observed.contracts, manager)
+    assumed_runs = Entailment(universe, universe.system((*abstract.assumptions, *definitions)))
     yield from _find_failures(
-        given, _without_repeated(concrete.assumptions, abstract.assumptions), True
+        assumed_runs, _without_repeated(concrete.assumptions, abstract.assumptions), True
     )
-    kept = (*abstract.assumptions, *concrete.guarantees, *seen)
-    promised = Entailment(universe, universe.system(kept))
-    yield from _find_failures(promised, _without_repeated(abstract.guarantees, kept), False)
+    facts = (*abstract.assumptions, *concrete.guarantees, *definitions)
+    guaranteed_runs = Entailment(universe, universe.system(facts))
+    yield from _find_failures(guaranteed_runs, _without_repeated(abstract.guarantees, facts), False)
 
 
 def _find_failures(
-    given: Entailment, wanted: Sequence[Conjunct], is_assumption: bool
+    runs: Entailment, conjuncts: Sequence[Conjunct], is_assumption: bool
 ) -> Iterator[Failure]:
-    for conjunct in wanted:
-        trace = given.violation(conjunct)
+    for conjunct in conjuncts:
+        trace = runs.find_violation(conjunct)
         if trace is not None:
             yield Failure(conjunct, is_assumption, trace)
 
 
-def _without_repeated(wanted: Sequence[Conjunct], given: Sequence[Conjunct]) -> list[Conjunct]:
-    """What is not given word for word."""
-    known = {(one.class_, one.formula) for one in given}
-    return [one for one in wanted if (one.class_, one.formula) not in known]
+def _without_repeated(conjuncts: Sequence[Conjunct], facts: Sequence[Conjunct]) -> list[Conjunct]:
+    """Return the conjuncts that are not literally among the facts."""
+    stated = {(conjunct.class_, conjunct.formula) for conjunct in facts}
+    return [conjunct for conjunct in conjuncts if (conjunct.class_, conjunct.formula) not in stated]
 
 
 def find_environment_run(contract: Contract, manager: Manager) -> Trace | None:
-    """A run that the assumptions allow; None when the contract is not compatible."""
+    """Return a run that the assumptions allow, or None if the contract is not compatible."""
     return _find_run(contract, manager, is_whole=False)
 
 
 def find_contract_run(contract: Contract, manager: Manager) -> Trace | None:
-    """A run that assumptions and guarantees allow; None when the contract is not consistent."""
+    """Return a run that assumptions and guarantees allow, or None if the contract is not
+    consistent.
+    """
     return _find_run(contract, manager, is_whole=True)
 
 
 def _find_run(contract: Contract, manager: Manager, is_whole: bool) -> Trace | None:
-    alone = observe_histories((contract,))
-    (made,) = alone.contracts
-    promised = made.guarantees if is_whole else ()
+    observed = observe_histories((contract,))
+    (reduced,) = observed.contracts
+    guarantees = reduced.guarantees if is_whole else ()
     with manager.guard():
-        universe = Universe(alone.contracts, manager)
-        system = universe.system((*made.assumptions, *promised, *alone.definitions))
-        return Entailment(universe, system).example()
+        universe = Universe(observed.contracts, manager)
+        system = universe.system((*reduced.assumptions, *guarantees, *observed.definitions))
+        return Entailment(universe, system).find_example()

@@ -1,4 +1,4 @@
-"""Runs as witnesses: a way to what is looked for, and a loop in which it goes on for ever."""
+"""Runs as witnesses: a path to a state, and a loop in which the run continues forever."""
 
 from collections.abc import Mapping
 
@@ -10,84 +10,91 @@ from sysmlc.synthesis.bdd.manager import Node
 
 
 class Trace(Struct, frozen=True):
-    """Values of all variables in each step; after the last one it goes on at ``loop``.
+    """Values of all variables in each step; after the last step the run continues at step ``loop``.
 
-    A run that ends, since somebody has no answer, has ``loop`` behind its last step, in which
-    what should have been answered has no value.
+    A run that ends because somebody has no answer has ``loop`` behind its last step, in which the
+    variables of the missing answer have no value.
     """
 
     steps: tuple[Mapping[str, Literal], ...]
     loop: int
 
 
-def shortest(runs: Runs, target: Node) -> list[Node]:
-    """States of a shortest way from the start to the target, one state each.
+def shortest_path(runs: Runs, target: Node) -> list[Node]:
+    """Return the states of a shortest path from an initial state to *target*.
 
-    Raises ValueError when no way leads there.
+    Raises ValueError if *target* is not reachable.
     """
-    fronts = [runs.system.init]
-    known = fronts[0]
-    while fronts[-1] & target == runs.manager.false:
-        front = runs.after(fronts[-1]) & ~known
-        if front == runs.manager.false:
+    frontiers = [runs.system.init]
+    reached = frontiers[0]
+    while frontiers[-1] & target == runs.manager.false:
+        frontier = runs.successors(frontiers[-1]) & ~reached
+        if frontier == runs.manager.false:
             raise ValueError("the target is not reachable")
-        fronts.append(front)
-        known = known | front
-    way = [one(runs, fronts[-1] & target)]
-    for front in reversed(fronts[:-1]):
-        way.insert(0, one(runs, front & runs.before(way[0])))
-    return way
+        frontiers.append(frontier)
+        reached = reached | frontier
+    path = [pick_state(runs, frontiers[-1] & target)]
+    for frontier in reversed(frontiers[:-1]):
+        path.insert(0, pick_state(runs, frontier & runs.predecessors(path[0])))
+    return path
 
 
-def lasso(runs: Runs, way: list[Node], within: Node) -> Trace:
-    """The way, gone on from its last state by a fair run within states that all have one.
+def build_lasso(runs: Runs, path: list[Node], within: Node) -> Trace:
+    """Extend a path by a fair run inside *within*, from whose states fair runs continue.
 
-    From each goal to the next, then back to where that began; where no way leads back, the same
-    is tried one step on. What is done in a state depends on it alone, so that it comes to an end.
+    The extension visits each goal in turn and then returns to its begin. If there is no way back,
+    the same is tried one step later; since the choice in a state depends only on the state, this
+    ends.
 
-    Raises ValueError where a state has no fair run within ``within``.
+    Raises ValueError if no fair run continues.
     """
-    path = list(way)
+    extended = list(path)
     while True:
-        anchor = len(path) - 1
+        anchor = len(extended) - 1
         for goal in runs.goals:
-            path += _walk(runs, path[-1], within, within & goal)
-        closing = _walk(runs, path[-1], within, path[anchor], may_stay=False)
+            extended += _shortest_walk(runs, extended[-1], within, within & goal)
+        closing = _shortest_walk(runs, extended[-1], within, extended[anchor], may_stay=False)
         if closing:
-            return _trace(runs, path + closing[:-1], anchor)
-        onward = runs.after(path[-1]) & within
-        if onward == runs.manager.false:
+            return _decode_trace(runs, extended + closing[:-1], anchor)
+        successors = runs.successors(extended[-1]) & within
+        if successors == runs.manager.false:
             raise ValueError("no fair run goes on from here")
-        path.append(one(runs, onward))
+        extended.append(pick_state(runs, successors))
 
 
-def one(runs: Runs, states: Node) -> Node:
-    """One of the states, the same one every time."""
-    found = runs.manager.pick(states, runs.bits)
-    return runs.manager.false if found is None else runs.manager.cube(found)
+def pick_state(runs: Runs, states: Node) -> Node:
+    """Return one of the states, always the same one."""
+    assignment = runs.manager.pick(states, runs.bits)
+    return runs.manager.false if assignment is None else runs.manager.cube(assignment)
 
 
-def _walk(runs: Runs, start: Node, within: Node, target: Node, may_stay: bool = True) -> list[Node]:
-    """States after ``start`` on a shortest way to the target; empty when there is none.
+def _shortest_walk(
+    runs: Runs, start: Node, within: Node, target: Node, may_stay: bool = True
+) -> list[Node]:
+    """Return the states after *start* on a shortest path to *target*, or an empty list if there is
+    none.
 
-    Already there it is empty too, unless a step has to be taken (``may_stay`` false).
+    It is also empty if *start* is in *target*, unless ``may_stay`` is false.
     """
     if may_stay and start & target != runs.manager.false:
         return []
-    rings = runs.rings(within, target & within)
-    at = start
-    found: list[Node] = []
-    step = runs.after(start)
-    place = next((i for i, ring in enumerate(rings) if ring & step != runs.manager.false), None)
-    if place is None:
+    layers = runs.rings(within, target & within)
+    state = start
+    walk: list[Node] = []
+    successors = runs.successors(start)
+    distance = next(
+        (index for index, layer in enumerate(layers) if layer & successors != runs.manager.false),
+        None,
+    )
+    if distance is None:
         return []
-    for ring in reversed(rings[: place + 1]):
-        at = one(runs, ring & runs.after(at))
-        found.append(at)
-    return found
+    for layer in reversed(layers[: distance + 1]):
+        state = pick_state(runs, layer & runs.successors(state))
+        walk.append(state)
+    return walk
 
 
-def _trace(runs: Runs, states: list[Node], loop: int) -> Trace:
+def _decode_trace(runs: Runs, states: list[Node], loop: int) -> Trace:
     symbols = runs.system.symbols
-    found = (runs.manager.pick(state, runs.bits) or {} for state in states)
-    return Trace(tuple(symbols.decode(one) for one in found), loop)
+    assignments = (runs.manager.pick(state, runs.bits) or {} for state in states)
+    return Trace(tuple(symbols.decode(assignment) for assignment in assignments), loop)

@@ -1,8 +1,9 @@
-"""Conjunction of viewpoints: a component that keeps several contracts, each where it assumes.
+"""Conjunction of viewpoints: one component satisfies several contracts, each under its own
+assumptions.
 
-Requirements about one subject are viewpoints. Taken together they assume everything that any of
-them assumes; a conjunction owes each viewpoint its promises as long as its own assumptions hold,
-whatever becomes of the others' (Benveniste et al. 2018, section 6.3).
+Requirements about one subject are viewpoints. Merged into one contract they would assume everything
+that any of them assumes. Their conjunction owes each viewpoint its guarantees as long as this
+viewpoint's assumptions hold (Benveniste et al. 2018, section 6.3).
 """
 
 from collections.abc import Iterable, Iterator, Sequence
@@ -18,102 +19,117 @@ from sysmlc.synthesis.games.game import OutsideGr1Error
 
 
 class Viewpoint(Struct, frozen=True):
-    """What one viewpoint assumes and promises."""
+    """The assumptions and guarantees of one viewpoint."""
 
     name: str
     assumptions: tuple[Conjunct, ...]
     guarantees: tuple[Conjunct, ...]
 
 
-def viewpoints(contract: Contract) -> tuple[Viewpoint, ...]:
-    """The viewpoints of a contract, in the order in which they occur."""
-    every = (*contract.assumptions, *contract.guarantees)
-    names = dict.fromkeys(one.viewpoint for one in every if one.viewpoint)
+def list_viewpoints(contract: Contract) -> tuple[Viewpoint, ...]:
+    """Return the viewpoints of a contract, in the order of their first conjuncts."""
+    conjuncts = (*contract.assumptions, *contract.guarantees)
+    names = dict.fromkeys(conjunct.viewpoint for conjunct in conjuncts if conjunct.viewpoint)
     return tuple(
         Viewpoint(
             name,
-            tuple(one for one in contract.assumptions if one.viewpoint == name),
-            tuple(one for one in contract.guarantees if one.viewpoint == name),
+            tuple(conjunct for conjunct in contract.assumptions if conjunct.viewpoint == name),
+            tuple(conjunct for conjunct in contract.guarantees if conjunct.viewpoint == name),
         )
         for name in names
     )
 
 
-def conjunction(contract: Contract) -> Contract:
-    """The contract that owes each viewpoint what it promises where only its assumptions hold.
+def conjoin_viewpoints(contract: Contract) -> Contract:
+    """Return the contract that owes each viewpoint its guarantees where only its own assumptions
+    hold.
 
-    The contract is in GR(1). Whether the assumptions of a viewpoint were broken is remembered in a
-    variable of the component. Raises OutsideGr1Error where viewpoints that promise something again
-    and again assume different things again and again.
+    The result is in GR(1); variables of the component record which assumptions were broken. Raises
+    OutsideGr1Error if viewpoints with liveness guarantees have different liveness assumptions.
     """
-    views = viewpoints(contract)
-    if len({_words(one.assumptions) for one in views}) < 2:
+    viewpoints = list_viewpoints(contract)
+    if len({_formulas_of(one.assumptions) for one in viewpoints}) < 2:
         return contract
-    _check_liveness(views)
+    _check_liveness(viewpoints)
     names = Names(*(one.name for one in contract.variables))
-    bits = [Var(names.new("broken")) if _can_break(view) else None for view in views]
-    common = [one for one in contract.guarantees if not one.viewpoint]
-    owed = [one for view, bit in zip(views, bits, strict=True) for one in _owed(view, bit)]
+    bits = [
+        Var(names.new("broken")) if _has_breakable_assumptions(viewpoint) else None
+        for viewpoint in viewpoints
+    ]
+    common_guarantees = [one for one in contract.guarantees if not one.viewpoint]
+    weakened = [
+        one
+        for viewpoint, bit in zip(viewpoints, bits, strict=True)
+        for one in _weaken_guarantees(viewpoint, bit)
+    ]
     return replace(
         contract,
-        variables=(*contract.variables, *(_remembered(bit) for bit in bits if bit)),
-        assumptions=tuple(_common(contract, views)),
-        guarantees=(*common, *owed),
+        variables=(*contract.variables, *(_memory_variable(bit) for bit in bits if bit)),
+        assumptions=tuple(_common_assumptions(contract, viewpoints)),
+        guarantees=(*common_guarantees, *weakened),
     )
 
 
-def _words(conjuncts: Iterable[Conjunct]) -> frozenset[tuple[Class, Formula]]:
-    return frozenset((one.class_, one.formula) for one in conjuncts)
+def _formulas_of(conjuncts: Iterable[Conjunct]) -> frozenset[tuple[Class, Formula]]:
+    return frozenset((conjunct.class_, conjunct.formula) for conjunct in conjuncts)
 
 
-def _check_liveness(views: Sequence[Viewpoint]) -> None:
-    """Raise OutsideGr1Error where implications between recurrences differ: that is not GR(1)."""
-    found: dict[frozenset[tuple[Class, Formula]], Conjunct] = {}
-    for view in views:
-        promised = [one for one in view.guarantees if one.class_ is Class.LIVENESS]
-        if promised:
-            found.setdefault(_words(_recurring(view)), promised[0])
-    if len(found) > 1:
-        why = "viewpoints that assume different things again and again are more than GR(1)"
-        raise OutsideGr1Error(list(found.values())[1], why)
+def _check_liveness(viewpoints: Sequence[Viewpoint]) -> None:
+    """Raise OutsideGr1Error if liveness assumptions differ: several such implications exceed
+    GR(1).
+    """
+    first_guarantees: dict[frozenset[tuple[Class, Formula]], Conjunct] = {}
+    for viewpoint in viewpoints:
+        liveness_guarantees = [
+            conjunct for conjunct in viewpoint.guarantees if conjunct.class_ is Class.LIVENESS
+        ]
+        if liveness_guarantees:
+            first_guarantees.setdefault(
+                _formulas_of(_liveness_assumptions(viewpoint)), liveness_guarantees[0]
+            )
+    if len(first_guarantees) > 1:
+        reason = "viewpoints that assume different things again and again are more than GR(1)"
+        raise OutsideGr1Error(list(first_guarantees.values())[1], reason)
 
 
-def _recurring(view: Viewpoint) -> Iterator[Conjunct]:
+def _liveness_assumptions(view: Viewpoint) -> Iterator[Conjunct]:
     return (one for one in view.assumptions if one.class_ is Class.LIVENESS)
 
 
-def _common(contract: Contract, views: Sequence[Viewpoint]) -> Iterator[Conjunct]:
-    """What is assumed by all; of what recurs that which promises to recur lean on."""
+def _common_assumptions(contract: Contract, views: Sequence[Viewpoint]) -> Iterator[Conjunct]:
+    """Yield the assumptions shared by all viewpoints, and the liveness assumptions that guarantees
+    need.
+    """
     yield from (one for one in contract.assumptions if not one.viewpoint)
     for view in views:
         if any(one.class_ is Class.LIVENESS for one in view.guarantees):
-            yield from _recurring(view)
+            yield from _liveness_assumptions(view)
             return
 
 
-def _remembered(bit: Var) -> Variable:
+def _memory_variable(bit: Var) -> Variable:
     return Variable(bit.name, Owner.SYSTEM, BooleanDomain())
 
 
-def _can_break(view: Viewpoint) -> bool:
+def _has_breakable_assumptions(view: Viewpoint) -> bool:
     return any(one.class_ is not Class.LIVENESS for one in view.assumptions)
 
 
-def _owed(view: Viewpoint, broken: Var | None) -> Iterator[Conjunct]:
-    """What the viewpoint promises, until its assumptions are broken; what remembers that."""
+def _weaken_guarantees(view: Viewpoint, broken: Var | None) -> Iterator[Conjunct]:
+    """Yield the guarantees, weakened by *broken*, and the conjuncts that define *broken*."""
     if broken is None:
         yield from view.guarantees
         return
-    after = f.primed(broken)
-    first = _all(view.assumptions, Class.INIT)
-    each = _all(view.assumptions, Class.SAFETY)
-    now_broken = f.either(broken, f.negate(each))
+    next_broken = f.primed(broken)
+    first = _conjoin_class(view.assumptions, Class.INIT)
+    safety = _conjoin_class(view.assumptions, Class.SAFETY)
+    becomes_broken = f.either(broken, f.negate(safety))
     yield Conjunct(f.iff(broken, f.negate(first)), Class.INIT, "", "", view.name)
-    yield Conjunct(f.iff(after, now_broken), Class.SAFETY, "", "", view.name)
-    for one in view.guarantees:
-        escape = after if one.class_ is Class.SAFETY else broken
-        yield replace(one, formula=f.either(escape, one.formula))
+    yield Conjunct(f.iff(next_broken, becomes_broken), Class.SAFETY, "", "", view.name)
+    for guarantee in view.guarantees:
+        escape = next_broken if guarantee.class_ is Class.SAFETY else broken
+        yield replace(guarantee, formula=f.either(escape, guarantee.formula))
 
 
-def _all(conjuncts: Iterable[Conjunct], class_: Class) -> Formula:
-    return f.both(*(one.formula for one in conjuncts if one.class_ is class_))
+def _conjoin_class(conjuncts: Iterable[Conjunct], class_: Class) -> Formula:
+    return f.both(*(conjunct.formula for conjunct in conjuncts if conjunct.class_ is class_))

@@ -1,7 +1,7 @@
-"""Integers as vectors of diagrams: two's complement, the least bit first, the last is the sign.
+"""Integers as vectors of diagrams: two's complement, least significant bit first, sign last.
 
-Operations never overflow: their results have as many bits as they need. Division is the one of
-``logic.evaluate``: towards zero, x / 0 is 0 and x mod 0 is x.
+Operations never overflow: a result has as many bits as it needs. Division follows
+``logic.evaluate``: it truncates towards zero, x / 0 is 0 and x mod 0 is x.
 """
 
 from collections.abc import Sequence
@@ -12,119 +12,123 @@ Vector = tuple[Node, ...]
 
 
 def constant(manager: Manager, value: int) -> Vector:
-    """A number."""
+    """Return the vector of a number."""
     width = (value if value >= 0 else ~value).bit_length() + 1
-    return tuple(_bit(manager, value >> place & 1) for place in range(width))
+    return tuple(_constant_bit(manager, value >> place & 1) for place in range(width))
 
 
 def unsigned(manager: Manager, bits: Sequence[Node]) -> Vector:
-    """A number that is never negative, of the bits as they are."""
+    """Return the vector of a natural number with these bits."""
     return (*bits, manager.false)
 
 
 def add(manager: Manager, left: Vector, right: Vector) -> Vector:
-    """Sum."""
+    """Return the sum."""
     return _add(manager, left, right, manager.false)
 
 
 def subtract(manager: Manager, left: Vector, right: Vector) -> Vector:
-    """Difference."""
+    """Return the difference."""
     return _add(manager, left, tuple(~bit for bit in right), manager.true)
 
 
 def _add(manager: Manager, left: Vector, right: Vector, carry: Node) -> Vector:
     width = max(len(left), len(right)) + 1
     total: list[Node] = []
-    for one, other in zip(_wide(left, width), _wide(right, width), strict=True):
-        half = ~one.equiv(other)
+    for left_bit, right_bit in zip(
+        _sign_extend(left, width), _sign_extend(right, width), strict=True
+    ):
+        half = ~left_bit.equiv(right_bit)
         total.append(~half.equiv(carry))
-        carry = (one & other) | (half & carry)
-    return _trimmed(tuple(total))
+        carry = (left_bit & right_bit) | (half & carry)
+    return _trim_sign(tuple(total))
 
 
 def multiply(manager: Manager, left: Vector, right: Vector) -> Vector:
-    """Product."""
+    """Return the product."""
     total = constant(manager, 0)
     for place, bit in enumerate(right):
-        part = (*(manager.false,) * place, *(one & bit for one in left))
+        partial_product = (*(manager.false,) * place, *(left_bit & bit for left_bit in left))
         is_sign = place == len(right) - 1
-        total = (subtract if is_sign else add)(manager, total, part)
+        total = (subtract if is_sign else add)(manager, total, partial_product)
     return total
 
 
 def divide(manager: Manager, left: Vector, right: Vector) -> Vector:
-    """Quotient, towards zero."""
-    quotient, _ = _divided(manager, left, right)
+    """Return the quotient, truncated towards zero."""
+    quotient, _ = _divide_absolute(manager, left, right)
     is_negative = ~left[-1].equiv(right[-1])
-    signed = _choose(manager, is_negative, _negated(manager, quotient), quotient)
+    signed = _select(manager, is_negative, _negate(manager, quotient), quotient)
     return tuple(bit & ~equal(manager, right, constant(manager, 0)) for bit in signed)
 
 
 def modulo(manager: Manager, left: Vector, right: Vector) -> Vector:
-    """Remainder, with the sign of the left operand."""
-    _, rest = _divided(manager, left, right)
-    signed = _choose(manager, left[-1], _negated(manager, rest), rest)
-    return _choose(manager, equal(manager, right, constant(manager, 0)), left, signed)
+    """Return the remainder, which has the sign of *left*."""
+    _, remainder = _divide_absolute(manager, left, right)
+    signed = _select(manager, left[-1], _negate(manager, remainder), remainder)
+    return _select(manager, equal(manager, right, constant(manager, 0)), left, signed)
 
 
-def _divided(manager: Manager, left: Vector, right: Vector) -> tuple[Vector, Vector]:
-    """Quotient and remainder of the absolute values, bit by bit from the top."""
-    dividend, divisor = _absolute(manager, left), _absolute(manager, right)
-    rest = constant(manager, 0)
+def _divide_absolute(manager: Manager, left: Vector, right: Vector) -> tuple[Vector, Vector]:
+    """Return quotient and remainder of the absolute values by long division."""
+    dividend, divisor = _absolute_value(manager, left), _absolute_value(manager, right)
+    remainder = constant(manager, 0)
     quotient: list[Node] = []
     for bit in reversed(dividend):
-        rest = _trimmed((bit, *rest))
-        fits = ~less(manager, rest, divisor)
-        rest = _choose(manager, fits, subtract(manager, rest, divisor), rest)
+        remainder = _trim_sign((bit, *remainder))
+        fits = ~less(manager, remainder, divisor)
+        remainder = _select(manager, fits, subtract(manager, remainder, divisor), remainder)
         quotient.append(fits)
-    return unsigned(manager, quotient[::-1]), rest
+    return unsigned(manager, quotient[::-1]), remainder
 
 
 def equal(manager: Manager, left: Vector, right: Vector) -> Node:
-    """Where both are the same number."""
+    """Return where both vectors are the same number."""
     width = max(len(left), len(right))
-    found = manager.true
-    for one, other in zip(_wide(left, width), _wide(right, width), strict=True):
-        found = found & one.equiv(other)
-    return found
+    result = manager.true
+    for left_bit, right_bit in zip(
+        _sign_extend(left, width), _sign_extend(right, width), strict=True
+    ):
+        result = result & left_bit.equiv(right_bit)
+    return result
 
 
 def less(manager: Manager, left: Vector, right: Vector) -> Node:
-    """Where the left one is smaller."""
+    """Return where *left* is smaller than *right*."""
     width = max(len(left), len(right))
-    found = manager.false
-    # The signs count the other way round.
-    pairs = list(zip(_wide(left, width), _wide(right, width), strict=True))
+    result = manager.false
+    # A set sign bit makes a number smaller, so the operands are swapped for the sign.
+    pairs = list(zip(_sign_extend(left, width), _sign_extend(right, width), strict=True))
     pairs[-1] = pairs[-1][1], pairs[-1][0]
-    for one, other in pairs:
-        found = manager.ite(one.equiv(other), found, other)
-    return found
+    for left_bit, right_bit in pairs:
+        result = manager.ite(left_bit.equiv(right_bit), result, right_bit)
+    return result
 
 
-def _absolute(manager: Manager, vector: Vector) -> Vector:
-    return _choose(manager, vector[-1], _negated(manager, vector), vector)
+def _absolute_value(manager: Manager, vector: Vector) -> Vector:
+    return _select(manager, vector[-1], _negate(manager, vector), vector)
 
 
-def _negated(manager: Manager, vector: Vector) -> Vector:
+def _negate(manager: Manager, vector: Vector) -> Vector:
     return subtract(manager, constant(manager, 0), vector)
 
 
-def _choose(manager: Manager, test: Node, then: Vector, otherwise: Vector) -> Vector:
+def _select(manager: Manager, test: Node, then: Vector, otherwise: Vector) -> Vector:
     width = max(len(then), len(otherwise))
-    rows = zip(_wide(then, width), _wide(otherwise, width), strict=True)
-    return _trimmed(tuple(manager.ite(test, one, other) for one, other in rows))
+    pairs = zip(_sign_extend(then, width), _sign_extend(otherwise, width), strict=True)
+    return _trim_sign(tuple(manager.ite(test, then_bit, else_bit) for then_bit, else_bit in pairs))
 
 
-def _wide(vector: Vector, width: int) -> Vector:
+def _sign_extend(vector: Vector, width: int) -> Vector:
     return (*vector, *(vector[-1],) * (width - len(vector)))
 
 
-def _trimmed(vector: Vector) -> Vector:
-    """Without bits that only repeat the sign."""
+def _trim_sign(vector: Vector) -> Vector:
+    """Drop the bits that only repeat the sign."""
     while len(vector) > 1 and vector[-1] == vector[-2]:
         vector = vector[:-1]
     return vector
 
 
-def _bit(manager: Manager, value: int) -> Node:
+def _constant_bit(manager: Manager, value: int) -> Node:
     return manager.true if value else manager.false

@@ -1,8 +1,14 @@
-"""How much a manager of decision diagrams may use, what it used, and how it says that it is over.
+"""Limits of nodes, memory and CPU time for a manager of decision diagrams.
 
-A limit that was reached is kept as an ``End``, not as the exception: that would hold the frames it
-went through, they the manager and its diagrams, and the manager the exception. Such a circle is
-left to the collector, which may take the manager away before its diagrams.
+CUDD asks every 2,048 steps of an operation whether the operation shall stop. ``dd`` does not expose
+the callback for this (cudd.h: ``Cudd_RegisterTerminationCallback``), but it exports CUDD's
+functions and stores the C pointer of the manager next to the attributes of ``dd.cudd.BDD``. The
+pointer is read from there only if these attributes lie in memory as they are declared. Otherwise,
+or if the functions are not exported, limits are checked between operations only.
+
+A limit that was reached is stored as a ``StopReason``, not as the exception: the exception would
+hold its frames, the frames the manager, and the manager the exception. Python's collector may free
+the manager of such a cycle before its diagrams, which crashes CUDD.
 """
 
 import ctypes
@@ -20,18 +26,18 @@ from msgspec import Struct
 
 
 class Limits(Struct, frozen=True):
-    """How much a manager may use; 0 is no limit of its own."""
+    """Limits of one manager; 0 means that there is no limit."""
 
     nodes: int = 0
-    """Nodes that are alive at once."""
+    """Live nodes."""
     memory: int = 0
     """Bytes."""
     seconds: float = 0.0
-    """CPU time since the manager was made."""
+    """CPU time since the manager was created."""
 
 
 class Usage(Struct, frozen=True):
-    """What a manager has used so far."""
+    """Resources that a manager has used so far."""
 
     nodes: int
     peak: int
@@ -39,7 +45,7 @@ class Usage(Struct, frozen=True):
 
 
 class LimitError(Exception):
-    """A limit was reached: ``what`` it limits, and the limit itself, in words."""
+    """A limit was reached: *what* it limits, and the limit itself as text."""
 
     def __init__(self, what: str, limit: str) -> None:
         super().__init__(f"the limit of {limit} {what} was reached")
@@ -48,94 +54,105 @@ class LimitError(Exception):
 
 
 class TooLargeError(LimitError):
-    """One form of an outcome is too large; another one may not be."""
+    """One representation of a result is too large; another one may fit the limits."""
 
 
 Progress = Callable[[str], None]
-"""Called between operations with what is being done."""
-End = Callable[[], LimitError | KeyboardInterrupt]
-"""Why operations are to be given up: makes the exception to be raised."""
+"""Called between operations with the current activity."""
+StopReason = Callable[[], LimitError | KeyboardInterrupt]
+"""Creates the exception that reports why operations stop."""
 
 
-def exceeded(used: Usage, limits: Limits, ceiling: int) -> End | None:
-    """The limit that was reached, if one was; ``ceiling`` is one of nodes for a while."""
-    if ceiling and used.nodes > ceiling:
+def find_exceeded_limit(usage: Usage, limits: Limits, ceiling: int) -> StopReason | None:
+    """Return the first limit that *usage* exceeds, or None.
+
+    *ceiling* is a temporary limit of nodes whose excess raises TooLargeError; 0 means none.
+    """
+    if ceiling and usage.nodes > ceiling:
         return lambda: TooLargeError("nodes", f"{ceiling:,}")
-    if limits.nodes and used.nodes > limits.nodes:
+    if limits.nodes and usage.nodes > limits.nodes:
         return lambda: LimitError("nodes", f"{limits.nodes:,}")
-    if limits.seconds and used.seconds > limits.seconds:
+    if limits.seconds and usage.seconds > limits.seconds:
         return lambda: LimitError("of CPU time", f"{limits.seconds:g} s")
     return None
 
 
 @contextmanager
-def interrupts(handler: Callable[[int, FrameType | None], None]) -> Iterator[None]:
-    """Let a function see Ctrl-C where it would raise KeyboardInterrupt: an operation of the library
-    would not be ended by that."""
+def intercept_interrupts(handler: Callable[[int, FrameType | None], None]) -> Iterator[None]:
+    """Call *handler* on Ctrl-C instead of raising KeyboardInterrupt.
+
+    KeyboardInterrupt would not stop an operation that runs inside the library.
+    """
     is_main = threading.current_thread() is threading.main_thread()
-    before = signal.getsignal(signal.SIGINT)
-    if not is_main or before is not signal.default_int_handler:
+    previous = signal.getsignal(signal.SIGINT)
+    if not is_main or previous is not signal.default_int_handler:
         yield
         return
     signal.signal(signal.SIGINT, handler)
     try:
         yield
     finally:
-        signal.signal(signal.SIGINT, before)
+        signal.signal(signal.SIGINT, previous)
 
 
-_ATTRIBUTES = ("vars", "_index_of_var", "_var_with_index")
-"""What ``dd.cudd.BDD`` declares right behind the manager (dd 0.6)."""
-_WORD = ctypes.sizeof(ctypes.c_void_p)
+_BDD_ATTRIBUTES = ("vars", "_index_of_var", "_var_with_index")
+"""The attributes that ``dd.cudd.BDD`` declares directly behind the manager (dd 0.6)."""
+_WORD_SIZE = ctypes.sizeof(ctypes.c_void_p)
 
 
-class Watched(Protocol):
-    """Somebody whose operations may have to end early."""
+class Stoppable(Protocol):
+    """The owner of operations that may have to stop early."""
 
-    def is_over(self) -> bool:
-        """Whether the operation that runs is to be given up."""
+    def should_stop(self) -> bool:
+        """Return whether the running operation has to stop."""
         ...
 
 
-_watched: WeakValueDictionary[int, Watched] = WeakValueDictionary()
+_stoppables: WeakValueDictionary[int, Stoppable] = WeakValueDictionary()
 _numbers = count(1)
 
 
-def watch(library: ModuleType, bdd: object, watched: Watched) -> Callable[[], int] | None:
-    """Have CUDD ask whether an operation of ``bdd`` is to be given up.
+def install_termination_callback(
+    library: ModuleType, bdd: object, stoppable: Stoppable
+) -> Callable[[], int] | None:
+    """Let CUDD ask *stoppable* during operations of *bdd* whether they shall stop.
 
-    Returns what counts the nodes alive, in no time; None if nothing of this can be done. An
-    operation that is given up raises what ``dd`` raises when CUDD has no result: RuntimeError or
-    ValueError.
+    Return a function that counts the live nodes in constant time, or None if the callback cannot be
+    installed. A stopped operation raises what ``dd`` raises when CUDD returns no result:
+    RuntimeError or ValueError.
     """
-    manager = _manager(bdd)
+    manager = _find_manager_address(bdd)
     try:
-        known = ctypes.CDLL(library.__file__)
-        register, counted = known.Cudd_RegisterTerminationCallback, known.Cudd_ReadNodeCount
+        cudd = ctypes.CDLL(library.__file__)
+        register, count_nodes = cudd.Cudd_RegisterTerminationCallback, cudd.Cudd_ReadNodeCount
     except (OSError, AttributeError):
         return None
     if manager is None:
         return None
-    counted.restype = ctypes.c_long
-    number = next(_numbers)
-    _watched[number] = watched
-    register(ctypes.c_void_p(manager), _ASKED, ctypes.c_void_p(number))
-    return partial(counted, ctypes.c_void_p(manager))
+    count_nodes.restype = ctypes.c_long
+    key = next(_numbers)
+    _stoppables[key] = stoppable
+    register(ctypes.c_void_p(manager), _TERMINATION_CALLBACK, ctypes.c_void_p(key))
+    return partial(count_nodes, ctypes.c_void_p(manager))
 
 
-def _manager(bdd: object) -> int | None:
-    """The address that stands before those of the attributes, if they stand there in a row."""
-    size = type(bdd).__basicsize__ // _WORD
+def _find_manager_address(bdd: object) -> int | None:
+    """Return the word before the consecutive addresses of the known attributes, or None."""
+    size = type(bdd).__basicsize__ // _WORD_SIZE
     words = list((ctypes.c_size_t * size).from_address(id(bdd)))
-    known = [id(getattr(bdd, name, None)) for name in _ATTRIBUTES]
-    places = [at for at in range(1, size) if words[at : at + len(known)] == known]
-    return words[places[0] - 1] or None if len(places) == 1 else None
+    attribute_addresses = [id(getattr(bdd, name, None)) for name in _BDD_ATTRIBUTES]
+    matches = [
+        index
+        for index in range(1, size)
+        if words[index : index + len(attribute_addresses)] == attribute_addresses
+    ]
+    return words[matches[0] - 1] or None if len(matches) == 1 else None
 
 
-def _asked(number: int) -> int:
-    watched = _watched.get(number)
-    return 0 if watched is None else int(watched.is_over())
+def _is_termination_requested(key: int) -> int:
+    stoppable = _stoppables.get(key)
+    return 0 if stoppable is None else int(stoppable.should_stop())
 
 
-_ASKED = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_void_p)(_asked)
-"""One function for all managers, never freed: diagrams may outlive whoever made them."""
+_TERMINATION_CALLBACK = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_void_p)(_is_termination_requested)
+"""One callback for all managers, never freed, because diagrams may outlive their manager."""

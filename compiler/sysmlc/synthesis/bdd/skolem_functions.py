@@ -1,7 +1,7 @@
-"""From what may be answered to what is answered: functions in a relation.
+"""Skolem functions: from a relation of allowed answers to one function for each bit of the answer.
 
-Nothing here depends on the order of bits in the library: where several values are possible, a bit
-is false if it can be, the first bits first.
+The functions do not depend on the order of bits in the library: if several values are allowed, a
+bit is false if it can be, and earlier bits are decided first.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
@@ -9,53 +9,60 @@ from collections.abc import Iterable, Mapping, Sequence
 from sysmlc.synthesis.bdd.manager import Manager, Node
 
 
-def chosen(manager: Manager, relation: Node, bits: Sequence[str]) -> dict[str, Node]:
-    """Each bit as a function of all that the relation speaks of beside ``bits``.
+def choose_functions(manager: Manager, relation: Node, bits: Sequence[str]) -> dict[str, Node]:
+    """Return each of *bits* as a function of the other bits of the relation.
 
-    Together they are in the relation wherever some values are; elsewhere they mean nothing.
+    Where the relation allows some answer, the functions give an allowed one; elsewhere their values
+    are arbitrary.
     """
-    found: dict[str, Node] = {}
-    spoken = manager.support(relation)
-    later = [bit for bit in bits if bit in spoken]
+    functions: dict[str, Node] = {}
+    support = manager.support(relation)
+    remaining = [bit for bit in bits if bit in support]
     for bit in bits:
-        later = later[1:] if later[:1] == [bit] else later
-        possible = manager.exist(later, relation)
-        on, off = (manager.assign(possible, {bit: value}) for value in (True, False))
-        found[bit] = on & ~off
-        relation = substituted(manager, relation, {bit: found[bit]})
-    return found
+        remaining = remaining[1:] if remaining[:1] == [bit] else remaining
+        possible = manager.exist(remaining, relation)
+        can_be_true, can_be_false = (
+            manager.assign(possible, {bit: value}) for value in (True, False)
+        )
+        functions[bit] = can_be_true & ~can_be_false
+        relation = substitute(manager, relation, {bit: functions[bit]})
+    return functions
 
 
-def substituted(manager: Manager, node: Node, by: Mapping[str, Node]) -> Node:
-    """The diagram with functions for some bits; none of them may speak of these bits.
+def substitute(manager: Manager, node: Node, functions: Mapping[str, Node]) -> Node:
+    """Replace bits of the diagram by functions, none of which depends on a replaced bit.
 
-    Bit by bit, which takes a fraction of the time that it takes for all at once.
+    Bit by bit this takes a fraction of the time of one simultaneous composition.
     """
-    for bit in sorted(manager.support(node).intersection(by)):
-        on, off = (manager.assign(node, {bit: value}) for value in (True, False))
-        node = manager.ite(by[bit], on, off)
+    for bit in sorted(manager.support(node).intersection(functions)):
+        high, low = (manager.assign(node, {bit: value}) for value in (True, False))
+        node = manager.ite(functions[bit], high, low)
     return node
 
 
-def joined(manager: Manager, pieces: Iterable[tuple[Node, Mapping[str, Node]]]) -> dict[str, Node]:
-    """Functions by cases: in each piece, where its condition holds, those of the piece."""
-    found: dict[str, Node] = {}
-    for where, functions in pieces:
-        for bit, node in functions.items():
-            found[bit] = found.get(bit, manager.false) | (where & node)
-    return found
+def combine_cases(
+    manager: Manager, cases: Iterable[tuple[Node, Mapping[str, Node]]]
+) -> dict[str, Node]:
+    """Combine functions by disjoint cases, each a condition with the functions valid under it."""
+    combined: dict[str, Node] = {}
+    for condition, functions in cases:
+        for bit, function in functions.items():
+            combined[bit] = combined.get(bit, manager.false) | (condition & function)
+    return combined
 
 
-def least(manager: Manager, node: Node, bits: Sequence[str]) -> dict[str, bool] | None:
-    """The values of the bits that make the diagram true and come first as binary numbers.
+def find_least_assignment(
+    manager: Manager, node: Node, bits: Sequence[str]
+) -> dict[str, bool] | None:
+    """Return the satisfying values of *bits* that are the least binary number, or None.
 
-    None if there are none. ``bits`` must contain the support.
+    *bits* must contain the support of the diagram.
     """
     if node == manager.false:
         return None
-    found: dict[str, bool] = {}
+    assignment: dict[str, bool] = {}
     for bit in bits:
-        off = manager.assign(node, {bit: False})
-        found[bit] = off == manager.false
-        node = manager.assign(node, {bit: True}) if found[bit] else off
-    return found
+        low = manager.assign(node, {bit: False})
+        assignment[bit] = low == manager.false
+        node = manager.assign(node, {bit: True}) if assignment[bit] else low
+    return assignment

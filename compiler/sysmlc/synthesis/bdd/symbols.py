@@ -1,8 +1,8 @@
-"""Variables of a contract as bits, and formulas over them as decision diagrams.
+"""Variables of a contract encoded in bits, and formulas over them as decision diagrams.
 
-A Boolean is one bit, a number the binary code of its distance from the least value, a literal of
-an enumeration that of its place. ``x.0`` is the most significant bit of ``x``, ``x.0'`` its next
-value, which lies directly below it in the order.
+A Boolean takes one bit, an integer the binary code of its distance from the lower bound, a literal
+of an enumeration that of its index. ``x.0`` is the most significant bit of ``x``; its next value
+``x.0'`` lies directly below it in the order.
 """
 
 from collections.abc import Callable, Collection, Iterable, Mapping
@@ -14,86 +14,90 @@ from sysmlc.logic.formula import Apply, Const, Formula, Literal, Op, Var
 from sysmlc.synthesis.bdd import bit_vectors as vectors
 from sysmlc.synthesis.bdd.bit_vectors import Vector
 from sysmlc.synthesis.bdd.manager import Manager, Node
-from sysmlc.synthesis.bdd.variable_order import ordered
+from sysmlc.synthesis.bdd.variable_order import order_bits
 
 
 class SymbolError(ValueError):
-    """A formula that has no value for some variables: an unknown name, a type that does not fit,
-    an operator of temporal logic."""
+    """A formula that has no diagram over some variables: an unknown name, a type error, or a
+    temporal operator.
+    """
 
 
 class Symbols:
-    """Bits of the variables in one manager."""
+    """The symbol table of one manager: variables with their bits, current and next."""
 
     def __init__(
         self,
         manager: Manager,
         variables: Iterable[Variable],
-        together: Iterable[Collection[str]] = (),
+        edges: Iterable[Collection[str]] = (),
     ) -> None:
-        """Declare the bits of the variables, each beside its next value (``order``).
+        """Declare the bits of the variables, each next to its next value (``variable_order``).
 
-        ``together`` are names of variables that something is said of.
+        Each of *edges* names variables that occur in one conjunct.
         """
         self.manager = manager
-        self.variables = {one.name: one for one in variables}
-        self._bits = {name: _bits(one) for name, one in self.variables.items()}
+        self.variables = {variable.name: variable for variable in variables}
+        self._bits = {name: _bit_names(variable) for name, variable in self.variables.items()}
         self._nodes: dict[Formula, Node] = {}
         self._vectors: dict[Formula, Vector] = {}
-        order = ordered(self.variables.values(), self._bits, together)
-        manager.declare([one for bit in order for one in (bit, next_bit(bit))])
-        self._to_next = {bit: manager.var(next_bit(bit)) for bit in order}
-        self._to_present = {next_bit(bit): manager.var(bit) for bit in order}
+        bit_order = order_bits(self.variables.values(), self._bits, edges)
+        manager.declare([variable for bit in bit_order for variable in (bit, next_bit(bit))])
+        self._to_next = {bit: manager.var(next_bit(bit)) for bit in bit_order}
+        self._to_present = {next_bit(bit): manager.var(bit) for bit in bit_order}
 
     def only(self, names: Collection[str]) -> "Symbols":
-        """The same bits, as if there were no other variables than these."""
-        found = copy(self)
-        found.variables = {name: one for name, one in self.variables.items() if name in names}
-        return found
+        """Return the same symbols restricted to the variables *names*."""
+        restricted = copy(self)
+        restricted.variables = {
+            name: variable for name, variable in self.variables.items() if name in names
+        }
+        return restricted
 
     def bits(self, name: str, primed: bool = False) -> tuple[str, ...]:
-        """The bits of a variable, the most significant one first."""
+        """Return the bits of a variable, the most significant one first."""
         bits = self._bits[name]
         return tuple(map(next_bit, bits)) if primed else bits
 
-    def owned(self, owner: Owner, primed: bool = False) -> tuple[str, ...]:
-        """The bits of all variables of one side, in the order of the variables."""
+    def bits_of_owner(self, owner: Owner, primed: bool = False) -> tuple[str, ...]:
+        """Return the bits of all variables of one owner, in the order of the variables."""
         return self.all_bits(
-            [one.name for one in self.variables.values() if one.owner is owner], primed
+            [variable.name for variable in self.variables.values() if variable.owner is owner],
+            primed,
         )
 
     def all_bits(self, names: Iterable[str], primed: bool = False) -> tuple[str, ...]:
-        """The bits of variables."""
+        """Return the bits of several variables."""
         return tuple(bit for name in names for bit in self.bits(name, primed))
 
     def prime(self, node: Node) -> Node:
-        """The same about the next step; the diagram must not speak of it already."""
+        """Replace current by next values; the diagram must not depend on next values already."""
         return self.manager.compose(node, self._to_next)
 
     def unprime(self, node: Node) -> Node:
-        """The same about the present step; the diagram must speak of the next one only."""
+        """Replace next by current values; the diagram must depend on next values only."""
         return self.manager.compose(node, self._to_present)
 
     def names(self, node: Node, primed: bool = False) -> tuple[str, ...]:
-        """The variables that the diagram depends on, in this step or in the next."""
+        """Return the variables whose current (or next) value the diagram depends on."""
         support = self.manager.support(node)
         return tuple(
             name for name in self.variables if not support.isdisjoint(self.bits(name, primed))
         )
 
     def domain(self, name: str, primed: bool = False) -> Node:
-        """The codes of the variable that stand for values."""
+        """Return the set of codes of the variable that encode a value."""
         size = domains.size(self.variables[name].domain)
         bits = self.bits(name, primed)
         if size == 1 << len(bits):
             return self.manager.true
-        code = vectors.unsigned(self.manager, self._vars(bits)[::-1])
+        code = vectors.unsigned(self.manager, self._bit_nodes(bits)[::-1])
         return vectors.less(self.manager, code, vectors.constant(self.manager, size))
 
     def encode(self, values: Mapping[str, Literal], primed: bool = False) -> Node:
-        """The steps in which the variables have these values.
+        """Return the states in which the variables have these values.
 
-        Raises SymbolError for a value that is not of the domain.
+        Raises SymbolError for a value outside of its domain.
         """
         bits: dict[str, bool] = {}
         for name, value in values.items():
@@ -101,37 +105,40 @@ class Symbols:
         return self.manager.cube(bits)
 
     def code(self, name: str, value: Literal, primed: bool = False) -> dict[str, bool]:
-        """The bits of a variable for one value; raises SymbolError if it has no such value."""
+        """Return the bits that encode one value of a variable. Raises SymbolError for other
+        values.
+        """
         domain = self.variables[name].domain
         if not domains.contains(domain, value):
             raise SymbolError(f"{name} cannot be {value}")
-        place = domains.values(domain).index(value)
+        index = domains.values(domain).index(value)
         bits = self.bits(name, primed)
-        return {bit: bool(place >> at & 1) for at, bit in enumerate(reversed(bits))}
+        return {bit: bool(index >> position & 1) for position, bit in enumerate(reversed(bits))}
 
     def decode(self, assignment: Mapping[str, bool], primed: bool = False) -> dict[str, Literal]:
-        """The values of all variables whose bits are in the assignment.
+        """Return the values of all variables whose bits are assigned.
 
-        Raises SymbolError for a code that stands for no value.
+        Raises SymbolError for a code that encodes no value.
         """
-        found: dict[str, Literal] = {}
+        values: dict[str, Literal] = {}
         for name, variable in self.variables.items():
             bits = self.bits(name, primed)
             if all(bit in assignment for bit in bits):
-                found[name] = _value(variable, [assignment[bit] for bit in bits])
-        return found
+                values[name] = _decode_value(variable, [assignment[bit] for bit in bits])
+        return values
 
     def bdd(self, formula: Formula) -> Node:
-        """The diagram of a Boolean formula without temporal operators; primes are next values.
+        """Return the diagram of a Boolean formula without temporal operators; primed variables are
+        next values.
 
-        Raises SymbolError when the formula has none.
+        Raises SymbolError if the formula has none.
         """
-        found = self._nodes.get(formula)
-        if found is None:
-            found = self._nodes[formula] = self._boolean(formula)
-        return found
+        node = self._nodes.get(formula)
+        if node is None:
+            node = self._nodes[formula] = self._encode_boolean(formula)
+        return node
 
-    def _boolean(self, formula: Formula) -> Node:
+    def _encode_boolean(self, formula: Formula) -> Node:
         match formula:
             case Const(bool(value)):
                 return self.manager.true if value else self.manager.false
@@ -142,46 +149,46 @@ class Symbols:
             case Apply(op, args) if op in _CONNECTIVES:
                 return _CONNECTIVES[op](self.manager, [self.bdd(arg) for arg in args])
             case Apply(op, (left, right)) if op in _COMPARISONS:
-                return self._compared(op, left, right)
+                return self._encode_comparison(op, left, right)
             case Apply(op, _):
                 raise SymbolError(f"{op} gives no Boolean of one step")
             case _:
                 raise SymbolError(f"{formula.value} is not Boolean")
 
-    def _compared(self, op: Op, left: Formula, right: Formula) -> Node:
+    def _encode_comparison(self, op: Op, left: Formula, right: Formula) -> Node:
         if self._is_boolean(left) or self._is_boolean(right):
-            return self._equal(op, self.bdd(left).equiv(self.bdd(right)))
-        names = self._literals(left) or self._literals(right)
-        if names:
-            return self._equal(op, self._same_literal(left, right))
+            return self._encode_equality(op, self.bdd(left).equiv(self.bdd(right)))
+        literals = self._literals_of(left) or self._literals_of(right)
+        if literals:
+            return self._encode_equality(op, self._equal_literals(left, right))
         return _COMPARISONS[op](self.manager, self.vector(left), self.vector(right))
 
-    def _equal(self, op: Op, same: Node) -> Node:
+    def _encode_equality(self, op: Op, same: Node) -> Node:
         if op is Op.EQ:
             return same
         if op is Op.NE:
             return ~same
         raise SymbolError(f"{op} compares numbers")
 
-    def _same_literal(self, left: Formula, right: Formula) -> Node:
-        shared = self._by_literal(left), self._by_literal(right)
-        found = self.manager.false
-        for literal, node in shared[0].items():
-            found = found | (node & shared[1].get(literal, self.manager.false))
-        return found
+    def _equal_literals(self, left: Formula, right: Formula) -> Node:
+        operands = self._encode_by_literal(left), self._encode_by_literal(right)
+        result = self.manager.false
+        for literal, node in operands[0].items():
+            result = result | (node & operands[1].get(literal, self.manager.false))
+        return result
 
-    def _by_literal(self, formula: Formula) -> dict[str, Node]:
-        """Where an operand is which literal."""
+    def _encode_by_literal(self, formula: Formula) -> dict[str, Node]:
+        """Return for each literal the condition under which an operand equals it."""
         match formula:
             case Const(str(literal)):
                 return {literal: self.manager.true}
-            case Var(name, primed) if literals := self._literals(formula):
-                codes = {one: self.code(name, one, primed) for one in literals}
-                return {one: self.manager.cube(code) for one, code in codes.items()}
+            case Var(name, primed) if literals := self._literals_of(formula):
+                codes = {literal: self.code(name, literal, primed) for literal in literals}
+                return {literal: self.manager.cube(code) for literal, code in codes.items()}
             case _:
                 raise SymbolError("a literal is compared with what is none")
 
-    def _literals(self, formula: Formula) -> tuple[str, ...]:
+    def _literals_of(self, formula: Formula) -> tuple[str, ...]:
         match formula:
             case Const(str(literal)):
                 return (literal,)
@@ -201,18 +208,18 @@ class Symbols:
                 return op not in _ARITHMETIC
 
     def vector(self, formula: Formula) -> Vector:
-        """The bits of a whole number; raises SymbolError for what is none."""
-        found = self._vectors.get(formula)
-        if found is None:
-            found = self._vectors[formula] = self._number(formula)
-        return found
+        """Return the bit vector of an integer term. Raises SymbolError for other terms."""
+        vector = self._vectors.get(formula)
+        if vector is None:
+            vector = self._vectors[formula] = self._encode_number(formula)
+        return vector
 
-    def _number(self, formula: Formula) -> Vector:
+    def _encode_number(self, formula: Formula) -> Vector:
         match formula:
             case Const(int(value)) if not isinstance(value, bool):
                 return vectors.constant(self.manager, value)
             case Var(name, primed):
-                return self._read(self._variable(name), primed)
+                return self._vector_of_variable(self._variable(name), primed)
             case Apply(op, (left, right)) if op in _ARITHMETIC:
                 return _ARITHMETIC[op](self.manager, self.vector(left), self.vector(right))
             case Apply(Op.SUB, (only,)):
@@ -220,62 +227,66 @@ class Symbols:
             case _:
                 raise SymbolError("a number is expected")
 
-    def _read(self, variable: Variable, primed: bool) -> Vector:
+    def _vector_of_variable(self, variable: Variable, primed: bool) -> Vector:
         domain = variable.domain
         if not isinstance(domain, IntegerDomain):
             raise SymbolError(f"{variable.name} is no number")
-        code = vectors.unsigned(self.manager, self._vars(self.bits(variable.name, primed))[::-1])
-        least = vectors.constant(self.manager, domain.low)
-        return vectors.add(self.manager, code, least) if domain.low else code
+        code = vectors.unsigned(
+            self.manager, self._bit_nodes(self.bits(variable.name, primed))[::-1]
+        )
+        lower_bound = vectors.constant(self.manager, domain.low)
+        return vectors.add(self.manager, code, lower_bound) if domain.low else code
 
     def _variable(self, name: str) -> Variable:
         if name not in self.variables:
             raise SymbolError(f"{name} is no variable of the contract")
         return self.variables[name]
 
-    def _vars(self, bits: Collection[str]) -> list[Node]:
+    def _bit_nodes(self, bits: Collection[str]) -> list[Node]:
         return [self.manager.var(bit) for bit in bits]
 
 
 def next_bit(bit: str) -> str:
-    """The bit of the next value."""
+    """Return the name of the bit of the next value."""
     return f"{bit}'"
 
 
 def width(variable: Variable) -> int:
-    """Number of bits; a variable with one value has one, so that it can be seen."""
+    """Return the number of bits of a variable; even a variable with one value has a bit, to be
+    visible.
+    """
     return max(1, (domains.size(variable.domain) - 1).bit_length())
 
 
-def _bits(variable: Variable) -> tuple[str, ...]:
-    return tuple(f"{variable.name}.{place}" for place in range(width(variable)))
+def _bit_names(variable: Variable) -> tuple[str, ...]:
+    return tuple(f"{variable.name}.{index}" for index in range(width(variable)))
 
 
-def _value(variable: Variable, bits: list[bool]) -> Literal:
-    place = sum(bit << at for at, bit in enumerate(reversed(bits)))
-    if place >= domains.size(variable.domain):
-        raise SymbolError(f"{variable.name} has no value with the code {place}")
-    return domains.values(variable.domain)[place]
+def _decode_value(variable: Variable, bits: list[bool]) -> Literal:
+    index = sum(bit << position for position, bit in enumerate(reversed(bits)))
+    if index >= domains.size(variable.domain):
+        raise SymbolError(f"{variable.name} has no value with the code {index}")
+    return domains.values(variable.domain)[index]
 
 
-def _and(manager: Manager, parts: list[Node]) -> Node:
-    found = manager.true
+def _conjunction(manager: Manager, parts: list[Node]) -> Node:
+    result = manager.true
     for part in parts:
-        found = found & part
-    return found
+        result = result & part
+    return result
 
 
-def _or(manager: Manager, parts: list[Node]) -> Node:
-    found = manager.false
+def _disjunction(manager: Manager, parts: list[Node]) -> Node:
+    result = manager.false
     for part in parts:
-        found = found | part
-    return found
+        result = result | part
+    return result
 
 
 _CONNECTIVES: dict[Op, Callable[[Manager, list[Node]], Node]] = {
     Op.NOT: lambda _, parts: ~parts[0],
-    Op.AND: _and,
-    Op.OR: _or,
+    Op.AND: _conjunction,
+    Op.OR: _disjunction,
     Op.IMPLIES: lambda _, parts: parts[0].implies(parts[1]),
     Op.IFF: lambda _, parts: parts[0].equiv(parts[1]),
 }

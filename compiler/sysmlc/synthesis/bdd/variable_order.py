@@ -1,12 +1,12 @@
-"""The order in which variables and their bits enter the diagrams.
+"""The order in which variables and their bits enter the decision diagrams.
 
-Numbers with one range are positions, targets, angles of alike things: what is said compares them,
-so their bits are interleaved, the most significant ones first. Relations between three and more
-of them are then a fifth of what they are with one variable after the other. Wide numbers are laid
-so whatever their ranges: two that are compared, one behind the other, need as many nodes as they
-have values. Other variables stay where they are declared. Of many variables (tokens of an activity,
-what runs, what is done) those that conjuncts speak of together come close together: FORCE (Aloul,
-Markov, Sakallah 2003).
+Integers with the same range are usually positions, targets or angles of similar things. Formulas
+compare them, so their bits are interleaved, the most significant ones first: relations between
+three or more of them then need a fifth of the nodes. Wide integers are interleaved whatever their
+ranges, because a comparison of two that follow one another needs as many nodes as they have values.
+Other variables keep the order of their declaration. If there are many variables (tokens of an
+activity), variables that occur in the same conjuncts are placed close together with the heuristic
+FORCE (Aloul, Markov, Sakallah 2003).
 """
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
@@ -15,72 +15,89 @@ from itertools import zip_longest
 from sysmlc.logic import domains
 from sysmlc.logic.contract import Domain, IntegerDomain, Variable
 
-MANY = 5
-"""Fewer variables with one range stay apart: their relations are small in any order."""
-BROAD = 7
-"""Bits of a number from which on it is interleaved with all that have as many or more."""
-CROWD = 40
-"""Variables from which on they are laid by what speaks of them."""
-LONG = 300
-"""Times that a crowd is laid anew at most."""
-WIDE = 20
-"""A conjunct about more variables says nothing of which are close."""
+MIN_INTERLEAVED_VARIABLES = 5
+"""Variables of one range from which on they are interleaved: relations of fewer are small in any
+order."""
+MIN_INTERLEAVED_BITS = 7
+"""Bits of an integer from which on it is interleaved with all integers of at least this width."""
+MIN_FORCE_VARIABLES = 40
+"""Variables from which on FORCE orders them."""
+MAX_FORCE_ROUNDS = 300
+"""Rounds of FORCE at most."""
+MAX_EDGE_VARIABLES = 20
+"""A conjunct about more variables does not tell which of them belong together."""
 
 
-def ordered(
+def order_bits(
     variables: Iterable[Variable],
     bits: Mapping[str, tuple[str, ...]],
-    together: Iterable[Collection[str]] = (),
+    edges: Iterable[Collection[str]] = (),
 ) -> tuple[str, ...]:
-    """All bits, those of variables with the same range interleaved; ``together`` are names of
-    variables that something is said of."""
+    """Return all bits, with those of variables of the same range interleaved.
+
+    Each of *edges* names the variables of one conjunct.
+    """
     groups: dict[Domain | str | int, list[str]] = {}
     for variable in variables:
         is_number = isinstance(variable.domain, IntegerDomain) and domains.size(variable.domain) > 2
-        is_broad = is_number and len(bits[variable.name]) >= BROAD
-        key = BROAD if is_broad else variable.domain if is_number else variable.name
+        is_broad = is_number and len(bits[variable.name]) >= MIN_INTERLEAVED_BITS
+        key = MIN_INTERLEAVED_BITS if is_broad else variable.domain if is_number else variable.name
         groups.setdefault(key, []).append(variable.name)
-    if len(bits) >= CROWD and all(len(names) < MANY for names in groups.values()):
-        return tuple(bit for name in laid(tuple(bits), tuple(together)) for bit in bits[name])
-    return tuple(bit for names in groups.values() for bit in _laid([bits[one] for one in names]))
+    if len(bits) >= MIN_FORCE_VARIABLES and all(
+        len(names) < MIN_INTERLEAVED_VARIABLES for names in groups.values()
+    ):
+        return tuple(
+            bit for name in order_by_force(tuple(bits), tuple(edges)) for bit in bits[name]
+        )
+    return tuple(
+        bit for names in groups.values() for bit in _interleave([bits[one] for one in names])
+    )
 
 
-def _laid(rows: list[tuple[str, ...]]) -> Iterable[str]:
-    if len(rows) < MANY and len(rows[0]) < BROAD:
-        return (bit for row in rows for bit in row)
-    columns = list(zip_longest(*(reversed(row) for row in rows), fillvalue=""))
+def _interleave(bit_lists: list[tuple[str, ...]]) -> Iterable[str]:
+    if len(bit_lists) < MIN_INTERLEAVED_VARIABLES and len(bit_lists[0]) < MIN_INTERLEAVED_BITS:
+        return (bit for bits in bit_lists for bit in bits)
+    columns = list(zip_longest(*(reversed(bits) for bits in bit_lists), fillvalue=""))
     return (bit for column in reversed(columns) for bit in column if bit)
 
 
-def laid(names: Sequence[str], together: Sequence[Collection[str]]) -> tuple[str, ...]:
-    """The names in an order in which those that belong together are close."""
-    edges = [tuple(edge) for edge in together if 1 < len(edge) <= WIDE]
+def order_by_force(names: Sequence[str], relations: Sequence[Collection[str]]) -> tuple[str, ...]:
+    """Return *names* in an order in which the names of each relation are close together."""
+    edges = [tuple(edge) for edge in relations if 1 < len(edge) <= MAX_EDGE_VARIABLES]
     best = order = tuple(names)
-    least = _span(order, edges)
-    for _ in range(LONG):
-        order = _drawn(order, edges)
-        span = _span(order, edges)
-        if span >= least:
+    best_span = _total_span(order, edges)
+    for _ in range(MAX_FORCE_ROUNDS):
+        order = _move_to_centers(order, edges)
+        span = _total_span(order, edges)
+        if span >= best_span:
             break
-        best, least = order, span
+        best, best_span = order, span
     return best
 
 
-def _drawn(order: Sequence[str], edges: Iterable[Sequence[str]]) -> tuple[str, ...]:
-    """Each name as near as can be to the middles of what speaks of it."""
-    place = {name: at for at, name in enumerate(order)}
-    pull: dict[str, list[float]] = {name: [] for name in order}
+def _move_to_centers(order: Sequence[str], edges: Iterable[Sequence[str]]) -> tuple[str, ...]:
+    """Sort the names by the mean center of the edges that contain them."""
+    position = {name: index for index, name in enumerate(order)}
+    centers: dict[str, list[float]] = {name: [] for name in order}
     for edge in edges:
-        middle = sum(place[name] for name in edge) / len(edge)
+        center = sum(position[name] for name in edge) / len(edge)
         for name in edge:
-            pull[name].append(middle)
+            centers[name].append(center)
     return tuple(
         sorted(
-            order, key=lambda name: sum(pull[name]) / len(pull[name]) if pull[name] else place[name]
+            order,
+            key=lambda name: (
+                sum(centers[name]) / len(centers[name]) if centers[name] else position[name]
+            ),
         )
     )
 
 
-def _span(order: Sequence[str], edges: Iterable[Sequence[str]]) -> int:
-    place = {name: at for at, name in enumerate(order)}
-    return sum(max(at) - min(at) for edge in edges for at in [[place[name] for name in edge]])
+def _total_span(order: Sequence[str], edges: Iterable[Sequence[str]]) -> int:
+    """Return the sum of the distances between the first and the last name of each edge."""
+    position = {name: positions for positions, name in enumerate(order)}
+    return sum(
+        max(positions) - min(positions)
+        for edge in edges
+        for positions in [[position[name] for name in edge]]
+    )

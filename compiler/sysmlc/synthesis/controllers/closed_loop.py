@@ -1,6 +1,8 @@
-"""Controllers as relations over the variables of a contract and one for the controller's state.
+"""Closed loops: a controller as a relation over the contract's variables and one for its state, and
+its combination with the assumptions.
 
-What is written is read here anew: conditions and outputs as formulas, tables node by node.
+Controllers are translated from their written form, independently of their synthesis: conditions
+and outputs as formulas, tables node by node.
 """
 
 from collections.abc import Iterable, Iterator, Sequence
@@ -12,108 +14,121 @@ from sysmlc.logic.formula import Var, eq
 from sysmlc.synthesis.bdd.manager import Manager, Node
 from sysmlc.synthesis.bdd.symbols import Symbols, next_bit
 from sysmlc.synthesis.controllers.mealy import Machine, Move
-from sysmlc.synthesis.controllers.table import Entry, Table, nodes_of
-from sysmlc.synthesis.games.arena import in_range
+from sysmlc.synthesis.controllers.table import Entry, Table, table_diagrams
+from sysmlc.synthesis.games.arena import domain_constraint
 
 Controller = Machine | Table
 
 
-class Relation(Struct, frozen=True):
-    """What a controller does, as conjunctions."""
+class ControllerRelation(Struct, frozen=True):
+    """The behaviour of a controller as conjunctions."""
 
     first: tuple[Node, ...]
-    """Over the first step and the state after it."""
-    later: tuple[Node, ...]
-    """Over a step and the state after it, and the next step and the state after that."""
+    """A relation of the first step and the state after it."""
+    step: tuple[Node, ...]
+    """A relation of a step and the state after it, and the next step and the state after that."""
 
 
-def memory(controller: Controller, contract: Contract) -> Variable:
-    """A variable for the state of a controller, with a name that the contract does not have."""
+def state_variable(controller: Controller, contract: Contract) -> Variable:
+    """Return a variable for the state of a controller, with a name that the contract does not
+    use.
+    """
     name = "state"
-    while any(one.name == name for one in contract.variables):
+    while any(variable.name == name for variable in contract.variables):
         name += "_"
     size = controller.size if isinstance(controller, Machine) else len(controller.modes)
     return Variable(name, Owner.SYSTEM, IntegerDomain(0, size - 1))
 
 
-def relation(controller: Controller, symbols: Symbols, state: Variable) -> Relation:
-    """The relation of a controller whose state is this variable.
+def translate_controller(
+    controller: Controller, symbols: Symbols, state: Variable
+) -> ControllerRelation:
+    """Return the relation of a controller whose state is the variable *state*.
 
-    Raises SymbolError when it speaks of what the variables are not.
+    Raises SymbolError if the controller does not fit the variables.
     """
     if isinstance(controller, Machine):
-        found = _of_machine(controller, symbols, state)
+        relation = _translate_machine(controller, symbols, state)
     else:
-        found = _of_table(controller, symbols, state)
-    names = [one.name for one in controller.outputs]
-    first = in_range(symbols, names)
-    return Relation((*found.first, first), (*found.later, in_range(symbols, names, primed=True)))
+        relation = _translate_table(controller, symbols, state)
+    names = [variable.name for variable in controller.outputs]
+    first = domain_constraint(symbols, names)
+    return ControllerRelation(
+        (*relation.first, first), (*relation.step, domain_constraint(symbols, names, primed=True))
+    )
 
 
-def _of_machine(machine: Machine, symbols: Symbols, state: Variable) -> Relation:
-    found = symbols.manager.false
-    first = symbols.manager.false
-    for place, moves in enumerate(machine.states):
-        taken = _taken(machine, moves, symbols, state)
-        first = first if place else symbols.unprime(taken)
-        found = found | (symbols.encode({state.name: place}) & taken)
-    return Relation((first,), (found,))
+def _translate_machine(machine: Machine, symbols: Symbols, state: Variable) -> ControllerRelation:
+    transitions = symbols.manager.false
+    first_step = symbols.manager.false
+    for index, moves in enumerate(machine.states):
+        moves_taken = _translate_moves(machine, moves, symbols, state)
+        first_step = first_step if index else symbols.unprime(moves_taken)
+        transitions = transitions | (symbols.encode({state.name: index}) & moves_taken)
+    return ControllerRelation((first_step,), (transitions,))
 
 
-def _taken(machine: Machine, moves: Sequence[Move], symbols: Symbols, state: Variable) -> Node:
-    """The moves of a state; of those whose condition holds the first one is taken."""
-    found = symbols.manager.false
-    left = symbols.manager.true
+def _translate_moves(
+    machine: Machine, moves: Sequence[Move], symbols: Symbols, state: Variable
+) -> Node:
+    """Translate the moves of a state, of which the first one with a true condition is taken."""
+    transitions = symbols.manager.false
+    remaining = symbols.manager.true
     for move in moves:
         symbols.manager.check("translating the machine")
-        when = symbols.bdd(move.when)
-        here = left & when & symbols.encode({state.name: move.state}, primed=True)
+        condition = symbols.bdd(move.when)
+        transition = remaining & condition & symbols.encode({state.name: move.state}, primed=True)
         for variable, value in zip(machine.outputs, move.output, strict=True):
-            here = here & symbols.bdd(eq(Var(variable.name, primed=True), value))
-        found = found | here
-        left = left & ~when
-    return found
+            transition = transition & symbols.bdd(eq(Var(variable.name, primed=True), value))
+        transitions = transitions | transition
+        remaining = remaining & ~condition
+    return transitions
 
 
-def _of_table(table: Table, symbols: Symbols, state: Variable) -> Relation:
-    nodes = nodes_of(table, symbols)
-    first = tuple(symbols.unprime(one) for one in _entry(table, table.first, nodes, symbols, state))
-    by_mode = [tuple(_entry(table, mode, nodes, symbols, state)) for mode in table.modes]
+def _translate_table(table: Table, symbols: Symbols, state: Variable) -> ControllerRelation:
+    nodes = table_diagrams(table, symbols)
+    first = tuple(
+        symbols.unprime(variable)
+        for variable in _translate_entry(table, table.first, nodes, symbols, state)
+    )
+    by_mode = [tuple(_translate_entry(table, mode, nodes, symbols, state)) for mode in table.modes]
     later = list[Node]()
     for parts in zip(*by_mode, strict=True):
-        found = symbols.manager.true
-        for place, part in enumerate(parts):
-            found = found & symbols.encode({state.name: place}).implies(part)
-        later.append(found)
-    return Relation(first, (*later, symbols.domain(state.name)))
+        step_part = symbols.manager.true
+        for mode_number, part in enumerate(parts):
+            step_part = step_part & symbols.encode({state.name: mode_number}).implies(part)
+        later.append(step_part)
+    return ControllerRelation(first, (*later, symbols.domain(state.name)))
 
 
-def _entry(
+def _translate_entry(
     table: Table, entry: Entry, nodes: Sequence[Node], symbols: Symbols, state: Variable
 ) -> Iterator[Node]:
-    """What holds of outputs and the next state."""
+    """Yield the conditions on outputs and next state."""
     manager = symbols.manager
-    bits = symbols.all_bits(one.name for one in table.outputs)
-    for bit, place in zip(bits, entry.outputs, strict=True):
-        yield manager.var(next_bit(bit)).equiv(nodes[place])
-    onward, left = manager.false, manager.true
-    for after, place in enumerate(entry.onward):
-        here = left & nodes[place]
-        onward = onward | (here & symbols.encode({state.name: after}, primed=True))
-        left = left & ~nodes[place]
-    yield onward
+    bits = symbols.all_bits(variable.name for variable in table.outputs)
+    for bit, position in zip(bits, entry.outputs, strict=True):
+        yield manager.var(next_bit(bit)).equiv(nodes[position])
+    next_state, remaining = manager.false, manager.true
+    for mode_number, position in enumerate(entry.successors):
+        condition = remaining & nodes[position]
+        next_state = next_state | (
+            condition & symbols.encode({state.name: mode_number}, primed=True)
+        )
+        remaining = remaining & ~nodes[position]
+    yield next_state
 
 
-class Closed(Struct, frozen=True):
-    """A controller in all environments that keep the assumptions."""
+class ClosedLoop(Struct, frozen=True):
+    """A controller in all environments that satisfy the assumptions."""
 
     symbols: Symbols
-    starts: Node
-    """First steps."""
-    allowed: tuple[Node, ...]
-    """What is assumed of a step and the next inputs."""
-    moves: tuple[Node, ...]
-    """What the controller does."""
+    initial: Node
+    """The first steps."""
+    assumptions: tuple[Node, ...]
+    """The assumptions about a step and the next inputs."""
+    transitions: tuple[Node, ...]
+    """The transition relation of the controller."""
     fairness: tuple[Node, ...]
 
     @property
@@ -121,22 +136,28 @@ class Closed(Struct, frozen=True):
         """Owner of all diagrams."""
         return self.symbols.manager
 
-    def about(self, names: frozenset[str]) -> "Closed":
-        """What is said of some variables only: all runs are runs of it, too."""
-        others = self.symbols.all_bits(name for name in self.symbols.variables if name not in names)
-        allowed, moves, fairness = (
-            tuple(self.speaking(nodes, names))
-            for nodes in (self.allowed, self.moves, self.fairness)
+    def project_on(self, names: frozenset[str]) -> "ClosedLoop":
+        """Return the closed loop over some variables only; it has all runs of this one."""
+        eliminated = self.symbols.all_bits(
+            name for name in self.symbols.variables if name not in names
         )
-        starts = self.manager.exist(others, self.starts)
-        return Closed(self.symbols, starts, allowed, moves, fairness)
+        allowed, moves, fairness = (
+            tuple(self.select_about(nodes, names))
+            for nodes in (self.assumptions, self.transitions, self.fairness)
+        )
+        starts = self.manager.exist(eliminated, self.initial)
+        return ClosedLoop(self.symbols, starts, allowed, moves, fairness)
 
-    def speaking(self, nodes: Iterable[Node], names: frozenset[str]) -> list[Node]:
-        """Those that say something of the variables, or what is true or false of all."""
-        said = ((node, self.spoken(node)) for node in nodes)
-        return [node for node, spoken in said if not spoken or not spoken.isdisjoint(names)]
+    def select_about(self, nodes: Iterable[Node], names: frozenset[str]) -> list[Node]:
+        """Select the diagrams about some of the variables, or about none at all."""
+        variables_by_node = ((node, self.variables_of(node)) for node in nodes)
+        return [
+            node
+            for node, variables in variables_by_node
+            if not variables or not variables.isdisjoint(names)
+        ]
 
-    def spoken(self, node: Node) -> frozenset[str]:
-        """The variables that something is said of."""
+    def variables_of(self, node: Node) -> frozenset[str]:
+        """Return the variables that the diagram depends on, in this or the next step."""
         names = self.symbols.names
         return frozenset((*names(node), *names(node, primed=True)))

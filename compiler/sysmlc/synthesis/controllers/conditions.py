@@ -1,8 +1,10 @@
-"""Conditions in words of the contract: formulas for diagrams over registers and inputs.
+"""Conditions of moves, in the words of the contract: formulas for diagrams over registers and
+inputs.
 
-A condition has to hold for some values, must not hold for others (those of the other moves), and
-is free for the rest. From one value all that is true of it is taken, what is special first, and
-left out where the rest suffices: ``xpos<xtarget`` rather than the cells for which that is so.
+A condition must hold for some values, must not hold for others (those of the other moves), and is
+free for the rest. One value is generalised at a time: of all facts that are true of it, the
+least general ones are dropped first if the rest still excludes the other moves. So the condition is
+``xpos<xtarget`` instead of a list of cells.
 """
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -30,83 +32,88 @@ from sysmlc.logic.formula import (
 from sysmlc.logic.formula import variables as variables_of
 from sysmlc.synthesis.bdd.limits import TooLargeError
 from sysmlc.synthesis.bdd.manager import Node
-from sysmlc.synthesis.bdd.skolem_functions import least
+from sysmlc.synthesis.bdd.skolem_functions import find_least_assignment
 from sysmlc.synthesis.bdd.symbols import Symbols
-from sysmlc.synthesis.controllers.explicit_states import Answer, Draft
+from sysmlc.synthesis.controllers.explicit_states import Answer, DraftMachine
 from sysmlc.synthesis.controllers.mealy import Machine, Move
 
-MOST_CASES = 5_000
-"""Alternatives in all conditions of a machine: more are no explicit machine any more."""
+MAX_CASES = 5_000
+"""Cases in all conditions of a machine; with more of them an explicit machine is unreadable."""
 
 
 Pair = frozenset[str]
-"""Two variables that a contract compares, or one whose values of two steps may be."""
+"""Two compared variables, or one variable whose values in two steps are compared."""
 
 
-def machine(draft: Draft, contract: Contract, most: int = MOST_CASES) -> Machine:
-    """The machine of a draft. Raises TooLargeError when its conditions have too many cases."""
+def build_machine(draft: DraftMachine, contract: Contract, most: int = MAX_CASES) -> Machine:
+    """Return the machine of a draft. Raises TooLargeError if its conditions have too many cases."""
     symbols = draft.strategy.symbols
-    writer = _Writer(symbols, frozenset(compared(contract)), most)
+    writer = _ConditionWriter(symbols, frozenset(compared_pairs(contract)), most)
     states = tuple(tuple(writer.moves(moves)) for moves in draft.states)
     variables = symbols.variables
-    spoken = writer.spoken
+    read_registers = writer.read_registers
     return Machine(
         tuple(variables[name] for name in draft.strategy.inputs),
         tuple(variables[name] for name in draft.strategy.outputs),
-        tuple(variables[name] for name in draft.registers if name in spoken),
+        tuple(variables[name] for name in draft.registers if name in read_registers),
         states,
     )
 
 
-def compared(contract: Contract) -> Iterator[Pair]:
-    """The variables that some conjunct compares with one another."""
-    waiting = [one.formula for one in (*contract.assumptions, *contract.guarantees)]
-    while waiting:
-        match waiting.pop():
-            case Apply(op, (left, right)) if op in _COMPARING:
-                for one in variables_of(left):
-                    yield from (Pair((one.name, other.name)) for other in variables_of(right))
+def compared_pairs(contract: Contract) -> Iterator[Pair]:
+    """Yield the pairs of variables that some conjunct compares."""
+    stack = [
+        left_variable.formula for left_variable in (*contract.assumptions, *contract.guarantees)
+    ]
+    while stack:
+        match stack.pop():
+            case Apply(op, (left, right)) if op in _COMPARISONS:
+                for left_variable in variables_of(left):
+                    yield from (
+                        Pair((left_variable.name, right_variable.name))
+                        for right_variable in variables_of(right)
+                    )
             case Apply(_, parts):
-                waiting += parts
+                stack += parts
             case _:
                 pass
 
 
-_COMPARING = (Op.EQ, Op.NE, Op.LT, Op.LE, Op.GT, Op.GE)
+_COMPARISONS = (Op.EQ, Op.NE, Op.LT, Op.LE, Op.GT, Op.GE)
 
 
 class _Fact(Struct, frozen=True):
-    """Something that is true of some values."""
+    """A formula that is true of some values, with weaker alternatives."""
 
     formula: Formula
-    looser: Sequence[Formula | Literal] = ()
-    """The same with other bounds, the furthest one first, or the bounds alone."""
-    bounded: Callable[[Literal], Formula] = Const
-    """The same with a bound."""
+    alternatives: Sequence[Formula | Literal] = ()
+    """Weaker formulas, the weakest first, or only their bounds."""
+    make_bound: Callable[[Literal], Formula] = Const
+    """Creates the formula of a bound."""
 
-    def loosened(self, at: int) -> Formula:
-        """The fact with one of the bounds."""
-        found = self.looser[at]
-        return found if isinstance(found, Formula) else self.bounded(found)
+    def weaken(self, index: int) -> Formula:
+        """Return the alternative at *at*."""
+        alternative = self.alternatives[index]
+        return alternative if isinstance(alternative, Formula) else self.make_bound(alternative)
 
 
-class _Writer:
+class _ConditionWriter:
     def __init__(self, symbols: Symbols, pairs: frozenset[Pair], most: int) -> None:
         self._symbols, self._manager = symbols, symbols.manager
-        self._pairs, self._left, self._most = pairs, most, most
-        self.spoken: set[str] = set()
-        """Registers that conditions or outputs name."""
+        self._pairs, self._cases_left, self._most = pairs, most, most
+        self.read_registers: set[str] = set()
+        """Registers that conditions or outputs read."""
 
     def moves(self, moves: Mapping[Answer, Node]) -> Iterator[Move]:
-        """The moves of a state; at most one condition holds for what can happen."""
-        everything = self._manager.false
-        for node in moves.values():
-            everything = everything | node
-        variables = self._variables(moves.values())
-        for (output, state), node in moves.items():
-            forbidden = everything & ~node
-            when = either(*self._cases(node, forbidden, variables))
-            self.spoken.update(
+        """Yield the moves of a state; at most one condition holds for possible values."""
+        possible = self._manager.false
+        for condition in moves.values():
+            possible = possible | condition
+        variables = self._variables_of(moves.values())
+        for (output, state), condition in moves.items():
+            forbidden = possible & ~condition
+            when = either(*self._cover(condition, forbidden, variables))
+            self.read_registers.update(
                 one.name
                 for formula in (when, *output)
                 for one in variables_of(formula)
@@ -114,121 +121,143 @@ class _Writer:
             )
             yield Move(when, output, state)
 
-    def _variables(self, nodes: Iterable[Node]) -> list[Var]:
-        """What the conditions of a state may be about."""
+    def _variables_of(self, nodes: Iterable[Node]) -> list[Var]:
+        """Return the variables that the conditions of a state may read."""
         support = frozenset[str]().union(*map(self._manager.support, nodes))
-        known = [Var(name, primed) for primed in (False, True) for name in self._symbols.variables]
+        candidates = [
+            Var(name, primed) for primed in (False, True) for name in self._symbols.variables
+        ]
         return [
-            one for one in known if not support.isdisjoint(self._symbols.bits(one.name, one.primed))
+            variable
+            for variable in candidates
+            if not support.isdisjoint(self._symbols.bits(variable.name, variable.primed))
         ]
 
-    def _cases(self, node: Node, forbidden: Node, variables: Sequence[Var]) -> Iterator[Formula]:
-        bits = [bit for one in variables for bit in self._symbols.bits(one.name, one.primed)]
-        while (values := least(self._manager, node, bits)) is not None:
-            self._left -= 1
+    def _cover(
+        self, remaining: Node, forbidden: Node, variables: Sequence[Var]
+    ) -> Iterator[Formula]:
+        bits = [
+            bit
+            for variable in variables
+            for bit in self._symbols.bits(variable.name, variable.primed)
+        ]
+        while (values := find_least_assignment(self._manager, remaining, bits)) is not None:
+            self._cases_left -= 1
             self._manager.check("writing the conditions of a machine")
-            if self._left < 0:
+            if self._cases_left < 0:
                 raise TooLargeError("cases in the conditions of the machine", f"{self._most:,}")
-            formula, where = self._case(self._known(values, variables), forbidden)
+            formula, case_node = self._generalise(self._decode(values, variables), forbidden)
             yield formula
-            node = node & ~where
+            remaining = remaining & ~case_node
 
-    def _known(self, values: Mapping[str, bool], variables: Iterable[Var]) -> dict[Var, Literal]:
-        now = {primed: self._symbols.decode(values, primed) for primed in (False, True)}
-        return {one: now[one.primed][one.name] for one in variables}
+    def _decode(self, values: Mapping[str, bool], variables: Iterable[Var]) -> dict[Var, Literal]:
+        values_by_step = {primed: self._symbols.decode(values, primed) for primed in (False, True)}
+        return {variable: values_by_step[variable.primed][variable.name] for variable in variables}
 
-    def _case(self, known: Mapping[Var, Literal], forbidden: Node) -> tuple[Formula, Node]:
-        """What is true of some values, without what is not needed to tell them apart."""
-        facts = list(self._facts(known))
-        rest = self._rest([fact.formula for fact in facts])
-        kept, where = list[Formula](), self._manager.true
-        for fact, later in zip(facts, rest, strict=True):
-            without = where & later & forbidden
-            if without != self._manager.false:
-                formula = self._loosened(fact, without)
-                kept.append(formula)
-                where = where & self._symbols.bdd(formula)
-        return both(*_exact(kept)), where
+    def _generalise(self, values: Mapping[Var, Literal], forbidden: Node) -> tuple[Formula, Node]:
+        """Return a formula true of *known* that excludes the forbidden values, and its diagram."""
+        facts = list(self._facts(values))
+        suffixes = self._suffix_conjunctions([fact.formula for fact in facts])
+        formulas, condition = list[Formula](), self._manager.true
+        for fact, later in zip(facts, suffixes, strict=True):
+            excluded_now = condition & later & forbidden
+            if excluded_now != self._manager.false:
+                formula = self._weaken(fact, excluded_now)
+                formulas.append(formula)
+                condition = condition & self._symbols.bdd(formula)
+        return both(*_merge_bounds(formulas)), condition
 
-    def _rest(self, formulas: Sequence[Formula]) -> list[Node]:
-        """For each formula the conjunction of those behind it."""
-        found = list[Node]()
-        after = self._manager.true
+    def _suffix_conjunctions(self, formulas: Sequence[Formula]) -> list[Node]:
+        """Return for each formula the conjunction of the formulas behind it."""
+        conjunctions = list[Node]()
+        conjunction = self._manager.true
         for formula in reversed(formulas):
-            found.append(after)
-            after = after & self._symbols.bdd(formula)
-        return found[::-1]
+            conjunctions.append(conjunction)
+            conjunction = conjunction & self._symbols.bdd(formula)
+        return conjunctions[::-1]
 
-    def _loosened(self, fact: _Fact, without: Node) -> Formula:
-        """The fact, with the bound that is furthest and still keeps out what has to be kept out."""
-        found, low, high = fact.formula, 0, len(fact.looser)
+    def _weaken(self, fact: _Fact, excluded: Node) -> Formula:
+        """Return the weakest alternative of a fact that still excludes *without*."""
+        weakest, low, high = fact.formula, 0, len(fact.alternatives)
         while low < high:
             middle = (low + high) // 2
-            bound = fact.loosened(middle)
-            if without & self._symbols.bdd(bound) == self._manager.false:
-                found, high = bound, middle
+            bound = fact.weaken(middle)
+            if excluded & self._symbols.bdd(bound) == self._manager.false:
+                weakest, high = bound, middle
             else:
                 low = middle + 1
-        return found
+        return weakest
 
-    def _facts(self, known: Mapping[Var, Literal]) -> Iterator[_Fact]:
-        """What is true of some values, what is least general first."""
-        numbers = [one for one in known if self._is_number(one)]
-        for one in numbers:
-            yield from self._bounds(one, known[one])
-        yield from self._comparisons(numbers, known)
-        for one, value in known.items():
-            if isinstance(self._symbols.variables[one.name].domain, BooleanDomain):
-                yield _Fact(one if value else negate(one))
-            elif one not in numbers:
-                yield _Fact(eq(one, Const(value)))
+    def _facts(self, values: Mapping[Var, Literal]) -> Iterator[_Fact]:
+        """Yield the facts that are true of some values, the least general first."""
+        integers = [variable for variable in values if self._is_number(variable)]
+        for variable in integers:
+            yield from self._bound_facts(variable, values[variable])
+        yield from self._comparison_facts(integers, values)
+        for variable, value in values.items():
+            if isinstance(self._symbols.variables[variable.name].domain, BooleanDomain):
+                yield _Fact(variable if value else negate(variable))
+            elif variable not in integers:
+                yield _Fact(eq(variable, Const(value)))
 
-    def _is_number(self, one: Var) -> bool:
-        return isinstance(self._symbols.variables[one.name].domain, IntegerDomain)
+    def _is_number(self, variable: Var) -> bool:
+        return isinstance(self._symbols.variables[variable.name].domain, IntegerDomain)
 
-    def _bounds(self, one: Var, value: Literal) -> Iterator[_Fact]:
-        known = domains.values(self._symbols.variables[one.name].domain)
-        place = known.index(value)
-        for op, looser in ((Op.GE, known[1:place]), (Op.LE, known[-2:place:-1])):
-            bounded = partial(_bounded, op, one)
-            yield _Fact(bounded(value), looser[:maxsize], bounded)
+    def _bound_facts(self, variable: Var, value: Literal) -> Iterator[_Fact]:
+        domain_values = domains.values(self._symbols.variables[variable.name].domain)
+        index = domain_values.index(value)
+        for op, weaker_bounds in (
+            (Op.GE, domain_values[1:index]),
+            (Op.LE, domain_values[-2:index:-1]),
+        ):
+            make_bound = partial(_bound, op, variable)
+            yield _Fact(make_bound(value), weaker_bounds[:maxsize], make_bound)
 
-    def _comparisons(self, numbers: Sequence[Var], known: Mapping[Var, Literal]) -> Iterator[_Fact]:
-        """Numbers that are compared, and what registers are when they have counted."""
-        of = self._symbols.variables
+    def _comparison_facts(
+        self, integers: Sequence[Var], values: Mapping[Var, Literal]
+    ) -> Iterator[_Fact]:
+        """Yield comparisons of integers, also of registers after they have counted."""
+        variables = self._symbols.variables
         pairs = [
-            (one, other)
-            for one, other in combinations(numbers, 2)
-            if one.name == other.name or Pair((one.name, other.name)) in self._pairs
+            (left_variable, right_variable)
+            for left_variable, right_variable in combinations(integers, 2)
+            if left_variable.name == right_variable.name
+            or Pair((left_variable.name, right_variable.name)) in self._pairs
         ]
         for shift in (-1, 1, 0):
-            for one, other in pairs:
-                if shift and (one.primed or of[one.name].owner is Owner.ENVIRONMENT):
+            for left_variable, right_variable in pairs:
+                if shift and (
+                    left_variable.primed or variables[left_variable.name].owner is Owner.ENVIRONMENT
+                ):
                     continue
-                left, right = int(known[one]) + shift, int(known[other])
+                left, right = int(values[left_variable]) + shift, int(values[right_variable])
                 op = Op.LT if left < right else Op.GT if left > right else Op.EQ
-                looser = () if op is Op.EQ else (compare(Op.NE, _shifted(one, shift), other),)
-                yield _Fact(compare(op, _shifted(one, shift), other), looser)
+                weaker = (
+                    ()
+                    if op is Op.EQ
+                    else (compare(Op.NE, _shift(left_variable, shift), right_variable),)
+                )
+                yield _Fact(compare(op, _shift(left_variable, shift), right_variable), weaker)
 
 
-def _bounded(op: Op, one: Var, bound: Literal) -> Formula:
-    return compare(op, one, Const(bound))
+def _bound(op: Op, variable: Var, bound: Literal) -> Formula:
+    return compare(op, variable, Const(bound))
 
 
-def _shifted(one: Var, shift: int) -> Formula:
+def _shift(variable: Var, shift: int) -> Formula:
     if not shift:
-        return one
-    return Apply(Op.ADD if shift > 0 else Op.SUB, (one, Const(1)))
+        return variable
+    return Apply(Op.ADD if shift > 0 else Op.SUB, (variable, Const(1)))
 
 
-def _exact(facts: Sequence[Formula]) -> Iterator[Formula]:
-    """Two bounds that leave one value are an equation."""
-    known = set(facts)
+def _merge_bounds(facts: Sequence[Formula]) -> Iterator[Formula]:
+    """Replace two bounds that leave one value by an equation."""
+    all_facts = set(facts)
     for fact in facts:
         match fact:
-            case Apply(Op.GE, (one, bound)) if compare(Op.LE, one, bound) in known:
-                yield eq(one, bound)
-            case Apply(Op.LE, (one, bound)) if compare(Op.GE, one, bound) in known:
+            case Apply(Op.GE, (term, bound)) if compare(Op.LE, term, bound) in all_facts:
+                yield eq(term, bound)
+            case Apply(Op.LE, (term, bound)) if compare(Op.GE, term, bound) in all_facts:
                 pass
             case _:
                 yield fact

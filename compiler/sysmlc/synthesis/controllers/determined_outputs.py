@@ -1,8 +1,7 @@
-"""Answers that leave no choice: outputs that follow from the step before, the inputs and others.
+"""Determined outputs: outputs that follow from the previous step, the inputs and other outputs.
 
-Of the outputs of a modelled machine most follow: a position from the command before it, a flag
-from the position. They are functions once and for all, whatever is aimed at; what is left to be
-chosen are few bits.
+Most outputs of a modelled machine are determined: a position by the command before it, a flag by
+the position. They become functions once, whatever the goal is, so few bits remain to be chosen.
 """
 
 from collections.abc import Iterable, Mapping
@@ -11,95 +10,103 @@ from msgspec import Struct
 
 from sysmlc.logic.contract import Owner
 from sysmlc.synthesis.bdd.manager import Node
-from sysmlc.synthesis.bdd.skolem_functions import substituted
+from sysmlc.synthesis.bdd.skolem_functions import substitute
 from sysmlc.synthesis.bdd.symbols import Symbols
-from sysmlc.synthesis.games.arena import Arena, Turn, in_range
+from sysmlc.synthesis.games.arena import Arena, Turn, domain_constraint
 
-LARGE = 5_000
-"""Nodes of what is said about a variable that is not worth the looking."""
+MAX_RELATION_NODES = 5_000
+"""Nodes of a variable's constraints above which the search is abandoned."""
 
 
-class Answers(Struct, frozen=True):
-    """The last turn of a step, with what there is to choose."""
+class OpenAnswers(Struct, frozen=True):
+    """The last turn of a step, reduced to the bits that leave a choice."""
 
     bits: tuple[str, ...]
-    """Bits that are chosen, primed."""
+    """The open bits, primed."""
     parts: tuple[Node, ...]
-    """What binds them."""
+    """The constraints of the open bits."""
     functions: tuple[Mapping[str, Node], ...]
-    """The other bits of the turn, primed, variable by variable; each may speak of later ones."""
+    """The determined bits of the turn, primed, by variable; each may depend on later entries."""
 
-    def within(self, symbols: Symbols, node: Node) -> Node:
-        """What is said about the next step, without the bits that follow."""
+    def substitute_functions(self, symbols: Symbols, node: Node) -> Node:
+        """Replace the determined bits in a condition on the next step."""
         for bits in self.functions:
-            node = substituted(symbols.manager, node, bits)
+            node = substitute(symbols.manager, node, bits)
         return node
 
-    def completed(self, symbols: Symbols, chosen: Mapping[str, Node]) -> dict[str, Node]:
-        """All bits of the turn, from those that were chosen."""
-        found = dict(chosen)
+    def complete(self, symbols: Symbols, choices: Mapping[str, Node]) -> dict[str, Node]:
+        """Return all bits of the turn, given functions of the open ones."""
+        completed = dict(choices)
         for bits in reversed(self.functions):
-            found |= {bit: substituted(symbols.manager, node, found) for bit, node in bits.items()}
-        return found
+            completed |= {
+                bit: substitute(symbols.manager, node, completed) for bit, node in bits.items()
+            }
+        return completed
 
 
-def answers(arena: Arena) -> Answers:
-    """The answers of the system, when all that follows is taken out."""
+def find_open_answers(arena: Arena) -> OpenAnswers:
+    """Return the system's answers of an arena with all determined bits eliminated."""
     turn = arena.turns[-1]
     names = [
-        one.name
-        for one in arena.symbols.variables.values()
-        if one.owner is Owner.SYSTEM and arena.symbols.bits(one.name, primed=True)[0] in turn.bits
+        variable.name
+        for variable in arena.symbols.variables.values()
+        if variable.owner is Owner.SYSTEM
+        and arena.symbols.bits(variable.name, primed=True)[0] in turn.bits
     ]
-    return _Search(arena, turn, names).run()
+    return _Elimination(arena, turn, names).run()
 
 
-class _Search:
+class _Elimination:
     def __init__(self, arena: Arena, turn: Turn, names: list[str]) -> None:
         self._arena, self._names = arena, names
         self._manager, self._symbols = arena.manager, arena.symbols
         self._bits, self._parts = turn.bits, list(turn.parts)
-        self._found: list[Mapping[str, Node]] = []
+        self._functions: list[Mapping[str, Node]] = []
 
-    def run(self) -> Answers:
-        """Take out one variable after the other; those of whom least is said first."""
-        for is_alone in (True, False):
-            while any(self._taken(name, is_alone) for name in self._names):
+    def run(self) -> OpenAnswers:
+        """Eliminate one variable after the other, those with the fewest constraints first."""
+        for without_other_bits in (True, False):
+            while any(self._eliminate(name, without_other_bits) for name in self._names):
                 pass
-        return Answers(self._bits, tuple(self._parts), tuple(self._found))
+        return OpenAnswers(self._bits, tuple(self._parts), tuple(self._functions))
 
-    def _taken(self, name: str, is_alone: bool) -> bool:
-        own = frozenset(self._symbols.bits(name, primed=True))
-        others = frozenset(self._bits) - own
-        about = [
+    def _eliminate(self, name: str, without_other_bits: bool) -> bool:
+        own_bits = frozenset(self._symbols.bits(name, primed=True))
+        other_bits = frozenset(self._bits) - own_bits
+        constraints = [
             part
             for part in self._parts
-            if not own.isdisjoint(support := self._manager.support(part))
-            and not (is_alone and not others.isdisjoint(support))
+            if not own_bits.isdisjoint(support := self._manager.support(part))
+            and not (without_other_bits and not other_bits.isdisjoint(support))
         ]
-        function = self._function(about, own)
+        function = self._find_functions(constraints, own_bits)
         if function is None:
             return False
-        self._found.append(function)
-        self._names = [one for one in self._names if one != name]
-        self._bits = tuple(bit for bit in self._bits if bit not in own)
-        self._parts = [substituted(self._manager, part, function) for part in self._parts]
+        self._functions.append(function)
+        self._names = [other_name for other_name in self._names if other_name != name]
+        self._bits = tuple(bit for bit in self._bits if bit not in own_bits)
+        self._parts = [substitute(self._manager, part, function) for part in self._parts]
         self._parts = [part for part in self._parts if part != self._manager.true]
         return True
 
-    def _function(self, about: Iterable[Node], own: frozenset[str]) -> dict[str, Node] | None:
-        """Each bit, if there is at most one value for what the others are."""
+    def _find_functions(
+        self, constraints: Iterable[Node], own_bits: frozenset[str]
+    ) -> dict[str, Node] | None:
+        """Return each bit as a function of the others if at most one value is left."""
         manager = self._manager
         relation = manager.true
-        for part in about:
+        for part in constraints:
             relation = relation & part
-            if len(relation) > LARGE:
+            if len(relation) > MAX_RELATION_NODES:
                 return None
-        relation = relation & in_range(self._symbols, self._symbols.names(relation))
-        found: dict[str, Node] = {}
-        for bit in sorted(own):
-            on = manager.and_exist(relation, manager.var(bit), own)
-            if on & manager.and_exist(relation, ~manager.var(bit), own) != manager.false:
+        relation = relation & domain_constraint(self._symbols, self._symbols.names(relation))
+        functions: dict[str, Node] = {}
+        for bit in sorted(own_bits):
+            can_be_true = manager.and_exist(relation, manager.var(bit), own_bits)
+            if (
+                can_be_true & manager.and_exist(relation, ~manager.var(bit), own_bits)
+                != manager.false
+            ):
                 return None
-            found[bit] = on
-        return found
+            functions[bit] = can_be_true
+        return functions

@@ -1,8 +1,10 @@
-"""The states of a strategy as they are reached, with diagrams for the conditions of their moves.
+"""Enumeration of the reachable states of a strategy, with diagrams for the conditions of their
+moves.
 
-Of what is remembered, numbers that count stay in registers (``memory``); a state is a mode and
-what the rest of the memory makes of the functions: values that leave the same functions are one
-state from the start. Inputs are not listed; they are split where outputs or next states differ.
+Of the memory of a strategy, counters become registers (``strategy_memory``). A state is a mode
+together with the functions that the rest of the memory leaves: memory contents that leave the same
+functions are one state from the start. Inputs are not enumerated; they are split where outputs or
+next states differ.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -14,19 +16,23 @@ from sysmlc.logic.formula import Const, Formula
 from sysmlc.synthesis.bdd.limits import TooLargeError
 from sysmlc.synthesis.bdd.manager import Node
 from sysmlc.synthesis.controllers.strategy import Mode, Strategy
-from sysmlc.synthesis.controllers.strategy_memory import Reached, gives, steps
+from sysmlc.synthesis.controllers.strategy_memory import (
+    ReachableStrategy,
+    counter_changes,
+    states_with_value,
+)
 
-MOST_STATES = 1_000
-MOST_MOVES = 5_000
+MAX_STATES = 1_000
+MAX_MOVES = 5_000
 
 Answer = tuple[tuple[Formula, ...], int]
-"""Outputs, as in ``mealy.Move``, and the next state."""
+"""The outputs, as in ``mealy.Move``, and the next state."""
 
 
-class Draft(Struct, frozen=True):
-    """States with their moves; conditions are over registers and primed inputs that are possible.
+class DraftMachine(Struct, frozen=True):
+    """States with their moves; conditions are over registers and the possible primed inputs.
 
-    What no move's condition holds for cannot be in that state.
+    What satisfies no condition of a state cannot occur in that state.
     """
 
     strategy: Strategy
@@ -34,203 +40,235 @@ class Draft(Struct, frozen=True):
     states: tuple[Mapping[Answer, Node], ...]
 
 
-def listed(
-    reached: Reached,
+def enumerate_states(
+    reachable: ReachableStrategy,
     registers: Sequence[str],
-    most_states: int = MOST_STATES,
-    most_moves: int = MOST_MOVES,
-) -> Draft:
-    """All states of a strategy that are reached.
+    most_states: int = MAX_STATES,
+    most_moves: int = MAX_MOVES,
+) -> DraftMachine:
+    """Enumerate all reachable states of a strategy.
 
-    Raises TooLargeError when there are more states or moves; LimitError.
+    Raises TooLargeError if there are more states or moves than allowed; LimitError.
     """
-    return _Listing(reached, tuple(registers), most_states, most_moves).run()
+    return _StateEnumeration(reachable, tuple(registers), most_states, most_moves).run()
 
 
 Functions = Mapping[str, Node]
 
 
 class _State(Struct, frozen=True):
-    """A mode with the functions that some of what is remembered leaves."""
+    """A mode with the functions that a part of the memory leaves."""
 
     mode: Mode
     care: Node
-    """Registers and primed inputs that are possible."""
+    """The possible registers and primed inputs."""
 
 
-class _Class(Struct, frozen=True):
-    """What is remembered that leads to one state."""
+class _MemoryClass(Struct, frozen=True):
+    """The memory contents that lead to one state."""
 
     memory: Node
-    """Over bits of the step before that are in no register."""
+    """A set over bits of the previous step that belong to no register."""
     state: int
 
 
-class _Listing:
+class _StateEnumeration:
     def __init__(
-        self, reached: Reached, registers: tuple[str, ...], most_states: int, most_moves: int
+        self,
+        reachable: ReachableStrategy,
+        registers: tuple[str, ...],
+        most_states: int,
+        most_moves: int,
     ) -> None:
-        self._reached, self._strategy = reached, reached.strategy
+        self._reached, self._strategy = reachable, reachable.strategy
         self._manager, self._symbols = self._strategy.manager, self._strategy.symbols
         self._registers = registers
-        self._most = most_states, most_moves
+        self._max_counts = most_states, most_moves
         self._count = 0
-        self._hidden = [
+        self._hidden_bits = [
             bit
             for name in self._symbols.variables
             if name not in registers
             for bit in self._symbols.bits(name)
         ]
         outputs = [name for name in self._strategy.outputs if name not in registers]
-        self._listed = self._symbols.all_bits(outputs)
-        """Bits of outputs that are told by their values."""
-        self._states = [_State(self._strategy.first, reached.first)]
-        self._classes: list[list[_Class]] = []
-        self._near: dict[tuple[int, tuple[bool, ...]], list[_Class]] = {}
+        self._listed_bits = self._symbols.all_bits(outputs)
+        """Bits of outputs that are described by their values."""
+        self._states = [_State(self._strategy.first, reachable.first)]
+        self._classes: list[list[_MemoryClass]] = []
+        self._class_cache: dict[tuple[int, tuple[bool, ...]], list[_MemoryClass]] = {}
 
-    def run(self) -> Draft:
-        """Find all states, then the moves of each."""
+    def run(self) -> DraftMachine:
+        """Enumerate all states, then the moves of each."""
         for place in range(len(self._strategy.modes)):
             self._classes.append(list(self._split_mode(place)))
         end = len(self._states)
-        states = [self._moves(state, end) for state in self._states]
+        states = [self._compute_moves(state, end) for state in self._states]
         if any(after == end for moves in states for _, after in moves):
             states.append({})
-        return Draft(self._strategy, self._registers, tuple(states))
+        return DraftMachine(self._strategy, self._registers, tuple(states))
 
-    def _split_mode(self, place: int) -> Iterator[_Class]:
-        """The states of a mode."""
-        mode, care = self._strategy.modes[place], self._reached.cares[place]
-        vector = (*mode.outputs.values(), *mode.onward)
-        for functions, memory in self._vectors(vector, care).items():
-            possible = self._manager.and_exist(memory, care, self._hidden)
+    def _split_mode(self, place: int) -> Iterator[_MemoryClass]:
+        """Yield the memory classes of a mode, and add their states."""
+        mode, care = self._strategy.modes[place], self._reached.care_sets[place]
+        vector = (*mode.outputs.values(), *mode.successors)
+        for functions, memory in self._split_functions(vector, care).items():
+            possible = self._manager.and_exist(memory, care, self._hidden_bits)
             count = len(mode.outputs)
             outputs = dict(zip(mode.outputs, functions, strict=False))
-            yield _Class(memory, len(self._states))
+            yield _MemoryClass(memory, len(self._states))
             self._states.append(_State(Mode(outputs, functions[count:]), possible))
-            self._limit("states", len(self._states), self._most[0])
+            self._check_count("states", len(self._states), self._max_counts[0])
 
-    def _vectors(self, vector: tuple[Node, ...], care: Node) -> dict[tuple[Node, ...], Node]:
-        """What hidden bits make of functions, with the values of the bits that do."""
+    def _split_functions(
+        self, vector: tuple[Node, ...], care: Node
+    ) -> dict[tuple[Node, ...], Node]:
+        """Return the functions that hidden bits leave, with the values of the hidden bits."""
         manager = self._manager
         support = frozenset[str]().union(*map(manager.support, vector))
-        deciding = [bit for bit in self._hidden if bit in support]
-        possible = manager.exist(manager.support(care) - frozenset(deciding), care)
-        found = {vector: possible}
-        for bit in deciding:
-            found = self._split(found, bit)
-        return found if possible != manager.false else {}
+        deciding_bits = [bit for bit in self._hidden_bits if bit in support]
+        possible = manager.exist(manager.support(care) - frozenset(deciding_bits), care)
+        vectors = {vector: possible}
+        for bit in deciding_bits:
+            vectors = self._split_by_bit(vectors, bit)
+        return vectors if possible != manager.false else {}
 
-    def _split(self, found: dict[tuple[Node, ...], Node], bit: str) -> dict[tuple[Node, ...], Node]:
-        """The same with the values of one more bit told apart where they matter."""
+    def _split_by_bit(
+        self, vectors: dict[tuple[Node, ...], Node], bit: str
+    ) -> dict[tuple[Node, ...], Node]:
+        """Distinguish the values of one more bit."""
         manager = self._manager
-        ends = {value: manager.cube({bit: value}) for value in (False, True)}
-        known: dict[tuple[Node, bool], Node] = {}
+        cubes = {value: manager.cube({bit: value}) for value in (False, True)}
+        cofactors: dict[tuple[Node, bool], Node] = {}
 
-        def left(node: Node, value: bool) -> Node:
+        def cofactor(node: Node, value: bool) -> Node:
             key = node, value
-            if key not in known:
-                known[key] = manager.assign(node, {bit: value})
-            return known[key]
+            if key not in cofactors:
+                cofactors[key] = manager.assign(node, {bit: value})
+            return cofactors[key]
 
         split: dict[tuple[Node, ...], Node] = {}
-        for functions, memory in found.items():
-            for value, end in ends.items():
-                here = memory & end
-                if here != manager.false:
-                    key = tuple(left(one, value) for one in functions)
-                    split[key] = split.get(key, manager.false) | here
-            self._limit("states", len(self._states) + len(split), self._most[0])
+        for functions, memory in vectors.items():
+            for value, cube in cubes.items():
+                restricted = memory & cube
+                if restricted != manager.false:
+                    key = tuple(cofactor(function, value) for function in functions)
+                    split[key] = split.get(key, manager.false) | restricted
+            self._check_count("states", len(self._states) + len(split), self._max_counts[0])
         return split
 
-    def _moves(self, state: _State, end: int) -> dict[Answer, Node]:
-        """The moves of a state: what is possible, split by what is answered and what is next."""
-        found: dict[Answer, Node] = {}
+    def _compute_moves(self, state: _State, end: int) -> dict[Answer, Node]:
+        """Return the moves of a state: what is possible, split by answer and next state."""
+        moves: dict[Answer, Node] = {}
         outputs = state.mode.outputs
-        for place, where in enumerate(state.mode.onward):
-            for bits, here in self._by_bits(outputs, state.care & where):
-                for after, then in self._by_state(place, bits, here, end):
-                    for answer, there in self._by_value(outputs, bits, then):
-                        key = answer, after
-                        found[key] = found.get(key, self._manager.false) | there
+        for mode, condition in enumerate(state.mode.successors):
+            for bits, bit_condition in self._split_by_output_bits(outputs, state.care & condition):
+                for next_state, state_condition in self._split_by_next_state(
+                    mode, bits, bit_condition, end
+                ):
+                    for answer, answer_condition in self._split_by_output_values(
+                        outputs, bits, state_condition
+                    ):
+                        key = answer, next_state
+                        moves[key] = moves.get(key, self._manager.false) | answer_condition
                         self._count += 1
-                        self._limit("moves", self._count, self._most[1])
-        return found
+                        self._check_count("moves", self._count, self._max_counts[1])
+        return moves
 
-    def _by_bits(self, outputs: Functions, where: Node) -> Iterator[tuple[tuple[bool, ...], Node]]:
-        """The values of the bits of listed outputs."""
-        waiting: list[tuple[tuple[bool, ...], Node]] = [((), where)]
-        while waiting:
-            bits, here = waiting.pop()
-            if here == self._manager.false:
+    def _split_by_output_bits(
+        self, outputs: Functions, condition: Node
+    ) -> Iterator[tuple[tuple[bool, ...], Node]]:
+        """Split a condition by the values of the bits of listed outputs."""
+        stack: list[tuple[tuple[bool, ...], Node]] = [((), condition)]
+        while stack:
+            bits, remaining = stack.pop()
+            if remaining == self._manager.false:
                 continue
-            if len(bits) == len(self._listed):
-                yield bits, here
+            if len(bits) == len(self._listed_bits):
+                yield bits, remaining
                 continue
-            on = outputs[self._listed[len(bits)]]
-            waiting += [((*bits, True), here & on), ((*bits, False), here & ~on)]
+            output_function = outputs[self._listed_bits[len(bits)]]
+            stack += [
+                ((*bits, True), remaining & output_function),
+                ((*bits, False), remaining & ~output_function),
+            ]
 
-    def _by_state(
-        self, mode: int, bits: tuple[bool, ...], here: Node, end: int
+    def _split_by_next_state(
+        self, mode: int, bits: tuple[bool, ...], condition: Node, end: int
     ) -> Iterator[tuple[int, Node]]:
-        """The states that come next, for outputs of these values."""
-        for one in self._following(mode, bits):
-            there = here & one.memory
-            if there != self._manager.false:
-                yield one.state, there
-                here = here & ~one.memory
-        if here != self._manager.false:
-            yield end, here
+        """Split a condition by the next state, for given output bits."""
+        for memory_class in self._possible_classes(mode, bits):
+            overlap = condition & memory_class.memory
+            if overlap != self._manager.false:
+                yield memory_class.state, overlap
+                condition = condition & ~memory_class.memory
+        if condition != self._manager.false:
+            yield end, condition
 
-    def _following(self, mode: int, bits: tuple[bool, ...]) -> list[_Class]:
-        """The states of a mode that outputs of these values may lead to, by primed inputs."""
+    def _possible_classes(self, mode: int, bits: tuple[bool, ...]) -> list[_MemoryClass]:
+        """Return the classes of a mode that outputs with these values may reach, by primed
+        inputs.
+        """
         key = mode, bits
-        if key not in self._near:
-            values = dict(zip(self._listed, bits, strict=True))
-            found = (
-                _Class(self._symbols.prime(self._manager.assign(one.memory, values)), one.state)
-                for one in self._classes[mode]
+        if key not in self._class_cache:
+            values = dict(zip(self._listed_bits, bits, strict=True))
+            restricted_classes = (
+                _MemoryClass(
+                    self._symbols.prime(self._manager.assign(memory_class.memory, values)),
+                    memory_class.state,
+                )
+                for memory_class in self._classes[mode]
             )
-            self._near[key] = [one for one in found if one.memory != self._manager.false]
-        return self._near[key]
+            self._class_cache[key] = [
+                memory_class
+                for memory_class in restricted_classes
+                if memory_class.memory != self._manager.false
+            ]
+        return self._class_cache[key]
 
-    def _by_value(
-        self, outputs: Functions, bits: tuple[bool, ...], here: Node
+    def _split_by_output_values(
+        self, outputs: Functions, bits: tuple[bool, ...], condition: Node
     ) -> Iterator[tuple[tuple[Formula, ...], Node]]:
-        """What the outputs are: literals, and changes of registers."""
-        values = self._symbols.decode(dict(zip(self._listed, bits, strict=True)))
-        found: list[tuple[dict[str, Formula], Node]] = [
-            ({name: Const(value) for name, value in values.items()}, here)
+        """Split a condition by the outputs: literals, and changes of registers."""
+        values = self._symbols.decode(dict(zip(self._listed_bits, bits, strict=True)))
+        cases: list[tuple[dict[str, Formula], Node]] = [
+            ({name: Const(value) for name, value in values.items()}, condition)
         ]
         for name in self._strategy.outputs:
             if name in self._registers:
-                found = [
-                    (known | {name: value}, there)
-                    for known, where in found
-                    for value, there in self._changes(outputs, name, where)
+                cases = [
+                    (formulas | {name: value}, restricted)
+                    for formulas, case_condition in cases
+                    for value, restricted in self._split_by_register_change(
+                        outputs, name, case_condition
+                    )
                 ]
-        for known, there in found:
-            yield tuple(known[name] for name in self._strategy.outputs), there
+        for formulas, restricted in cases:
+            yield tuple(formulas[name] for name in self._strategy.outputs), restricted
 
-    def _changes(self, outputs: Functions, name: str, here: Node) -> list[tuple[Formula, Node]]:
-        """How a register goes on; in one way if that is so everywhere."""
+    def _split_by_register_change(
+        self, outputs: Functions, name: str, remaining: Node
+    ) -> list[tuple[Formula, Node]]:
+        """Split a condition by the change of a register; one change is enough if it applies
+        everywhere.
+        """
         variable = self._symbols.variables[name]
-        changes = () if outputs is self._strategy.first.outputs else steps(name)
-        possible = [*changes, *map(Const, domains.values(variable.domain))]
-        found: list[tuple[Formula, Node]] = []
-        for value in possible:
-            there = here & self._said(outputs, name, value)
-            if there == here:
-                return [*found, (value, here)]
-            if there != self._manager.false:
-                found.append((value, there))
-                here = here & ~there
-        return found
+        steps = () if outputs is self._strategy.first.outputs else counter_changes(name)
+        candidates = [*steps, *map(Const, domains.values(variable.domain))]
+        changes: list[tuple[Formula, Node]] = []
+        for value in candidates:
+            overlap = remaining & self._states_with_value(outputs, name, value)
+            if overlap == remaining:
+                return [*changes, (value, remaining)]
+            if overlap != self._manager.false:
+                changes.append((value, overlap))
+                remaining = remaining & ~overlap
+        return changes
 
-    def _said(self, outputs: Functions, name: str, value: Formula) -> Node:
-        return gives(self._strategy, outputs, name, value)
+    def _states_with_value(self, outputs: Functions, name: str, value: Formula) -> Node:
+        return states_with_value(self._strategy, outputs, name, value)
 
-    def _limit(self, what: str, used: int, most: int) -> None:
+    def _check_count(self, kind: str, number: int, limit: int) -> None:
         self._manager.check("listing the states of a machine")
-        if used > most:
-            raise TooLargeError(f"{what} of the machine", f"{most:,}")
+        if number > limit:
+            raise TooLargeError(f"{kind} of the machine", f"{limit:,}")

@@ -1,4 +1,9 @@
-"""Strategies of independent games (``games.apart``) as one: each does its own."""
+"""Games that consist of independent games over disjoint variables, and the combination of their
+strategies.
+
+Whoever wins each of the games wins all of them at once. (The converse does not hold: if the
+environment cannot go on in one game, it loses the others.)
+"""
 
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import product
@@ -10,23 +15,27 @@ from sysmlc.logic.contract import Owner
 from sysmlc.synthesis.bdd.groups import tied
 from sysmlc.synthesis.bdd.manager import Node
 from sysmlc.synthesis.bdd.symbols import Symbols
-from sysmlc.synthesis.controllers.strategy import Functions, Mode, Strategy, strategy
-from sysmlc.synthesis.games.command_elimination import shifted
-from sysmlc.synthesis.games.game import Game, Part
+from sysmlc.synthesis.controllers.strategy import Functions, Mode, Strategy, extract_strategy
+from sysmlc.synthesis.games.command_elimination import eliminate_commands
+from sysmlc.synthesis.games.game import Constraint, Game
 from sysmlc.synthesis.games.solver import solve_arena
 
 
 def split_game(game: Game) -> tuple[Game, ...]:
-    """The games that a game consists of; often it is one."""
-    together = [_variables_of(game, node) for node in _all_nodes(game)]
+    """Return the independent games of which the game consists, often only one."""
+    related_names = [_variables_of(game, node) for node in _all_nodes(game)]
     for name, bits in game.definitions.items():
-        together += [frozenset([name, *_variables_of(game, node)]) for node in bits.values()]
-    groups = tied(game.symbols.variables, together)
-    return (game,) if len(groups) == 1 else tuple(_restrict_game(game, group) for group in groups)
+        related_names += [frozenset([name, *_variables_of(game, node)]) for node in bits.values()]
+    components = tied(game.symbols.variables, related_names)
+    return (
+        (game,)
+        if len(components) == 1
+        else tuple(_restrict_game(game, component) for component in components)
+    )
 
 
 def _all_nodes(game: Game) -> Iterator[Node]:
-    for parts in (
+    for constraints in (
         game.init_assumptions,
         game.init_guarantees,
         game.assumptions,
@@ -34,7 +43,7 @@ def _all_nodes(game: Game) -> Iterator[Node]:
         game.fairness,
         game.goals,
     ):
-        yield from (part.node for part in parts)
+        yield from (constraint.node for constraint in constraints)
 
 
 def _variables_of(game: Game, node: Node) -> frozenset[str]:
@@ -42,54 +51,61 @@ def _variables_of(game: Game, node: Node) -> frozenset[str]:
 
 
 def _restrict_game(game: Game, names: frozenset[str]) -> Game:
-    """What is said of some variables; what is said of none (true, false) is said in each game."""
+    """Return the game over some variables; constraints over no variable belong to every game."""
 
-    def of(parts: Iterable[Part]) -> tuple[Part, ...]:
-        return tuple(part for part in parts if _variables_of(game, part.node) <= names)
+    def keep_constraints(constraints: Iterable[Constraint]) -> tuple[Constraint, ...]:
+        return tuple(
+            constraint
+            for constraint in constraints
+            if _variables_of(game, constraint.node) <= names
+        )
 
     return replace(
         game,
         symbols=game.symbols.only(names),
-        init_assumptions=of(game.init_assumptions),
-        init_guarantees=of(game.init_guarantees),
-        assumptions=of(game.assumptions),
-        guarantees=of(game.guarantees),
-        fairness=of(game.fairness),
-        goals=of(game.goals),
+        init_assumptions=keep_constraints(game.init_assumptions),
+        init_guarantees=keep_constraints(game.init_guarantees),
+        assumptions=keep_constraints(game.assumptions),
+        guarantees=keep_constraints(game.guarantees),
+        fairness=keep_constraints(game.fairness),
+        goals=keep_constraints(game.goals),
         definitions={name: bits for name, bits in game.definitions.items() if name in names},
     )
 
 
 MAX_MODES = 16
-"""Modes of all strategies together, beyond which the game is better played as a whole."""
+"""Modes of the combined strategy above which the game is solved as a whole."""
 
 
 def combine_independent_strategies(game: Game) -> Strategy | None:
-    """The strategy of a game that consists of several; None where one is lost, or there is one."""
+    """Return the combined strategy of several games; None if there is one game or one is lost."""
     games = split_game(game)
-    if len(games) == 1 or prod(max(1, len(one.goals)) for one in games) > MAX_MODES:
+    if len(games) == 1 or prod(max(1, len(part.goals)) for part in games) > MAX_MODES:
         return None
-    plans = list[Strategy]()
-    for one in games:
-        solution = solve_arena(shifted(one))
+    strategies = list[Strategy]()
+    for part in games:
+        solution = solve_arena(eliminate_commands(part))
         if not solution.is_realizable:
             return None
-        plans.append(strategy(one, solution))
+        strategies.append(extract_strategy(part, solution))
     return (
-        _combine_strategies(plans, game.symbols)
-        if prod(len(one.modes) for one in plans) <= MAX_MODES
+        _combine_strategies(strategies, game.symbols)
+        if prod(len(part.modes) for part in strategies) <= MAX_MODES
         else None
     )
 
 
-def _combine_strategies(plans: Sequence[Strategy], symbols: Symbols) -> Strategy:
+def _combine_strategies(strategies: Sequence[Strategy], symbols: Symbols) -> Strategy:
     sides = {
-        owner: tuple(one.name for one in symbols.variables.values() if one.owner is owner)
+        owner: tuple(
+            variable.name for variable in symbols.variables.values() if variable.owner is owner
+        )
         for owner in Owner
     }
-    first = _combine_modes([one.first for one in plans], symbols)
+    first = _combine_modes([variable.first for variable in strategies], symbols)
     modes = tuple(
-        _combine_modes(modes, symbols) for modes in product(*(one.modes for one in plans))
+        _combine_modes(modes, symbols)
+        for modes in product(*(variable.modes for variable in strategies))
     )
     return Strategy(symbols, sides[Owner.ENVIRONMENT], sides[Owner.SYSTEM], first, modes)
 
@@ -102,15 +118,15 @@ def _combine_modes(modes: Sequence[Mode], symbols: Symbols) -> Mode:
 
 
 def _combine_successors(modes: Sequence[Mode], symbols: Symbols) -> list[Node]:
-    """For each combination of next modes whether it is the next one."""
-    found = list[Node]()
-    for ways in product(*(mode.onward for mode in modes)):
+    """Return for each combination of modes the condition under which it is the next one."""
+    combined = list[Node]()
+    for conditions in product(*(mode.successors for mode in modes)):
         node = symbols.manager.true
-        for way in ways:
-            node = node & way
-        found.append(node)
-    return found
+        for condition in conditions:
+            node = node & condition
+        combined.append(node)
+    return combined
 
 
 def _order_outputs(outputs: Functions, symbols: Symbols) -> Functions:
-    return {bit: outputs[bit] for bit in symbols.owned(Owner.SYSTEM)}
+    return {bit: outputs[bit] for bit in symbols.bits_of_owner(Owner.SYSTEM)}

@@ -1,9 +1,9 @@
 """Mealy machines with conditions and registers.
 
 In every step the machine takes the first move of its state whose condition holds. Conditions are
-formulas: a primed variable is an input of this step, one without a prime a register, which holds
-what the variable was in the step before. State 0 is before the first step and knows no registers.
-Inputs that the assumptions exclude may have no move.
+formulas: a primed variable is an input of this step, an unprimed one is a register, which holds the
+variable's value in the previous step. State 0 is before the first step and has no registers. There
+may be no move for inputs that the assumptions exclude.
 """
 
 from collections.abc import Mapping
@@ -16,26 +16,26 @@ from sysmlc.logic.formula import Formula, Literal
 
 
 class Move(Struct, frozen=True):
-    """What a machine answers when a condition holds, and where it goes on."""
+    """The answer under a condition, and the next state."""
 
     when: Formula
     output: tuple[Formula, ...]
-    """For each output a literal, or a number that a register gives: ``n``, ``n + 1``, ``n - 1``."""
+    """For each output a literal, or a term over a register: ``n``, ``n + 1`` or ``n - 1``."""
     state: int
 
 
 class Machine(Struct, frozen=True):
-    """A deterministic machine; ``states[state]`` is what it may do there."""
+    """A deterministic machine; ``states[state]`` are the moves of a state."""
 
     inputs: tuple[Variable, ...]
     outputs: tuple[Variable, ...]
     registers: tuple[Variable, ...]
-    """Inputs and outputs whose last values conditions and outputs may name."""
+    """Inputs and outputs whose previous values conditions and outputs may read."""
     states: tuple[tuple[Move, ...], ...]
 
     @property
     def size(self) -> int:
-        """Number of states, the one before the first step among them."""
+        """Number of states, including the one before the first step."""
         return len(self.states)
 
     @property
@@ -46,22 +46,26 @@ class Machine(Struct, frozen=True):
     def step(
         self, state: int, last: Mapping[str, Literal], now: Mapping[str, Literal]
     ) -> tuple[dict[str, Literal], int]:
-        """The outputs for inputs, and the next state; LookupError if there is no move.
+        """Return the outputs for the inputs *now*, and the next state.
 
-        ``last`` has inputs and outputs of the step before.
+        *last* has the inputs and outputs of the previous step. Raises LookupError if there is no
+        move.
         """
-        move = self.taken(state, last, now)
+        move = self.find_move(state, last, now)
         names = (one.name for one in self.outputs)
         values = (value_of(one, last) for one in move.output)
         return dict(zip(names, values, strict=True)), move.state
 
-    def taken(self, state: int, last: Mapping[str, Literal], now: Mapping[str, Literal]) -> Move:
-        """The move for these inputs, after a step with these values; LookupError if there is none.
+    def find_move(
+        self, state: int, last: Mapping[str, Literal], now: Mapping[str, Literal]
+    ) -> Move:
+        """Return the move for the inputs *now*.
 
-        ``last`` has inputs and outputs of the step before.
+        *last* has the inputs and outputs of the previous step. Raises LookupError if there is no
+        move.
         """
-        found = (one for one in self.states[state] if evaluation(one.when)(last, now))
-        move = next(found, None)
-        if move is None:
+        enabled_moves = (move for move in self.states[state] if evaluation(move.when)(last, now))
+        first_move = next(enabled_moves, None)
+        if first_move is None:
             raise LookupError(f"state {state} has no move for {dict(now)}")
-        return move
+        return first_move

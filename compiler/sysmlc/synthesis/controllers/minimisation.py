@@ -1,8 +1,10 @@
-"""Fewer states: equal ones are one, then those that nothing that can happen tells apart.
+"""Minimisation of machines: equal states are merged, then states that no possible input
+distinguishes.
 
-Inputs that the assumptions exclude have no move: don't-cares. Two states can be one when wherever
-both have a move they answer the same, and so on from where the moves lead. Which pairs to join is
-chosen greedily, in the order of states; the outcome answers every run of allowed inputs as before.
+Inputs that the assumptions exclude have no move, so they are don't-cares. Two states can be merged
+if they give the same answer wherever both have a move, and if the same holds for the states to
+which the moves lead. Pairs are chosen greedily in the order of the states. The result answers every
+run of allowed inputs as before.
 """
 
 from collections.abc import Mapping
@@ -10,128 +12,142 @@ from collections.abc import Mapping
 from msgspec.structs import replace
 
 from sysmlc.synthesis.bdd.manager import Manager, Node
-from sysmlc.synthesis.controllers.explicit_states import Answer, Draft
+from sysmlc.synthesis.controllers.explicit_states import Answer, DraftMachine
 
-MOST_COMPARED = 400_000
-"""Pairs of moves that are compared to use don't-cares: their number grows with the square of the
-states."""
+MAX_COMPARISONS = 400_000
+"""Pairs of moves that are compared at most to use don't-cares; their number grows with the square
+of the states."""
 
 Moves = Mapping[Answer, Node]
 
 
-def minimised(draft: Draft, most: int = MOST_COMPARED) -> Draft:
-    """The draft with equal states joined, then others until ``most`` moves are compared."""
+def minimise(draft: DraftMachine, max_comparisons: int = MAX_COMPARISONS) -> DraftMachine:
+    """Merge equal states, then compatible ones until *most* pairs of moves are compared."""
     manager = draft.strategy.manager
-    states = _quotient(draft.states, _classes(draft.states, manager), manager)
-    joining = _Joining(states, manager, most)
-    return replace(draft, states=joining.run(is_first_apart=bool(draft.registers)))
+    states = _quotient(draft.states, _equivalence_classes(draft.states, manager), manager)
+    merger = _StateMerger(states, manager, max_comparisons)
+    return replace(draft, states=merger.run(is_first_apart=bool(draft.registers)))
 
 
-def _classes(states: tuple[Moves, ...], manager: Manager) -> list[int]:
-    """The class of each state: states of one class have the same moves to the same classes."""
-    found = [0] * len(states)
+def _equivalence_classes(states: tuple[Moves, ...], manager: Manager) -> list[int]:
+    """Return the class of each state: states of one class have the same moves to the same
+    classes.
+    """
+    classes = [0] * len(states)
     count = 0
     while True:
         keys: dict[object, int] = {}
-        finer = []
+        refined = []
         for moves in states:
-            joined: dict[Answer, Node] = {}
+            moves_by_class: dict[Answer, Node] = {}
             for (output, state), node in moves.items():
-                key = output, found[state]
-                joined[key] = joined.get(key, manager.false) | node
-            finer.append(keys.setdefault(frozenset(joined.items()), len(keys)))
+                key = output, classes[state]
+                moves_by_class[key] = moves_by_class.get(key, manager.false) | node
+            refined.append(keys.setdefault(frozenset(moves_by_class.items()), len(keys)))
         if len(keys) == count:
-            return finer
-        found, count = finer, len(keys)
+            return refined
+        classes, count = refined, len(keys)
 
 
 def _quotient(states: tuple[Moves, ...], classes: list[int], manager: Manager) -> tuple[Moves, ...]:
-    """A state for each class, in the order in which they occur; the moves of all its states."""
-    names: dict[int, int] = {}
-    for one in classes:
-        names.setdefault(one, len(names))
-    found: list[dict[Answer, Node]] = [{} for _ in names]
+    """Return a state for each class, in the order of their occurrence, with the moves of all its
+    states.
+    """
+    numbers: dict[int, int] = {}
+    for class_ in classes:
+        numbers.setdefault(class_, len(numbers))
+    quotient: list[dict[Answer, Node]] = [{} for _ in numbers]
     for state, moves in enumerate(states):
-        here = found[names[classes[state]]]
-        for (output, after), node in moves.items():
-            key = output, names[classes[after]]
-            here[key] = here.get(key, manager.false) | node
-    return tuple(found)
+        merged = quotient[numbers[classes[state]]]
+        for (output, next_state), node in moves.items():
+            key = output, numbers[classes[next_state]]
+            merged[key] = merged.get(key, manager.false) | node
+    return tuple(quotient)
 
 
-class _Joining:
-    """Classes of states that grow; a trial that fails is taken back."""
+class _StateMerger:
+    """Merges states step by step (union-find); a failed trial is undone."""
 
     def __init__(self, states: tuple[Moves, ...], manager: Manager, most: int) -> None:
         self._states, self._manager = states, manager
-        self._left = most
-        self._heads = list(range(len(states)))
+        self._comparisons_left = most
+        self._parents = list(range(len(states)))
         self._moves: list[Moves] = list(states)
 
     def run(self, is_first_apart: bool) -> tuple[Moves, ...]:
-        """Join each state with the first earlier one that it can be joined with.
+        """Merge each state with the first earlier one that is compatible.
 
-        The state before the first step stays by itself where others read registers.
+        The state before the first step stays separate if other states read registers.
         """
-        kept: list[int] = []
+        representatives: list[int] = []
         for state in range(len(self._states)):
-            if self._left <= 0:
+            if self._comparisons_left <= 0:
                 break
             self._manager.check("joining the states of a machine")
-            if self._head(state) != state or any(self._join(one, state) for one in kept):
+            if self._find(state) != state or any(
+                self._merge(representative, state) for representative in representatives
+            ):
                 continue
             if state or not is_first_apart:
-                kept.append(state)
-            kept = [one for one in kept if self._head(one) == one]
-        heads = [self._head(state) for state in range(len(self._states))]
-        return _quotient(self._states, heads, self._manager)
+                representatives.append(state)
+            representatives = [
+                representative
+                for representative in representatives
+                if self._find(representative) == representative
+            ]
+        classes = [self._find(state) for state in range(len(self._states))]
+        return _quotient(self._states, classes, self._manager)
 
-    def _head(self, state: int) -> int:
-        while self._heads[state] != state:
-            state = self._heads[state]
+    def _find(self, state: int) -> int:
+        while self._parents[state] != state:
+            state = self._parents[state]
         return state
 
-    def _join(self, left: int, right: int) -> bool:
-        """Join two states and all that must then be joined; nothing when an answer differs."""
-        undo: list[tuple[int, int, Moves]] = []
+    def _merge(self, left: int, right: int) -> bool:
+        """Merge two states and all states that must then be merged; change nothing if answers
+        differ.
+        """
+        trail: list[tuple[int, int, Moves]] = []
         pairs = [(left, right)]
         while pairs:
-            one, other = sorted(map(self._head, pairs.pop()))
-            if one == other:
+            first, second = sorted(map(self._find, pairs.pop()))
+            if first == second:
                 continue
-            more = self._demanded(one, other)
-            if more is None:
-                self._take_back(undo)
+            required = self._required_merges(first, second)
+            if required is None:
+                self._undo(trail)
                 return False
-            undo.append((one, other, self._moves[one]))
-            self._heads[other] = one
-            self._moves[one] = _both(self._moves[one], self._moves[other], self._manager)
-            pairs += more
+            trail.append((first, second, self._moves[first]))
+            self._parents[second] = first
+            self._moves[first] = _union_moves(
+                self._moves[first], self._moves[second], self._manager
+            )
+            pairs += required
         return True
 
-    def _demanded(self, one: int, other: int) -> list[tuple[int, int]] | None:
-        """The states that must be one as well; None when the two answer something differently."""
-        found: list[tuple[int, int]] = []
-        for (output, state), node in self._moves[one].items():
-            for (its_output, its_state), its in self._moves[other].items():
-                self._left -= 1
-                if output == its_output and state == its_state:
+    def _required_merges(self, first: int, second: int) -> list[tuple[int, int]] | None:
+        """Return the pairs that must be merged as well, or None if an answer differs."""
+        required: list[tuple[int, int]] = []
+        for (output, state), node in self._moves[first].items():
+            for (other_output, other_state), other_node in self._moves[second].items():
+                self._comparisons_left -= 1
+                if output == other_output and state == other_state:
                     continue
-                if node & its == self._manager.false:
+                if node & other_node == self._manager.false:
                     continue
-                if output != its_output:
+                if output != other_output:
                     return None
-                found.append((state, its_state))
-        return found
+                required.append((state, other_state))
+        return required
 
-    def _take_back(self, undo: list[tuple[int, int, Moves]]) -> None:
-        for one, other, moves in reversed(undo):
-            self._heads[other] = other
-            self._moves[one] = moves
+    def _undo(self, trail: list[tuple[int, int, Moves]]) -> None:
+        for first, second, moves in reversed(trail):
+            self._parents[second] = second
+            self._moves[first] = moves
 
 
-def _both(moves: Moves, more: Moves, manager: Manager) -> Moves:
-    found = dict(moves)
-    for answer, node in more.items():
-        found[answer] = found.get(answer, manager.false) | node
-    return found
+def _union_moves(moves: Moves, additional: Moves, manager: Manager) -> Moves:
+    union = dict(moves)
+    for answer, node in additional.items():
+        union[answer] = union.get(answer, manager.false) | node
+    return union

@@ -1,157 +1,202 @@
-"""Whether a controller plainly keeps a contract: the check of ``verify`` for controllers that do.
+"""Sound but incomplete check that a controller satisfies a contract.
 
-Where runs can be is kept for those variables only that a later step, or what recurs, speaks of:
-sensors and free cells of a step that is over do not matter, and are most of what can be told apart.
-What is promised of steps is held against all steps at once. It may doubt a controller that keeps
-its contract; it never trusts one that does not.
+The check explores the closed loop projected on its live variables: those whose current value a
+transition, an assumption or a guarantee about later steps reads. Inputs and outputs that nothing
+reads later are quantified away, and they account for most of the state space. Projection only adds
+runs, so the check may reject a correct controller but never accepts a wrong one; ``verification``
+runs its exact search only if this check fails.
 """
 
 from collections.abc import Iterable, Iterator
 
 from sysmlc.synthesis.bdd.limits import TooLargeError
 from sysmlc.synthesis.bdd.manager import Node
-from sysmlc.synthesis.controllers.closed_loop import Closed
-from sysmlc.synthesis.games.relational_product import Product, joined
+from sysmlc.synthesis.controllers.closed_loop import ClosedLoop
+from sysmlc.synthesis.games.relational_product import Product, join_conjuncts
 
-MANY = 4_000
-"""Nodes of the states that one step adds from which on it is worth to guess where runs can be."""
-GUESSES = 5
-"""Times that a guess of where runs can be is made smaller."""
-WHOLE = 2
-"""Parts of what a controller does when it is one relation, with the ranges of its outputs."""
-ROOM = 100_000
-"""Nodes that a guess may take beside twice those that there are."""
+LARGE_FRONTIER = 4_000
+"""Nodes of a frontier above which an inductive invariant is tried."""
+MAX_STRENGTHENINGS = 5
+"""Rounds in which the candidate for an invariant is strengthened."""
+MONOLITHIC_PARTS = 2
+"""Conjuncts of a monolithic transition relation: the relation and the ranges of the outputs."""
+EXTRA_NODES = 100_000
+"""Nodes that the search for an invariant may use in addition to twice the present ones."""
 
 
-class Glance:
-    """Runs, with what is forgotten of each step left out of them."""
+class QuickCheck:
+    """The runs of a closed loop, projected on its live variables."""
 
-    def __init__(self, closed: Closed, safe: Iterable[Node], recurring: Iterable[Node]) -> None:
-        """``safe`` is promised of a step or two, ``recurring`` again and again."""
-        self.closed, self.manager = closed, closed.manager
-        self.safe, self.recurring = tuple(safe), tuple(recurring)
-        self.goals = closed.fairness or (self.manager.true,)
-        names = tuple(closed.symbols.variables)
-        self._bits = closed.symbols.all_bits(names)
-        self._next = closed.symbols.all_bits(names, primed=True)
-        self._every = (*self._bits, *self._next)
-        kept = self._kept()
-        forgotten = [one for one in names if one not in kept]
-        later = closed.symbols.all_bits(forgotten, primed=True)
-        self._forward = Product(
-            self.manager, (*closed.allowed, *closed.moves), (*self._bits, *later)
+    def __init__(
+        self,
+        closed_loop: ClosedLoop,
+        safety_guarantees: Iterable[Node],
+        liveness_guarantees: Iterable[Node],
+    ) -> None:
+        """*safety_guarantees* are about one or two steps, *liveness_guarantees* about states that
+        recur.
+        """
+        self.closed_loop, self.manager = closed_loop, closed_loop.manager
+        self.safety_guarantees, self.liveness_guarantees = (
+            tuple(safety_guarantees),
+            tuple(liveness_guarantees),
         )
-        self._gone = closed.symbols.all_bits(forgotten)
-        self.reachable = self._reached(self.manager.exist(self._gone, closed.starts))
+        self.goals = closed_loop.fairness or (self.manager.true,)
+        names = tuple(closed_loop.symbols.variables)
+        self._current_bits = closed_loop.symbols.all_bits(names)
+        self._next_bits = closed_loop.symbols.all_bits(names, primed=True)
+        self._all_bits = (*self._current_bits, *self._next_bits)
+        live = self._live_variables()
+        dead = [name for name in names if name not in live]
+        dead_next_bits = closed_loop.symbols.all_bits(dead, primed=True)
+        self._forward = Product(
+            self.manager,
+            (*closed_loop.assumptions, *closed_loop.transitions),
+            (*self._current_bits, *dead_next_bits),
+        )
+        self._dead_bits = closed_loop.symbols.all_bits(dead)
+        self.reachable = self._overapproximate_reachable(
+            self.manager.exist(self._dead_bits, closed_loop.initial)
+        )
 
-    def after(self, states: Node) -> Node:
-        """What is kept of the states that one step leads to."""
-        return self.closed.symbols.unprime(self._forward(states))
+    def successors(self, states: Node) -> Node:
+        """Return the live part of the states that one step leads to."""
+        return self.closed_loop.symbols.unprime(self._forward(states))
 
-    def keeps_each_step(self) -> bool:
-        """Whether all that is promised of steps holds in all of them, the first one too."""
-        about_one = [node for node in self.safe if self._is_of_one(node)]
-        if not all(self.closed.starts <= node for node in about_one):
+    def satisfies_safety(self) -> bool:
+        """Return whether all safety guarantees hold in all steps, including the first one."""
+        state_predicates = [
+            node for node in self.safety_guarantees if self._is_state_predicate(node)
+        ]
+        if not all(self.closed_loop.initial <= node for node in state_predicates):
             return False
-        later = [self._as_next(node) for node in self.safe]
-        is_in_parts = len(self.closed.moves) > WHOLE
-        together = self._grouped(later) if is_in_parts else joined(self.manager, later)
-        return not any(self._is_broken(~node) for node in together)
+        next_step_guarantees = [self._about_next_step(node) for node in self.safety_guarantees]
+        is_in_parts = len(self.closed_loop.transitions) > MONOLITHIC_PARTS
+        conjunctions = (
+            self._conjunctions_by_support(next_step_guarantees)
+            if is_in_parts
+            else join_conjuncts(self.manager, next_step_guarantees)
+        )
+        return not any(self._can_violate(~node) for node in conjunctions)
 
-    def _is_broken(self, step: Node) -> bool:
-        """Whether a step can be one of these; with what is decided beside it only where it must."""
-        done = (*self.closed.allowed, *self.closed.moves)
-        return self.is_possible(step, self._about(step)) and self.is_possible(step, done)
+    def _can_violate(self, step: Node) -> bool:
+        """Return whether *step* is possible.
 
-    def _about(self, step: Node) -> list[Node]:
-        """What is assumed, and what the controller does of what is spoken of in the next step."""
-        of = self.manager.support
-        after = frozenset(bit for bit in of(step) if bit.endswith("'"))
+        The cheap test with the transitions about its variables comes first, then the test with all
+        of them.
+        """
+        all_parts = (*self.closed_loop.assumptions, *self.closed_loop.transitions)
+        return self.can_step(step, self._transitions_about(step)) and self.can_step(step, all_parts)
+
+    def _transitions_about(self, step: Node) -> list[Node]:
+        """Return the assumptions, and the transitions that constrain next values read by *step*."""
+        support = self.manager.support
+        next_bits = frozenset(bit for bit in support(step) if bit.endswith("'"))
         return [
-            *self.closed.allowed,
-            *(one for one in self.closed.moves if not after.isdisjoint(of(one))),
+            *self.closed_loop.assumptions,
+            *(
+                transition
+                for transition in self.closed_loop.transitions
+                if not next_bits.isdisjoint(support(transition))
+            ),
         ]
 
-    def _grouped(self, nodes: Iterable[Node]) -> Iterator[Node]:
-        """Conjunctions of those that speak of the same bits."""
+    def _conjunctions_by_support(self, nodes: Iterable[Node]) -> Iterator[Node]:
+        """Yield conjunctions of the diagrams that have the same support."""
         groups: dict[frozenset[str], list[Node]] = {}
         for node in nodes:
             groups.setdefault(self.manager.support(node), []).append(node)
-        for members in groups.values():
-            yield from joined(self.manager, members)
+        for group in groups.values():
+            yield from join_conjuncts(self.manager, group)
 
-    def is_possible(self, step: Node, parts: Iterable[Node]) -> bool:
-        """Whether a step by all parts from where runs can be is one of these."""
+    def can_step(self, step: Node, parts: Iterable[Node]) -> bool:
+        """Return whether *step* is possible under *parts* from some reachable state."""
         if step == self.manager.false:
             return False
-        found = Product(self.manager, [*parts, step], self._every)
-        return found(self.reachable) != self.manager.false
+        product = Product(self.manager, [*parts, step], self._all_bits)
+        return product(self.reachable) != self.manager.false
 
-    def _is_of_one(self, node: Node) -> bool:
+    def _is_state_predicate(self, node: Node) -> bool:
         return all(not bit.endswith("'") for bit in self.manager.support(node))
 
-    def _as_next(self, node: Node) -> Node:
-        return self.closed.symbols.prime(node) if self._is_of_one(node) else node
+    def _about_next_step(self, node: Node) -> Node:
+        return self.closed_loop.symbols.prime(node) if self._is_state_predicate(node) else node
 
-    def _kept(self) -> frozenset[str]:
-        """The variables whose values of a step are spoken of later."""
-        closed = self.closed
-        two = (node for node in self.safe if not self._is_of_one(node))
-        spoken = (*closed.allowed, *closed.moves, *closed.fairness, *self.recurring, *two)
-        return frozenset(name for node in spoken for name in closed.symbols.names(node))
+    def _live_variables(self) -> frozenset[str]:
+        """Return the variables whose current value is read later."""
+        closed_loop = self.closed_loop
+        two_step_guarantees = (
+            node for node in self.safety_guarantees if not self._is_state_predicate(node)
+        )
+        readers = (
+            *closed_loop.assumptions,
+            *closed_loop.transitions,
+            *closed_loop.fairness,
+            *self.liveness_guarantees,
+            *two_step_guarantees,
+        )
+        return frozenset(name for node in readers for name in closed_loop.symbols.names(node))
 
-    def _reached(self, states: Node) -> Node:
-        """All that runs come to; where that is much, a guess that no step leads out of, if any."""
-        found = front = states
-        is_guessed = False
-        while front != self.manager.false:
-            if not is_guessed and len(front) > MANY:
-                is_guessed = True
-                guess = self._guess_within_limits(states)
-                if guess is not None:
-                    return guess
-            front = self.after(front) & ~found
-            found = found | front
+    def _overapproximate_reachable(self, initial: Node) -> Node:
+        """Return the reachable states, or an inductive invariant if a frontier becomes large."""
+        reachable = frontier = initial
+        was_tried = False
+        while frontier != self.manager.false:
+            if not was_tried and len(frontier) > LARGE_FRONTIER:
+                was_tried = True
+                invariant = self._find_invariant_within_limits(initial)
+                if invariant is not None:
+                    return invariant
+            frontier = self.successors(frontier) & ~reachable
+            reachable = reachable | frontier
             self.manager.check("checking the controller")
-        return found
+        return reachable
 
-    def _guess_within_limits(self, states: Node) -> Node | None:
+    def _find_invariant_within_limits(self, initial: Node) -> Node | None:
         try:
-            with self.manager.at_most(ROOM + 2 * self.manager.usage().nodes):
-                return self._guessed(states)
+            with self.manager.limit_nodes(EXTRA_NODES + 2 * self.manager.usage().nodes):
+                return self._find_invariant(initial)
         except TooLargeError:
             return None
 
-    def _guessed(self, states: Node) -> Node | None:
-        """What is promised and assumed of every single step, without what steps lead out of."""
-        parts = [node for node in self._of_each_step() if self._is_kept(node)]
-        for _ in range(GUESSES):
-            found = self.manager.true
-            for part in parts:
-                found = found & part
-            if not states <= found:
+    def _find_invariant(self, initial: Node) -> Node | None:
+        """Return an inductive invariant that contains *initial*, or None if none was found.
+
+        The first candidate is what the contract states about single steps. Each round removes the
+        states from which a step may leave the candidate.
+        """
+        conjuncts = [node for node in self._list_state_predicates() if self._is_live(node)]
+        for _ in range(MAX_STRENGTHENINGS):
+            candidate = self.manager.true
+            for conjunct in conjuncts:
+                candidate = candidate & conjunct
+            if not initial <= candidate:
                 return None
-            leaving = [self._leaving(found, part) for part in parts]
-            if all(node == self.manager.false for node in leaving):
-                return found
-            parts += [~node for node in leaving if node != self.manager.false]
+            escaping = [self._states_violating_next(candidate, conjunct) for conjunct in conjuncts]
+            if all(node == self.manager.false for node in escaping):
+                return candidate
+            conjuncts += [~node for node in escaping if node != self.manager.false]
         return None
 
-    def _of_each_step(self) -> Iterator[Node]:
-        symbols = self.closed.symbols
+    def _list_state_predicates(self) -> Iterator[Node]:
+        symbols = self.closed_loop.symbols
         yield from (symbols.domain(name) for name in symbols.variables)
-        for node in self._grouped((*self.safe, *self.closed.allowed)):
-            if self._is_of_one(node):
+        for node in self._conjunctions_by_support(
+            (*self.safety_guarantees, *self.closed_loop.assumptions)
+        ):
+            if self._is_state_predicate(node):
                 yield node
             elif all(bit.endswith("'") for bit in self.manager.support(node)):
                 yield symbols.unprime(node)
 
-    def _is_kept(self, node: Node) -> bool:
+    def _is_live(self, node: Node) -> bool:
         support = self.manager.support(node)
-        return bool(support) and support.isdisjoint(self._gone)
+        return bool(support) and support.isdisjoint(self._dead_bits)
 
-    def _leaving(self, states: Node, part: Node) -> Node:
-        """Those of the states from which a step may lead to where something does not hold."""
-        out = self.closed.symbols.prime(~part)
+    def _states_violating_next(self, states: Node, predicate: Node) -> Node:
+        """Return the states from which a step may lead to a violation of *predicate*."""
+        violation = self.closed_loop.symbols.prime(~predicate)
         self.manager.check("checking the controller")
-        return Product(self.manager, [*self._about(out), out], self._next)(states)
+        return Product(
+            self.manager, [*self._transitions_about(violation), violation], self._next_bits
+        )(states)

@@ -1,10 +1,14 @@
-"""A strategy from the layers of a solved game: outputs as functions, goal by goal.
+"""Extraction of a strategy from the layers of a solved game: outputs as functions, goal by goal.
 
-A controller remembers what all variables were in the step before, and the goal in turn. What it
-answers is given by functions of that and of the inputs, as decision diagrams: nothing is listed.
-The arena may be encoded (``derived``, ``shift``); the functions are those of the variables of the
-contract: a command is chosen with the answers of its step, in which the arena already knows where
-it is; variables that follow from others are computed from them.
+A controller remembers the values of all variables in the previous step, and the goal in turn. Its
+outputs are functions, as decision diagrams, of these and of the inputs; states are not enumerated.
+In each step the system moves to the nearest layer of the goal that the inputs allow; if none is
+nearer, it waits among states in which an assumption does not recur (Piterman, Pnueli, Sa'ar 2006,
+section 4).
+
+The arena may be encoded (``variable_elimination``, ``command_elimination``), but the functions give
+the variables of the contract: a command is chosen with the answers of its step, after which the
+arena knows its position, and eliminated variables are computed from the others.
 """
 
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
@@ -13,10 +17,10 @@ from msgspec import Struct
 
 from sysmlc.logic.contract import Owner
 from sysmlc.synthesis.bdd.manager import Manager, Node
-from sysmlc.synthesis.bdd.skolem_functions import chosen, joined, substituted
+from sysmlc.synthesis.bdd.skolem_functions import choose_functions, combine_cases, substitute
 from sysmlc.synthesis.bdd.symbols import Symbols, next_bit
-from sysmlc.synthesis.controllers.determined_outputs import answers
-from sysmlc.synthesis.games.arena import Steps, played, products
+from sysmlc.synthesis.controllers.determined_outputs import find_open_answers
+from sysmlc.synthesis.games.arena import PredecessorOperator, predecessors_through, turn_products
 from sysmlc.synthesis.games.game import Game
 from sysmlc.synthesis.games.relational_product import Product
 from sysmlc.synthesis.games.solver import Layer, Solution
@@ -25,25 +29,25 @@ Functions = Mapping[str, Node]
 
 
 class Mode(Struct, frozen=True):
-    """What is done while one goal is in turn."""
+    """The behaviour of a strategy while one goal is in turn."""
 
     outputs: Functions
-    """Each bit of the outputs: over bits of the step before, and primed ones of the inputs."""
-    onward: tuple[Node, ...]
-    """For each mode, over the same bits, when it is the next one."""
+    """Each output bit as a function of bits of the previous step and primed bits of the inputs."""
+    successors: tuple[Node, ...]
+    """For each mode, over the same bits, the condition under which it is the next one."""
 
 
 class Strategy(Struct, frozen=True):
-    """How to keep a contract."""
+    """A winning strategy as functions."""
 
     symbols: Symbols
     inputs: tuple[str, ...]
-    """Names of the variables of the environment."""
+    """Names of the environment's variables."""
     outputs: tuple[str, ...]
     first: Mode
-    """The first step: nothing is remembered."""
+    """The first step, without memory."""
     modes: tuple[Mode, ...]
-    """Later steps; one for each goal, and maybe one for what comes after the first step."""
+    """Later steps: a mode for each goal, and possibly one for the step after the first."""
 
     @property
     def manager(self) -> Manager:
@@ -51,178 +55,212 @@ class Strategy(Struct, frozen=True):
         return self.symbols.manager
 
 
-def strategy(game: Game, solution: Solution) -> Strategy:
-    """The strategy that a solution of the (encoded) game has.
+def extract_strategy(game: Game, solution: Solution) -> Strategy:
+    """Return the strategy of a solution of the (encoded) game.
 
-    Raises ValueError for a game that is lost or not solved to its end, LimitError.
+    Raises ValueError if the game is lost or not completely solved; LimitError.
     """
     if not (solution.is_realizable and solution.is_complete):
         raise ValueError("a strategy needs a game that was won and solved to its end")
     with game.manager.guard():
-        return _Maker(game, solution).strategy()
+        return _StrategyExtractor(game, solution).extract()
 
 
-class _Maker:
+class _StrategyExtractor:
     def __init__(self, game: Game, solution: Solution) -> None:
         self.game, self.solution, self.arena = game, solution, solution.arena
         self.manager, self.symbols = game.manager, game.symbols
-        self.count = max(1, len(self.arena.goals))
-        self.steps = Steps(self.arena)
-        self.answers = answers(self.arena)
-        self._owed = Product(self.manager, self.answers.parts, ())
+        self.goal_count = max(1, len(self.arena.goals))
+        self.operator = PredecessorOperator(self.arena)
+        self.open_answers = find_open_answers(self.arena)
+        self._answer_product = Product(self.manager, self.open_answers.parts, ())
 
-    def strategy(self) -> Strategy:
-        """All modes, and the first step."""
+    def extract(self) -> Strategy:
+        """Return the strategy with its first step and all modes."""
         symbols = self.symbols
         sides = {
-            owner: tuple(one.name for one in symbols.variables.values() if one.owner is owner)
+            owner: tuple(
+                variable.name for variable in symbols.variables.values() if variable.owner is owner
+            )
             for owner in Owner
         }
-        first, modes = self._ahead() if self.arena.is_ahead else self._plain()
+        first, modes = self._extract_ahead() if self.arena.is_ahead else self._extract_plain()
         inputs, outputs = sides[Owner.ENVIRONMENT], sides[Owner.SYSTEM]
         return Strategy(symbols, inputs, outputs, first, modes)
 
-    def _plain(self) -> tuple[Mode, tuple[Mode, ...]]:
-        first = self._first(self.solution.winning)
-        modes = (self._mode(goal, self._answers(goal), ()) for goal in range(self.count))
-        return self._mode(0, first, ()), tuple(modes)
-
-    def _ahead(self) -> tuple[Mode, tuple[Mode, ...]]:
-        """The same for commands that are chosen in the state that the answers lead to."""
-        winning = self.solution.winning
-        commands = [self._commands(goal) for goal in range(self.count)]
-        modes = [self._mode(goal, self._answers(goal), commands) for goal in range(self.count)]
-        begun = chosen(self.manager, self._answered(winning), self.answers.bits)
-        modes.append(self._mode(0, self._whole(begun), commands))
-        onward = (*(self.manager.false,) * self.count, self.manager.true)
-        return Mode(self._completed(self._first(self.symbols.prime(winning))), onward), tuple(modes)
-
-    def _first(self, winning: Node) -> Functions:
-        """Outputs for the first inputs, so that the rest can be won."""
-        _, turn, *later = self.arena.start
-        outputs = [bit for bit in turn.bits if not bit.endswith("'")]
-        moved = [bit for bit in turn.bits if bit.endswith("'")]
-        possible = Product(self.manager, turn.parts, moved)(
-            played(products(self.manager, later), winning)
+    def _extract_plain(self) -> tuple[Mode, tuple[Mode, ...]]:
+        first = self._first_outputs(self.solution.winning)
+        modes = (
+            self._build_mode(goal, self._choose_answers(goal), ())
+            for goal in range(self.goal_count)
         )
-        found = chosen(self.manager, possible, outputs)
-        return {bit: self.symbols.prime(node) for bit, node in found.items()}
+        return self._build_mode(0, first, ()), tuple(modes)
 
-    def _answers(self, goal: int) -> Functions:
-        """The outputs that are chosen after the inputs."""
-        return self._whole(self._chosen(goal, self._answered, self.answers.bits))
+    def _extract_ahead(self) -> tuple[Mode, tuple[Mode, ...]]:
+        """Extract first step and modes if commands are chosen in the state after the answers."""
+        winning = self.solution.winning
+        commands = [self._choose_commands(goal) for goal in range(self.goal_count)]
+        modes = [
+            self._build_mode(goal, self._choose_answers(goal), commands)
+            for goal in range(self.goal_count)
+        ]
+        first_answer = choose_functions(
+            self.manager, self._answers_into(winning), self.open_answers.bits
+        )
+        modes.append(self._build_mode(0, self._complete_answer(first_answer), commands))
+        successors = (*(self.manager.false,) * self.goal_count, self.manager.true)
+        return Mode(
+            self._add_eliminated_outputs(self._first_outputs(self.symbols.prime(winning))),
+            successors,
+        ), tuple(modes)
 
-    def _chosen(self, goal: int, leading: Callable[[Node], Node], bits: Sequence[str]) -> Functions:
-        wanted = self.manager.false
-        for possible in aims(self.solution, self.steps, goal, leading, bits):
-            wanted = wanted | possible
-        return chosen(self.manager, wanted, bits)
+    def _first_outputs(self, winning: Node) -> Functions:
+        """Return outputs for the first inputs, such that the rest of the play can be won."""
+        _, turn, *later_turns = self.arena.start
+        outputs = [bit for bit in turn.bits if not bit.endswith("'")]
+        plant_bits = [bit for bit in turn.bits if bit.endswith("'")]
+        possible = Product(self.manager, turn.parts, plant_bits)(
+            predecessors_through(turn_products(self.manager, later_turns), winning)
+        )
+        functions = choose_functions(self.manager, possible, outputs)
+        return {bit: self.symbols.prime(node) for bit, node in functions.items()}
 
-    def _whole(self, found: Functions) -> Functions:
-        """All bits of the answer, by their names without primes."""
-        found = self.answers.completed(self.symbols, found)
-        return {bit.removesuffix("'"): node for bit, node in found.items()}
+    def _choose_answers(self, goal: int) -> Functions:
+        """Return the outputs that are chosen after the inputs."""
+        return self._complete_answer(self._choose(goal, self._answers_into, self.open_answers.bits))
 
-    def _answered(self, there: Node) -> Node:
-        """The answers that lead to states, as far as there is a choice."""
-        return self._owed(self.answers.within(self.symbols, self.symbols.prime(there)))
+    def _choose(
+        self, goal: int, predecessor_choices: Callable[[Node], Node], bits: Sequence[str]
+    ) -> Functions:
+        allowed = self.manager.false
+        for choices in choose_targets(
+            self.solution, self.operator, goal, predecessor_choices, bits
+        ):
+            allowed = allowed | choices
+        return choose_functions(self.manager, allowed, bits)
 
-    def _commands(self, goal: int) -> Functions:
-        """Commands as functions of the state in which they are chosen."""
-        whole, after = self.arena.command, products(self.manager, self.arena.turns[1:])
-        if whole is None:
+    def _complete_answer(self, functions: Functions) -> Functions:
+        """Add the determined bits of the answer; keys lose their primes."""
+        functions = self.open_answers.complete(self.symbols, functions)
+        return {bit.removesuffix("'"): node for bit, node in functions.items()}
+
+    def _answers_into(self, target: Node) -> Node:
+        """Return the answers that lead into *there*, over the bits that are open."""
+        return self._answer_product(
+            self.open_answers.substitute_functions(self.symbols, self.symbols.prime(target))
+        )
+
+    def _choose_commands(self, goal: int) -> Functions:
+        """Return commands as functions of the state in which they are chosen."""
+        command, later_turns = self.arena.command, turn_products(self.manager, self.arena.turns[1:])
+        if command is None:
             return {}
-        bits = [bit for bit in whole.bits if not bit.endswith("'")]
-        choice = Product(self.manager, whole.parts, [bit for bit in whole.bits if bit not in bits])
+        bits = [bit for bit in command.bits if not bit.endswith("'")]
+        choice = Product(
+            self.manager, command.parts, [bit for bit in command.bits if bit not in bits]
+        )
 
-        def leading(there: Node) -> Node:
-            return choice(played(after, self.symbols.prime(there)))
+        def choices_into(target: Node) -> Node:
+            return choice(predecessors_through(later_turns, self.symbols.prime(target)))
 
-        return self._chosen(goal, leading, bits)
+        return self._choose(goal, choices_into, bits)
 
-    def _mode(self, goal: int, answers: Functions, commands: Sequence[Functions]) -> Mode:
-        """A mode from the answers of a step and the commands for each goal that may be next."""
-        onward = self._onward(goal, answers)
-        by_case = joined(
+    def _build_mode(self, goal: int, answers: Functions, commands: Sequence[Functions]) -> Mode:
+        """Build a mode from the answers of a step and the commands for each goal that may be
+        next.
+        """
+        successors = self._next_goal_conditions(goal, answers)
+        by_case = combine_cases(
             self.manager,
             (
-                (where, {bit: self._after(node, answers) for bit, node in functions.items()})
-                for where, functions in zip(onward, commands, strict=False)
+                (
+                    condition,
+                    {bit: self._evaluate_after(node, answers) for bit, node in functions.items()},
+                )
+                for condition, functions in zip(successors, commands, strict=False)
             ),
         )
-        more = (self.manager.false,) if commands else ()
-        return Mode(self._completed({**answers, **by_case}), (*onward, *more))
+        extra_successors = (self.manager.false,) if commands else ()
+        return Mode(
+            self._add_eliminated_outputs({**answers, **by_case}), (*successors, *extra_successors)
+        )
 
-    def _onward(self, goal: int, answers: Functions) -> tuple[Node, ...]:
-        """When which goal is the next: the first one from this one on that does not hold."""
+    def _next_goal_conditions(self, goal: int, answers: Functions) -> tuple[Node, ...]:
+        """Return for each goal when it is next: the first goal, from this one on, that does not
+        hold.
+        """
         if not self.arena.goals:
             return (self.manager.true,)
-        found = [self.manager.false] * self.count
-        left = self.manager.true
-        for more in range(self.count):
-            place = (goal + more) % self.count
-            is_held = self._after(self.arena.goals[place], answers)
-            found[place] = left & ~is_held
-            left = left & is_held
-        found[goal] = found[goal] | left
-        return tuple(found)
+        conditions = [self.manager.false] * self.goal_count
+        remaining = self.manager.true
+        for offset in range(self.goal_count):
+            candidate = (goal + offset) % self.goal_count
+            is_held = self._evaluate_after(self.arena.goals[candidate], answers)
+            conditions[candidate] = remaining & ~is_held
+            remaining = remaining & is_held
+        conditions[goal] = conditions[goal] | remaining
+        return tuple(conditions)
 
-    def _after(self, node: Node, answers: Functions) -> Node:
-        """What is said about a step, over its inputs and what is remembered."""
-        by = {next_bit(bit): function for bit, function in answers.items()}
-        return substituted(self.manager, self.symbols.prime(node), by)
+    def _evaluate_after(self, node: Node, answers: Functions) -> Node:
+        """Express a condition on the step after the answers over its inputs and the memory."""
+        functions = {next_bit(bit): function for bit, function in answers.items()}
+        return substitute(self.manager, self.symbols.prime(node), functions)
 
-    def _completed(self, outputs: Functions) -> Functions:
-        """With the outputs that follow from others."""
-        found = dict(outputs)
+    def _add_eliminated_outputs(self, outputs: Functions) -> Functions:
+        """Add the outputs that were eliminated before solving."""
+        completed = dict(outputs)
         for name, bits in reversed(list(self.game.definitions.items())):
             if self.symbols.variables[name].owner is Owner.SYSTEM:
-                found |= {bit: self._after(node, found) for bit, node in bits.items()}
-        return found
+                completed |= {
+                    bit: self._evaluate_after(node, completed) for bit, node in bits.items()
+                }
+        return completed
 
 
-def aims(
+def choose_targets(
     solution: Solution,
-    steps: Steps,
+    operator: PredecessorOperator,
     goal: int,
-    leading: Callable[[Node], Node],
+    predecessor_choices: Callable[[Node], Node],
     bits: Collection[str],
 ) -> Iterator[Node]:
-    """What may be chosen on the way to a goal: each says it of other places.
+    """Yield the choices allowed on the way to a goal; each set of choices is about other states.
 
-    ``steps`` are those of the arena. ``leading`` gives all choices of values of ``bits`` that lead
-    to given states for certain; what leads nowhere leaves the environment without a next input,
-    which is best of all. A state in which this goal holds and another does not has no aim: the
-    other one is in turn.
+    *steps* is the operator of the arena. *leading* returns all choices of *bits* that certainly
+    lead into given states. Choices that lead nowhere leave the environment without a next input,
+    which is the best outcome. States that satisfy this goal but not another one have no choice
+    here, because the other goal is in turn.
     """
     manager = solution.arena.manager
-    done = waiting = before = manager.false
+    settled = waiting = previous = manager.false
     nowhere = Layer(manager.false, ())
     for layer in (nowhere, *solution.layers[goal]):
         manager.check("looking for what to do")
-        for here, there in _waits(solution, steps, goal, layer, before):
-            where = here & ~done
-            yield where & leading(there)
-            waiting = waiting | here
-        possible = leading(layer.states)
-        able = manager.exist(manager.support(possible).intersection(bits), possible)
-        where = able & ~done & ~waiting
-        yield where & possible
-        done, before = done | able, layer.states
+        for waiting_states, target_states in _states_that_wait(
+            solution, operator, goal, layer, previous
+        ):
+            states = waiting_states & ~settled
+            yield states & predecessor_choices(target_states)
+            waiting = waiting | waiting_states
+        possible = predecessor_choices(layer.states)
+        deciding_states = manager.exist(manager.support(possible).intersection(bits), possible)
+        states = deciding_states & ~settled & ~waiting
+        yield states & possible
+        settled, previous = settled | deciding_states, layer.states
 
 
-def _waits(
-    solution: Solution, steps: Steps, goal: int, layer: Layer, before: Node
+def _states_that_wait(
+    solution: Solution, operator: PredecessorOperator, goal: int, layer: Layer, previous: Node
 ) -> Iterator[tuple[Node, Node]]:
-    """From which states of a layer the system may wait, and where."""
+    """Yield the states of a layer in which the system may wait, and where it may wait."""
     if not layer.waiting:
         return
     arena = solution.arena
-    met = arena.goals[goal] if arena.goals else arena.manager.true
-    left = layer.states & solution.winning & ~before & ~met
-    left = left & ~steps.controllable(before)
+    goal_states = arena.goals[goal] if arena.goals else arena.manager.true
+    remaining = layer.states & solution.winning & ~previous & ~goal_states
+    remaining = remaining & ~operator.controllable_predecessors(previous)
     for waiting in layer.waiting:
-        here = left & waiting
-        if here != arena.manager.false:
-            yield here, waiting | before
-        left = left & ~waiting
+        waiting_states = remaining & waiting
+        if waiting_states != arena.manager.false:
+            yield waiting_states, waiting | previous
+        remaining = remaining & ~waiting

@@ -1,5 +1,6 @@
-"""What a strategy remembers: where it can be in environments that keep the assumptions, and which
-of the variables count."""
+"""The memory of a strategy: which states it reaches in environments that satisfy the assumptions,
+and which variables count.
+"""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
@@ -9,28 +10,33 @@ from sysmlc.logic import domains
 from sysmlc.logic.contract import IntegerDomain, Owner
 from sysmlc.logic.formula import Apply, Const, Formula, Literal, Op, Var, eq
 from sysmlc.synthesis.bdd.manager import Node
-from sysmlc.synthesis.bdd.skolem_functions import substituted
+from sysmlc.synthesis.bdd.skolem_functions import substitute
 from sysmlc.synthesis.bdd.symbols import next_bit
 from sysmlc.synthesis.controllers.strategy import Mode, Strategy
 from sysmlc.synthesis.games.relational_product import Product
 
-FEW = 2
-"""Values that a counter may be set to beside counting."""
+MAX_SET_VALUES = 2
+"""Constants to which a counter may be set, besides counting."""
 
 
-class Reached(Struct, frozen=True):
-    """A strategy in all environments that keep the assumptions."""
+class ReachableStrategy(Struct, frozen=True):
+    """A strategy and the memory contents that it can reach."""
 
     strategy: Strategy
     first: Node
-    """First inputs that are allowed, primed."""
-    cares: tuple[Node, ...]
-    """For each mode: what the step before may have been, with the next inputs allowed then."""
+    """The first inputs that the assumptions allow, primed."""
+    care_sets: tuple[Node, ...]
+    """For each mode, the possible previous steps together with the inputs allowed after them."""
 
 
-def reached(strategy: Strategy, first: Iterable[Node], later: Iterable[Node]) -> Reached:
-    """Explore a strategy; ``first`` and ``later`` are assumptions, over inputs of the first step
-    and over a step and the next inputs. Raises LimitError."""
+def explore_strategy(
+    strategy: Strategy, first: Iterable[Node], later: Iterable[Node]
+) -> ReachableStrategy:
+    """Explore a strategy in all environments that satisfy the assumptions.
+
+    *first* are the assumptions about inputs of the first step, *later* those about a step and the
+    next inputs. Raises LimitError.
+    """
     return _Exploration(strategy, tuple(first), tuple(later)).run()
 
 
@@ -43,72 +49,85 @@ class _Exploration:
         self.allowed = self.manager.true
         for node in first:
             self.allowed = self.allowed & self.symbols.prime(node)
-        self.names = self._remembered()
+        self.names = self._remembered_names()
 
-    def run(self) -> Reached:
-        """Follow the first step, then all modes, until nothing new is found."""
+    def run(self) -> ReachableStrategy:
+        """Compute the reachable memory of all modes as a least fixpoint."""
         strategy, manager = self.strategy, self.manager
         count = len(strategy.modes)
-        known = [manager.false] * count
-        fresh = self._following(strategy.first, (), self.allowed)
-        while any(node != manager.false for node in fresh):
-            known = [old | new for old, new in zip(known, fresh, strict=True)]
-            found = [manager.false] * count
-            for mode, node in zip(strategy.modes, fresh, strict=True):
+        reached_states = [manager.false] * count
+        frontier = self._successors(strategy.first, (), self.allowed)
+        while any(node != manager.false for node in frontier):
+            reached_states = [
+                reached | added for reached, added in zip(reached_states, frontier, strict=True)
+            ]
+            next_frontier = [manager.false] * count
+            for mode, node in zip(strategy.modes, frontier, strict=True):
                 if node != manager.false:
-                    after = self._following(mode, self.later, node)
-                    found = [old | new for old, new in zip(found, after, strict=True)]
-            fresh = [new & ~old for new, old in zip(found, known, strict=True)]
+                    successors = self._successors(mode, self.later, node)
+                    next_frontier = [
+                        reached | added
+                        for reached, added in zip(next_frontier, successors, strict=True)
+                    ]
+            frontier = [
+                added & ~reached
+                for added, reached in zip(next_frontier, reached_states, strict=True)
+            ]
             manager.check("exploring the controller")
-        going_on = Product(manager, self.later, ())
-        return Reached(strategy, self.allowed, tuple(going_on(node) for node in known))
+        can_continue = Product(manager, self.later, ())
+        return ReachableStrategy(
+            strategy, self.allowed, tuple(can_continue(node) for node in reached_states)
+        )
 
-    def _remembered(self) -> frozenset[str]:
-        """Variables whose last value something depends on."""
-        read = [*self.later, *_functions(self.strategy)]
-        return frozenset[str]().union(*map(self.symbols.names, read))
+    def _remembered_names(self) -> frozenset[str]:
+        """Return the variables whose previous value some function or assumption reads."""
+        read_nodes = [*self.later, *_all_functions(self.strategy)]
+        return frozenset[str]().union(*map(self.symbols.names, read_nodes))
 
-    def _following(self, mode: Mode, parts: Sequence[Node], start: Node) -> list[Node]:
-        """For each next mode what the step may have been, of what is remembered."""
+    def _successors(self, mode: Mode, parts: Sequence[Node], start: Node) -> list[Node]:
+        """Return for each next mode the remembered part of the possible steps."""
         symbols, manager = self.symbols, self.manager
-        kept = frozenset(symbols.all_bits(sorted(self.names), primed=True))
+        remembered_bits = frozenset(symbols.all_bits(sorted(self.names), primed=True))
         graph = [
-            manager.var(after).equiv(node)
+            manager.var(next_name).equiv(node)
             for bit, node in mode.outputs.items()
-            if (after := next_bit(bit)) in kept
+            if (next_name := next_bit(bit)) in remembered_bits
         ]
-        given = symbols.all_bits(self.strategy.inputs, primed=True)
-        gone = [*symbols.all_bits(symbols.variables), *(bit for bit in given if bit not in kept)]
-        found = Product(manager, [*parts, *graph], gone)
-        return [symbols.unprime(found(start & where)) for where in mode.onward]
+        inputs = symbols.all_bits(self.strategy.inputs, primed=True)
+        removed_bits = [
+            *symbols.all_bits(symbols.variables),
+            *(bit for bit in inputs if bit not in remembered_bits),
+        ]
+        product = Product(manager, [*parts, *graph], removed_bits)
+        return [symbols.unprime(product(start & condition)) for condition in mode.successors]
 
 
-def _functions(strategy: Strategy) -> Iterator[Node]:
-    """All that is computed in later steps."""
+def _all_functions(strategy: Strategy) -> Iterator[Node]:
+    """Yield all functions of later steps."""
     for mode in strategy.modes:
         yield from mode.outputs.values()
-        yield from mode.onward
+        yield from mode.successors
 
 
-def registers(reached: Reached) -> tuple[str, ...]:
-    """Outputs that count, and numbers among the inputs that are remembered beside them."""
-    strategy, symbols = reached.strategy, reached.strategy.symbols
-    read = frozenset[str]().union(*map(strategy.manager.support, _functions(strategy)))
+def choose_registers(reachable: ReachableStrategy) -> tuple[str, ...]:
+    """Return the outputs that count, and the remembered integer inputs next to them."""
+    strategy, symbols = reachable.strategy, reachable.strategy.symbols
+    read_bits = frozenset[str]().union(*map(strategy.manager.support, _all_functions(strategy)))
     counters = [
         name
         for name in strategy.outputs
-        if _is_number(strategy, name) and not read.isdisjoint(symbols.bits(name))
+        if _is_number(strategy, name) and not read_bits.isdisjoint(symbols.bits(name))
     ]
-    counters = [name for name in counters if is_counter(reached, name)]
-    counted = frozenset(symbols.all_bits(counters))
-    beside = {
+    counters = [name for name in counters if is_counter(reachable, name)]
+    counter_bits = frozenset(symbols.all_bits(counters))
+    input_registers = {
         name
-        for node in _functions(strategy)
-        if not counted.isdisjoint(strategy.manager.support(node))
+        for node in _all_functions(strategy)
+        if not counter_bits.isdisjoint(strategy.manager.support(node))
         for name in symbols.names(node)
         if symbols.variables[name].owner is Owner.ENVIRONMENT and _is_number(strategy, name)
     }
-    return tuple(name for name in symbols.variables if name in counters or name in beside)
+    return tuple(name for name in symbols.variables if name in counters or name in input_registers)
 
 
 def _is_number(strategy: Strategy, name: str) -> bool:
@@ -116,34 +135,39 @@ def _is_number(strategy: Strategy, name: str) -> bool:
     return isinstance(domain, IntegerDomain) and domain.high - domain.low > 1
 
 
-def is_counter(reached: Reached, name: str) -> bool:
-    """Whether an output counts up or down by one, and else keeps its value or is set to a few."""
-    strategy, manager = reached.strategy, reached.strategy.manager
-    known = domains.values(strategy.symbols.variables[name].domain)
-    stays, *counts = steps(name)
+def is_counter(reachable: ReachableStrategy, name: str) -> bool:
+    """Return whether an output only counts by one, stays, or is set to few values."""
+    strategy, manager = reachable.strategy, reachable.strategy.manager
+    values = domains.values(strategy.symbols.variables[name].domain)
+    unchanged, *changes = counter_changes(name)
     is_counting, set_to = False, set[Literal]()
-    for mode, care in zip(strategy.modes, reached.cares, strict=True):
-        left = care & ~gives(strategy, mode.outputs, name, stays)
-        rest = left
-        for change in counts:
-            rest = rest & ~gives(strategy, mode.outputs, name, change)
-        is_counting = is_counting or rest != left
-        for value in known if rest != manager.false else ():
-            if rest & gives(strategy, mode.outputs, name, Const(value)) != manager.false:
+    for mode, care in zip(strategy.modes, reachable.care_sets, strict=True):
+        changed = care & ~states_with_value(strategy, mode.outputs, name, unchanged)
+        unexplained = changed
+        for change in changes:
+            unexplained = unexplained & ~states_with_value(strategy, mode.outputs, name, change)
+        is_counting = is_counting or unexplained != changed
+        for value in values if unexplained != manager.false else ():
+            if (
+                unexplained & states_with_value(strategy, mode.outputs, name, Const(value))
+                != manager.false
+            ):
                 set_to.add(value)
-            if len(set_to) > FEW:
+            if len(set_to) > MAX_SET_VALUES:
                 return False
     return is_counting
 
 
-def steps(name: str) -> tuple[Formula, ...]:
-    """What a counter does: it stays, or goes up or down by one."""
-    one = Const(1)
-    return Var(name), Apply(Op.ADD, (Var(name), one)), Apply(Op.SUB, (Var(name), one))
+def counter_changes(name: str) -> tuple[Formula, ...]:
+    """Return the changes of a counter: unchanged, plus one, minus one."""
+    step = Const(1)
+    return Var(name), Apply(Op.ADD, (Var(name), step)), Apply(Op.SUB, (Var(name), step))
 
 
-def gives(strategy: Strategy, outputs: Mapping[str, Node], name: str, value: Formula) -> Node:
-    """Where an output is the value, over the step before and the inputs."""
-    said = strategy.symbols.bdd(eq(Var(name, primed=True), value))
-    by = {next_bit(bit): outputs[bit] for bit in strategy.symbols.bits(name)}
-    return substituted(strategy.manager, said, by)
+def states_with_value(
+    strategy: Strategy, outputs: Mapping[str, Node], name: str, value: Formula
+) -> Node:
+    """Return where an output equals *value*, over the previous step and the inputs."""
+    equation = strategy.symbols.bdd(eq(Var(name, primed=True), value))
+    functions = {next_bit(bit): outputs[bit] for bit in strategy.symbols.bits(name)}
+    return substitute(strategy.manager, equation, functions)

@@ -1,8 +1,12 @@
-"""Symbolic controllers: what is answered as one table of decision nodes, however many states.
+"""Symbolic controllers: a strategy as one table of decision nodes.
 
-A node tests one bit and goes on to one of two others; 0 is false and 1 is true. What is remembered
-is what the variables were in the step before, and a mode (the goal in turn). A table can be run as
-it stands, and has the size of the decision diagrams, not of what they would list.
+A node tests one bit and continues at one of two other nodes; 0 is false and 1 is true. The
+controller remembers the values of all variables in the previous step, and a mode (the goal in
+turn). A table can be executed as it is, and has the size of the decision diagrams instead of the
+size of the states that they describe.
+
+The library reorders bits while diagrams grow, at moments that depend on time, but output files must
+be reproducible: ``rebuild_in_variable_order`` builds the table again in the order of its variables.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -17,11 +21,11 @@ from sysmlc.synthesis.bdd.manager import Manager, Node
 from sysmlc.synthesis.bdd.symbols import Symbols, width
 from sysmlc.synthesis.controllers.strategy import Mode, Strategy
 
-MOST_NODES = 1_000_000
+MAX_NODES = 1_000_000
 
 
 class Bit(Struct, frozen=True):
-    """One bit of the code of a variable, of this step or of the one before."""
+    """One bit of the code of a variable, in this step or the previous one."""
 
     variable: str
     place: int
@@ -30,16 +34,16 @@ class Bit(Struct, frozen=True):
 
 
 class Entry(Struct, frozen=True):
-    """What is done in a mode: places of nodes."""
+    """The behaviour in one mode, as positions of nodes."""
 
     outputs: tuple[int, ...]
     """For each bit of the outputs, in their order."""
-    onward: tuple[int, ...]
-    """For each mode whether it is the next one; exactly one is."""
+    successors: tuple[int, ...]
+    """For each mode whether it is the next one; exactly one of them is true."""
 
 
 class Table(Struct, frozen=True):
-    """A deterministic controller over decision nodes."""
+    """A deterministic controller made of decision nodes."""
 
     inputs: tuple[Variable, ...]
     outputs: tuple[Variable, ...]
@@ -53,17 +57,18 @@ class Table(Struct, frozen=True):
     def step(
         self, state: int, last: Mapping[str, Literal], now: Mapping[str, Literal]
     ) -> tuple[dict[str, Literal], int]:
-        """The outputs for inputs, and the next state: 0 before the first step, then a mode and 1.
+        """Return the outputs for the inputs *now*, and the next state.
 
-        ``last`` has inputs and outputs of the step before.
+        State 0 is before the first step, then a state is the number of a mode plus 1. *last* has
+        the inputs and outputs of the previous step.
         """
         entry = self.modes[state - 1] if state else self.first
         variables = (*self.inputs, *self.outputs)
-        before = {one.name: coded(one, last[one.name]) for one in variables if last}
-        given = {one.name: coded(one, now[one.name]) for one in self.inputs}
+        before = {one.name: encode_value(one, last[one.name]) for one in variables if last}
+        given = {one.name: encode_value(one, now[one.name]) for one in self.inputs}
         bits = [bool(self.value(place, before, given)) for place in entry.outputs]
-        onward = [bool(self.value(place, before, given)) for place in entry.onward]
-        return dict(_shared(self.outputs, bits)), onward.index(True) + 1
+        onward = [bool(self.value(place, before, given)) for place in entry.successors]
+        return dict(_decode_row(self.outputs, bits)), onward.index(True) + 1
 
     def value(
         self, place: int, last: Mapping[str, Sequence[bool]], now: Mapping[str, Sequence[bool]]
@@ -77,14 +82,14 @@ class Table(Struct, frozen=True):
         return place
 
 
-def tabled(strategy: Strategy, most: int = MOST_NODES) -> Table:
-    """The table of a strategy. Raises TooLargeError when it has too many nodes."""
-    return _Tabling(strategy, most).run()
+def build_table(strategy: Strategy, most: int = MAX_NODES) -> Table:
+    """Return the table of a strategy. Raises TooLargeError if it has more than *most* nodes."""
+    return _TableBuilder(strategy, most).run()
 
 
-class _Tabling:
+class _TableBuilder:
     def __init__(self, strategy: Strategy, most: int) -> None:
-        self._strategy, self._manager, self._most = strategy, strategy.manager, most
+        self._strategy, self._manager, self._max_nodes = strategy, strategy.manager, most
         symbols = strategy.symbols
         self._bits = {
             bit: Bit(name, place, is_before)
@@ -97,10 +102,10 @@ class _Tabling:
         self._nodes: list[tuple[int, int, int]] = []
 
     def run(self) -> Table:
-        """Go through all functions; what they share is there once."""
+        """Visit all functions; shared nodes occur once."""
         strategy = self._strategy
         variables = strategy.symbols.variables
-        first, *modes = map(self._entry, (strategy.first, *strategy.modes))
+        first, *modes = map(self._build_entry, (strategy.first, *strategy.modes))
         return Table(
             tuple(variables[name] for name in strategy.inputs),
             tuple(variables[name] for name in strategy.outputs),
@@ -110,59 +115,61 @@ class _Tabling:
             tuple(modes),
         )
 
-    def _entry(self, mode: Mode) -> Entry:
+    def _build_entry(self, mode: Mode) -> Entry:
         bits = self._strategy.symbols.all_bits(self._strategy.outputs)
-        outputs = tuple(self._place(mode.outputs[bit]) for bit in bits)
-        return Entry(outputs, tuple(map(self._place, mode.onward)))
+        outputs = tuple(self._place_of(mode.outputs[bit]) for bit in bits)
+        return Entry(outputs, tuple(map(self._place_of, mode.successors)))
 
-    def _place(self, node: Node) -> int:
-        """The place of a diagram; all below it have one before."""
-        waiting = [node]
-        while waiting:
-            one = waiting[-1]
-            if one in self._places:
-                waiting.pop()
+    def _place_of(self, node: Node) -> int:
+        """Return the position of a diagram; all nodes below it come before it."""
+        stack = [node]
+        while stack:
+            diagram = stack[-1]
+            if diagram in self._places:
+                stack.pop()
                 continue
-            bit, low, high = self._manager.branches(one)
+            bit, low, high = self._manager.branches(diagram)
             missing = [below for below in (low, high) if below not in self._places]
-            waiting += missing
+            stack += missing
             if not missing:
-                self._add(one, bit, self._places[low], self._places[high])
+                self._add_node(diagram, bit, self._places[low], self._places[high])
         return self._places[node]
 
-    def _add(self, node: Node, bit: str, low: int, high: int) -> None:
-        if len(self._nodes) >= self._most:
-            raise TooLargeError("nodes of the controller", f"{self._most:,}")
-        known = self._known.setdefault(bit, len(self._known))
-        self._nodes.append((known, low, high))
+    def _add_node(self, node: Node, bit: str, low: int, high: int) -> None:
+        if len(self._nodes) >= self._max_nodes:
+            raise TooLargeError("nodes of the controller", f"{self._max_nodes:,}")
+        bit_number = self._known.setdefault(bit, len(self._known))
+        self._nodes.append((bit_number, low, high))
         self._places[node] = len(self._nodes) + 1
         self._manager.check("writing the controller")
 
 
-def coded(variable: Variable, value: Literal) -> tuple[bool, ...]:
-    """The bits of a variable for a value, the most significant one first."""
-    place = domains.values(variable.domain).index(value)
-    return tuple(bool(place >> at & 1) for at in reversed(range(width(variable))))
+def encode_value(variable: Variable, value: Literal) -> tuple[bool, ...]:
+    """Return the bits of a value of a variable, the most significant one first."""
+    index = domains.values(variable.domain).index(value)
+    return tuple(bool(index >> position & 1) for position in reversed(range(width(variable))))
 
 
-def _shared(variables: Sequence[Variable], bits: Sequence[bool]) -> Iterator[tuple[str, Literal]]:
+def _decode_row(
+    variables: Sequence[Variable], bits: Sequence[bool]
+) -> Iterator[tuple[str, Literal]]:
     """Bits in one row as the values of variables."""
-    place = 0
+    position = 0
     for variable in variables:
-        own = bits[place : place + width(variable)]
-        number = sum(bit << at for at, bit in enumerate(reversed(own)))
+        own_bits = bits[position : position + width(variable)]
+        number = sum(bit << bit_position for bit_position, bit in enumerate(reversed(own_bits)))
         yield variable.name, domains.values(variable.domain)[number]
-        place += width(variable)
+        position += width(variable)
 
 
 def rebuild_in_variable_order(table: Table, manager: Manager) -> Table:
-    """The same table in the order of its variables; the manager must be new.
+    """Return the table in the order of its variables; the manager must be new.
 
-    Where that is beyond the manager's limits the table is what it was.
+    If that exceeds the manager's limits, the table is returned unchanged.
     """
     try:
-        with manager.guard(), manager.calm():
-            return _Rebuild(table, manager).table()
+        with manager.guard(), manager.without_reordering():
+            return _Rebuild(table, manager).build()
     except LimitError:
         return table
 
@@ -171,31 +178,31 @@ class _Rebuild:
     def __init__(self, table: Table, manager: Manager) -> None:
         self._table = table
         self._symbols = Symbols(manager, (*table.inputs, *table.outputs))
-        self._nodes = nodes_of(table, self._symbols)
+        self._nodes = table_diagrams(table, self._symbols)
 
-    def table(self) -> Table:
-        """Functions of the nodes, and a table of them."""
+    def build(self) -> Table:
+        """Build the table of the diagrams of the old nodes."""
         inputs, outputs = (
             tuple(one.name for one in side) for side in (self._table.inputs, self._table.outputs)
         )
-        modes = tuple(map(self._mode, self._table.modes))
-        return tabled(
-            Strategy(self._symbols, inputs, outputs, self._mode(self._table.first), modes)
+        modes = tuple(map(self._build_mode, self._table.modes))
+        return build_table(
+            Strategy(self._symbols, inputs, outputs, self._build_mode(self._table.first), modes)
         )
 
-    def _mode(self, entry: Entry) -> Mode:
+    def _build_mode(self, entry: Entry) -> Mode:
         bits = self._symbols.all_bits(one.name for one in self._table.outputs)
         outputs = {bit: self._nodes[place] for bit, place in zip(bits, entry.outputs, strict=True)}
-        return Mode(outputs, tuple(self._nodes[place] for place in entry.onward))
+        return Mode(outputs, tuple(self._nodes[place] for place in entry.successors))
 
 
-def nodes_of(table: Table, symbols: Symbols) -> list[Node]:
-    """The diagram of each place; the first two are false and true."""
+def table_diagrams(table: Table, symbols: Symbols) -> list[Node]:
+    """Return the diagram of each position; the first two are false and true."""
     manager = symbols.manager
-    found = [manager.false, manager.true]
+    diagrams = [manager.false, manager.true]
     for bit, low, high in table.nodes:
-        one = table.bits[bit]
-        name = symbols.bits(one.variable, primed=not one.is_before)[one.place]
-        found.append(manager.ite(manager.var(name), found[high], found[low]))
+        table_bit = table.bits[bit]
+        name = symbols.bits(table_bit.variable, primed=not table_bit.is_before)[table_bit.place]
+        diagrams.append(manager.ite(manager.var(name), diagrams[high], diagrams[low]))
         manager.check("translating the controller")
-    return found
+    return diagrams

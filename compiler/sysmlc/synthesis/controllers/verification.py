@@ -1,7 +1,7 @@
-"""Whether a controller keeps a contract: an independent check of it and the assumptions together.
+"""Verification of a controller against its contract, independent of the synthesis.
 
-Nothing is shared with what made it: the contract's formulas are translated anew, the controller is
-a relation over a variable for its state (``closed``), and fair runs are looked for (``algebra``).
+The formulas of the contract are translated anew, the controller becomes a relation over a variable
+for its state (``closed_loop``), and fair runs that violate a guarantee are searched (``algebra``).
 """
 
 from collections.abc import Iterable, Iterator, Mapping
@@ -14,201 +14,245 @@ from sysmlc.logic import domains
 from sysmlc.logic.contract import Class, Conjunct, Contract, Owner
 from sysmlc.logic.formula import Literal
 from sysmlc.synthesis.algebra.fair_systems import FairSystem, Runs, Universe
-from sysmlc.synthesis.algebra.traces import lasso, one, shortest
+from sysmlc.synthesis.algebra.traces import build_lasso, pick_state, shortest_path
 from sysmlc.synthesis.bdd.groups import tied
 from sysmlc.synthesis.bdd.manager import Manager, Node
-from sysmlc.synthesis.controllers.closed_loop import Closed, Controller, memory, relation
-from sysmlc.synthesis.controllers.quick_check import Glance
+from sysmlc.synthesis.controllers.closed_loop import (
+    ClosedLoop,
+    Controller,
+    state_variable,
+    translate_controller,
+)
+from sysmlc.synthesis.controllers.quick_check import QuickCheck
 from sysmlc.synthesis.games.relational_product import Product
 
 
 class Fault(Struct, frozen=True):
-    """What a machine does wrong, with the steps that lead there."""
+    """A violation by a controller, with the steps that lead to it."""
 
     conjunct: Conjunct | None
-    """The guarantee that it breaks; None when it has no answer to inputs that are allowed."""
+    """The violated guarantee; None if there is no answer to allowed inputs."""
     steps: tuple[Mapping[str, Literal], ...] = ()
     loop: int | None = None
-    """After the last step it goes on at this one; None when the steps alone show it."""
+    """The step at which the run continues after the last one; None if the steps alone suffice."""
 
 
-def faults(controller: Controller, contract: Contract, manager: Manager) -> Iterator[Fault]:
-    """Why a controller does not keep a contract; nothing when it does. The manager must be new.
+def find_faults(controller: Controller, contract: Contract, manager: Manager) -> Iterator[Fault]:
+    """Yield the violations of a contract by a controller; none if it satisfies the contract.
 
-    In every run in which the environment keeps its assumptions the controller has an answer, keeps
-    the initial guarantees and those for every step, and, if all that should recur of the
-    environment does, what should recur of the system does. Raises OutsideGr1Error, LimitError;
-    SymbolError for a machine with other values than the contract's.
+    The manager must be new. In every run in which the environment satisfies its assumptions, the
+    controller must have an answer, satisfy initial and safety guarantees, and, if all liveness
+    assumptions recur, let the liveness guarantees recur. Raises OutsideGr1Error, LimitError;
+    SymbolError for a machine over other values than the contract's.
     """
-    with manager.guard(), manager.calm():
-        yield from _Check(controller, contract, manager).faults()
+    with manager.guard(), manager.without_reordering():
+        yield from _Verification(controller, contract, manager).find_faults()
 
 
-class _Check:
+class _Verification:
     def __init__(self, controller: Controller, contract: Contract, manager: Manager) -> None:
         self.manager, self.contract = manager, contract
-        self.memory = memory(controller, contract)
-        extended = replace(contract, variables=(*contract.variables, self.memory))
+        self.state_variable = state_variable(controller, contract)
+        extended = replace(contract, variables=(*contract.variables, self.state_variable))
         self.universe = Universe((extended,), manager)
         self.symbols = self.universe.symbols
-        done = relation(controller, self.symbols, self.memory)
-        self.first, self.moves = done.first, done.later
-        assumed = self.universe.system(contract.assumptions)
-        self.allowed, self.fairness = assumed.parts, assumed.fairness
-        self.inputs = assumed.init
-        self.starts = Product(manager, self.first, ())(self.inputs)
+        relation = translate_controller(controller, self.symbols, self.state_variable)
+        self.first_relation, self.transitions = relation.first, relation.step
+        assumption_system = self.universe.system(contract.assumptions)
+        self.assumptions, self.fairness = assumption_system.parts, assumption_system.fairness
+        self.initial_inputs = assumption_system.init
+        self.initial = Product(manager, self.first_relation, ())(self.initial_inputs)
 
     @cached_property
     def runs(self) -> Runs:
-        """All runs in which the assumptions about steps are kept."""
+        """All runs that satisfy the safety assumptions."""
         return Runs(self._system(()))
 
     @cached_property
-    def fair(self) -> Runs:
-        """Those of them in which all recurs that should."""
+    def fair_runs(self) -> Runs:
+        """The runs that satisfy all assumptions."""
         return Runs(self._system(self.fairness))
 
     def _system(self, fairness: tuple[Node, ...]) -> FairSystem:
-        return FairSystem(self.symbols, self.starts, (*self.allowed, *self.moves), fairness)
+        return FairSystem(
+            self.symbols, self.initial, (*self.assumptions, *self.transitions), fairness
+        )
 
-    def faults(self) -> Iterator[Fault]:
-        """All of them, one for each conjunct at most."""
-        if self._is_plain():
+    def find_faults(self) -> Iterator[Fault]:
+        """Yield at most one fault for each conjunct."""
+        if self._passes_quick_check():
             return
-        yield from self._unanswered()
+        yield from self._find_unanswered_inputs()
         for conjunct in self.contract.guarantees:
-            broken = ~self.universe.node(conjunct)
-            if broken != self.manager.false:
-                yield from _SEARCHES[conjunct.class_](self, conjunct, broken)
+            violation = ~self.universe.node(conjunct)
+            if violation != self.manager.false:
+                yield from _FAULT_SEARCHES[conjunct.class_](self, conjunct, violation)
 
-    def _is_plain(self) -> bool:
-        """Whether it is seen without a look at each fault that there is none."""
-        first, safe, recurring = (
-            [self.universe.node(one) for one in self.contract.guarantees if one.class_ is class_]
+    def _passes_quick_check(self) -> bool:
+        """Return whether the quick check excludes all faults."""
+        initial_guarantees, safety_guarantees, liveness_guarantees = (
+            [
+                self.universe.node(guarantee)
+                for guarantee in self.contract.guarantees
+                if guarantee.class_ is class_
+            ]
             for class_ in (Class.INIT, Class.SAFETY, Class.LIVENESS)
         )
-        if not self._answers_first() or not all(self.starts <= node for node in first):
+        if not self._answers_first_inputs() or not all(
+            self.initial <= node for node in initial_guarantees
+        ):
             return False
-        closed = Closed(self.symbols, self.starts, self.allowed, self.moves, self.fairness)
+        closed_loop = ClosedLoop(
+            self.symbols, self.initial, self.assumptions, self.transitions, self.fairness
+        )
         return all(
-            self._is_plain_of(
-                closed.about(names),
-                closed.speaking(safe, names),
-                closed.speaking(recurring, names),
+            self._passes_quick_check_of(
+                closed_loop.project_on(names),
+                closed_loop.select_about(safety_guarantees, names),
+                closed_loop.select_about(liveness_guarantees, names),
             )
-            for names in self._groups(closed, (*safe, *recurring))
+            for names in self._independent_groups(
+                closed_loop, (*safety_guarantees, *liveness_guarantees)
+            )
         )
 
-    def _groups(self, closed: Closed, promised: Iterable[Node]) -> list[frozenset[str]]:
-        """Variables that have to be looked at together; a state that is the only one ties none."""
-        said = (*closed.allowed, *closed.moves, *closed.fairness, *promised)
-        is_only = domains.size(self.memory.domain) == 1
-        lone = frozenset([self.memory.name] if is_only else [])
-        together = [closed.spoken(node) - lone for node in said]
-        return [names | lone for names in tied(self.symbols.variables, together)]
+    def _independent_groups(
+        self, closed_loop: ClosedLoop, guarantees: Iterable[Node]
+    ) -> list[frozenset[str]]:
+        """Return groups of variables that must be checked together.
 
-    def _is_plain_of(self, closed: Closed, safe: list[Node], recurring: list[Node]) -> bool:
-        seen = Glance(closed, safe, recurring)
-        stuck = self._stuck(closed.moves)
-        if seen.is_possible(stuck, closed.allowed) or not seen.keeps_each_step():
+        A controller with a single state does not relate variables to one another.
+        """
+        diagrams = (
+            *closed_loop.assumptions,
+            *closed_loop.transitions,
+            *closed_loop.fairness,
+            *guarantees,
+        )
+        is_only = domains.size(self.state_variable.domain) == 1
+        single_state = frozenset([self.state_variable.name] if is_only else [])
+        related_names = [closed_loop.variables_of(node) - single_state for node in diagrams]
+        return [names | single_state for names in tied(self.symbols.variables, related_names)]
+
+    def _passes_quick_check_of(
+        self,
+        closed_loop: ClosedLoop,
+        safety_guarantees: list[Node],
+        liveness_guarantees: list[Node],
+    ) -> bool:
+        quick_check = QuickCheck(closed_loop, safety_guarantees, liveness_guarantees)
+        unanswered = self._states_without_answer(closed_loop.transitions)
+        if (
+            quick_check.can_step(unanswered, closed_loop.assumptions)
+            or not quick_check.satisfies_safety()
+        ):
             return False
-        return not any(has_fair_run(seen, seen.reachable & ~node) for node in recurring)
+        return not any(
+            has_fair_run(quick_check, quick_check.reachable & ~node) for node in liveness_guarantees
+        )
 
-    def _is_possible(self, step: Node, parts: Iterable[Node]) -> bool:
-        """Whether a step by all parts from what is reached is one of these."""
+    def _can_step(self, step: Node, parts: Iterable[Node]) -> bool:
+        """Return whether *step* is possible under all parts from a reachable state."""
         if step == self.manager.false:
             return False
-        found = Product(self.manager, [*parts, step], self.runs.bits)
-        return found(self.runs.reachable) != self.manager.false
+        product = Product(self.manager, [*parts, step], self.runs.bits)
+        return product(self.runs.reachable) != self.manager.false
 
-    def _unanswered(self) -> Iterator[Fault]:
-        if not self._answers_first():
+    def _find_unanswered_inputs(self) -> Iterator[Fault]:
+        if not self._answers_first_inputs():
             yield Fault(None)
-        yield from self._stepping(None, self._stuck(self.moves), self.allowed)
+        yield from self._find_faulty_step(
+            None, self._states_without_answer(self.transitions), self.assumptions
+        )
 
-    def _answers_first(self) -> bool:
-        """Whether there is an answer to all first inputs."""
-        answered = Product(self.manager, self.first, self.symbols.all_bits(self._own()))
-        return self.inputs <= answered(self.manager.true)
+    def _answers_first_inputs(self) -> bool:
+        """Return whether there is an answer to all first inputs."""
+        product = Product(
+            self.manager, self.first_relation, self.symbols.all_bits(self._output_names())
+        )
+        return self.initial_inputs <= product(self.manager.true)
 
-    def _stuck(self, moves: Iterable[Node]) -> Node:
-        """Steps and next inputs to which there is no answer."""
-        after = self.symbols.all_bits(self._own(), primed=True)
-        return ~Product(self.manager, moves, after)(self.manager.true)
+    def _states_without_answer(self, moves: Iterable[Node]) -> Node:
+        """Return the steps and next inputs for which there is no answer."""
+        next_outputs = self.symbols.all_bits(self._output_names(), primed=True)
+        return ~Product(self.manager, moves, next_outputs)(self.manager.true)
 
-    def _own(self) -> tuple[str, ...]:
+    def _output_names(self) -> tuple[str, ...]:
         variables = self.symbols.variables.values()
-        return tuple(one.name for one in variables if one.owner is Owner.SYSTEM)
+        return tuple(variable.name for variable in variables if variable.owner is Owner.SYSTEM)
 
-    def at_first(self, conjunct: Conjunct, broken: Node) -> Iterator[Fault]:
-        """A first step that breaks it."""
-        found = self.runs.system.init & broken
-        if found != self.manager.false:
-            yield self._fault(conjunct, [one(self.runs, found)])
+    def find_initial_fault(self, conjunct: Conjunct, violation: Node) -> Iterator[Fault]:
+        """Yield a first step that violates the conjunct."""
+        states = self.runs.system.init & violation
+        if states != self.manager.false:
+            yield self._build_fault(conjunct, [pick_state(self.runs, states)])
 
-    def in_a_step(self, conjunct: Conjunct, broken: Node) -> Iterator[Fault]:
-        """A step from a state that is reached."""
-        return self._stepping(conjunct, broken, self.runs.system.parts)
+    def find_step_fault(self, conjunct: Conjunct, violation: Node) -> Iterator[Fault]:
+        """Yield a reachable step that violates the conjunct."""
+        return self._find_faulty_step(conjunct, violation, self.runs.system.parts)
 
-    def _stepping(
-        self, conjunct: Conjunct | None, broken: Node, parts: Iterable[Node]
+    def _find_faulty_step(
+        self, conjunct: Conjunct | None, violation: Node, parts: Iterable[Node]
     ) -> Iterator[Fault]:
         parts = tuple(parts)
-        if not self._is_possible(broken, parts):
+        if not self._can_step(violation, parts):
             return
-        found = Product(self.manager, parts, self.runs.next_bits)(self.runs.reachable & broken)
-        if found != self.manager.false:
-            yield self._fault(conjunct, shortest(self.runs, found))
+        states = Product(self.manager, parts, self.runs.next_bits)(self.runs.reachable & violation)
+        if states != self.manager.false:
+            yield self._build_fault(conjunct, shortest_path(self.runs, states))
 
-    def for_ever(self, conjunct: Conjunct, broken: Node) -> Iterator[Fault]:
-        """A fair run that from some step on breaks it for ever."""
-        fair, within = self.fair, self.runs.reachable & broken
-        if not has_fair_run(fair, within):
+    def find_fair_fault(self, conjunct: Conjunct, violation: Node) -> Iterator[Fault]:
+        """Yield a fair run that violates the conjunct forever from some step on."""
+        fair_runs, candidates = self.fair_runs, self.runs.reachable & violation
+        if not has_fair_run(fair_runs, candidates):
             return
-        found = fair.fair_within(within)
-        if found != self.manager.false:
-            trace = lasso(fair, shortest(fair, found), found)
-            yield Fault(conjunct, tuple(map(self._shown, trace.steps)), trace.loop)
+        states = fair_runs.fair_within(candidates)
+        if states != self.manager.false:
+            trace = build_lasso(fair_runs, shortest_path(fair_runs, states), states)
+            yield Fault(conjunct, tuple(map(self._without_memory, trace.steps)), trace.loop)
 
-    def _fault(self, conjunct: Conjunct | None, way: Iterable[Node]) -> Fault:
-        picked = (self.manager.pick(state, self.runs.bits) or {} for state in way)
-        steps = tuple(self._shown(self.symbols.decode(bits)) for bits in picked)
+    def _build_fault(self, conjunct: Conjunct | None, path: Iterable[Node]) -> Fault:
+        assignments = (self.manager.pick(state, self.runs.bits) or {} for state in path)
+        steps = tuple(self._without_memory(self.symbols.decode(bits)) for bits in assignments)
         return Fault(conjunct, steps)
 
-    def _shown(self, values: Mapping[str, Literal]) -> dict[str, Literal]:
-        return {name: value for name, value in values.items() if name != self.memory.name}
+    def _without_memory(self, values: Mapping[str, Literal]) -> dict[str, Literal]:
+        return {name: value for name, value in values.items() if name != self.state_variable.name}
 
 
-def has_fair_run(runs: Runs | Glance, within: Node) -> bool:
-    """Whether some fair run goes on for ever without leaving states.
+def has_fair_run(runs: Runs | QuickCheck, within: Node) -> bool:
+    """Return whether some fair run stays inside *within* forever.
 
-    Emerson and Lei's fixpoint, backwards: what is left has a past of its own without end, which in
-    a finite system is a cycle. What a controller does next is computed faster than what led there.
+    Emerson and Lei's fixpoint, computed on successors: the remaining states have an infinite past
+    inside the set, which in a finite system contains a cycle. For controllers, successors are
+    faster to compute than predecessors.
     """
-    found = within
-    while found != runs.manager.false:
-        fewer = found
+    states = within
+    while states != runs.manager.false:
+        shrunk = states
         for goal in runs.goals:
-            fewer = fewer & _later(runs, fewer, fewer & goal)
-        if fewer == found:
+            shrunk = shrunk & _states_after(runs, shrunk, shrunk & goal)
+        if shrunk == states:
             return True
-        found = fewer
+        states = shrunk
         runs.manager.check("looking for runs that never come to a goal")
     return False
 
 
-def _later(runs: Runs | Glance, within: Node, start: Node) -> Node:
-    """The states that one step leads to, or more that do not leave others before the last one."""
-    found, front, after = start, start, runs.manager.false
-    while front != runs.manager.false:
-        after = after | runs.after(front)
-        front = within & after & ~found
-        found = found | front
-    return after
+def _states_after(runs: Runs | QuickCheck, within: Node, start: Node) -> Node:
+    """Return the states after one step, or after more that stay inside *within* before the last
+    one.
+    """
+    visited, frontier, result = start, start, runs.manager.false
+    while frontier != runs.manager.false:
+        result = result | runs.successors(frontier)
+        frontier = within & result & ~visited
+        visited = visited | frontier
+    return result
 
 
-_SEARCHES = {
-    Class.INIT: _Check.at_first,
-    Class.SAFETY: _Check.in_a_step,
-    Class.LIVENESS: _Check.for_ever,
+_FAULT_SEARCHES = {
+    Class.INIT: _Verification.find_initial_fault,
+    Class.SAFETY: _Verification.find_step_fault,
+    Class.LIVENESS: _Verification.find_fair_fault,
 }

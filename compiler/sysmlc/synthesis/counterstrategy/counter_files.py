@@ -1,4 +1,6 @@
-"""Counter-strategies as PlantUML diagrams: what the environment does, and a run."""
+"""Files that show how the environment defeats a contract: a run, a state diagram, and SysML v2
+text.
+"""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
@@ -25,153 +27,170 @@ from sysmlc.synthesis.counterstrategy.counter_machine import (
 from sysmlc.synthesis.witnesses import Party, print_temporal, run_diagram
 
 MAX_DIAGRAM_STATES = 12
-"""States up to which a diagram can be read."""
+"""States up to which a diagram is readable."""
 _MAX_LABEL_LINES = 4
-"""Conditions that an arrow tells one by one."""
+"""Conditions that an arrow lists one by one."""
 
 
-def losing_run_diagram(counter: CounterStrategy, contract: Contract) -> str:
-    """A run in which the component does what it may, and fails, as a sequence diagram."""
+def losing_run_diagram(machine: CounterStrategy, contract: Contract) -> str:
+    """Return a sequence diagram of a run in which the component uses its freedom and fails."""
     title, trace = (
         [f"{label(contract.component)}", "cannot keep its contract"],
-        example_run(counter),
+        example_run(machine),
     )
     if trace.loop < len(trace.steps):
-        some = "not kept" if len(counter.missed) == 1 else "not all kept"
-        title += [f"{some}: {label(print_temporal(one))}" for one in counter.missed]
+        verdict = "not kept" if len(machine.missed) == 1 else "not all kept"
+        title += [f"{verdict}: {label(print_temporal(conjunct))}" for conjunct in machine.missed]
     return run_diagram("\\n".join(title), trace, (Party(contract.component, contract),))
 
 
-def state_diagram(counter: CounterStrategy, contract: Contract) -> str:
-    """The environment as a state diagram: in a state what it gives, on an arrow what is answered.
+def state_diagram(machine: CounterStrategy, contract: Contract) -> str:
+    """Return the environment as a state diagram: inputs in the states, answers on the arrows.
 
-    Inputs that are the same in all states are told once.
+    Inputs that are the same in all states are listed once.
     """
-    same = _constant_columns([state.given for state in counter.states])
+    constant_inputs = _constant_columns([state.given for state in machine.states])
     lines = [
         "@startuml",
         f"title what makes {label(contract.component)} fail",
         "hide empty description",
     ]
-    if same:
+    if constant_inputs:
         lines += [
             "note as same",
-            f"  always {_print_values(counter.inputs, counter.states[0].given, same)}",
+            f"  always {_print_values(machine.inputs, machine.states[0].given, constant_inputs)}",
         ]
         lines += ["end note"]
-    varying = [at for at in range(len(counter.inputs)) if at not in same]
-    for number, state in enumerate(counter.states):
-        given = _print_values(counter.inputs, state.given, varying)
+    varying_inputs = [index for index in range(len(machine.inputs)) if index not in constant_inputs]
+    for number, state in enumerate(machine.states):
+        inputs = _print_values(machine.inputs, state.given, varying_inputs)
         ending = "" if state.moves else "\\n<b>no answer is left</b>"
-        lines.append(f'state "{label(given or "wait")}{ending}" as S{number}')
+        lines.append(f'state "{label(inputs or "wait")}{ending}" as S{number}')
     lines.append("[*] --> S0")
-    for number, state in enumerate(counter.states):
-        for place, words in _list_arrows(state, counter.outputs):
-            answers = "\\n".join(map(label, words))
-            lines.append(f"S{number} --> S{place} : {answers}")
+    for number, state in enumerate(machine.states):
+        for successor, conditions in _list_arrows(state, machine.outputs):
+            answers = "\\n".join(map(label, conditions))
+            lines.append(f"S{number} --> S{successor} : {answers}")
     return "\n".join((*lines, "@enduml", ""))
 
 
 def _list_arrows(state: State, outputs: Sequence[Variable]) -> Iterator[tuple[int, list[str]]]:
-    """The next states, each with the answers that lead there."""
+    """Yield the next states, each with the answers that lead there."""
     if len(state.moves) == 1:
-        ((row, place),) = state.moves.items()
-        yield place, [f"only {_print_values(outputs, row, range(len(row)))}"]
+        ((row, successor),) = state.moves.items()
+        yield successor, [f"only {_print_values(outputs, row, range(len(row)))}"]
         return
-    for place, rows in group_by_successor(state).items():
-        others = [row for row, other in state.moves.items() if other != place]
-        words = [
-            " ".join(one) or "any answer" for one in _describe_conditions(rows, others, outputs)
+    for successor, rows in group_by_successor(state).items():
+        other_rows = [
+            row for row, other_successor in state.moves.items() if other_successor != successor
+        ]
+        conditions = [
+            " ".join(condition) or "any answer"
+            for condition in _describe_conditions(rows, other_rows, outputs)
         ]
         yield (
-            place,
-            words
-            if len(words) <= _MAX_LABEL_LINES
-            else [*words[: _MAX_LABEL_LINES - 1], "or more"],
+            successor,
+            conditions
+            if len(conditions) <= _MAX_LABEL_LINES
+            else [*conditions[: _MAX_LABEL_LINES - 1], "or more"],
         )
 
 
 def group_by_successor(state: State) -> Mapping[int, list[Row]]:
-    found: dict[int, list[Row]] = {}
-    for row, place in state.moves.items():
-        found.setdefault(place, []).append(row)
-    return found
+    """Group the answers of a state by next state."""
+    rows_by_successor: dict[int, list[Row]] = {}
+    for row, successor in state.moves.items():
+        rows_by_successor.setdefault(successor, []).append(row)
+    return rows_by_successor
 
 
 def _describe_conditions(
-    rows: Sequence[Row], others: Sequence[Row], variables: Sequence[Variable]
+    rows: Sequence[Row], other_rows: Sequence[Row], variables: Sequence[Variable]
 ) -> Iterator[list[str]]:
-    """What rows have in common and none of the others has, in as few words as is simple."""
-    for row, kept in distinguish_rows(rows, others):
-        yield [f"{variables[at].name}={print_literal(row[at])}" for at in kept]
+    """Describe by few equations what the rows have in common and none of the others has."""
+    for row, columns in distinguish_rows(rows, other_rows):
+        yield [f"{variables[column].name}={print_literal(row[column])}" for column in columns]
 
 
-def distinguish_rows(rows: Sequence[Row], others: Sequence[Row]) -> Iterator[tuple[Row, list[int]]]:
-    """Rows with the places that tell them from all others; each stands for all that agree there."""
-    left = list(rows)
-    while left:
-        row, kept = left[0], list(range(len(left[0])))
-        for place in list(kept):
-            fewer = [one for one in kept if one != place]
-            if not any(_agree_at(row, other, fewer) for other in others):
-                kept = fewer
-        yield row, kept
-        left = [one for one in left if not _agree_at(row, one, kept)]
+def distinguish_rows(
+    rows: Sequence[Row], other_rows: Sequence[Row]
+) -> Iterator[tuple[Row, list[int]]]:
+    """Yield rows with columns that distinguish them from all others; each represents the rows that
+    agree there.
+    """
+    remaining = list(rows)
+    while remaining:
+        row, columns = remaining[0], list(range(len(remaining[0])))
+        for column in list(columns):
+            fewer_columns = [one for one in columns if one != column]
+            if not any(_agree_at(row, other_row, fewer_columns) for other_row in other_rows):
+                columns = fewer_columns
+        yield row, columns
+        remaining = [one for one in remaining if not _agree_at(row, one, columns)]
 
 
-def _agree_at(one: Row, other: Row, places: Iterable[int]) -> bool:
-    return all(one[place] == other[place] for place in places)
+def _agree_at(left: Row, right: Row, columns: Iterable[int]) -> bool:
+    return all(left[column] == right[column] for column in columns)
 
 
 def _constant_columns(rows: Sequence[Row]) -> list[int]:
-    """The places at which all rows agree; none when there is one row."""
+    """Return the columns in which all rows agree; none if there is only one row."""
     if len(rows) < 2:
         return []
-    return [at for at in range(len(rows[0])) if all(row[at] == rows[0][at] for row in rows)]
+    return [
+        column
+        for column in range(len(rows[0]))
+        if all(row[column] == rows[0][column] for row in rows)
+    ]
 
 
-def _print_values(variables: Sequence[Variable], row: Row, places: Iterable[int]) -> str:
-    return ", ".join(f"{variables[at].name}={print_literal(row[at])}" for at in places)
+def _print_values(variables: Sequence[Variable], row: Row, columns: Iterable[int]) -> str:
+    return ", ".join(f"{variables[column].name}={print_literal(row[column])}" for column in columns)
 
 
 QualifiedNames = Callable[[str], str]
-"""The qualified name of the element with an id; empty when there is none."""
+"""Returns the qualified name of the element with an id, or an empty string."""
 
 
-def sysml_text(counter: CounterStrategy, contract: Contract, named: QualifiedNames) -> str:
-    """The environment as a part with a state machine, in SysML v2."""
+def sysml_text(machine: CounterStrategy, contract: Contract, qualified_name: QualifiedNames) -> str:
+    """Return the environment as a part with a state machine, in SysML v2."""
     component = contract.component
+    comment = f"Made by sysmlc: the environment in which {component} fails."
     lines = [
         f"package {_quote_name(f'What makes {component} fail')} {{",
         "    private import ScalarValues::*;",
-        f"    doc /* {_escape_comment(f'Made by sysmlc: the environment in which {component} fails.')} */",
+        f"    doc /* {_escape_comment(comment)} */",
     ]
-    for variable in (*counter.inputs, *counter.outputs):
+    for variable in (*machine.inputs, *machine.outputs):
         lines += _declare_enumeration(variable)
     lines.append("    part def Environment {")
-    first = dict(zip((one.name for one in counter.inputs), counter.states[0].given, strict=True))
+    first_inputs = dict(
+        zip((variable.name for variable in machine.inputs), machine.states[0].given, strict=True)
+    )
     for variable in contract.variables:
-        lines += _declare_attribute(variable, first.get(variable.name), named)
-    lines += [*_print_state_machine(counter), "    }", "}", ""]
+        lines += _declare_attribute(variable, first_inputs.get(variable.name), qualified_name)
+    lines += [*_print_state_machine(machine), "    }", "}", ""]
     return "\n".join(lines)
 
 
 def _declare_enumeration(variable: Variable) -> Iterator[str]:
     if isinstance(variable.domain, EnumerationDomain):
         yield f"    enum def {_quote_name(f'values of {variable.name}')} {{"
-        yield from (f"        enum {_quote_name(one)};" for one in variable.domain.literals)
+        yield from (f"        enum {_quote_name(literal)};" for literal in variable.domain.literals)
         yield "    }"
 
 
 def _declare_attribute(
-    variable: Variable, first: Literal | None, named: QualifiedNames
+    variable: Variable, initial_value: Literal | None, qualified_name: QualifiedNames
 ) -> Iterator[str]:
-    """What the environment gives is its output, what the component answers its input."""
+    """Declare an attribute: inputs of the component are outputs of the environment, and vice
+    versa.
+    """
     kinds = {BooleanDomain: "Boolean", EnumerationDomain: _quote_name(f"values of {variable.name}")}
     kind = kinds.get(type(variable.domain), "Integer")
     side = "out" if variable.owner is Owner.ENVIRONMENT else "in"
-    value = "" if first is None else f" := {_print_sysml_literal(variable, first)}"
-    element = named(variable.origin)
+    value = "" if initial_value is None else f" := {_print_sysml_literal(variable, initial_value)}"
+    element = qualified_name(variable.origin)
     if element:
         yield f"        /* {_escape_comment(f'{variable.name} is {element}')} */"
     yield f"        {side} attribute {_quote_name(variable.name)} : {kind}{value};"
@@ -181,35 +200,38 @@ def _declare_attribute(
         yield f"        assert constraint {{ {bounds} }}"
 
 
-def _print_state_machine(counter: CounterStrategy) -> Iterator[str]:
+def _print_state_machine(machine: CounterStrategy) -> Iterator[str]:
     yield "        exhibit state wins {"
     yield "            entry; then S0;"
-    for number, state in enumerate(counter.states):
+    for number, state in enumerate(machine.states):
         yield f"            state S{number} {{"
         yield "                entry action {"
-        for variable, value in zip(counter.inputs, state.given, strict=True):
-            said = f"{_quote_name(variable.name)} := {_print_sysml_literal(variable, value)}"
-            yield f"                    assign {said};"
+        for variable, value in zip(machine.inputs, state.given, strict=True):
+            assignment = f"{_quote_name(variable.name)} := {_print_sysml_literal(variable, value)}"
+            yield f"                    assign {assignment};"
         yield "                }"
         yield "            }"
-    for number, state in enumerate(counter.states):
-        for place, rows in group_by_successor(state).items():
-            others = [row for row, other in state.moves.items() if other != place]
-            guard = " or ".join(_print_guards(rows, others, counter.outputs))
+    for number, state in enumerate(machine.states):
+        for successor, rows in group_by_successor(state).items():
+            other_rows = [
+                row for row, other_successor in state.moves.items() if other_successor != successor
+            ]
+            guard = " or ".join(_print_guards(rows, other_rows, machine.outputs))
             condition = "" if guard == "true" else f" if {guard}"
-            yield f"            transition first S{number}{condition} then S{place};"
+            yield f"            transition first S{number}{condition} then S{successor};"
     yield "        }"
 
 
 def _print_guards(
-    rows: Sequence[Row], others: Sequence[Row], outputs: Sequence[Variable]
+    rows: Sequence[Row], other_rows: Sequence[Row], outputs: Sequence[Variable]
 ) -> Iterator[str]:
-    for row, kept in distinguish_rows(rows, others):
-        said = [
-            f"{_quote_name(outputs[at].name)} == {_print_sysml_literal(outputs[at], row[at])}"
-            for at in kept
-        ]
-        yield " and ".join(said) or "true"
+    for row, columns in distinguish_rows(rows, other_rows):
+        comparisons = [_print_comparison(outputs[column], row[column]) for column in columns]
+        yield " and ".join(comparisons) or "true"
+
+
+def _print_comparison(variable: Variable, value: Literal) -> str:
+    return f"{_quote_name(variable.name)} == {_print_sysml_literal(variable, value)}"
 
 
 def _print_sysml_literal(variable: Variable, value: Literal) -> str:
@@ -219,7 +241,7 @@ def _print_sysml_literal(variable: Variable, value: Literal) -> str:
 
 
 def _quote_name(name: str) -> str:
-    """An unrestricted name (KerML 1.0, 8.2.2.3)."""
+    """Return an unrestricted name (KerML 1.0, 8.2.2.3)."""
     return "'" + name.replace("\\", "\\\\").replace("'", "\\'") + "'"
 
 
@@ -228,13 +250,15 @@ def _escape_comment(text: str) -> str:
 
 
 def counterstrategy_files(
-    made: Iterable[tuple[CounterStrategy, Contract]], named: sysml.QualifiedNames
+    machines: Iterable[tuple[CounterStrategy, Contract]], qualified_name: sysml.QualifiedNames
 ) -> Iterator[tuple[str, str]]:
-    """Name and text of the files of counter-strategies; small ones have a diagram of states."""
-    known = {contract.component: (counter, contract) for counter, contract in made}
-    for component, name in assign_file_names(known).items():
-        counter, contract = known[component]
-        if len(counter.states) <= drawing.MAX_DIAGRAM_STATES:
-            yield f"{name}.counter.puml", drawing.state_diagram(counter, contract)
-        yield f"{name}.counter-run.puml", drawing.losing_run_diagram(counter, contract)
-        yield f"{name}.counter.sysml", sysml.sysml_text(counter, contract, named)
+    """Yield names and texts of all files; small machines have a state diagram too."""
+    machines_by_component = {
+        contract.component: (machine, contract) for machine, contract in machines
+    }
+    for component, name in assign_file_names(machines_by_component).items():
+        machine, contract = machines_by_component[component]
+        if len(machine.states) <= drawing.MAX_DIAGRAM_STATES:
+            yield f"{name}.counter.puml", drawing.state_diagram(machine, contract)
+        yield f"{name}.counter-run.puml", drawing.losing_run_diagram(machine, contract)
+        yield f"{name}.counter.sysml", sysml.sysml_text(machine, contract, qualified_name)

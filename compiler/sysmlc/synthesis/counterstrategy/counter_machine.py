@@ -1,4 +1,4 @@
-"""Counter-strategies as machines: each state gives inputs, and goes on by what is answered."""
+"""Counter-strategies as machines: each state gives inputs, and its moves depend on the answer."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
@@ -29,89 +29,102 @@ _Key = tuple[tuple[bool, ...] | None, tuple[bool, ...], int]
 
 
 class State(Struct, frozen=True):
-    """The environment gives ``given`` and waits; without moves the system has no answer."""
+    """The environment gives *given* and waits; without moves the system has no answer."""
 
     given: Row
     moves: Mapping[Row, int]
-    """For each answer that the system may give the next state."""
+    """The next state for each answer that the system may give."""
 
 
 class CounterStrategy(Struct, frozen=True):
-    """A machine that makes the system fail; it begins in state 0."""
+    """A machine that makes the system fail; it starts in state 0."""
 
     inputs: tuple[Variable, ...]
     outputs: tuple[Variable, ...]
     states: tuple[State, ...]
     missed: tuple[Conjunct, ...] = ()
-    """What does not all recur where the system always has an answer."""
+    """Liveness guarantees that do not all recur, if the system always has an answer."""
 
 
 def build_counterstrategy(
-    environment: EnvironmentStrategy, contract: Contract, most: int = MAX_MOVES
+    environment: EnvironmentStrategy, contract: Contract, max_moves: int = MAX_MOVES
 ) -> CounterStrategy:
-    """The counter-strategy as a machine over the variables of a contract; equal states are one.
+    """Build the machine over the variables of a contract, with equal states merged.
 
-    ``contract`` is the one as it was written, without history bits. Raises LimitError.
+    *contract* is the one as it was written, without history bits. Raises LimitError.
     """
-    return _merge_equal_states(_Exploration(environment, contract, most).run())
+    return _merge_equal_states(_Exploration(environment, contract, max_moves).run())
 
 
 class _Exploration:
-    def __init__(self, environment: EnvironmentStrategy, contract: Contract, most: int) -> None:
+    def __init__(
+        self, environment: EnvironmentStrategy, contract: Contract, max_moves: int
+    ) -> None:
         self._environment = environment
-        self._symbols = environment.lost.arena.symbols
-        self._most = self._left = most
+        self._symbols = environment.lost_game.arena.symbols
+        self._max_moves = self._moves_left = max_moves
         self._sides = {
-            owner: tuple(one for one in contract.variables if one.owner is owner) for owner in Owner
+            owner: tuple(variable for variable in contract.variables if variable.owner is owner)
+            for owner in Owner
         }
         self._places: dict[_Key, int] = {}
-        self._found: list[tuple[Bits | None, Bits, int]] = []
+        self._situations: list[tuple[Bits | None, Bits, int]] = []
 
     def run(self) -> CounterStrategy:
-        """Follow every answer of the system."""
-        self._place(None, self._environment.first, 0)
+        """Explore every answer of the system."""
+        self._place_of(None, self._environment.first, 0)
         states = [
-            State(self._row(given, Owner.ENVIRONMENT), dict(self._moves(before, given, fair)))
-            for before, given, fair in self._found
+            State(
+                self._values_of(inputs, Owner.ENVIRONMENT),
+                dict(self._iter_moves(state_before, inputs, fair)),
+            )
+            for state_before, inputs, fair in self._situations
         ]
         return CounterStrategy(
             self._sides[Owner.ENVIRONMENT], self._sides[Owner.SYSTEM], tuple(states)
         )
 
-    def _moves(self, before: Bits | None, given: Bits, fair: int) -> Iterator[tuple[Row, int]]:
-        for answer in self._environment.answers(before, given):
+    def _iter_moves(
+        self, state_before: Bits | None, inputs: Bits, fair: int
+    ) -> Iterator[tuple[Row, int]]:
+        for answer in self._environment.iter_answers(state_before, inputs):
             self._count()
-            state = {**given, **answer}
-            after, onward = self._environment.next(state, fair)
-            yield self._row(answer, Owner.SYSTEM), self._place(state, after, onward)
+            state = {**inputs, **answer}
+            next_inputs, next_fairness = self._environment.next_inputs(state, fair)
+            yield (
+                self._values_of(answer, Owner.SYSTEM),
+                self._place_of(state, next_inputs, next_fairness),
+            )
 
-    def _place(self, before: Bits | None, given: Bits, fair: int) -> int:
-        known = None if before is None else tuple(before.values())
-        key = (known, tuple(given.values()), fair)
+    def _place_of(self, state: Bits | None, inputs: Bits, fair: int) -> int:
+        state_key = None if state is None else tuple(state.values())
+        key = (state_key, tuple(inputs.values()), fair)
         if key not in self._places:
-            self._places[key] = len(self._found)
-            self._found.append((before, given, fair))
+            self._places[key] = len(self._situations)
+            self._situations.append((state, inputs, fair))
         return self._places[key]
 
     def _count(self) -> None:
-        self._left -= 1
+        self._moves_left -= 1
         self._symbols.manager.check("listing what the environment does")
-        if self._left < 0:
-            raise LimitError("answers of the system", f"{self._most:,}")
+        if self._moves_left < 0:
+            raise LimitError("answers of the system", f"{self._max_moves:,}")
 
-    def _row(self, bits: Bits, owner: Owner) -> Row:
+    def _values_of(self, bits: Bits, owner: Owner) -> Row:
         values = self._symbols.decode(bits)
-        return tuple(values[one.name] for one in self._sides[owner])
+        return tuple(values[variable.name] for variable in self._sides[owner])
 
 
-def _merge_equal_states(made: CounterStrategy) -> CounterStrategy:
-    """The machine with a state for all that give the same inputs, now and after all answers."""
-    classes, count = [0] * len(made.states), 0
+def _merge_equal_states(machine: CounterStrategy) -> CounterStrategy:
+    """Merge the states with the same inputs now and after all sequences of answers."""
+    classes, count = [0] * len(machine.states), 0
     while True:
         keys: dict[object, int] = {}
-        classes = [keys.setdefault(_state_key(one, classes), len(keys)) for one in made.states]
+        classes = [
+            keys.setdefault(_state_key(state, classes), len(keys)) for state in machine.states
+        ]
         if len(keys) == count:
-            return _quotient(made, classes)
+            return _quotient(machine, classes)
         count = len(keys)
 
 
@@ -119,43 +132,49 @@ def _state_key(state: State, classes: Sequence[int]) -> tuple[Row, frozenset[tup
     return state.given, frozenset((row, classes[place]) for row, place in state.moves.items())
 
 
-def _quotient(made: CounterStrategy, classes: Sequence[int]) -> CounterStrategy:
-    found: dict[int, State] = {}
-    for state, class_ in zip(made.states, classes, strict=True):
+def _quotient(machine: CounterStrategy, classes: Sequence[int]) -> CounterStrategy:
+    representatives: dict[int, State] = {}
+    for state, class_ in zip(machine.states, classes, strict=True):
         moves = {row: classes[place] for row, place in state.moves.items()}
-        found.setdefault(class_, replace(state, moves=moves))
-    return replace(made, states=tuple(found.values()))
+        representatives.setdefault(class_, replace(state, moves=moves))
+    return replace(machine, states=tuple(representatives.values()))
 
 
-def example_run(found: CounterStrategy) -> Trace:
-    """A run in which the system answers so that it lasts; it ends where there is no answer."""
+def example_run(machine: CounterStrategy) -> Trace:
+    """Return a run in which the system survives as long as possible; it ends where there is no
+    answer.
+    """
     steps: list[dict[str, Literal]] = []
-    seen: dict[int, int] = {}
-    left, place = _steps_until_stuck(found), 0
-    while place not in seen:
-        seen[place] = len(steps)
-        state = found.states[place]
-        steps.append(_by_name(found.inputs, state.given))
+    first_steps: dict[int, int] = {}
+    steps_left, place = _steps_until_stuck(machine), 0
+    while place not in first_steps:
+        first_steps[place] = len(steps)
+        state = machine.states[place]
+        steps.append(_by_name(machine.inputs, state.given))
         if not state.moves:
             return Trace(tuple(steps), len(steps))
-        answer, place = max(state.moves.items(), key=lambda move: left[move[1]])
-        steps[-1] |= _by_name(found.outputs, answer)
-    return Trace(tuple(steps), seen[place])
+        answer, place = max(state.moves.items(), key=lambda move: steps_left[move[1]])
+        steps[-1] |= _by_name(machine.outputs, answer)
+    return Trace(tuple(steps), first_steps[place])
 
 
-def _steps_until_stuck(found: CounterStrategy) -> list[int]:
-    """For each state the most steps until there is no answer; many when that can be put off."""
-    many = len(found.states)
-    left = [many if one.moves else 0 for one in found.states]
-    for _ in range(many):
-        for place, state in enumerate(found.states):
+def _steps_until_stuck(machine: CounterStrategy) -> list[int]:
+    """Return for each state the most steps until there is no answer; the number of states if
+    unlimited.
+    """
+    unlimited = len(machine.states)
+    steps_left = [unlimited if state.moves else 0 for state in machine.states]
+    for _ in range(unlimited):
+        for place, state in enumerate(machine.states):
             if state.moves:
-                left[place] = min(many, 1 + max(left[other] for other in state.moves.values()))
-    return left
+                steps_left[place] = min(
+                    unlimited, 1 + max(steps_left[successor] for successor in state.moves.values())
+                )
+    return steps_left
 
 
 def _by_name(variables: Sequence[Variable], row: Row) -> dict[str, Literal]:
-    return {one.name: value for one, value in zip(variables, row, strict=True)}
+    return {variable.name: value for variable, value in zip(variables, row, strict=True)}
 
 
 NO_COUNTER = rule(
@@ -170,9 +189,9 @@ NO_COUNTER = rule(
 def find_counterstrategies(
     contracts: Iterable[Contract], place: Place, sink: Sink, options: Options
 ) -> Iterator[tuple[CounterStrategy, Contract]]:
-    """The counter-strategy of each contract, all of which cannot be kept.
+    """Yield the counter-strategy of each contract, none of which is realizable.
 
-    Of one that is too large nothing is made, and that is reported (SM549).
+    A counter-strategy that exceeds a limit is reported (SM549) and omitted.
     """
     for contract in contracts:
         try:
@@ -184,17 +203,17 @@ def find_counterstrategies(
 
 def _find_counterstrategy(contract: Contract, options: Options) -> CounterStrategy:
     environment = find_environment_strategy(contract, options)
-    goals = (one.conjunct for one in environment.lost.game.goals)
-    missed = original_conjuncts((one for one in goals if one is not None), contract)
-    with environment.lost.arena.manager.guard():
+    goals = (goal.conjunct for goal in environment.lost_game.game.goals)
+    missed = original_conjuncts((goal for goal in goals if goal is not None), contract)
+    with environment.lost_game.arena.manager.guard():
         return replace(build_counterstrategy(environment, contract), missed=tuple(missed))
 
 
 def find_environment_strategy(contract: Contract, options: Options) -> EnvironmentStrategy:
-    """What the environment does to win, against goals that cannot be met together.
+    """Return the strategy of the environment against goals that cannot be reached together.
 
-    Other goals would only hide why: it could wait for ever until they are met. Raises NotLostError
-    when the contract can be kept, OutsideGr1Error, LimitError.
+    Other goals would hide the reason: the environment could wait forever until they are reached.
+    Raises NotLostError if the contract is realizable, OutsideGr1Error, LimitError.
     """
     manager = Manager(options.engine, options.limits, options.progress)
     game = _keep_conflicting_goals(make_game(reduced(contract).contract, manager))
@@ -205,5 +224,7 @@ def find_environment_strategy(contract: Contract, options: Options) -> Environme
 def _keep_conflicting_goals(game: Game) -> Game:
     if not game.goals or is_won(game):
         return game
-    found = minimal_conflict(game.goals, lambda some: not is_won(replace(game, goals=tuple(some))))
-    return replace(game, goals=found)
+    conflicting = minimal_conflict(
+        game.goals, lambda goals: not is_won(replace(game, goals=tuple(goals)))
+    )
+    return replace(game, goals=conflicting)

@@ -1,4 +1,9 @@
-"""What the environment does to win, step by step: a strategy with a little memory."""
+"""The environment's winning strategy in a lost game: the dual of the fixpoint in ``solver``.
+
+In a state of a rank the environment satisfies its assumptions and prevents one goal forever, unless
+the system moves to a state of an earlier rank (Könighofer, Hofferek, Bloem 2013: counter-strategies
+of GR(1) games).
+"""
 
 from collections.abc import Iterator, Mapping
 
@@ -6,22 +11,22 @@ from msgspec import Struct
 
 from sysmlc.synthesis.bdd.manager import Node
 from sysmlc.synthesis.bdd.symbols import next_bit
-from sysmlc.synthesis.games.arena import Arena, Steps, plain
+from sysmlc.synthesis.games.arena import Arena, PredecessorOperator, build_plain_arena
 from sysmlc.synthesis.games.game import Game
 
 
 class Rank(Struct, frozen=True):
-    """States from which the environment wins since one goal can be prevented."""
+    """States in which the environment wins because it can prevent one goal."""
 
     states: Node
-    """Those of this rank and of all before."""
+    """The states of this rank and of all earlier ones."""
     goal: int
     """The goal that is prevented."""
     stay: Node
-    """Where the play stays while the goal is prevented."""
+    """The states in which the play stays while the goal is prevented."""
     ways: tuple[tuple[Node, ...], ...]
-    """For each fairness assumption the states from which it is brought about within so many
-    steps, the nearest first; each set contains the one before."""
+    """For each fairness assumption, the layers of states from which it is reached within a number
+    of steps; each layer contains the one before."""
 
 
 class LostGame(Struct, frozen=True):
@@ -30,20 +35,20 @@ class LostGame(Struct, frozen=True):
     game: Game
     arena: Arena
     goals: tuple[Node, ...]
-    """What has to recur; to go on, when nothing else is promised."""
+    """The liveness guarantees; true if there are none."""
     fairness: tuple[Node, ...]
-    """What the environment brings about again and again."""
+    """The liveness assumptions; true if there are none."""
     ranks: tuple[Rank, ...]
 
     @property
     def states(self) -> Node:
-        """All states from which the environment wins."""
+        """All states in which the environment wins."""
         return self.ranks[-1].states if self.ranks else self.arena.manager.false
 
 
 def find_ranks(game: Game) -> LostGame:
-    """How the environment wins where it does; raises LimitError."""
-    arena = plain(game)
+    """Return the ranks of the states in which the environment wins. Raises LimitError."""
+    arena = build_plain_arena(game)
     with arena.manager.guard():
         return _RankSearch(game, arena).run()
 
@@ -52,47 +57,49 @@ class _RankSearch:
     def __init__(self, game: Game, arena: Arena) -> None:
         self._game = game
         self._arena = arena
-        self._steps = Steps(arena)
+        self._steps = PredecessorOperator(arena)
         true = arena.manager.true
         self._goals = arena.goals or (true,)
         self._fairness = arena.fairness or (true,)
 
     def run(self) -> LostGame:
-        """Ranks until no goal can be prevented from more states."""
-        return LostGame(self._game, self._arena, self._goals, self._fairness, tuple(self._ranks()))
+        """Compute ranks until no goal can be prevented from more states."""
+        return LostGame(
+            self._game, self._arena, self._goals, self._fairness, tuple(self._iter_ranks())
+        )
 
-    def _ranks(self) -> Iterator[Rank]:
-        known = self._arena.manager.false
-        settled, goal = 0, 0
-        while settled < len(self._goals):
-            rank = self._rank(goal, known)
-            settled = settled + 1 if rank.states == known else 0
-            if rank.states != known:
+    def _iter_ranks(self) -> Iterator[Rank]:
+        won = self._arena.manager.false
+        unchanged_goals, goal = 0, 0
+        while unchanged_goals < len(self._goals):
+            rank = self._compute_rank(goal, won)
+            unchanged_goals = unchanged_goals + 1 if rank.states == won else 0
+            if rank.states != won:
                 yield rank
-            known, goal = rank.states, (goal + 1) % len(self._goals)
+            won, goal = rank.states, (goal + 1) % len(self._goals)
 
-    def _rank(self, goal: int, known: Node) -> Rank:
-        """The states from which the goal is prevented, or those that are known are reached."""
-        kept = ~self._goals[goal] | self._steps.escapable(known)
+    def _compute_rank(self, goal: int, won: Node) -> Rank:
+        """Return the states from which the goal is prevented or an earlier rank is reached."""
+        allowed = ~self._goals[goal] | self._steps.environment_predecessors(won)
         stay = self._arena.states
         while True:
-            within = kept & self._steps.escapable(stay) & self._arena.states
-            ways = tuple(self._way(fair, within) for fair in self._fairness)
-            fewer = stay
-            for way in ways:
-                fewer = fewer & way[-1]
-            if fewer == stay:
-                return Rank(known | stay, goal, stay, ways)
-            stay = fewer
+            candidates = allowed & self._steps.environment_predecessors(stay) & self._arena.states
+            attractors = tuple(self._attractor_layers(fair, candidates) for fair in self._fairness)
+            shrunk = stay
+            for attractor in attractors:
+                shrunk = shrunk & attractor[-1]
+            if shrunk == stay:
+                return Rank(won | stay, goal, stay, attractors)
+            stay = shrunk
 
-    def _way(self, fair: Node, within: Node) -> tuple[Node, ...]:
-        """States within which the assumption can be brought about, by the steps that it takes."""
-        found = [within & fair]
+    def _attractor_layers(self, fair: Node, within: Node) -> tuple[Node, ...]:
+        """Return the states inside *within* that lead to *fair*, as growing layers."""
+        layers = [within & fair]
         while True:
-            more = found[-1] | (within & self._steps.escapable(found[-1]))
-            if more == found[-1]:
-                return tuple(found)
-            found.append(more)
+            extended = layers[-1] | (within & self._steps.environment_predecessors(layers[-1]))
+            if extended == layers[-1]:
+                return tuple(layers)
+            layers.append(extended)
             self._arena.manager.check("looking how the environment wins")
 
 
@@ -100,94 +107,103 @@ Bits = Mapping[str, bool]
 
 
 class NotLostError(ValueError):
-    """The environment does not win: the contract can be kept."""
+    """The environment does not win: the contract is realizable."""
 
 
 class EnvironmentStrategy:
-    """A winning strategy; valuations are bits of the present step, by name."""
+    """A winning strategy with little memory; valuations assign unprimed bits by name."""
 
     def __init__(self, lost: LostGame) -> None:
-        """Raises NotLostError when the environment does not win."""
-        self.lost = lost
+        """Raises NotLostError if the environment does not win."""
+        self.lost_game = lost
         self._arena = lost.arena
-        self.first = self._first()
+        self.first = self._first_inputs()
 
-    def _first(self) -> Bits:
-        """Inputs at which every start of the system is lost."""
-        given, answered = self._arena.start
+    def _first_inputs(self) -> Bits:
+        """Return inputs for which the system loses from all its first answers."""
+        input_turn, answer_turn = self._arena.start
         manager = self._arena.manager
-        good = _conjunction(given.parts, manager.true)
-        kept = _conjunction(answered.parts, manager.true)
-        good = good & ~manager.exist(answered.bits, kept & ~self.lost.states)
-        found = manager.pick(good, given.bits)
-        if found is None:
+        winning_inputs = _conjoin(input_turn.parts, manager.true)
+        allowed_answers = _conjoin(answer_turn.parts, manager.true)
+        winning_inputs = winning_inputs & ~manager.exist(
+            answer_turn.bits, allowed_answers & ~self.lost_game.states
+        )
+        inputs = manager.pick(winning_inputs, input_turn.bits)
+        if inputs is None:
             raise NotLostError("the environment does not win")
-        return found
+        return inputs
 
-    def answers(self, state: Bits | None, given: Bits) -> Iterator[Bits]:
-        """Everything that the system may answer, at first (without a state) or in the next step.
+    def iter_answers(self, state: Bits | None, inputs: Bits) -> Iterator[Bits]:
+        """Yield everything that the system may answer, in the first step (no state) or in the next
+        step.
 
-        Nothing when it is stuck.
+        Nothing is yielded if the system is stuck.
         """
-        answered, known = self._arena.start[1], given
+        answer_turn, values = self._arena.start[1], inputs
         if state is not None:
-            answered = self._arena.turns[1]
-            known = {**state, **{next_bit(bit): value for bit, value in given.items()}}
-        parts = [self._arena.manager.assign(one, known) for one in answered.parts]
-        for found in self._each(_conjunction(parts, self._arena.manager.true), answered.bits):
-            yield self._present(found)
+            answer_turn = self._arena.turns[1]
+            values = {**state, **{next_bit(bit): value for bit, value in inputs.items()}}
+        parts = [self._arena.manager.assign(part, values) for part in answer_turn.parts]
+        for answer in self._iter_assignments(
+            _conjoin(parts, self._arena.manager.true), answer_turn.bits
+        ):
+            yield self._unprime(answer)
 
     def rank(self, state: Bits) -> Rank:
-        """The first rank with the state; raises NotLostError when the system wins there."""
-        for one in self.lost.ranks:
-            if self._holds(one.states, state):
-                return one
+        """Return the first rank with the state. Raises NotLostError if the system wins there."""
+        for rank in self.lost_game.ranks:
+            if self._holds(rank.states, state):
+                return rank
         raise NotLostError("the system wins from here")
 
-    def next(self, state: Bits, fair: int) -> tuple[Bits, int]:
-        """The next inputs, and the assumption that is to be kept next."""
+    def next_inputs(self, state: Bits, fair: int) -> tuple[Bits, int]:
+        """Return the next inputs, and the assumption that is satisfied next."""
         rank = self.rank(state)
-        if self._holds(self.lost.goals[rank.goal], state):
-            return self._towards(state, self._before(rank)), 0
-        if self._holds(self.lost.fairness[fair], state):
-            return self._towards(state, rank.stay), (fair + 1) % len(self.lost.fairness)
-        way = rank.ways[fair]
-        place = next(at for at, states in enumerate(way) if self._holds(states, state))
-        return self._towards(state, way[place - 1]), fair
+        if self._holds(self.lost_game.goals[rank.goal], state):
+            return self._inputs_towards(state, self._earlier_states(rank)), 0
+        if self._holds(self.lost_game.fairness[fair], state):
+            return self._inputs_towards(state, rank.stay), (fair + 1) % len(self.lost_game.fairness)
+        attractor = rank.ways[fair]
+        index = next(layer for layer, states in enumerate(attractor) if self._holds(states, state))
+        return self._inputs_towards(state, attractor[index - 1]), fair
 
-    def _before(self, rank: Rank) -> Node:
-        place = self.lost.ranks.index(rank)
-        return self.lost.ranks[place - 1].states if place else self._arena.manager.false
+    def _earlier_states(self, rank: Rank) -> Node:
+        index = self.lost_game.ranks.index(rank)
+        return self.lost_game.ranks[index - 1].states if index else self._arena.manager.false
 
-    def _towards(self, state: Bits, target: Node) -> Bits:
-        """Inputs after which all answers lead to the target; those of now, when they do."""
+    def _inputs_towards(self, state: Bits, target: Node) -> Bits:
+        """Return inputs after which all answers lead to *target*; unchanged inputs, if possible."""
         manager = self._arena.manager
-        given, answered = self._arena.turns
-        kept = _conjunction([manager.assign(one, state) for one in answered.parts], manager.true)
-        missed = kept & ~self._arena.symbols.prime(target)
-        good = _conjunction([manager.assign(one, state) for one in given.parts], manager.true)
-        good = good & ~manager.exist(answered.bits, missed)
-        same = {next_bit(bit): state[bit] for bit in self.first}
-        if self._holds(good, same):
+        input_turn, answer_turn = self._arena.turns
+        allowed_answers = _conjoin(
+            [manager.assign(part, state) for part in answer_turn.parts], manager.true
+        )
+        escaping_answers = allowed_answers & ~self._arena.symbols.prime(target)
+        winning_inputs = _conjoin(
+            [manager.assign(part, state) for part in input_turn.parts], manager.true
+        )
+        winning_inputs = winning_inputs & ~manager.exist(answer_turn.bits, escaping_answers)
+        current_inputs = {next_bit(bit): state[bit] for bit in self.first}
+        if self._holds(winning_inputs, current_inputs):
             return {bit: state[bit] for bit in self.first}
-        return self._present(manager.pick(good, given.bits) or {})
+        return self._unprime(manager.pick(winning_inputs, input_turn.bits) or {})
 
-    def _present(self, after: Bits) -> Bits:
-        """The same values as those of the present step."""
-        return {bit.removesuffix("'"): value for bit, value in after.items()}
+    def _unprime(self, next_values: Bits) -> Bits:
+        """Return the same values as unprimed bits."""
+        return {bit.removesuffix("'"): value for bit, value in next_values.items()}
 
-    def _each(self, node: Node, bits: tuple[str, ...]) -> Iterator[Bits]:
+    def _iter_assignments(self, node: Node, bits: tuple[str, ...]) -> Iterator[Bits]:
         manager = self._arena.manager
-        while (found := manager.pick(node, bits)) is not None:
-            yield found
-            node = node & ~manager.cube(found)
+        while (assignment := manager.pick(node, bits)) is not None:
+            yield assignment
+            node = node & ~manager.cube(assignment)
 
     def _holds(self, node: Node, values: Bits) -> bool:
         manager = self._arena.manager
         return manager.assign(node, values) == manager.true
 
 
-def _conjunction(parts: list[Node] | tuple[Node, ...], found: Node) -> Node:
-    for one in parts:
-        found = found & one
-    return found
+def _conjoin(parts: list[Node] | tuple[Node, ...], result: Node) -> Node:
+    for part in parts:
+        result = result & part
+    return result

@@ -1,4 +1,4 @@
-"""The counter-strategy as a game at the keyboard: the environment is played, the reader answers."""
+"""Interactive play against a counter-strategy: the environment is simulated, the reader answers."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from itertools import islice
@@ -12,9 +12,9 @@ from sysmlc.logic.reduction.rules import has_past
 from sysmlc.synthesis.counterstrategy.environment_strategy import Bits, EnvironmentStrategy
 from sysmlc.synthesis.unrealizable.explanation import original_conjuncts
 
-MOST_ANSWERS = 2_000
-"""Answers that are looked through in one step."""
-_SHOWN = 10
+MAX_ANSWERS = 2_000
+"""Answers that are examined in one step."""
+_MAX_SHOWN_OPTIONS = 10
 _INTRODUCTION = """\
 You are '{component}'. In each step the environment gives its values, then you answer with yours:
 name=value, separated by blanks. What you leave out stays as it is, when it may.
@@ -24,7 +24,7 @@ Values = Mapping[str, Literal]
 
 
 class Player:
-    """One play; ``read`` asks for a line (EOFError ends the game), ``say`` shows one."""
+    """One play; *read* asks for a line (EOFError ends the play), *say* shows one."""
 
     def __init__(
         self,
@@ -33,147 +33,165 @@ class Player:
         read: Callable[[str], str],
         say: Callable[[str], None],
     ) -> None:
-        """``contract`` is the one as it was written, without history bits."""
+        """*contract* is the one as it was written, without history bits."""
         self._environment = environment
         self._contract = contract
         self._read, self._say = read, say
-        self._outputs = tuple(one for one in contract.variables if one.owner is Owner.SYSTEM)
-        self._symbols = environment.lost.arena.symbols
+        self._outputs = tuple(
+            variable for variable in contract.variables if variable.owner is Owner.SYSTEM
+        )
+        self._symbols = environment.lost_game.arena.symbols
 
     def play(self) -> bool:
-        """Play to the end; true when the component has lost, false when the reader gave up."""
+        """Play to the end. Return True if the component has lost, False if the reader gave up."""
         self._say(_INTRODUCTION.format(component=self._contract.component))
-        seen: dict[object, int] = {}
+        first_steps: dict[object, int] = {}
         state: Bits | None = None
-        given, fair = self._environment.first, 0
+        inputs, fair = self._environment.first, 0
         for step in range(1, 1_000_000):
-            self._say(f"step {step}: {self._told(given, state)}")
-            answers = list(islice(self._environment.answers(state, given), MOST_ANSWERS))
+            self._say(f"step {step}: {self._describe_changes(inputs, state)}")
+            answers = list(islice(self._environment.iter_answers(state, inputs), MAX_ANSWERS))
             if not answers:
-                self._say(self._stuck(state))
+                self._say(self._describe_dead_end(state))
                 return True
-            answer = self._chosen(state, given, answers)
+            answer = self._choose_answer(state, inputs, answers)
             if answer is None:
                 return False
-            state = {**given, **answer}
+            state = {**inputs, **answer}
             key = tuple(state.values()), fair
-            if key in seen:
-                self._say(self._for_ever(state, step, seen[key]))
+            if key in first_steps:
+                self._say(self._describe_loop(state, step, first_steps[key]))
                 return True
-            seen[key] = step
-            given, fair = self._environment.next(state, fair)
+            first_steps[key] = step
+            inputs, fair = self._environment.next_inputs(state, fair)
         return False
 
-    def _told(self, given: Bits, state: Bits | None) -> str:
-        """The inputs, those that have changed."""
-        now, before = self._symbols.decode(given), self._symbols.decode(state or {})
-        new = {name: value for name, value in now.items() if before.get(name) != value}
-        return _pairs(new) or "nothing changes"
+    def _describe_changes(self, inputs: Bits, state: Bits | None) -> str:
+        """Return the inputs that have changed."""
+        current, previous = self._symbols.decode(inputs), self._symbols.decode(state or {})
+        changed = {name: value for name, value in current.items() if previous.get(name) != value}
+        return _print_values(changed) or "nothing changes"
 
-    def _chosen(self, state: Bits | None, given: Bits, answers: Sequence[Bits]) -> Bits | None:
-        """The answer that the reader chooses; None to give up."""
-        before = self._symbols.decode(state or {})
-        offered = [(one, self._own(one)) for one in answers]
-        while (line := self._line()) != "quit":
+    def _choose_answer(
+        self, state: Bits | None, inputs: Bits, answers: Sequence[Bits]
+    ) -> Bits | None:
+        """Return the answer that the reader chooses, or None if the reader gives up."""
+        previous = self._symbols.decode(state or {})
+        options = [(answer, self._outputs_of(answer)) for answer in answers]
+        while (line := self._read_line()) != "quit":
             if line == "options":
-                self._show([own for _, own in offered])
-            elif (wanted := self._parsed(line)) is not None:
-                fitting = [one for one in offered if wanted.items() <= one[1].items()]
-                if fitting:
-                    chosen, own = max(fitting, key=lambda one: _same(one[1], before))
-                    self._say(f"     {_pairs(own)}")
-                    return chosen
-                self._object(before, {**before, **self._symbols.decode(given), **wanted})
+                self._show_options([outputs for _, outputs in options])
+            elif (requested := self._parse_line(line)) is not None:
+                matching = [answer for answer in options if requested.items() <= answer[1].items()]
+                if matching:
+                    answer_bits, outputs = max(
+                        matching, key=lambda answer: _count_unchanged(answer[1], previous)
+                    )
+                    self._say(f"     {_print_values(outputs)}")
+                    return answer_bits
+                self._explain_refusal(
+                    previous, {**previous, **self._symbols.decode(inputs), **requested}
+                )
         return None
 
-    def _line(self) -> str:
+    def _read_line(self) -> str:
         try:
             return self._read("you: ").strip()
         except EOFError:
             return "quit"
 
-    def _own(self, bits: Bits) -> dict[str, Literal]:
-        found = self._symbols.decode(bits)
-        return {one.name: found[one.name] for one in self._outputs}
+    def _outputs_of(self, bits: Bits) -> dict[str, Literal]:
+        values = self._symbols.decode(bits)
+        return {variable.name: values[variable.name] for variable in self._outputs}
 
-    def _show(self, offered: Sequence[Values]) -> None:
-        for own in offered[:_SHOWN]:
-            self._say(f"     {_pairs(own)}")
-        if len(offered) > _SHOWN:
-            self._say(f"     and {len(offered) - _SHOWN:,} more")
+    def _show_options(self, options: Sequence[Values]) -> None:
+        for outputs in options[:_MAX_SHOWN_OPTIONS]:
+            self._say(f"     {_print_values(outputs)}")
+        if len(options) > _MAX_SHOWN_OPTIONS:
+            self._say(f"     and {len(options) - _MAX_SHOWN_OPTIONS:,} more")
 
-    def _parsed(self, line: str) -> dict[str, Literal] | None:
-        """The values in a line; None, with the reason said, when it is not understood."""
-        known = {one.name: one for one in self._outputs}
-        found: dict[str, Literal] = {}
+    def _parse_line(self, line: str) -> dict[str, Literal] | None:
+        """Return the values in a line; report the problem and return None if it is invalid."""
+        variables = {variable.name: variable for variable in self._outputs}
+        requested: dict[str, Literal] = {}
         for word in line.replace(",", " ").split():
             name, _, text = word.partition("=")
-            if name not in known:
-                self._say(f"'{name}' is not yours; yours are {', '.join(known)}")
+            if name not in variables:
+                self._say(f"'{name}' is not yours; yours are {', '.join(variables)}")
                 return None
-            value = _value(known[name], text)
+            value = _parse_value(variables[name], text)
             if value is None:
-                all_values = ", ".join(map(print_literal, values(known[name].domain)))
+                all_values = ", ".join(map(print_literal, values(variables[name].domain)))
                 self._say(f"'{name}' is one of {all_values}")
                 return None
-            found[name] = value
-        return found
+            requested[name] = value
+        return requested
 
-    def _object(self, before: Values, now: Values) -> None:
-        """Say which promises an answer breaks."""
-        broken = list(dict.fromkeys(self._broken(before, now)))
-        for said in broken or ["That is not allowed here; 'options' shows what is."]:
-            self._say(said)
+    def _explain_refusal(self, previous: Values, current: Values) -> None:
+        """Show the guarantees that an answer violates."""
+        messages = list(dict.fromkeys(self._violated_guarantees(previous, current)))
+        for message in messages or ["That is not allowed here; 'options' shows what is."]:
+            self._say(message)
 
-    def _broken(self, before: Values, now: Values) -> Iterator[str]:
-        """What is promised and broken by these values, when they are all known."""
-        class_ = Class.SAFETY if before else Class.INIT
-        if any(one.name not in now for one in self._contract.variables):
+    def _violated_guarantees(self, previous: Values, current: Values) -> Iterator[str]:
+        """Yield the guarantees that complete values of a step violate."""
+        class_ = Class.SAFETY if previous else Class.INIT
+        if any(guarantee.name not in current for guarantee in self._contract.variables):
             return
-        for one in self._contract.guarantees:
-            values = (before, now) if before else (now, None)
-            if one.class_ is class_ and not is_true(one.formula, *values):
-                yield f"That breaks '{print_formula(one.formula)}'{_about(one)}."
+        for guarantee in self._contract.guarantees:
+            values = (previous, current) if previous else (current, None)
+            if guarantee.class_ is class_ and not is_true(guarantee.formula, *values):
+                text = _text_in_parentheses(guarantee)
+                yield f"That breaks '{print_formula(guarantee.formula)}'{text}."
 
-    def _stuck(self, state: Bits | None) -> str:
-        """Why there is no answer: what holds already breaks a promise, or whatever comes."""
-        now = self._symbols.decode(state or {})
-        for one in self._contract.guarantees:
-            is_of_step = one.class_ is Class.SAFETY and not has_primes(one.formula)
-            if state and is_of_step and not has_past(one.formula) and not is_true(one.formula, now):
-                broken = f"'{print_formula(one.formula)}'{_about(one)}"
-                return f"Your last answer breaks {broken}. You have lost."
+    def _describe_dead_end(self, state: Bits | None) -> str:
+        """Explain why there is no answer: the last answer violates a guarantee, or every next one
+        would.
+        """
+        values = self._symbols.decode(state or {})
+        for guarantee in self._contract.guarantees:
+            is_of_step = guarantee.class_ is Class.SAFETY and not has_primes(guarantee.formula)
+            if (
+                state
+                and is_of_step
+                and not has_past(guarantee.formula)
+                and not is_true(guarantee.formula, values)
+            ):
+                violated = f"'{print_formula(guarantee.formula)}'{_text_in_parentheses(guarantee)}"
+                return f"Your last answer breaks {violated}. You have lost."
         return "You have no answer: each one breaks what you promise. You have lost."
 
-    def _for_ever(self, state: Bits, step: int, earlier: int) -> str:
-        lost = self._environment.lost
+    def _describe_loop(self, state: Bits, step: int, earlier: int) -> str:
+        lost = self._environment.lost_game
         rank = self._environment.rank(state)
-        said = f"Step {step} is step {earlier} again, and the environment can go on so for ever"
+        introduction = (
+            f"Step {step} is step {earlier} again, and the environment can go on so for ever"
+        )
         if not lost.game.goals:
-            return f"{said}. You have lost."
+            return f"{introduction}. You have lost."
         conjunct = lost.game.goals[rank.goal].conjunct
         if conjunct is None:
-            return f"{said}. You have lost."
+            return f"{introduction}. You have lost."
         (goal,) = original_conjuncts([conjunct], self._contract)
-        missed = f"'{print_formula(goal.formula)}'{_about(goal)}"
+        guarantee = f"'{print_formula(goal.formula)}'{_text_in_parentheses(goal)}"
         end = "is not kept" if goal.class_ is Class.OTHER else "does not come about again"
-        return f"{said}:\n{missed} {end}. You have lost."
+        return f"{introduction}:\n{guarantee} {end}. You have lost."
 
 
-def _about(conjunct: Conjunct) -> str:
-    """What the conjunct says in other words, in parentheses."""
+def _text_in_parentheses(conjunct: Conjunct) -> str:
+    """Return the conjunct's text in parentheses, unless it repeats the formula."""
     is_new = conjunct.text not in ("", print_formula(conjunct.formula))
     return f" ({conjunct.text.removesuffix('.')})" if is_new else ""
 
 
-def _same(own: Values, before: Values) -> int:
-    return sum(before.get(name) == value for name, value in own.items())
+def _count_unchanged(outputs: Values, previous: Values) -> int:
+    return sum(previous.get(name) == value for name, value in outputs.items())
 
 
-def _value(variable: Variable, text: str) -> Literal | None:
-    found = (one for one in values(variable.domain) if print_literal(one) == text)
-    return next(found, None)
+def _parse_value(variable: Variable, text: str) -> Literal | None:
+    matches = (value for value in values(variable.domain) if print_literal(value) == text)
+    return next(matches, None)
 
 
-def _pairs(values: Values) -> str:
+def _print_values(values: Values) -> str:
     return " ".join(f"{name}={print_literal(value)}" for name, value in values.items())

@@ -1,8 +1,9 @@
-"""What fixpoints are computed on: the states of a game and the turns from one to the next.
+"""Arenas: the states of a game and the turns from one state to the next, on which fixpoints are
+computed.
 
-A step of a plain game is a turn of the environment (next inputs) and one of the system (next
-outputs). Encodings of the same game (``shift``) have fewer bits in a state and a turn of the
-system before the one of the environment.
+A step of a game as it is written consists of a turn of the environment (next inputs) and a turn of
+the system (next outputs). An encoded arena (``command_elimination``) has fewer bits in a state, and
+a turn of the system before the turn of the environment.
 """
 
 from collections.abc import Collection
@@ -13,12 +14,12 @@ from msgspec import Struct
 from sysmlc.logic.contract import Owner
 from sysmlc.synthesis.bdd.manager import Manager, Node
 from sysmlc.synthesis.bdd.symbols import Symbols
-from sysmlc.synthesis.games.game import Game, Part
+from sysmlc.synthesis.games.game import Constraint, Game
 from sysmlc.synthesis.games.relational_product import Product
 
 
 class Turn(Struct, frozen=True):
-    """One side chooses values of bits so that all parts hold."""
+    """One side chooses values of *bits* such that all of *parts* hold."""
 
     owner: Owner
     bits: tuple[str, ...]
@@ -26,106 +27,112 @@ class Turn(Struct, frozen=True):
 
 
 class Arena(Struct, frozen=True):
-    """The states and the turns of a game."""
+    """The states and turns of a game."""
 
     manager: Manager
     symbols: Symbols
     states: Node
-    """The states that are looked at: all variables in their ranges."""
+    """The valid states: all variables have values of their domains."""
     turns: tuple[Turn, ...]
-    """The turns of a step, in order; the last ones choose primed bits."""
+    """The turns of a step, in order; they choose primed bits, except for commands."""
     start: tuple[Turn, ...]
-    """The turns that lead to the first state, or with ``is_ahead`` to the second one."""
+    """The turns that lead to the first state, or to the second one if ``is_ahead``."""
     goals: tuple[Node, ...]
     fairness: tuple[Node, ...]
     is_ahead: bool = False
     command: Turn | None = None
-    """With ``is_ahead`` the first turn with all that is chosen in it: of ``turns`` commands may
-    have been quantified away."""
+    """If ``is_ahead``, the first turn with all its choices, of which ``turns[0]`` may have
+    quantified the commands away."""
 
 
-def plain(game: Game) -> Arena:
-    """The arena of a game as it is written."""
+def build_plain_arena(game: Game) -> Arena:
+    """Return the arena of a game without any encoding."""
     names = (*game.names(Owner.ENVIRONMENT), *game.names(Owner.SYSTEM))
     return Arena(
         manager=game.manager,
         symbols=game.symbols,
-        states=in_range(game.symbols, names),
+        states=domain_constraint(game.symbols, names),
         turns=(
-            Turn(Owner.ENVIRONMENT, game.next_inputs, nodes(game.assumptions)),
-            Turn(Owner.SYSTEM, game.next_outputs, nodes(game.guarantees)),
+            Turn(Owner.ENVIRONMENT, game.next_inputs, nodes_of(game.assumptions)),
+            Turn(Owner.SYSTEM, game.next_outputs, nodes_of(game.guarantees)),
         ),
         start=(
-            Turn(Owner.ENVIRONMENT, game.inputs, nodes(game.init_assumptions)),
-            Turn(Owner.SYSTEM, game.outputs, nodes(game.init_guarantees)),
+            Turn(Owner.ENVIRONMENT, game.inputs, nodes_of(game.init_assumptions)),
+            Turn(Owner.SYSTEM, game.outputs, nodes_of(game.init_guarantees)),
         ),
-        goals=nodes(game.goals),
-        fairness=nodes(game.fairness),
+        goals=nodes_of(game.goals),
+        fairness=nodes_of(game.fairness),
     )
 
 
-def in_range(symbols: Symbols, names: Collection[str], primed: bool = False) -> Node:
-    """Where the variables have values."""
-    found = symbols.manager.true
+def domain_constraint(symbols: Symbols, names: Collection[str], primed: bool = False) -> Node:
+    """Return the states in which all these variables have values of their domains."""
+    result = symbols.manager.true
     for name in names:
-        found = found & symbols.domain(name, primed)
-    return found
+        result = result & symbols.domain(name, primed)
+    return result
 
 
-def nodes(parts: Collection[Part]) -> tuple[Node, ...]:
-    """The diagrams of parts."""
-    return tuple(part.node for part in parts)
+def nodes_of(constraints: Collection[Constraint]) -> tuple[Node, ...]:
+    """Return the diagrams of constraints."""
+    return tuple(constraint.node for constraint in constraints)
 
 
 @dataclass(slots=True)
-class Steps:
-    """What can be forced in one step of an arena."""
+class PredecessorOperator:
+    """The controllable predecessors of an arena."""
 
     arena: Arena
     within: Node | None = None
-    """States that turns do not lead out of, and outside of which nothing matters."""
+    """States that are closed under all turns; results outside of them are arbitrary."""
     count: int = 0
     """Predecessors computed so far."""
     _products: tuple[tuple[Owner, Product], ...] = field(init=False)
 
     def __post_init__(self) -> None:
-        self._products = products(self.arena.manager, self.arena.turns)
+        self._products = turn_products(self.arena.manager, self.arena.turns)
 
-    def controllable(self, target: Node) -> Node:
-        """States from which the system can see to it that the target holds in the next one.
+    def controllable_predecessors(self, target: Node) -> Node:
+        """Return the states from which the system can force the next state into *target*.
 
-        Where the environment has no next input, that is so.
+        States in which the environment has no next input belong to them.
         """
         self.count += 1
         if self.within is not None:
             target = self.arena.manager.restrict(target, self.within)
-        return played(self._products, self.arena.symbols.prime(target))
+        return predecessors_through(self._products, self.arena.symbols.prime(target))
 
-    def nearer(self, reached: Node, winning: Node) -> Node:
-        """Those of the winning states that can force the next one to be reached."""
-        return self.controllable(reached) & winning
+    def extend_attractor(self, attractor: Node, winning: Node) -> Node:
+        """Return the winning states from which the system can force *attractor* in one step."""
+        return self.controllable_predecessors(attractor) & winning
 
-    def confine(self, winning: Node) -> None:
-        """What is said from now on has to be right in these states only."""
+    def confine_to(self, winning: Node) -> None:
+        """Allow wrong results outside of *winning* from now on.
 
-    def escapable(self, target: Node) -> Node:
-        """States from which the environment can see to it that the next one is in the target."""
-        return ~self.controllable(~target)
+        This operator makes no use of it; ``single_moves`` does.
+        """
 
-    def is_won(self, winning: Node) -> bool:
-        """Whether the system can start so that it comes to these states."""
+    def environment_predecessors(self, target: Node) -> Node:
+        """Return the states from which the environment can force the next state into *target*."""
+        return ~self.controllable_predecessors(~target)
+
+    def wins_initially(self, winning: Node) -> bool:
+        """Return whether the system can force the first state into *winning*."""
         arena = self.arena
         target = arena.symbols.prime(winning) if arena.is_ahead else winning
-        return played(products(arena.manager, arena.start), target) == arena.manager.true
+        return (
+            predecessors_through(turn_products(arena.manager, arena.start), target)
+            == arena.manager.true
+        )
 
 
-def products(manager: Manager, turns: Collection[Turn]) -> tuple[tuple[Owner, Product], ...]:
-    """Turns as ``played`` takes them."""
+def turn_products(manager: Manager, turns: Collection[Turn]) -> tuple[tuple[Owner, Product], ...]:
+    """Return each turn as the relational product that ``predecessors_through`` takes."""
     return tuple((turn.owner, Product(manager, turn.parts, turn.bits)) for turn in turns)
 
 
-def played(products: Collection[tuple[Owner, Product]], target: Node) -> Node:
-    """Where the turns can be played so that the target holds after them."""
+def predecessors_through(products: Collection[tuple[Owner, Product]], target: Node) -> Node:
+    """Return the states from which the turns can be played such that *target* holds after them."""
     for owner, product in reversed(tuple(products)):
         target = product(target) if owner is Owner.SYSTEM else ~product(~target)
     return target

@@ -1,11 +1,12 @@
-"""Outputs that nothing remembers leave the state, and a plant that only obeys moves with them.
+"""Elimination of commands: outputs that nothing remembers leave the state, and a plant that only
+obeys them moves in the same turn.
 
-When a command is bound by nothing but the inputs of its own step, it is chosen and used up between
-two states: a state is what was there before the command. What the environment must then do (a
-plant: exactly one next input is left for each command) is no choice of its own either, so command
-and effect are one turn of the system, in which the command is quantified away: "the command is the
-chosen step". The turn of the environment, over what it does choose, comes after it. All this is
-rewriting of the same predecessor; nothing is added that a system may do.
+An output that is bound only by the inputs of its own step is a command: it is chosen and used
+between two states, so a state need not contain it. If exactly one next value of an input is left
+for each state and command, the environment has no choice either (a plant). Then command and effect
+are one turn of the system, in which the command is quantified: the command is the chosen step. The
+turn of the environment over its remaining choices follows. The rewritten predecessor operator is
+equivalent; the system has no additional moves.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
@@ -17,198 +18,230 @@ from msgspec.structs import replace
 from sysmlc.logic.contract import Owner
 from sysmlc.synthesis.bdd.manager import Manager, Node
 from sysmlc.synthesis.bdd.symbols import Symbols
-from sysmlc.synthesis.games.arena import Arena, Turn, in_range, nodes, plain
+from sysmlc.synthesis.games.arena import Arena, Turn, build_plain_arena, domain_constraint, nodes_of
 from sysmlc.synthesis.games.game import Game
 from sysmlc.synthesis.games.relational_product import Product
 
-LARGE = 20_000
-"""Nodes up to which parts are joined to quantify a command once and for all."""
+MAX_JOINED_NODES = 20_000
+"""Nodes up to which parts are joined to quantify a command beforehand."""
 
 
-def shifted(game: Game) -> Arena:
-    """The arena of the game, without commands in its states if there are any."""
-    commands = _commands(game)
-    return _Shift.of(game, commands).arena() if commands else plain(game)
+def eliminate_commands(game: Game) -> Arena:
+    """Return the arena of the game, without its commands in the states."""
+    commands = _find_commands(game)
+    return (
+        _TurnSplit.split_constraints(game, commands).build_arena()
+        if commands
+        else build_plain_arena(game)
+    )
 
 
-def _commands(game: Game) -> tuple[str, ...]:
-    """Outputs that are bound by their own step only, and that need not recur."""
+def _find_commands(game: Game) -> tuple[str, ...]:
+    """Return the outputs that are bound by their own step only and need not recur."""
     recurring = frozenset[str]().union(
-        *(game.symbols.names(node) for node in nodes((*game.goals, *game.fairness)))
+        *(game.symbols.names(node) for node in nodes_of((*game.goals, *game.fairness)))
     )
     return tuple(
         name
         for name in game.names(Owner.SYSTEM)
-        if name not in recurring and _is_forgotten(game, name)
+        if name not in recurring and _is_bound_by_own_step(game, name)
     )
 
 
-def _is_forgotten(game: Game, name: str) -> bool:
-    bits = game.symbols.bits(name, primed=True)
+def _is_bound_by_own_step(game: Game, name: str) -> bool:
+    own_bits = game.symbols.bits(name, primed=True)
     return all(
         all(bit.endswith("'") for bit in support)
-        for support in map(game.manager.support, nodes(game.guarantees))
-        if not support.isdisjoint(bits)
+        for support in map(game.manager.support, nodes_of(game.guarantees))
+        if not support.isdisjoint(own_bits)
     )
 
 
-class _Shift(Struct, frozen=True):
-    """The parts of a game, sorted into the turns that they belong to."""
+class _TurnSplit(Struct, frozen=True):
+    """The constraints of a game, sorted into the turns to which they belong."""
 
     game: Game
     commands: tuple[str, ...]
     choice: tuple[Node, ...]
-    """What binds the commands, in the present step."""
+    """The constraints of the commands, over the current step."""
     plant: Mapping[str, tuple[Node, ...]]
-    """Inputs that have one next value for each state and command, with what says so."""
+    """Inputs with one next value for each state and command, and the assumptions that say so."""
     invariants: tuple[Node, ...]
-    """What the system has to see to before the environment moves."""
+    """State invariants, which the system ensures before the environment moves."""
     answer: tuple[Node, ...]
-    """What binds the other outputs."""
+    """The constraints of the other outputs."""
     is_at_once: bool
-    """Whether plant and invariants are found so for any first command too, allowed later or not."""
+    """Whether plant and invariants are the same for first commands that *choice* does not allow."""
 
     @classmethod
-    def of(cls, game: Game, commands: tuple[str, ...]) -> "_Shift":
-        """Sort the parts."""
+    def split_constraints(cls, game: Game, commands: tuple[str, ...]) -> "_TurnSplit":
+        """Sort the constraints of the game into turns."""
         manager, symbols = game.manager, game.symbols
-        own = frozenset(symbols.all_bits(commands, primed=True))
-        promised = nodes(game.guarantees)
-        bound = _speaking(manager, promised, own)
-        choice = tuple(symbols.unprime(node) for node in bound)
-        rest = [node for node in promised if node not in bound]
-        invariants = _invariants(game, rest, choice)
-        answer = tuple(node for node in rest if node not in invariants)
-        plant = _plant(game, choice)
-        is_at_once = _plant(game, ()) == plant and _invariants(game, rest, ()) == invariants
+        command_bits = frozenset(symbols.all_bits(commands, primed=True))
+        guarantees = nodes_of(game.guarantees)
+        command_constraints = _parts_over(manager, guarantees, command_bits)
+        choice = tuple(symbols.unprime(node) for node in command_constraints)
+        other_guarantees = [node for node in guarantees if node not in command_constraints]
+        invariants = _find_state_invariants(game, other_guarantees, choice)
+        answer = tuple(node for node in other_guarantees if node not in invariants)
+        plant = _find_plant_inputs(game, choice)
+        is_at_once = (
+            _find_plant_inputs(game, ()) == plant
+            and _find_state_invariants(game, other_guarantees, ()) == invariants
+        )
         return cls(game, commands, choice, plant, tuple(invariants), answer, is_at_once)
 
-    def arena(self) -> Arena:
-        """States without commands; three turns: command and effect, environment, answer."""
+    def build_arena(self) -> Arena:
+        """Return the arena with states that do not contain commands.
+
+        A step has three turns: command and effect, the environment's remaining inputs, the answer.
+        """
         game, symbols = self.game, self.game.symbols
         names = (*game.names(Owner.ENVIRONMENT), *game.names(Owner.SYSTEM))
-        effect = _flat(self.plant.values())
-        moved = symbols.all_bits(self.plant, primed=True)
-        commanded = symbols.all_bits(self.commands, primed=True)
-        answered = _without(game.next_outputs, commanded)
-        assumed = nodes(game.assumptions)
-        after = (
-            Turn(Owner.ENVIRONMENT, _without(game.next_inputs, moved), _without(assumed, effect)),
-            Turn(Owner.SYSTEM, answered, self.answer),
+        effect = _flatten(self.plant.values())
+        plant_bits = symbols.all_bits(self.plant, primed=True)
+        next_command_bits = symbols.all_bits(self.commands, primed=True)
+        answer_bits = _without(game.next_outputs, next_command_bits)
+        assumptions = nodes_of(game.assumptions)
+        later_turns = (
+            Turn(
+                Owner.ENVIRONMENT,
+                _without(game.next_inputs, plant_bits),
+                _without(assumptions, effect),
+            ),
+            Turn(Owner.SYSTEM, answer_bits, self.answer),
         )
-        chosen = symbols.all_bits(self.commands)
+        command_bits = symbols.all_bits(self.commands)
         parts = (*self.choice, *effect, *self.invariants)
-        command = Turn(Owner.SYSTEM, (*chosen, *moved), parts)
-        start = plain(game).start
+        command = Turn(Owner.SYSTEM, (*command_bits, *plant_bits), parts)
+        start = build_plain_arena(game).start
         if self.is_at_once:
-            first = (*start[1].parts, *effect, *self.invariants)
-            start = (start[0], Turn(Owner.SYSTEM, (*game.outputs, *moved), first), *after)
+            first_parts = (*start[1].parts, *effect, *self.invariants)
+            start = (
+                start[0],
+                Turn(Owner.SYSTEM, (*game.outputs, *plant_bits), first_parts),
+                *later_turns,
+            )
         else:
             answers = (*self.answer, *self.invariants)
-            all_inputs = Turn(Owner.ENVIRONMENT, game.next_inputs, assumed)
-            start = (*start, all_inputs, Turn(Owner.SYSTEM, answered, answers))
+            all_inputs = Turn(Owner.ENVIRONMENT, game.next_inputs, assumptions)
+            start = (*start, all_inputs, Turn(Owner.SYSTEM, answer_bits, answers))
         return replace(
-            plain(game),
-            states=in_range(symbols, _without(names, self.commands)),
-            turns=(_used_up(game.manager, command, chosen, after), *after),
+            build_plain_arena(game),
+            states=domain_constraint(symbols, _without(names, self.commands)),
+            turns=(
+                _quantify_unread_bits(game.manager, command, command_bits, later_turns),
+                *later_turns,
+            ),
             start=start,
             is_ahead=True,
             command=command,
         )
 
 
-def _plant(game: Game, choice: Sequence[Node]) -> dict[str, tuple[Node, ...]]:
-    """Inputs whose next value follows from state and command, with what says so."""
+def _find_plant_inputs(game: Game, choice: Sequence[Node]) -> dict[str, tuple[Node, ...]]:
+    """Return the inputs whose next value follows from state and command, with the assumptions that
+    say so.
+    """
     manager, symbols = game.manager, game.symbols
-    assumed = nodes(game.assumptions)
-    found: dict[str, tuple[Node, ...]] = {}
+    assumptions = nodes_of(game.assumptions)
+    plant: dict[str, tuple[Node, ...]] = {}
     for name in game.names(Owner.ENVIRONMENT):
-        own = frozenset(symbols.bits(name, primed=True))
-        parts = _speaking(manager, assumed, own)
-        others = frozenset(game.next_inputs) - own
-        is_alone = all(others.isdisjoint(manager.support(node)) for node in parts)
-        if is_alone and _is_function(symbols, parts, own, choice):
-            found[name] = tuple(parts)
-    return found
+        own_bits = frozenset(symbols.bits(name, primed=True))
+        parts = _parts_over(manager, assumptions, own_bits)
+        other_bits = frozenset(game.next_inputs) - own_bits
+        is_alone = all(other_bits.isdisjoint(manager.support(node)) for node in parts)
+        if is_alone and _has_unique_values(symbols, parts, own_bits, choice):
+            plant[name] = tuple(parts)
+    return plant
 
 
-def _is_function(
-    symbols: Symbols, parts: Sequence[Node], own: frozenset[str], choice: Sequence[Node]
+def _has_unique_values(
+    symbols: Symbols, parts: Sequence[Node], own_bits: frozenset[str], choice: Sequence[Node]
 ) -> bool:
-    """Whether the parts leave exactly one value of the bits, for commands that are allowed."""
+    """Return whether the parts leave exactly one value of *own* for all allowed commands."""
     manager = symbols.manager
     relation = manager.true
     for part in parts:
         relation = relation & part
-        if len(relation) > LARGE:
+        if len(relation) > MAX_JOINED_NODES:
             return False
-    care = in_range(symbols, symbols.names(relation))
-    stuck = care & ~manager.exist(own, relation)
-    if _some_allowed(manager, stuck, choice) != manager.false:
+    care = domain_constraint(symbols, symbols.names(relation))
+    stuck = care & ~manager.exist(own_bits, relation)
+    if _restrict_to_allowed(manager, stuck, choice) != manager.false:
         return False
     doubtful = manager.false
-    for bit in sorted(own):
-        on = manager.and_exist(relation & care, manager.var(bit), own)
-        doubtful = doubtful | (on & manager.and_exist(relation & care, ~manager.var(bit), own))
-    return _some_allowed(manager, doubtful, choice) == manager.false
+    for bit in sorted(own_bits):
+        can_be_true = manager.and_exist(relation & care, manager.var(bit), own_bits)
+        doubtful = doubtful | (
+            can_be_true & manager.and_exist(relation & care, ~manager.var(bit), own_bits)
+        )
+    return _restrict_to_allowed(manager, doubtful, choice) == manager.false
 
 
-def _some_allowed(manager: Manager, states: Node, choice: Sequence[Node]) -> Node:
-    """Those of the states in which the commands may be what they are, or more."""
+def _restrict_to_allowed(manager: Manager, states: Node, choice: Sequence[Node]) -> Node:
+    """Return the states in which the commands satisfy *choice*, or a superset of them."""
     for node in choice:
-        if states == manager.false or len(states) > LARGE:
+        if states == manager.false or len(states) > MAX_JOINED_NODES:
             break
         states = states & node
     return states
 
 
-def _invariants(game: Game, promised: Iterable[Node], choice: Sequence[Node]) -> list[Node]:
-    """Guarantees about the present step alone, if the environment always has a next input.
+def _find_state_invariants(
+    game: Game, guarantees: Iterable[Node], choice: Sequence[Node]
+) -> list[Node]:
+    """Return the guarantees about the current step alone, if the environment always has a next
+    input.
 
-    Where it has none, they are not owed.
+    Where the environment has none, the system does not owe them.
     """
-    found = [
+    invariants = [
         node
-        for node in promised
+        for node in guarantees
         if not any(bit.endswith("'") for bit in game.manager.support(node))
     ]
-    if not found:
+    if not invariants:
         return []
-    going_on = Product(game.manager, nodes(game.assumptions), game.next_inputs)
+    progress = Product(game.manager, nodes_of(game.assumptions), game.next_inputs)
     names = (*game.names(Owner.ENVIRONMENT), *game.names(Owner.SYSTEM))
-    stuck = in_range(game.symbols, names) & ~going_on(game.manager.true)
-    is_total = _some_allowed(game.manager, stuck, choice) == game.manager.false
-    return found if is_total else []
+    stuck = domain_constraint(game.symbols, names) & ~progress(game.manager.true)
+    is_total = _restrict_to_allowed(game.manager, stuck, choice) == game.manager.false
+    return invariants if is_total else []
 
 
-def _used_up(manager: Manager, command: Turn, chosen: Sequence[str], after: Iterable[Turn]) -> Turn:
-    """The turn without the bits that nobody looks at after it, while its parts stay small."""
-    seen = frozenset[str]().union(*(manager.support(node) for turn in after for node in turn.parts))
+def _quantify_unread_bits(
+    manager: Manager, command: Turn, command_bits: Sequence[str], later_turns: Iterable[Turn]
+) -> Turn:
+    """Quantify the bits that no later turn reads, as long as the parts stay small."""
+    read_bits = frozenset[str]().union(
+        *(manager.support(node) for turn in later_turns for node in turn.parts)
+    )
     parts, bits = list(command.parts), list(command.bits)
-    for bit in chosen:
-        about = _speaking(manager, parts, frozenset([bit]))
-        joined = manager.true
-        for node in about:
-            joined = joined & node
-        if bit in seen or len(joined) > LARGE:
+    for bit in command_bits:
+        touching = _parts_over(manager, parts, frozenset([bit]))
+        conjunction = manager.true
+        for node in touching:
+            conjunction = conjunction & node
+        if bit in read_bits or len(conjunction) > MAX_JOINED_NODES:
             continue
-        parts = [node for node in parts if node not in about]
-        parts.append(manager.exist([bit], joined))
+        parts = [node for node in parts if node not in touching]
+        parts.append(manager.exist([bit], conjunction))
         bits.remove(bit)
     return replace(command, bits=tuple(bits), parts=tuple(parts))
 
 
-def _speaking(manager: Manager, parts: Iterable[Node], bits: frozenset[str]) -> list[Node]:
+def _parts_over(manager: Manager, parts: Iterable[Node], bits: frozenset[str]) -> list[Node]:
     return [node for node in parts if not bits.isdisjoint(manager.support(node))]
 
 
 _T = TypeVar("_T")
 
 
-def _without(those: Iterable[_T], gone: Iterable[_T]) -> tuple[_T, ...]:
-    left = frozenset(gone)
-    return tuple(one for one in those if one not in left)
+def _without(items: Iterable[_T], removed: Iterable[_T]) -> tuple[_T, ...]:
+    removed_items = frozenset(removed)
+    return tuple(item for item in items if item not in removed_items)
 
 
-def _flat(groups: Iterable[Iterable[Node]]) -> tuple[Node, ...]:
+def _flatten(groups: Iterable[Iterable[Node]]) -> tuple[Node, ...]:
     return tuple(node for group in groups for node in group)

@@ -1,7 +1,7 @@
-"""A contract as a game: initial conditions, relations in parts, and what must recur.
+"""The GR(1) game of a contract: initial conditions, partitioned relations and recurring conditions.
 
-In every step the environment gives its variables first, then the system answers (Mealy). The
-system is obliged by its guarantees until an assumption is broken (docs/synthesis.md).
+In every step the environment chooses its variables first, then the system answers (Mealy). The
+guarantees bind the system until the environment breaks an assumption (docs/synthesis.md).
 """
 
 from collections.abc import Iterable, Iterator, Mapping
@@ -15,170 +15,180 @@ from sysmlc.synthesis.bdd.symbols import SymbolError, Symbols
 
 
 class OutsideGr1Error(Exception):
-    """A conjunct that GR(1) cannot say, with the reason in words."""
+    """A conjunct that GR(1) cannot express, with the reason as text."""
 
-    def __init__(self, conjunct: Conjunct, why: str) -> None:
-        super().__init__(why)
+    def __init__(self, conjunct: Conjunct, reason: str) -> None:
+        super().__init__(reason)
         self.conjunct = conjunct
-        self.why = why
+        self.why = reason
 
 
-class Part(Struct, frozen=True):
-    """A diagram with the conjunct that it comes from; None for the range of a variable."""
+class Constraint(Struct, frozen=True):
+    """A diagram and the conjunct that it encodes; None for the range of a variable."""
 
     node: Node
     conjunct: Conjunct | None = None
 
 
 class Game(Struct, frozen=True):
-    """A GR(1) game; a step is a pair of valuations, the second one primed.
+    """A GR(1) game. A step is a pair of valuations, the second of them primed.
 
-    The system wins a play when it keeps ``init_guarantees`` and ``guarantees`` for as long as the
-    environment keeps ``init_assumptions`` and ``assumptions``, and when all of ``goals`` recur or
+    The system wins a play if it satisfies ``init_guarantees`` and ``guarantees`` for as long as the
+    environment satisfies ``init_assumptions`` and ``assumptions``, and if all of ``goals`` recur or
     some of ``fairness`` does not.
     """
 
     manager: Manager
     symbols: Symbols
-    init_assumptions: tuple[Part, ...]
+    init_assumptions: tuple[Constraint, ...]
     """Over inputs."""
-    init_guarantees: tuple[Part, ...]
+    init_guarantees: tuple[Constraint, ...]
     """Over inputs and outputs."""
-    assumptions: tuple[Part, ...]
+    assumptions: tuple[Constraint, ...]
     """Over inputs, outputs and next inputs; ranges of next inputs too."""
-    guarantees: tuple[Part, ...]
+    guarantees: tuple[Constraint, ...]
     """Over inputs, outputs, next inputs and next outputs; ranges of next outputs too."""
-    fairness: tuple[Part, ...]
+    fairness: tuple[Constraint, ...]
     """Liveness assumptions, over inputs and outputs."""
-    goals: tuple[Part, ...]
+    goals: tuple[Constraint, ...]
     """Liveness guarantees, over inputs and outputs."""
     definitions: Mapping[str, Mapping[str, Node]] = field(default_factory=dict)
-    """Variables that are no longer played, with the diagram of each of their bits over others."""
+    """Eliminated variables, with a diagram over the other variables for each of their bits."""
 
     @property
     def inputs(self) -> tuple[str, ...]:
-        """Bits of the environment."""
+        """Bits of the environment's variables."""
         return self.symbols.all_bits(self.names(Owner.ENVIRONMENT))
 
     @property
     def outputs(self) -> tuple[str, ...]:
-        """Bits of the system."""
+        """Bits of the system's variables."""
         return self.symbols.all_bits(self.names(Owner.SYSTEM))
 
     @property
     def next_inputs(self) -> tuple[str, ...]:
-        """Bits of the environment in the next step."""
+        """Bits of the environment's variables in the next step."""
         return self.symbols.all_bits(self.names(Owner.ENVIRONMENT), primed=True)
 
     @property
     def next_outputs(self) -> tuple[str, ...]:
-        """Bits of the system in the next step."""
+        """Bits of the system's variables in the next step."""
         return self.symbols.all_bits(self.names(Owner.SYSTEM), primed=True)
 
     def names(self, owner: Owner) -> tuple[str, ...]:
-        """The variables that one side plays."""
+        """Return the variables that one side chooses, without eliminated ones."""
         variables = self.symbols.variables.values()
         return tuple(
-            one.name for one in variables if one.owner is owner and one.name not in self.definitions
+            variable.name
+            for variable in variables
+            if variable.owner is owner and variable.name not in self.definitions
         )
 
 
 def make_game(contract: Contract, manager: Manager) -> Game:
-    """The game of a contract; the manager must be new.
+    """Translate a contract into a game; the manager must be new.
 
-    Raises OutsideGr1Error for a conjunct that GR(1) cannot say, LimitError when a limit is
-    reached.
+    Raises OutsideGr1Error for a conjunct that GR(1) cannot express, LimitError if a limit is
+    exceeded.
     """
-    names = {owner: _names(contract, owner) for owner in Owner}
+    names = {owner: _variable_names(contract, owner) for owner in Owner}
     for conjunct in contract.assumptions:
-        _check(conjunct, names, is_assumption=True)
+        _check_conjunct(conjunct, names, is_assumption=True)
     for conjunct in contract.guarantees:
-        _check(conjunct, names, is_assumption=False)
-    # An order that suits the parts of a relation can be hopeless for the game: the one that the
-    # variables come in is kept until there is more to look at.
-    with manager.guard(), manager.calm():
-        return _translated(contract, Symbols(manager, contract.variables, _together(contract)))
+        _check_conjunct(conjunct, names, is_assumption=False)
+    # An order of bits that suits single constraints can be bad for the whole game, so the
+    # initial order is kept while the contract is translated.
+    with manager.guard(), manager.without_reordering():
+        return _translate(
+            contract, Symbols(manager, contract.variables, _variables_of_conjuncts(contract))
+        )
 
 
-def _together(contract: Contract) -> Iterator[tuple[str, ...]]:
-    """The variables of each conjunct."""
+def _variables_of_conjuncts(contract: Contract) -> Iterator[tuple[str, ...]]:
+    """Yield the variables of each conjunct."""
     for conjunct in (*contract.assumptions, *contract.guarantees):
-        yield tuple(dict.fromkeys(one.name for one in variables(conjunct.formula)))
+        yield tuple(dict.fromkeys(variable.name for variable in variables(conjunct.formula)))
 
 
-def _translated(contract: Contract, symbols: Symbols) -> Game:
-    def parts(conjuncts: Iterable[Conjunct], class_: Class) -> tuple[Part, ...]:
-        return tuple(_parts(symbols, conjuncts, class_))
+def _translate(contract: Contract, symbols: Symbols) -> Game:
+    def parts(conjuncts: Iterable[Conjunct], class_: Class) -> tuple[Constraint, ...]:
+        return tuple(_encode_conjuncts(symbols, conjuncts, class_))
 
-    def ranges(owner: Owner, primed: bool) -> tuple[Part, ...]:
-        return tuple(_ranges(symbols, owner, primed))
+    def ranges(owner: Owner, primed: bool) -> tuple[Constraint, ...]:
+        return tuple(_encode_ranges(symbols, owner, primed))
 
-    assumed, promised = contract.assumptions, contract.guarantees
+    assumptions, guarantees = contract.assumptions, contract.guarantees
     return Game(
         manager=symbols.manager,
         symbols=symbols,
-        init_assumptions=parts(assumed, Class.INIT) + ranges(Owner.ENVIRONMENT, False),
-        init_guarantees=parts(promised, Class.INIT) + ranges(Owner.SYSTEM, False),
-        assumptions=parts(assumed, Class.SAFETY) + ranges(Owner.ENVIRONMENT, True),
-        guarantees=parts(promised, Class.SAFETY) + ranges(Owner.SYSTEM, True),
-        fairness=parts(assumed, Class.LIVENESS),
-        goals=parts(promised, Class.LIVENESS),
+        init_assumptions=parts(assumptions, Class.INIT) + ranges(Owner.ENVIRONMENT, False),
+        init_guarantees=parts(guarantees, Class.INIT) + ranges(Owner.SYSTEM, False),
+        assumptions=parts(assumptions, Class.SAFETY) + ranges(Owner.ENVIRONMENT, True),
+        guarantees=parts(guarantees, Class.SAFETY) + ranges(Owner.SYSTEM, True),
+        fairness=parts(assumptions, Class.LIVENESS),
+        goals=parts(guarantees, Class.LIVENESS),
     )
 
 
-def _parts(symbols: Symbols, conjuncts: Iterable[Conjunct], class_: Class) -> Iterator[Part]:
+def _encode_conjuncts(
+    symbols: Symbols, conjuncts: Iterable[Conjunct], class_: Class
+) -> Iterator[Constraint]:
     for conjunct in conjuncts:
         if conjunct.class_ is class_:
             symbols.manager.check("translating the contract")
             try:
-                yield Part(symbols.bdd(conjunct.formula), conjunct)
+                yield Constraint(symbols.bdd(conjunct.formula), conjunct)
             except SymbolError as problem:
                 raise OutsideGr1Error(conjunct, str(problem)) from None
 
 
-def _ranges(symbols: Symbols, owner: Owner, primed: bool) -> Iterator[Part]:
+def _encode_ranges(symbols: Symbols, owner: Owner, primed: bool) -> Iterator[Constraint]:
     for variable in symbols.variables.values():
         if variable.owner is owner and not isinstance(variable.domain, BooleanDomain):
             node = symbols.domain(variable.name, primed)
             if node != symbols.manager.true:
-                yield Part(node)
+                yield Constraint(node)
 
 
-_Names = Mapping[Owner, frozenset[str]]
-"""The variables of each side."""
+_VariableNames = Mapping[Owner, frozenset[str]]
+"""The names of each owner's variables."""
 
 
-def _names(contract: Contract, owner: Owner) -> frozenset[str]:
-    return frozenset(one.name for one in contract.variables if one.owner is owner)
+def _variable_names(contract: Contract, owner: Owner) -> frozenset[str]:
+    return frozenset(variable.name for variable in contract.variables if variable.owner is owner)
 
 
-def _check(conjunct: Conjunct, names: _Names, is_assumption: bool) -> None:
-    """Raise OutsideGr1Error when the conjunct's class does not allow what it speaks of."""
-    why = _objection(conjunct, names, is_assumption)
-    if why:
-        raise OutsideGr1Error(conjunct, why)
+def _check_conjunct(conjunct: Conjunct, names: _VariableNames, is_assumption: bool) -> None:
+    """Raise OutsideGr1Error if GR(1) does not allow these variables in the conjunct's class."""
+    objection = _find_objection(conjunct, names, is_assumption)
+    if objection:
+        raise OutsideGr1Error(conjunct, objection)
 
 
-def _objection(conjunct: Conjunct, names: _Names, is_assumption: bool) -> str:
+def _find_objection(conjunct: Conjunct, names: _VariableNames, is_assumption: bool) -> str:
     if conjunct.class_ is Class.OTHER:
         return "it is neither initial, nor for every step (G), nor recurring (GF)"
     if conjunct.class_ is not Class.SAFETY:
-        after = _first(conjunct.formula, frozenset().union(*names.values()), primed=True)
+        after = _first_variable(conjunct.formula, frozenset().union(*names.values()), primed=True)
         kind = "an initial condition" if conjunct.class_ is Class.INIT else "what must recur"
         if after:
             return f"{kind} cannot speak of the next step ({after}')"
-    return _of_assumption(conjunct, names[Owner.SYSTEM]) if is_assumption else ""
+    return _find_assumption_objection(conjunct, names[Owner.SYSTEM]) if is_assumption else ""
 
 
-def _of_assumption(conjunct: Conjunct, outputs: frozenset[str]) -> str:
+def _find_assumption_objection(conjunct: Conjunct, outputs: frozenset[str]) -> str:
     if conjunct.class_ is Class.INIT:
-        output = _first(conjunct.formula, outputs, primed=False)
+        output = _first_variable(conjunct.formula, outputs, primed=False)
         return output and f"an initial assumption cannot speak of an output ({output})"
-    output = _first(conjunct.formula, outputs, primed=True)
+    output = _first_variable(conjunct.formula, outputs, primed=True)
     return output and f"an assumption cannot speak of the next value of an output ({output}')"
 
 
-def _first(formula: Formula, names: frozenset[str], primed: bool) -> str:
-    """The first variable of the formula among the names, or nothing."""
-    found = (one.name for one in variables(formula) if one.primed == primed and one.name in names)
-    return next(found, "")
+def _first_variable(formula: Formula, names: frozenset[str], primed: bool) -> str:
+    """Return the name of the formula's first variable that is in *names*, or an empty string."""
+    matches = (
+        variable.name
+        for variable in variables(formula)
+        if variable.primed == primed and variable.name in names
+    )
+    return next(matches, "")

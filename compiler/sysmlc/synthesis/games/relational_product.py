@@ -1,7 +1,7 @@
-"""Steps over relations in parts: conjunction and quantification, each bit as early as it can go.
+"""Relational products over partitioned relations, with early quantification.
 
-``Product`` is the general one (``exist bits: start & all parts``), ``successors`` the one that
-leads to next states; the predecessors of a game are in ``arena``.
+``Product`` computes ``exist bits: start & all parts`` and quantifies each bit as early as possible.
+``successor_product`` leads to next states; the predecessors of a game are in ``arena``.
 """
 
 from collections.abc import Collection, Iterable, Sequence
@@ -12,22 +12,22 @@ from msgspec import Struct
 from sysmlc.synthesis.bdd.manager import Manager, Node
 from sysmlc.synthesis.games.game import Game
 
-CLUSTER = 2_000
-"""Nodes up to which parts about the same bits are joined once and for all."""
-SMALL = 500
-"""Nodes up to which neighbours in the order are joined, whatever they speak of: to begin an
-operation takes longer than to go through them."""
+MAX_CLUSTER_NODES = 2_000
+"""Nodes up to which parts over the same bits are joined beforehand."""
+MAX_JOINED_STAGE_NODES = 500
+"""Nodes up to which neighbouring stages are joined, whatever their bits: starting an operation
+takes longer than traversing them."""
 
 
 @dataclass(slots=True)
 class _Cluster:
     node: Node
     support: frozenset[str]
-    """The bits to be quantified that it speaks of."""
+    """The quantified bits that the node depends on."""
 
 
 class _Stage(Struct, frozen=True):
-    """A part of the relation, and the bits that can go as soon as it is joined."""
+    """A part of the relation, and the bits that are quantified as soon as it is joined."""
 
     node: Node
     dying: frozenset[str]
@@ -37,104 +37,128 @@ class Product:
     """``exist bits: start & part & part ...`` for many starts."""
 
     def __init__(
-        self, manager: Manager, parts: Iterable[Node], bits: Collection[str], limit: int = CLUSTER
+        self,
+        manager: Manager,
+        parts: Iterable[Node],
+        bits: Collection[str],
+        limit: int = MAX_CLUSTER_NODES,
     ) -> None:
-        """Join small parts up to ``limit`` nodes and settle their order."""
+        """Join parts up to *limit* nodes and determine their order."""
         self.manager = manager
         self._bits = frozenset(bits)
-        clusters = _clustered(manager, parts, self._bits, limit)
-        first = self._bits.difference(*(one.support for one in clusters))
-        self._stages = tuple(_thinned(_staged(clusters), first))
-        self._alone = frozenset() if self._stages else first
+        clusters = _build_clusters(manager, parts, self._bits, limit)
+        unused = self._bits.difference(*(cluster.support for cluster in clusters))
+        self._stages = tuple(_join_small_stages(_order_stages(clusters), unused))
+        self._alone = frozenset() if self._stages else unused
 
     def __call__(self, start: Node) -> Node:
-        """The product with this start."""
+        """Return the product with *start*."""
         manager = self.manager
-        found = manager.exist(self._alone, start)
+        result = manager.exist(self._alone, start)
         for stage in self._stages:
-            if found == manager.false:
+            if result == manager.false:
                 break
-            found = manager.and_exist(found, stage.node, stage.dying)
+            result = manager.and_exist(result, stage.node, stage.dying)
             manager.check()
-        return found
+        return result
 
 
-def _clustered(
+def _build_clusters(
     manager: Manager, parts: Iterable[Node], bits: frozenset[str], limit: int
 ) -> list[_Cluster]:
-    """Parts joined with those that speak of the same bits, then with those that speak of more."""
+    """Join parts over the same quantified bits, then parts over subsets of them."""
     groups: dict[frozenset[str], list[Node]] = {}
     for part in parts:
         groups.setdefault(manager.support(part) & bits, []).append(part)
     clusters = [
         _Cluster(node, support)
         for support, members in groups.items()
-        for node in joined(manager, members, limit)
+        for node in join_conjuncts(manager, members, limit)
     ]
-    return _absorbed(clusters, limit)
+    return _absorb_clusters(clusters, limit)
 
 
-def joined(manager: Manager, members: Sequence[Node], limit: int = CLUSTER) -> list[Node]:
-    """The conjunction, in pieces when it is large; neighbours are joined first."""
-    found: list[Node] = []
+def join_conjuncts(
+    manager: Manager, members: Sequence[Node], limit: int = MAX_CLUSTER_NODES
+) -> list[Node]:
+    """Return the conjunction in pieces of at most *limit* nodes; neighbours are joined first."""
+    pieces: list[Node] = []
     for member in members:
-        both = found[-1] & member if found else member
-        if found and len(both) <= limit:
-            found[-1] = both
+        conjunction = pieces[-1] & member if pieces else member
+        if pieces and len(conjunction) <= limit:
+            pieces[-1] = conjunction
         else:
-            found.append(member)
-    if 1 < len(found) < len(members):
-        return joined(manager, found, limit)
-    return found
+            pieces.append(member)
+    if 1 < len(pieces) < len(members):
+        return join_conjuncts(manager, pieces, limit)
+    return pieces
 
 
-def _absorbed(clusters: list[_Cluster], limit: int) -> list[_Cluster]:
-    """Clusters whose bits another one has are joined to it while they stay small."""
-    kept: list[_Cluster] = []
-    for one in sorted(clusters, key=lambda cluster: -len(cluster.support)):
-        home = next((other for other in kept if one.support <= other.support), None)
-        both = None if home is None or not one.support else home.node & one.node
-        if home is not None and both is not None and len(both) <= limit:
-            home.node = both
+def _absorb_clusters(clusters: list[_Cluster], limit: int) -> list[_Cluster]:
+    """Join a cluster to another one that has all its bits, unless it becomes too large."""
+    result: list[_Cluster] = []
+    for cluster in sorted(clusters, key=lambda cluster: -len(cluster.support)):
+        host = next(
+            (
+                host_candidate
+                for host_candidate in result
+                if cluster.support <= host_candidate.support
+            ),
+            None,
+        )
+        conjunction = None if host is None or not cluster.support else host.node & cluster.node
+        if host is not None and conjunction is not None and len(conjunction) <= limit:
+            host.node = conjunction
         else:
-            kept.append(one)
-    return kept
+            result.append(cluster)
+    return result
 
 
-def _staged(clusters: Sequence[_Cluster]) -> Iterable[_Stage]:
-    """The clusters in an order in which bits die soon; what has no bits comes last."""
-    rest = list(clusters)
-    while rest:
-        chosen = max(rest, key=lambda one: (_dying(one, rest), -len(one.support)))
-        if not chosen.support:
-            chosen = next((one for one in rest if one.support), chosen)
-        rest.remove(chosen)
-        alive = frozenset().union(*(one.support for one in rest))
-        yield _Stage(chosen.node, chosen.support - alive)
+def _order_stages(clusters: Sequence[_Cluster]) -> Iterable[_Stage]:
+    """Order the clusters such that bits die early; clusters without bits come last."""
+    remaining = list(clusters)
+    while remaining:
+        best = max(
+            remaining,
+            key=lambda cluster: (_count_dying_bits(cluster, remaining), -len(cluster.support)),
+        )
+        if not best.support:
+            best = next((cluster for cluster in remaining if cluster.support), best)
+        remaining.remove(best)
+        alive = frozenset().union(*(cluster.support for cluster in remaining))
+        yield _Stage(best.node, best.support - alive)
 
 
-def _thinned(stages: Iterable[_Stage], first: frozenset[str]) -> Iterable[_Stage]:
-    """Stages with small neighbours joined; the first one lets go of what no stage speaks of."""
-    found: list[_Stage] = []
-    for one in stages:
-        both = found[-1].node & one.node if found and _are_small(found[-1], one) else None
-        if both is not None and len(both) <= SMALL:
-            found[-1] = _Stage(both, found[-1].dying | one.dying)
+def _join_small_stages(stages: Iterable[_Stage], first: frozenset[str]) -> Iterable[_Stage]:
+    """Join small neighbours; the first stage also quantifies the bits of no stage."""
+    joined_stages: list[_Stage] = []
+    for stage in stages:
+        conjunction = (
+            joined_stages[-1].node & stage.node
+            if joined_stages and _can_join(joined_stages[-1], stage)
+            else None
+        )
+        if conjunction is not None and len(conjunction) <= MAX_JOINED_STAGE_NODES:
+            joined_stages[-1] = _Stage(conjunction, joined_stages[-1].dying | stage.dying)
         else:
-            found.append(one)
-    return [_Stage(one.node, one.dying | first) for one in found[:1]] + found[1:]
+            joined_stages.append(stage)
+    return [_Stage(stage.node, stage.dying | first) for stage in joined_stages[:1]] + joined_stages[
+        1:
+    ]
 
 
-def _are_small(one: _Stage, other: _Stage) -> bool:
-    return len(one.node) + len(other.node) <= SMALL
+def _can_join(left: _Stage, right: _Stage) -> bool:
+    return len(left.node) + len(right.node) <= MAX_JOINED_STAGE_NODES
 
 
-def _dying(one: _Cluster, rest: Sequence[_Cluster]) -> int:
-    others = frozenset().union(*(other.support for other in rest if other is not one))
-    return len(one.support - others)
+def _count_dying_bits(cluster: _Cluster, remaining: Sequence[_Cluster]) -> int:
+    other_bits = frozenset().union(*(other.support for other in remaining if other is not cluster))
+    return len(cluster.support - other_bits)
 
 
-def successors(game: Game) -> Product:
-    """Product that takes states to their possible next ones, primed (see ``Symbols.unprime``)."""
+def successor_product(game: Game) -> Product:
+    """Return the product from states to their possible next states, primed
+    (``Symbols.unprime``).
+    """
     parts = [part.node for part in (*game.assumptions, *game.guarantees)]
     return Product(game.manager, parts, (*game.inputs, *game.outputs))

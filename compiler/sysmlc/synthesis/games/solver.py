@@ -1,9 +1,10 @@
-"""The winning states of a GR(1) game: a three-fold fixpoint.
+"""Solver for GR(1) games: the winning region as a three-fold fixpoint.
 
 Piterman, Pnueli, Sa'ar, Synthesis of Reactive(1) Designs (2006); Bloem, Jobstmann, Piterman,
-Pnueli, Sa'ar (2012). The outer (greatest) fixpoint are states from which every goal can be reached
-again, the middle (least) ones the layers on the way to one goal, the inner (greatest) ones states
-in which the system may stay since an assumption does not recur.
+Pnueli, Sa'ar (2012). The outer (greatest) fixpoint contains the states from which every goal can
+be reached again. The middle (least) fixpoints are the attractors of the goals, layer by layer. The
+inner (greatest) fixpoints contain states in which the system may stay because a fairness
+assumption does not recur.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -13,7 +14,7 @@ from itertools import cycle
 from msgspec import Struct
 
 from sysmlc.synthesis.bdd.manager import Node
-from sysmlc.synthesis.games.arena import Arena, Steps, plain
+from sysmlc.synthesis.games.arena import Arena, PredecessorOperator, build_plain_arena
 from sysmlc.synthesis.games.game import Game
 from sysmlc.synthesis.games.search_reductions import (
     Swap,
@@ -23,148 +24,153 @@ from sysmlc.synthesis.games.search_reductions import (
     state_invariant,
     swap_variables,
 )
-from sysmlc.synthesis.games.single_moves import SingleSteps, routes
+from sysmlc.synthesis.games.single_moves import SingleMoveOperator, find_single_moves
 
 
 class Layer(Struct, frozen=True):
-    """States from which the system comes closer to a goal in a step, or stays.
+    """States from which the system comes closer to a goal in one step, or waits.
 
-    A state in ``states`` and not in the layer before it is in the goal itself (first layer), can
-    force the layer before, or is in one of ``waiting``.
+    A state of the layer that is not in the layer before it is in the goal (first layer), can force
+    the layer before, or is in one of ``waiting``.
     """
 
     states: Node
-    """This layer and all before it."""
+    """This layer and all layers before it."""
     waiting: tuple[Node, ...]
-    """For each fairness assumption: from here the system comes nearer, or stays here while the
-    assumption does not hold."""
+    """For each fairness assumption, states from which the system comes closer, or in which it stays
+    while the assumption does not hold."""
 
 
 @dataclass(slots=True)
-class Way:
-    """The way to a goal among states that may be winning."""
+class Attractor:
+    """Computes the attractor of one goal within candidates for the winning region."""
 
-    steps: Steps | SingleSteps
+    operator: PredecessorOperator | SingleMoveOperator
     fairness: tuple[Node, ...]
     winning: Node
-    before: Sequence[Layer]
-    """The layers of the same goal when there were more such states; they bound the new ones."""
+    previous_layers: Sequence[Layer]
+    """The layers of the same goal in the previous iteration; they contain the new ones."""
     is_quick: bool
-    """Whether only the last layer counts: the system then goes on until it has to wait, and what
-    it comes to by waiting for one assumption counts at once for the next one."""
-    _place: int = field(init=False, default=0)
+    """Whether only the last layer counts. Then a layer contains everything that needs no waiting,
+    and the states added by one assumption count at once for the next assumption."""
+    _index: int = field(init=False, default=0)
 
-    def layers(self, target: Node) -> Iterator[Layer]:
-        """The layers of a goal's states (``target``), the nearest first."""
-        reached = self.steps.arena.manager.false
-        while reached != self.winning:
-            start = target | self.steps.nearer(reached, self.winning)
-            layer = self._quick(start) if self.is_quick else self._layer(start)
-            if layer.states == reached:
+    def compute_layers(self, target: Node) -> Iterator[Layer]:
+        """Yield the layers around the states *target* of a goal, the nearest first."""
+        attractor = self.operator.arena.manager.false
+        while attractor != self.winning:
+            start = target | self.operator.extend_attractor(attractor, self.winning)
+            layer = self._compute_fast_layer(start) if self.is_quick else self._compute_layer(start)
+            if layer.states == attractor:
                 return
             yield layer
-            reached = layer.states
-            self._place += 1
+            attractor = layer.states
+            self._index += 1
 
-    def _layer(self, start: Node) -> Layer:
+    def _compute_layer(self, start: Node) -> Layer:
         waiting = tuple(
-            self._waiting(start, ~fair, bound)
-            for fair, bound in zip(self.fairness, self._bounds(), strict=True)
+            self._states_to_wait_in(start, ~fair, bound)
+            for fair, bound in zip(self.fairness, self._waiting_bounds(), strict=True)
         )
         states = start
-        for one in waiting:
-            states = states | one
+        for waiting_set in waiting:
+            states = states | waiting_set
         return Layer(states, waiting)
 
-    def _quick(self, states: Node) -> Layer:
-        before = self.steps.arena.manager.false
-        while states not in (before, self.winning):
-            before = states
-            states = states | self.steps.nearer(states, self.winning)
+    def _compute_fast_layer(self, states: Node) -> Layer:
+        previous = self.operator.arena.manager.false
+        while states not in (previous, self.winning):
+            previous = states
+            states = states | self.operator.extend_attractor(states, self.winning)
         if states == self.winning:
             return Layer(states, ())
         waiting: list[Node] = []
-        for fair, bound in zip(self.fairness, self._bounds(), strict=True):
-            waiting.append(self._waiting(states, ~fair, bound))
+        for fair, bound in zip(self.fairness, self._waiting_bounds(), strict=True):
+            waiting.append(self._states_to_wait_in(states, ~fair, bound))
             states = states | waiting[-1]
         return Layer(states, tuple(waiting))
 
-    def _bounds(self) -> tuple[Node, ...]:
-        """For each assumption more states than the system can wait in."""
-        if self._place < len(self.before) and self.before[self._place].waiting:
-            found = self.before[self._place].waiting
+    def _waiting_bounds(self) -> tuple[Node, ...]:
+        """Return for each assumption a superset of the states in which the system can wait."""
+        if self._index < len(self.previous_layers) and self.previous_layers[self._index].waiting:
+            bounds = self.previous_layers[self._index].waiting
         else:
-            whole = self.before[-1].states if self.before else self.winning
-            found = (whole,) * len(self.fairness)
-        return tuple(one & self.winning for one in found)
+            largest = self.previous_layers[-1].states if self.previous_layers else self.winning
+            bounds = (largest,) * len(self.fairness)
+        return tuple(bound & self.winning for bound in bounds)
 
-    def _waiting(self, start: Node, unfair: Node, bound: Node) -> Node:
-        """Start, and where the system can stay until it is there, unfair for ever."""
-        found = bound | start
+    def _states_to_wait_in(self, start: Node, unfair: Node, bound: Node) -> Node:
+        """Return *start* and the states of *bound* in which the system can stay *unfair* until it
+        is there.
+        """
+        states = bound | start
         while True:
-            fewer = found & (start | (unfair & self.steps.controllable(found)))
-            if fewer == found:
-                return found
-            found = fewer
+            shrunk = states & (start | (unfair & self.operator.controllable_predecessors(states)))
+            if shrunk == states:
+                return states
+            states = shrunk
 
 
 class Solution(Struct, frozen=True):
-    """The outcome of a game."""
+    """The result of a game."""
 
     arena: Arena
     is_realizable: bool
     winning: Node
-    """States from which the system wins; with ``is_complete`` false those that may still be."""
+    """The winning region; a superset of it unless ``is_complete``."""
     is_complete: bool
-    """Whether the fixpoint was computed to its end; it need not be for the verdict."""
+    """Whether the fixpoint was computed to its end, which a verdict does not always need."""
     layers: tuple[tuple[Layer, ...], ...]
-    """For each goal (a game without goals has one: to go on) its layers, the nearest first.
-    Without ``is_complete`` those of goals that are alike may be missing."""
+    """The layers of each goal, the nearest first; a game without goals has the goal true. Unless
+    ``is_complete``, layers of symmetric goals may be missing."""
     rounds: int
-    """Times a goal was computed."""
+    """Number of computed attractors."""
     steps: int
-    """Predecessors computed."""
+    """Number of computed predecessors."""
 
 
 def solve(game: Game, is_complete: bool = True) -> Solution:
-    """Decide a game as it is written; without ``is_complete`` the verdict is all that counts.
+    """Solve a game as it is written; without *is_complete* only the verdict counts.
 
-    Raises LimitError when a limit of the manager is reached.
+    Raises LimitError if a limit of the manager is exceeded.
     """
-    return solve_arena(plain(game), is_complete)
+    return solve_arena(build_plain_arena(game), is_complete)
 
 
 def solve_arena(arena: Arena, is_complete: bool = True) -> Solution:
-    """Decide what was made of a game; winning states and layers are those of the arena.
+    """Solve an encoded game; winning region and layers are sets of states of the arena.
 
-    Raises LimitError when a limit of the manager is reached.
+    Raises LimitError if a limit of the manager is exceeded.
     """
     with arena.manager.guard():
         if is_complete:
-            return _Solver(arena, Steps(arena), is_complete).run()
-        return by_single_moves(arena) or _Solver(arena, _few(arena), is_complete).run()
+            return _Solver(arena, PredecessorOperator(arena), is_complete).run()
+        return (
+            solve_by_single_moves(arena)
+            or _Solver(arena, _reachable_steps(arena), is_complete).run()
+        )
 
 
-def _few(arena: Arena) -> Steps:
-    """The steps of a game, among the states that plays come to if these are few."""
-    with arena.manager.calm():
-        return Steps(arena, find_reachable_states(arena))
+def _reachable_steps(arena: Arena) -> PredecessorOperator:
+    """Return the operator of the arena, restricted to reachable states if they are few."""
+    with arena.manager.without_reordering():
+        return PredecessorOperator(arena, find_reachable_states(arena))
 
 
-def by_single_moves(arena: Arena) -> Solution | None:
-    """The solution if the game is won by moves of one component at a time (``routes``)."""
-    ways = routes(arena)
-    if ways is None:
+def solve_by_single_moves(arena: Arena) -> Solution | None:
+    """Return a solution if the game is won with moves of one component at a time."""
+    moves = find_single_moves(arena)
+    if moves is None:
         return None
-    with arena.manager.calm():
-        found = _Solver(arena, SingleSteps(arena, ways), is_complete=False).run()
-    return found if found.is_realizable else None
+    with arena.manager.without_reordering():
+        solution = _Solver(arena, SingleMoveOperator(arena, moves), is_complete=False).run()
+    return solution if solution.is_realizable else None
 
 
 @dataclass(slots=True)
 class _Solver:
     arena: Arena
-    _steps: Steps | SingleSteps
+    _operator: PredecessorOperator | SingleMoveOperator
     is_complete: bool
     _goals: tuple[Node, ...] = field(init=False)
     _layers: list[tuple[Layer, ...]] = field(init=False)
@@ -175,74 +181,82 @@ class _Solver:
         self._layers = [() for _ in self._goals]
 
     def run(self) -> Solution:
-        """Solve the game, with one goal for all that are alike if strategies are not asked for."""
-        alike = {} if self.is_complete else group_symmetric_goals(self.arena)
-        winning, is_known = self._settled(alike or self._each())
-        exchanges = [exchange for found in alike.values() for exchange in found]
-        if any(swap_variables(self.arena, winning, exchange) != winning for exchange in exchanges):
+        """Solve the game; symmetric goals share one fixpoint if only the verdict counts."""
+        swaps_by_goal = {} if self.is_complete else group_symmetric_goals(self.arena)
+        winning, is_known = self._compute_winning_region(
+            swaps_by_goal or self._goals_without_symmetry()
+        )
+        all_swaps = [swap for swaps in swaps_by_goal.values() for swap in swaps]
+        if any(swap_variables(self.arena, winning, swap) != winning for swap in all_swaps):
             self._layers = [() for _ in self._goals]
-            winning, is_known = self._settled(self._each())
-        return self._solution(winning, is_known and self._steps.is_won(winning), is_known)
+            winning, is_known = self._compute_winning_region(self._goals_without_symmetry())
+        return self._build_solution(
+            winning, is_known and self._operator.wins_initially(winning), is_known
+        )
 
-    def _settled(self, alike: Mapping[int, tuple[Swap, ...]]) -> tuple[Node, bool]:
-        """The goals in turn until none of them makes the winning states fewer.
+    def _compute_winning_region(
+        self, swaps_by_goal: Mapping[int, tuple[Swap, ...]]
+    ) -> tuple[Node, bool]:
+        """Process the goals in turn until no goal removes a candidate.
 
-        False when it was seen before that the game is lost.
+        Return False as the second value if the game was found to be lost before that.
         """
-        winning, settled = self._candidates(), 0
-        for goal in cycle(alike):
-            found = reached = self._again(goal, winning)
-            for exchange in alike[goal]:
-                found = found & swap_variables(self.arena, reached, exchange)
-            settled = settled + 1 if found == winning else 0
-            winning = found
-            if settled == len(alike):
+        winning, stable_goals = self._initial_candidates(), 0
+        for goal in cycle(swaps_by_goal):
+            survivors = goal_states = self._reach_again(goal, winning)
+            for swap in swaps_by_goal[goal]:
+                survivors = survivors & swap_variables(self.arena, goal_states, swap)
+            stable_goals = stable_goals + 1 if survivors == winning else 0
+            winning = survivors
+            if stable_goals == len(swaps_by_goal):
                 return winning, True
             if not self.is_complete and self._is_lost(winning):
                 return winning, False
         return winning, True
 
-    def _candidates(self) -> Node:
-        """The states that may be winning: those in which a rule for the present step holds."""
+    def _initial_candidates(self) -> Node:
+        """Return the states that satisfy the state invariants of the first turn."""
         if self.is_complete:
             return self.arena.states
-        found = self.arena.states & state_invariant(self.arena)
-        return found if self._steps.within is None else found & self._steps.within
+        candidates = self.arena.states & state_invariant(self.arena)
+        return candidates if self._operator.within is None else candidates & self._operator.within
 
-    def _again(self, goal: int, winning: Node) -> Node:
-        """Those of the winning states from which the goal can be reached, again and again."""
+    def _reach_again(self, goal: int, winning: Node) -> Node:
+        """Return the candidates from which the goal can be reached again and again."""
         if self.is_complete:
-            return self._attracted(goal, winning)
-        return self._attracted(goal, drop_irrelevant_ranges(self.arena, goal, winning)) & winning
+            return self._reach_goal(goal, winning)
+        return self._reach_goal(goal, drop_irrelevant_ranges(self.arena, goal, winning)) & winning
 
-    def _each(self) -> dict[int, tuple[Swap, ...]]:
-        """Every goal by itself: strategies need the layers of all."""
+    def _goals_without_symmetry(self) -> dict[int, tuple[Swap, ...]]:
+        """Map every goal to no swaps: strategies need the layers of all goals."""
         return dict.fromkeys(range(len(self._goals)), ())
 
     def _is_lost(self, winning: Node) -> bool:
-        """Whether it is seen without much work that the game is lost."""
+        """Return whether a cheap test shows that the game is lost."""
         if self.arena.is_ahead and winning != self.arena.manager.false:
             return False
-        return not self._steps.is_won(winning)
+        return not self._operator.wins_initially(winning)
 
-    def _attracted(self, goal: int, winning: Node) -> Node:
-        """``_again``, whatever is not in the range of its variable."""
+    def _reach_goal(self, goal: int, winning: Node) -> Node:
+        """Compute the layers of a goal within *winning* and return the largest."""
         self._rounds += 1
-        self._steps.confine(winning)
-        target = self._goals[goal] & self._steps.controllable(winning) & winning
-        fairness, before = self.arena.fairness, self._layers[goal]
-        way = Way(self._steps, fairness, winning, before, not self.is_complete)
+        self._operator.confine_to(winning)
+        target = self._goals[goal] & self._operator.controllable_predecessors(winning) & winning
+        fairness, previous_layers = self.arena.fairness, self._layers[goal]
+        attractor = Attractor(
+            self._operator, fairness, winning, previous_layers, not self.is_complete
+        )
         layers: list[Layer] = []
-        for layer in way.layers(target):
+        for layer in attractor.compute_layers(target):
             layers.append(layer)
-            self._say(goal, len(layers))
+            self._report_progress(goal, len(layers))
         self._layers[goal] = tuple(layers)
         return layers[-1].states if layers else self.arena.manager.false
 
-    def _say(self, goal: int, layers: int) -> None:
+    def _report_progress(self, goal: int, layers: int) -> None:
         self.arena.manager.check(f"round {self._rounds}, goal {goal + 1}, layer {layers}")
 
-    def _solution(self, winning: Node, is_realizable: bool, is_complete: bool) -> Solution:
+    def _build_solution(self, winning: Node, is_realizable: bool, is_complete: bool) -> Solution:
         return Solution(
             self.arena,
             is_realizable,
@@ -250,5 +264,5 @@ class _Solver:
             is_complete,
             tuple(self._layers),
             self._rounds,
-            self._steps.count,
+            self._operator.count,
         )

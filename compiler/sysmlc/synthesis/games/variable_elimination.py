@@ -1,9 +1,9 @@
-"""Variables that are functions of others in every step leave the game.
+"""Elimination of variables that are functions of others in every step.
 
-A side that promises ``free' <-> pos'!=3`` from the first step on has no choice: the variable is
-replaced by its definition wherever it stands. The definition may be spread over many conjuncts
-(``pos'=0 -> !up'``, ``pos'=3 -> (up' <-> free')``); what counts is that exactly one value is left
-for every value of the others. Winning states of the others are the same.
+If one side guarantees ``free' <-> pos'!=3`` from the first step on, it has no choice, so the
+definition replaces the variable everywhere. The definition may be spread over many conjuncts
+(``pos'=0 -> !up'``, ``pos'=3 -> (up' <-> free')``): the condition is that exactly one value is left
+for each value of the other variables. The winning region over the other variables stays the same.
 """
 
 from collections.abc import Collection, Iterable, Mapping
@@ -13,139 +13,152 @@ from msgspec.structs import replace
 
 from sysmlc.logic.contract import Owner
 from sysmlc.synthesis.bdd.manager import Manager, Node
-from sysmlc.synthesis.games.arena import in_range
-from sysmlc.synthesis.games.game import Game, Part
+from sysmlc.synthesis.games.arena import domain_constraint
+from sysmlc.synthesis.games.game import Constraint, Game
 
-LARGE = 5_000
-"""Nodes of a definition that is not worth the looking."""
+MAX_DEFINITION_NODES = 5_000
+"""Nodes above which the search for a definition is abandoned."""
 
 _STEPS = ("init_assumptions", "init_guarantees", "assumptions", "guarantees")
 _RECURRING = ("fairness", "goals")
 _LISTS = (*_STEPS, *_RECURRING)
 
 
-def without_derived(game: Game) -> Game:
-    """The game without variables that follow from others; its parts name no conjuncts any more."""
-    game = merged(game)
+def eliminate_determined_variables(game: Game) -> Game:
+    """Return the game without determined variables; its constraints lose their conjuncts."""
+    game = merge_parts(game)
     is_changed = True
     while is_changed:
         is_changed = False
         for name in (*game.names(Owner.ENVIRONMENT), *game.names(Owner.SYSTEM)):
-            found = _definition(game, name)
-            if found is not None:
-                game, is_changed = _replaced(game, name, found), True
+            definition = _find_definition(game, name)
+            if definition is not None:
+                game, is_changed = _substitute_definition(game, name, definition), True
     return game
 
 
-def merged(game: Game) -> Game:
-    """The game with the parts of each list joined that speak of the same bits."""
-    return _with_lists(game, {name: _merged(game, getattr(game, name)) for name in _STEPS})
+def merge_parts(game: Game) -> Game:
+    """Join the constraints of each list that have the same support."""
+    return _replace_lists(
+        game, {name: _merge_by_support(game, getattr(game, name)) for name in _STEPS}
+    )
 
 
-def _merged(game: Game, parts: Iterable[Part]) -> list[Part]:
+def _merge_by_support(game: Game, parts: Iterable[Constraint]) -> list[Constraint]:
     groups: dict[frozenset[str], list[Node]] = {}
     for part in parts:
         groups.setdefault(game.manager.support(part.node), []).append(part.node)
-    return [Part(_joined(game.manager, members)) for members in groups.values()]
+    return [Constraint(_conjunction(game.manager, nodes)) for nodes in groups.values()]
 
 
-def _joined(manager: Manager, members: Iterable[Node]) -> Node:
-    found = manager.true
-    for member in members:
-        found = found & member
-    return found
+def _conjunction(manager: Manager, conjuncts: Iterable[Node]) -> Node:
+    result = manager.true
+    for conjunct in conjuncts:
+        result = result & conjunct
+    return result
 
 
-def _joined_while_small(manager: Manager, members: Iterable[Node]) -> Node | None:
-    """The conjunction, unless it grows beyond what is worth the looking on the way."""
-    found = manager.true
-    for member in members:
-        found = found & member
-        if len(found) > LARGE:
+def _small_conjunction(manager: Manager, conjuncts: Iterable[Node]) -> Node | None:
+    """Return the conjunction, or None if an intermediate result is too large."""
+    result = manager.true
+    for conjunct in conjuncts:
+        result = result & conjunct
+        if len(result) > MAX_DEFINITION_NODES:
             return None
-    return found
+    return result
 
 
 class _Definition(Struct, frozen=True):
     bits: Mapping[str, Node]
-    """The value of each primed bit over primed bits of others."""
-    parts: tuple[Part, ...]
-    """What says so."""
+    """Each primed bit as a function of primed bits of other variables."""
+    parts: tuple[Constraint, ...]
+    """The constraints that state the definition."""
 
 
-def _definition(game: Game, name: str) -> _Definition | None:
-    """What the variable is in every step, if one side leaves it no choice."""
+def _find_definition(game: Game, name: str) -> _Definition | None:
+    """Return the definition of a variable, or None if its owner has a choice in some step."""
     symbols, manager = game.symbols, game.manager
-    own = frozenset(symbols.bits(name, primed=True))
+    own_bits = frozenset(symbols.bits(name, primed=True))
     is_input = symbols.variables[name].owner is Owner.ENVIRONMENT
-    parts = _about(game, game.assumptions if is_input else game.guarantees, own)
-    parts = [part for part in parts if _is_of_next_step(game, part.node)]
-    relation = _joined_while_small(manager, (part.node for part in parts))
+    parts = _parts_over(game, game.assumptions if is_input else game.guarantees, own_bits)
+    parts = [part for part in parts if _is_about_next_step(game, part.node)]
+    relation = _small_conjunction(manager, (part.node for part in parts))
     if not parts or relation is None:
         return None
-    others = [one for one in symbols.names(relation, primed=True) if one != name]
-    care = in_range(symbols, others, primed=True)
-    bits = _function(manager, relation, own, care)
-    if bits is None or not _holds_at_first(game, is_input, bits, others):
+    other_names = [name_ for name_ in symbols.names(relation, primed=True) if name_ != name]
+    care = domain_constraint(symbols, other_names, primed=True)
+    bits = _find_functions(manager, relation, own_bits, care)
+    if bits is None or not _holds_initially(game, is_input, bits, other_names):
         return None
     return _Definition(bits, tuple(parts))
 
 
-def _function(
-    manager: Manager, relation: Node, own: frozenset[str], care: Node
+def _find_functions(
+    manager: Manager, relation: Node, own_bits: frozenset[str], care: Node
 ) -> dict[str, Node] | None:
-    """Each bit as a function of the other bits, if the relation leaves exactly one value."""
-    if not care <= manager.exist(own, relation):
+    """Return each bit as a function of the other bits if the relation leaves exactly one value."""
+    if not care <= manager.exist(own_bits, relation):
         return None
-    found: dict[str, Node] = {}
-    for bit in sorted(own):
-        on = manager.and_exist(relation & care, manager.var(bit), own)
-        off = manager.and_exist(relation & care, ~manager.var(bit), own)
-        if on & off != manager.false:
+    functions: dict[str, Node] = {}
+    for bit in sorted(own_bits):
+        can_be_true = manager.and_exist(relation & care, manager.var(bit), own_bits)
+        can_be_false = manager.and_exist(relation & care, ~manager.var(bit), own_bits)
+        if can_be_true & can_be_false != manager.false:
             return None
-        found[bit] = manager.restrict(on, care)
-    return found
+        functions[bit] = manager.restrict(can_be_true, care)
+    return functions
 
 
-def _holds_at_first(
-    game: Game, is_input: bool, bits: Mapping[str, Node], others: Collection[str]
+def _holds_initially(
+    game: Game, is_input: bool, bits: Mapping[str, Node], other_names: Collection[str]
 ) -> bool:
-    """Whether the variable has to be in the first step what it is in the others."""
+    """Return whether the definition also holds in the first step."""
     manager, symbols = game.manager, game.symbols
-    now = {_present(bit): symbols.unprime(node) for bit, node in bits.items()}
+    current_bits = {_current_bit(bit): symbols.unprime(node) for bit, node in bits.items()}
     parts = game.init_assumptions if is_input else game.init_guarantees
-    said = _joined(manager, (part.node for part in _about(game, parts, frozenset(now))))
-    given = said & in_range(symbols, others)
-    return all(given <= manager.var(bit).equiv(node) for bit, node in now.items())
+    constraint = _conjunction(
+        manager, (part.node for part in _parts_over(game, parts, frozenset(current_bits)))
+    )
+    known = constraint & domain_constraint(symbols, other_names)
+    return all(known <= manager.var(bit).equiv(node) for bit, node in current_bits.items())
 
 
-def _replaced(game: Game, name: str, definition: _Definition) -> Game:
-    """The game without the variable."""
-    after = dict(definition.bits)
-    now = {_present(bit): game.symbols.unprime(node) for bit, node in after.items()}
-    by = now | after
-    gone = {id(part) for part in definition.parts}
+def _substitute_definition(game: Game, name: str, definition: _Definition) -> Game:
+    """Return the game in which the definition replaces the variable."""
+    next_bits = dict(definition.bits)
+    current_bits = {
+        _current_bit(bit): game.symbols.unprime(node) for bit, node in next_bits.items()
+    }
+    substitution = current_bits | next_bits
+    removed = {id(part) for part in definition.parts}
     lists = {
-        kind: [_composed(game, part, by) for part in getattr(game, kind) if id(part) not in gone]
+        kind: [
+            _compose_part(game, part, substitution)
+            for part in getattr(game, kind)
+            if id(part) not in removed
+        ]
         for kind in _LISTS
     }
-    known = dict(game.definitions) | {name: now}
-    return replace(_with_lists(game, lists), definitions=known)
+    definitions = dict(game.definitions) | {name: current_bits}
+    return replace(_replace_lists(game, lists), definitions=definitions)
 
 
-def _composed(game: Game, part: Part, by: Mapping[str, Node]) -> Part:
-    touched = game.manager.support(part.node).intersection(by)
-    if not touched:
+def _compose_part(game: Game, part: Constraint, substitution: Mapping[str, Node]) -> Constraint:
+    substituted_bits = game.manager.support(part.node).intersection(substitution)
+    if not substituted_bits:
         return part
-    return replace(part, node=game.manager.compose(part.node, {bit: by[bit] for bit in touched}))
+    return replace(
+        part,
+        node=game.manager.compose(part.node, {bit: substitution[bit] for bit in substituted_bits}),
+    )
 
 
-def _with_lists(game: Game, lists: Mapping[str, Iterable[Part]]) -> Game:
-    """The game with some of its lists replaced, without steps' parts that say nothing."""
+def _replace_lists(game: Game, lists: Mapping[str, Iterable[Constraint]]) -> Game:
+    """Return the game with some lists replaced, without constraints of steps that are true."""
     true = game.manager.true
 
-    def of(kind: str) -> tuple[Part, ...]:
-        parts: Iterable[Part] = lists.get(kind, getattr(game, kind))
+    def of(kind: str) -> tuple[Constraint, ...]:
+        parts: Iterable[Constraint] = lists.get(kind, getattr(game, kind))
         return tuple(part for part in parts if kind in _RECURRING or part.node != true)
 
     return replace(
@@ -159,13 +172,13 @@ def _with_lists(game: Game, lists: Mapping[str, Iterable[Part]]) -> Game:
     )
 
 
-def _about(game: Game, parts: Iterable[Part], bits: frozenset[str]) -> list[Part]:
+def _parts_over(game: Game, parts: Iterable[Constraint], bits: frozenset[str]) -> list[Constraint]:
     return [part for part in parts if not bits.isdisjoint(game.manager.support(part.node))]
 
 
-def _is_of_next_step(game: Game, node: Node) -> bool:
+def _is_about_next_step(game: Game, node: Node) -> bool:
     return all(bit.endswith("'") for bit in game.manager.support(node))
 
 
-def _present(bit: str) -> str:
+def _current_bit(bit: str) -> str:
     return bit.removesuffix("'")

@@ -19,7 +19,7 @@ from sysmlc.logic.formula import Formula, Var
 from sysmlc.logic.printing import print_formula, print_literal
 from sysmlc.synthesis.algebra.fair_systems import FairSystem, Runs
 from sysmlc.synthesis.bdd.manager import Manager, Node
-from sysmlc.synthesis.games.game import Game, Part, make_game
+from sysmlc.synthesis.games.game import Constraint, Game, make_game
 from sysmlc.synthesis.games.relational_product import Product
 from sysmlc.synthesis.games.solver import solve
 from sysmlc.synthesis.lints import rules
@@ -231,5 +231,5 @@ def _describe_state(game: Game, states: Node) -> str:
     return ", ".join(f"{name}={print_literal(found[name])}" for name in names)
 
 
-def _nodes_of(parts: tuple[Part, ...]) -> tuple[Node, ...]:
+def _nodes_of(parts: tuple[Constraint, ...]) -> tuple[Node, ...]:
     return tuple(part.node for part in parts)

@@ -9,10 +9,10 @@ from typing import Generic, TypeVar
 from msgspec.structs import replace
 
 from sysmlc.logic.contract import Conjunct
-from sysmlc.synthesis.games.command_elimination import shifted
-from sysmlc.synthesis.games.game import Game, Part
+from sysmlc.synthesis.games.command_elimination import eliminate_commands
+from sysmlc.synthesis.games.game import Constraint, Game
 from sysmlc.synthesis.games.solver import solve_arena
-from sysmlc.synthesis.games.variable_elimination import without_derived
+from sysmlc.synthesis.games.variable_elimination import eliminate_determined_variables
 
 T = TypeVar("T")
 MAX_CHECKS = 200
@@ -73,11 +73,13 @@ def unrealizable_core(game: Game, most: int = MAX_CHECKS) -> tuple[Conjunct, ...
     return tuple(one.conjunct for one in found if one.conjunct is not None)
 
 
-def _keep_guarantees(game: Game, promised: Sequence[Part], chosen: Sequence[Part]) -> Game:
+def _keep_guarantees(
+    game: Game, promised: Sequence[Constraint], chosen: Sequence[Constraint]
+) -> Game:
     """The game with some of what is promised, and the ranges."""
     left_out = {id(one) for one in promised} - {id(one) for one in chosen}
 
-    def of(parts: Sequence[Part]) -> tuple[Part, ...]:
+    def of(parts: Sequence[Constraint]) -> tuple[Constraint, ...]:
         return tuple(one for one in parts if id(one) not in left_out)
 
     return replace(
@@ -91,5 +93,5 @@ def _keep_guarantees(game: Game, promised: Sequence[Part], chosen: Sequence[Part
 def is_won(game: Game) -> bool:
     """Whether a game is won; raises LimitError."""
     with game.manager.guard():
-        arena = shifted(without_derived(game))
+        arena = eliminate_commands(eliminate_determined_variables(game))
     return solve_arena(arena, is_complete=False).is_realizable

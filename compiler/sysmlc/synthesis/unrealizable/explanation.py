@@ -12,7 +12,7 @@ from sysmlc.logic.formula import Formula
 from sysmlc.logic.printing import print_formula
 from sysmlc.logic.reduction.reduce import is_plain
 from sysmlc.synthesis.bdd.limits import LimitError
-from sysmlc.synthesis.games.game import Game, Part
+from sysmlc.synthesis.games.game import Constraint, Game
 from sysmlc.synthesis.unrealizable.core import is_won, unrealizable_core
 
 _PREFIXES = {
@@ -126,7 +126,7 @@ def _frame_condition(variable: Variable) -> Formula:
 
 def _makes_realizable(game: Game, assumption: Conjunct) -> bool:
     game.manager.check("looking for assumptions that would help")
-    part = Part(game.symbols.bdd(assumption.formula), assumption)
+    part = Constraint(game.symbols.bdd(assumption.formula), assumption)
     if assumption.class_ is Class.LIVENESS:
         tried = replace(game, fairness=(*game.fairness, part))
     else:
@@ -136,9 +136,9 @@ def _makes_realizable(game: Game, assumption: Conjunct) -> bool:
 
 def _game_against_assumptions(game: Game) -> Game:
     """The game that the system wins when it can make the environment break an assumption."""
-    false = Part(game.manager.false)
+    false = Constraint(game.manager.false)
 
-    def of(parts: Sequence[Part]) -> tuple[Part, ...]:
+    def of(parts: Sequence[Constraint]) -> tuple[Constraint, ...]:
         return tuple(one for one in parts if one.conjunct is None)
 
     return replace(

@@ -1,37 +1,34 @@
-"""Machines as JSON (metamodels/sysmlc-machine.schema.json) and as state machines in PlantUML."""
+"""Formats of controllers: machines, tables and gr1c's strategies as JSON, small machines as
+diagrams.
+
+The JSON documents conform to metamodels/sysmlc-machine.schema.json, to metamodels/sysmlc-
+controller.schema.json, and to version 1 of gr1c's "strategy in JSON" (its manual). A node of a gr1c
+strategy is a step: the values of all variables, and the nodes to which the next inputs lead.
+Booleans are 0 and 1, integers and literals count from 0. What gr1c notes about its own run
+(version, date) stays empty, so that equal contracts give equal texts.
+"""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-from msgspec import Struct
-from msgspec.structs import replace
-
-from sysmlc.diagnostics import Sink
 from sysmlc.logic import domains
 from sysmlc.logic.contract import BooleanDomain, Class, Conjunct, Contract, Variable
 from sysmlc.logic.evaluate import Evaluation, evaluation
 from sysmlc.logic.formats.document_text import type_of
 from sysmlc.logic.formula import Apply, Const, Formula, Literal, Op, Var
 from sysmlc.logic.printing import print_formula
-from sysmlc.support.file_names import assign_file_names
 from sysmlc.support.json_text import append_members, encode_row
 from sysmlc.support.plantuml_text import plain
-from sysmlc.synthesis import rules
 from sysmlc.synthesis.bdd.limits import LimitError
-from sysmlc.synthesis.controller_synthesis import Synthesis
-from sysmlc.synthesis.controllers import controller_files as gr1c_text
-from sysmlc.synthesis.controllers import controller_files as machine_text
-from sysmlc.synthesis.controllers import controller_files as table_text
 from sysmlc.synthesis.controllers.closed_loop import Controller
 from sysmlc.synthesis.controllers.mealy import Machine, Move
 from sysmlc.synthesis.controllers.table import Entry, Table
-from sysmlc.synthesis.decision import Place
 
 MACHINE_FORMAT = "sysmlc-machine/2"
 MAX_DIAGRAM_STATES = 12
 MAX_DIAGRAM_ARROWS = 40
-"""States and moves up to which a diagram can be read."""
+"""States and moves up to which a diagram is readable."""
 _MAX_LABEL_LINES = 4
-"""Cases of a condition that an arrow tells one by one."""
+"""Cases of a condition that an arrow lists one by one."""
 
 
 def machine_json(machine: Machine, contract: Contract) -> str:
@@ -41,8 +38,8 @@ def machine_json(machine: Machine, contract: Contract) -> str:
         "format": MACHINE_FORMAT,
         "name": contract.component,
         "origin": contract.origin,
-        "inputs": [encode_variable(one) for one in machine.inputs],
-        "outputs": [encode_variable(one) for one in machine.outputs],
+        "inputs": [encode_variable(variable) for variable in machine.inputs],
+        "outputs": [encode_variable(variable) for variable in machine.outputs],
         "registers": [{"name": name, "of": of} for of, name in names.items()],
     }
     states = ",\n".join(f"    [{_encode_moves(moves, names)}]" for moves in machine.states)
@@ -50,19 +47,19 @@ def machine_json(machine: Machine, contract: Contract) -> str:
 
 
 def register_names(machine: Machine) -> dict[str, str]:
-    """What the register of a variable is called: ``last_x``, or longer if that is taken."""
-    known = {one.name for one in (*machine.inputs, *machine.outputs)}
-    found: dict[str, str] = {}
-    for one in machine.registers:
-        name = f"last_{one.name}"
-        while name in known:
+    """Return the names of the registers: ``last_x``, or longer if that name is in use."""
+    names = {variable.name for variable in (*machine.inputs, *machine.outputs)}
+    registers: dict[str, str] = {}
+    for variable in machine.registers:
+        name = f"last_{variable.name}"
+        while name in names:
             name += "_"
-        found[one.name] = name
-    return found
+        registers[variable.name] = name
+    return registers
 
 
 def rename_registers(formula: Formula, registers: Mapping[str, str]) -> Formula:
-    """A condition or an output of a move over the names of inputs and registers."""
+    """Return a condition or an output of a move over the names of inputs and registers."""
     match formula:
         case Var(name, primed):
             return Var(name if primed else registers[name])
@@ -73,7 +70,7 @@ def rename_registers(formula: Formula, registers: Mapping[str, str]) -> Formula:
 
 
 def encode_variable(variable: Variable) -> dict[str, object]:
-    """A variable as JSON."""
+    """Return a variable as a JSON value."""
     return {
         "name": variable.name,
         "type": type_of(variable.domain),
@@ -111,15 +108,15 @@ def _print_with_registers(formula: Formula, names: Mapping[str, str]) -> str:
 
 
 def has_diagram(machine: Machine) -> bool:
-    """Whether the machine is so small that a diagram of it can be read."""
+    """Return whether the machine is small enough for a readable diagram."""
     return machine.size <= MAX_DIAGRAM_STATES and machine.count <= MAX_DIAGRAM_ARROWS
 
 
 def machine_diagram(machine: Machine, contract: Contract) -> str:
-    """The machine as a state diagram: on an arrow what is given, and below it what is answered."""
+    """Return the machine as a PlantUML state diagram, with conditions and outputs on the arrows."""
     names = register_names(machine)
     lines = ["@startuml", f"title {plain(contract.component)}", "hide empty description"]
-    lines += [f"state S{at}" for at in range(machine.size)]
+    lines += [f"state S{index}" for index in range(machine.size)]
     lines += ["[*] --> S0"]
     for state, moves in enumerate(machine.states):
         lines += (
@@ -131,21 +128,24 @@ def machine_diagram(machine: Machine, contract: Contract) -> str:
 def _arrow_label(move: Move, machine: Machine, names: Mapping[str, str]) -> str:
     when = move.when
     cases = when.args if isinstance(when, Apply) and when.op is Op.OR else (when,)
-    given = ["any" if one == Const(True) else _print_with_registers(one, names) for one in cases]
-    if len(given) > _MAX_LABEL_LINES:
-        given[_MAX_LABEL_LINES - 1 :] = ["or more"]
-    return "\\n".join([*given, f"/ {_describe_answer(move, machine, names)}"])
+    conditions = [
+        "any" if condition == Const(True) else _print_with_registers(condition, names)
+        for condition in cases
+    ]
+    if len(conditions) > _MAX_LABEL_LINES:
+        conditions[_MAX_LABEL_LINES - 1 :] = ["or more"]
+    return "\\n".join([*conditions, f"/ {_describe_answer(move, machine, names)}"])
 
 
 def _describe_answer(move: Move, machine: Machine, names: Mapping[str, str]) -> str:
-    """The outputs; registers that go on as they were are left out."""
+    """Return the outputs, without registers that stay as they were."""
     pairs = zip(machine.outputs, move.output, strict=True)
-    told = [
-        f"{one.name}={_print_with_registers(value, names)}"
-        for one, value in pairs
-        if value != Var(one.name)
+    outputs = [
+        f"{variable.name}={_print_with_registers(value, names)}"
+        for variable, value in pairs
+        if value != Var(variable.name)
     ]
-    return " ".join(told) or "as before"
+    return " ".join(outputs) or "as before"
 
 
 def _legend(names: Mapping[str, str]) -> Iterator[str]:
@@ -167,8 +167,8 @@ def table_json(table: Table, contract: Contract) -> str:
         "format": TABLE_FORMAT,
         "name": contract.component,
         "origin": contract.origin,
-        "inputs": [encode_variable(one) for one in table.inputs],
-        "outputs": [encode_variable(one) for one in table.outputs],
+        "inputs": [encode_variable(variable) for variable in table.inputs],
+        "outputs": [encode_variable(variable) for variable in table.outputs],
     }
     members = (
         _encode_list("bits", _encode_bits(table)),
@@ -196,30 +196,30 @@ def _encode_nodes(table: Table) -> Iterator[str]:
 
 
 def _encode_entry(entry: Entry) -> str:
-    return encode_row({"outputs": entry.outputs, "next": entry.onward})
+    return encode_row({"outputs": entry.outputs, "next": entry.successors})
 
 
 GR1C_VERSION = 1
 MAX_STEPS = 50_000
-"""Steps that are tried; each next input of each node is one."""
+"""Steps that are tried at most; each next input of each node is a step."""
 
 Values = Mapping[str, Literal]
 
 
 def gr1c_json(controller: Controller, contract: Contract, most: int = MAX_STEPS) -> str:
-    """The controller as JSON text, a line a node.
+    """Return the controller as gr1c's JSON with a line for each node.
 
-    Raises LimitError when more than ``most`` steps would have to be tried.
+    Raises LimitError if more than *most* steps would have to be tried.
     """
     head = {
         "version": GR1C_VERSION,
         "gr1c": "",
         "date": "",
         "extra": f"sysmlc: {contract.component}",
-        "ENV": [_gr1c_declaration(one) for one in controller.inputs],
-        "SYS": [_gr1c_declaration(one) for one in controller.outputs],
+        "ENV": [_gr1c_declaration(variable) for variable in controller.inputs],
+        "SYS": [_gr1c_declaration(variable) for variable in controller.outputs],
     }
-    nodes = ",\n".join(_Unrolling(controller, contract, most).lines())
+    nodes = ",\n".join(_Unrolling(controller, contract, most).iter_lines())
     return append_members(head, [f'  "nodes": {{\n{nodes}\n  }}'])
 
 
@@ -230,47 +230,47 @@ def _gr1c_declaration(variable: Variable) -> dict[str, object]:
 
 
 class _Unrolling:
-    """The steps of a controller in all environments that keep the assumptions."""
+    """The steps of a controller in all environments that satisfy the assumptions."""
 
     def __init__(self, controller: Controller, contract: Contract, most: int) -> None:
-        self._controller, self._most, self._left = controller, most, most
+        self._controller, self._max_steps, self._steps_left = controller, most, most
         self._first = _compile_conjuncts(contract.assumptions, Class.INIT)
         self._later = _compile_conjuncts(contract.assumptions, Class.SAFETY)
-        known = {one.name: one.domain for one in controller.inputs}
-        if domains.count(known) > most:
+        domains_by_name = {variable.name: variable.domain for variable in controller.inputs}
+        if domains.count(domains_by_name) > most:
             raise LimitError("steps of the strategy", f"{most:,}")
-        self._inputs = list(domains.valuations(known))
+        self._inputs = list(domains.valuations(domains_by_name))
         self._places: dict[tuple[tuple[Literal, ...], int], int] = {}
-        self._found: list[tuple[dict[str, Literal], int]] = []
+        self._nodes: list[tuple[dict[str, Literal], int]] = []
 
-    def lines(self) -> Iterator[str]:
-        """The nodes, those that are found first first."""
-        first = set(self._after({}, 0, self._first))
-        for place, (values, state) in enumerate(self._found):
-            after = self._after(values, state, self._later)
-            yield self._line(place, values, state, place in first, list(after))
+    def iter_lines(self) -> Iterator[str]:
+        """Yield the nodes in the order of their discovery."""
+        initial_places = set(self._successors({}, 0, self._first))
+        for place, (values, state) in enumerate(self._nodes):
+            successors = self._successors(values, state, self._later)
+            yield self._encode_node(place, values, state, place in initial_places, list(successors))
 
-    def _after(self, values: Values, state: int, rules: Sequence[Evaluation]) -> Iterator[int]:
-        """The nodes that the inputs lead to that are allowed after a step."""
-        for given in self._inputs:
-            self._left -= 1
-            if self._left < 0:
-                raise LimitError("steps of the strategy", f"{self._most:,}")
-            now, then = (values, given) if values else (given, None)
-            if all(rule(now, then) for rule in rules):
-                yield self._place(values, state, given)
+    def _successors(self, values: Values, state: int, rules: Sequence[Evaluation]) -> Iterator[int]:
+        """Yield the nodes to which the inputs that are allowed after a step lead."""
+        for inputs in self._inputs:
+            self._steps_left -= 1
+            if self._steps_left < 0:
+                raise LimitError("steps of the strategy", f"{self._max_steps:,}")
+            current, following = (values, inputs) if values else (inputs, None)
+            if all(rule(current, following) for rule in rules):
+                yield self._place_of(values, state, inputs)
 
-    def _place(self, values: Values, state: int, given: Values) -> int:
-        outputs, after = self._controller.step(state, values, given)
-        step = dict(given) | outputs
-        key = tuple(step.values()), after
+    def _place_of(self, values: Values, state: int, inputs: Values) -> int:
+        outputs, next_state = self._controller.step(state, values, inputs)
+        step = dict(inputs) | outputs
+        key = tuple(step.values()), next_state
         if key not in self._places:
-            self._places[key] = len(self._found)
-            self._found.append((step, after))
+            self._places[key] = len(self._nodes)
+            self._nodes.append((step, next_state))
         return self._places[key]
 
-    def _line(
-        self, place: int, values: Values, state: int, is_first: bool, after: list[int]
+    def _encode_node(
+        self, place: int, values: Values, state: int, is_first: bool, successors: list[int]
     ) -> str:
         variables = (*self._controller.inputs, *self._controller.outputs)
         node = {
@@ -278,61 +278,14 @@ class _Unrolling:
             "mode": state,
             "rgrad": -1,
             "initial": is_first,
-            "trans": [str(successor) for successor in after],
+            "trans": [str(successor) for successor in successors],
         }
         return f'    "{place}": {encode_row(node)}'
 
 
 def _compile_conjuncts(conjuncts: Sequence[Conjunct], class_: Class) -> list[Evaluation]:
-    return [evaluation(one.formula) for one in conjuncts if one.class_ is class_]
+    return [evaluation(conjunct.formula) for conjunct in conjuncts if conjunct.class_ is class_]
 
 
 def _value_code(variable: Variable, value: Literal) -> int:
     return domains.values(variable.domain).index(value)
-
-
-OWN, TABLE, GR1C = FORMS = ("own", "table", "gr1c")
-"""Forms of controllers as files: machine or table, table, gr1c's JSON."""
-
-
-class ControllerFiles(Struct, frozen=True):
-    """What was made, and the files of it; what a form cannot say counts as not made."""
-
-    made: tuple[Synthesis, ...]
-    files: tuple[tuple[str, str], ...]
-    """Names and texts; small machines have a diagram too."""
-
-
-def write_controllers(
-    made: Sequence[Synthesis], place: Place, sink: Sink, form: str = OWN
-) -> ControllerFiles:
-    """The files of all controllers there are; what cannot be said in this form is reported."""
-    names = assign_file_names([one.contract.component for one in made])
-    files: list[tuple[str, str]] = []
-    kept: list[Synthesis] = []
-    for one in made:
-        try:
-            if one.machine is not None:
-                files += controller_files(
-                    names[one.contract.component], one.machine, one.contract, form
-                )
-            kept.append(one)
-        except LimitError as problem:
-            subject, name = place(one.contract.origin), one.contract.component
-            sink.report(rules.NO_MACHINE, subject, component=name, why=str(problem))
-            kept.append(replace(one, machine=None))
-    return ControllerFiles(tuple(kept), tuple(files))
-
-
-def controller_files(
-    name: str, controller: Controller, contract: Contract, form: str
-) -> Iterator[tuple[str, str]]:
-    """The files of one controller. Raises LimitError for one that is too large for gr1c's form."""
-    if form == GR1C:
-        yield f"{name}.gr1c.json", gr1c_text.gr1c_json(controller, contract)
-    elif not isinstance(controller, Machine):
-        yield f"{name}.controller.json", table_text.table_json(controller, contract)
-    else:
-        yield f"{name}.machine.json", machine_text.machine_json(controller, contract)
-        if machine_text.has_diagram(controller):
-            yield f"{name}.machine.puml", machine_text.machine_diagram(controller, contract)
