@@ -29,7 +29,7 @@ __all__ = [
 
 
 def __getattr__(name: str) -> object:
-    """The text form is imported when somebody asks for it: most runs neither read nor write it."""
+    """Import the text form at its first use: most runs neither read nor write it."""
     if name in ("IrSyntaxError", "parse_text", "print_text"):
         return getattr(import_module("sysmlc.ir.text"), name)
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

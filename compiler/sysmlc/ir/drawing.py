@@ -1,4 +1,4 @@
-"""Diagrams as their authors drew them, before the pass ``views`` makes them part of the graph."""
+"""Diagrams as their authors drew them; the pass ``views`` adds them to the graph."""
 
 from msgspec import Struct
 
@@ -6,12 +6,12 @@ from sysmlc.ir.kinds import Edge
 
 
 class Drawing(Struct, frozen=True):
-    """One diagram; every reference is an id of ``file`` or an ``href``, as its tool wrote it.
+    """One diagram. References are ids of ``file`` or hrefs, as the tool wrote them.
 
-    ``type`` is what the tool calls it, ``diagram`` our word (docs/ir.md). ``source`` and
-    ``ordinal`` say where it is written. ``paths`` are the elements that are drawn inside
-    others, outermost first; ``listed`` those that are only named in a compartment of another
-    one; ``relations`` those lines that are no elements of the graph.
+    ``type`` is the tool's word for the type of the diagram, ``diagram`` ours (docs/ir.md).
+    ``source`` and ``ordinal`` are its position. ``paths`` are nested elements, outermost first,
+    ``listed`` elements that only a compartment of another one names, and ``relations`` lines that
+    are edges of the graph, not elements.
     """
 
     id: str

@@ -19,34 +19,36 @@ from enum import StrEnum
 
 
 def generate() -> str:
-    """Text of ``kinds.py`` for the metamodel as it is now."""
+    """Return the text of ``kinds.py`` for the current metamodel."""
     metamodel = ResourceSet().get_resource(str(resources.path("metamodels", "ir.ecore")))
     package = metamodel.contents[0]
     base = package.getEClassifier("Element")
     classes = [c for c in package.eClassifiers if base in c.eSuperTypes]
     edges = [r for r in base.eReferences if r.name != "attrs"]
-    kinds = _enum("Kind", "Kind of an element, in the words of the standards.", classes, str)
+    kinds = _enumeration_lines(
+        "Kind", "Kind of an element, in the words of the standards.", classes, str
+    )
     return "\n".join(
-        [_HEAD, *kinds, "", *_enum("Edge", "Kind of an edge.", edges, _hyphenated), ""]
+        [_HEAD, *kinds, "", *_enumeration_lines("Edge", "Kind of an edge.", edges, _hyphenate), ""]
     )
 
 
-def _enum(
+def _enumeration_lines(
     name: str, doc: str, members: Iterable[EModelElement], spell: Callable[[str], str]
 ) -> Iterator[str]:
     yield f"\nclass {name}(StrEnum):"
     yield f'    """{doc}"""\n'
     for member in members:
         value = spell(member.name)
-        yield from _comment(_documentation(member))
-        yield f'    {_identifier(value)} = "{value}"'
+        yield from _comment_lines(_read_documentation(member))
+        yield f'    {_make_identifier(value)} = "{value}"'
 
 
-def _documentation(member: EModelElement) -> str:
+def _read_documentation(member: EModelElement) -> str:
     return str(member.eAnnotations[0].details["documentation"])
 
 
-def _comment(text: str) -> Iterator[str]:
+def _comment_lines(text: str) -> Iterator[str]:
     line = "    #"
     for word in text.split():
         if len(line) + len(word) > 98:
@@ -56,11 +58,11 @@ def _comment(text: str) -> Iterator[str]:
     yield line
 
 
-def _hyphenated(name: str) -> str:
+def _hyphenate(name: str) -> str:
     return re.sub(r"([A-Z])", lambda m: "-" + m[1].lower(), name)
 
 
-def _identifier(value: str) -> str:
+def _make_identifier(value: str) -> str:
     return re.sub(r"(?<=[a-z])([A-Z])", r"_\1", value).replace("-", "_").upper()
 
 

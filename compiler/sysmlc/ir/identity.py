@@ -1,37 +1,38 @@
-"""Ids for what a pass or a front end makes: computed from origin and role, never random."""
+"""Ids: those of derived elements, and which tool has assigned an id."""
 
 import re
 from hashlib import sha1
 
-_MADE_BY_TOOLS = re.compile(
+_TOOL_ID = re.compile(
     r"_[\w-]{22}|_\w+_\d+_\d+_\d+|EA(ID|PK)_[0-9A-F]{8}_\w+|eee_\d+_\d+_\d+", re.ASCII
 )
-_UNMISTAKABLE = 20
-"""Length from which tools' ids are unique in the world: Papyrus writes 23 characters, MagicDraw
-about 41, Enterprise Architect 43."""
+_SHORTEST_UNIQUE = 20
+"""Ids of this length are unique in the world: Papyrus writes 23 characters, MagicDraw about 41,
+Enterprise Architect 43."""
 ROOT = "eee_1045467100313_"
-"""Start of the ids of MagicDraw's roots, the same in every project."""
+"""Prefix of the ids of MagicDraw's roots, which are the same in every project."""
 _NAMESPACE = bytes.fromhex("6f1d7a543f0c5d3a9a520c2f6f2d7b11")
 _VARIANT = dict(zip("0123456789abcdef", "89ab" * 4, strict=True))
-"""Digit of a UUID in which two bits say that it is one of RFC 9562."""
+"""Digit of a UUID whose upper two bits state the variant of RFC 9562."""
 
 
-def is_unmistakable(id: str) -> bool:
-    """Whether an id of a file is of the kind that tools make, the same in no two models."""
-    return len(id) >= _UNMISTAKABLE and not id.startswith(ROOT)
+def is_globally_unique(id: str) -> bool:
+    """Return whether no two models can have this id, because a tool has generated it."""
+    return len(id) >= _SHORTEST_UNIQUE and not id.startswith(ROOT)
 
 
-def is_made_by_tools(id: str) -> bool:
-    """Whether it is an id as Eclipse, MagicDraw and Enterprise Architect make them, and no word."""
-    return _MADE_BY_TOOLS.fullmatch(id) is not None
+def is_generated(id: str) -> bool:
+    """Return whether *id* has the form that Eclipse, MagicDraw or Enterprise Architect generate."""
+    return _TOOL_ID.fullmatch(id) is not None
 
 
 def derived_id(origin: str, role: str) -> str:
-    """Id of what plays ``role`` for the element ``origin``; the same on every machine.
+    """Return the id of the element that is derived from the element *origin* in the role *role*.
 
-    A UUID of version 5 (RFC 9562, 5.5), made here because ``uuid.uuid5`` takes three times as long.
+    It is a UUID of version 5 (RFC 9562, 5.5), the same on every machine.
     """
+    # uuid.uuid5() takes three times as long.
     name = f"{origin}\x1f{role}".encode()
-    found = sha1(_NAMESPACE + name, usedforsecurity=False).hexdigest()
-    variant = _VARIANT[found[16]]
-    return f"{found[:8]}-{found[8:12]}-5{found[13:16]}-{variant}{found[17:20]}-{found[20:32]}"
+    digest = sha1(_NAMESPACE + name, usedforsecurity=False).hexdigest()
+    variant = _VARIANT[digest[16]]
+    return f"{digest[:8]}-{digest[8:12]}-5{digest[13:16]}-{variant}{digest[17:20]}-{digest[20:32]}"

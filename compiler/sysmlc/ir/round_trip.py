@@ -1,4 +1,7 @@
-"""What a saved model keeps for the way back: a comment that starts with a known word."""
+"""The comment in which a saved model stores facts that its format cannot express.
+
+The back end ``uml`` writes it, and the pass ``kept`` restores the facts.
+"""
 
 PREFIX = "sysmlc-kept/1 "
-"""How the body starts; what follows is JSON (metamodels/sysmlc-kept.schema.json)."""
+"""Start of the body; JSON follows (metamodels/sysmlc-kept.schema.json)."""

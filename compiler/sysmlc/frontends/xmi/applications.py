@@ -14,7 +14,7 @@ from sysmlc.frontends.xmi.rules import LOST_TAG
 from sysmlc.frontends.xmi.unit import LoweredDocument, Target
 from sysmlc.frontends.xmi.values import read_value
 from sysmlc.ir import AttrValue, Edge, Element, Kind
-from sysmlc.ir.identity import derived_id, is_made_by_tools
+from sysmlc.ir.identity import derived_id, is_generated
 
 _BASE = "base_"
 _NO_TAGS = (_BASE, "__EA")
@@ -156,7 +156,7 @@ def _read_tag(context: Context, application: Element, row: int, name: str, text:
         return find_id_by_guid(context, text) or text
     tokens = text.split()
     ids = context.document.ids
-    if len(tokens) == 1 and tokens[0] not in ids and not is_made_by_tools(tokens[0]):
+    if len(tokens) == 1 and tokens[0] not in ids and not is_generated(tokens[0]):
         return text
     if all(token in ids for token in tokens):
         existing = tokens
@@ -171,7 +171,7 @@ def _select_existing(
 ) -> list[str]:
     """Return the ids of existing elements and report the others; none if a token is no id."""
     missing = dict.fromkeys(token for token in tokens if not _has_target(context, token))
-    if not all(map(is_made_by_tools, missing)):
+    if not all(map(is_generated, missing)):
         return []
     if missing:
         _report_lost_tag(context, application, row, name, *missing)
@@ -194,7 +194,7 @@ def _read_child_tag(context: Context, application: Element, child: int) -> AttrV
 
 def _has_target(context: Context, id: str) -> bool:
     return id in context.document.ids or (
-        is_made_by_tools(id) and context.unit.find_target(context.file, id, False) is not None
+        is_generated(id) and context.unit.find_target(context.file, id, False) is not None
     )
 
 

@@ -10,7 +10,7 @@ from sysmlc.frontends.xmi.document import Document
 from sysmlc.frontends.xmi.metaclasses import kind_of
 from sysmlc.frontends.xmi.vocabulary import TARGET_KINDS
 from sysmlc.ir import Kind
-from sysmlc.ir.identity import ROOT, is_unmistakable
+from sysmlc.ir.identity import ROOT, is_globally_unique
 
 _MAX_LENGTH = 8192
 """Characters of an href that count: a longer one is cut, and leads nowhere."""
@@ -52,7 +52,7 @@ def can_lead_into(library: str, path: str, id: str) -> bool:
     Ids that tools generate are the same in no two models, so that the path does not matter;
     ``_0`` is an id in many models.
     """
-    return is_unmistakable(id) or is_in_project(path, id) or path == library != ""
+    return is_globally_unique(id) or is_in_project(path, id) or path == library != ""
 
 
 def base_name(path: str) -> str:

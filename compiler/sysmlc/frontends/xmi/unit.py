@@ -7,7 +7,7 @@ from sysmlc.frontends.xmi import hrefs
 from sysmlc.frontends.xmi.document import Document, WrittenReference
 from sysmlc.frontends.xmi.namespaces import Profiles
 from sysmlc.ir import Edge, Element, Graph, Kind, Reference
-from sysmlc.ir.identity import is_unmistakable
+from sysmlc.ir.identity import is_globally_unique
 
 _OMITTED = (Verdict.IGNORED_NOTATION, Verdict.UNSUPPORTED)
 
@@ -160,7 +160,7 @@ class Unit:
             for holder in holders
             if _archive(holder.document.name) == path or holder.document.name == path
         ]
-        if not candidates and is_unmistakable(fragment):
+        if not candidates and is_globally_unique(fragment):
             candidates = holders
         if hrefs.is_in_project(href, fragment):
             archive = _archive(file.document.name)

@@ -2,7 +2,7 @@
 
 from sysmlc.diagnostics import Place, Rule, Sink, Subject
 from sysmlc.ir import Graph, Kind
-from sysmlc.ir.identity import is_made_by_tools
+from sysmlc.ir.identity import is_generated
 from sysmlc.passes.resolve.hrefs import PRIMITIVES, has_primitives_only, is_standard, split
 from sysmlc.passes.resolve.references import Need, Use
 from sysmlc.passes.resolve.resolver import stand_in_id
@@ -91,7 +91,7 @@ def _is_doubtful(graph: Graph, href: str) -> bool:
     Newer versions may have new elements; profiles that are applied say nothing by themselves.
     """
     stub = graph[stand_in_id(href)]
-    is_nameless = is_made_by_tools(stub.name) and stub.kind is not Kind.PROFILE
+    is_nameless = is_generated(stub.name) and stub.kind is not Kind.PROFILE
     return is_nameless or (has_primitives_only(split(href)[0]) and stub.name not in PRIMITIVES)
 
 

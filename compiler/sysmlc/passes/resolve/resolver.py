@@ -8,7 +8,7 @@ from operator import attrgetter
 from urllib.parse import unquote
 
 from sysmlc.ir import AttrValue, Element, Graph, Kind
-from sysmlc.ir.identity import derived_id, is_unmistakable
+from sysmlc.ir.identity import derived_id, is_globally_unique
 from sysmlc.passes.resolve.hrefs import (
     PRIMITIVE_TYPES,
     is_href,
@@ -64,7 +64,7 @@ class Targets:
             )
         library, fragment = split(target)
         found = self._in(fragment, self.files(file, library))
-        if found is None and is_unmistakable(fragment):
+        if found is None and is_globally_unique(fragment):
             found = _first(self._named(fragment))
         return found
 
