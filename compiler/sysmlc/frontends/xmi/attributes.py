@@ -61,6 +61,7 @@ _HANDLED = frozenset(
 """Attributes that the handlers of single metaclasses read."""
 
 _PASSED_OVER = (v.REDUNDANT | _HANDLED | {"name"}) - {name for _, name in v.REVERSED}
+"""Attributes that no table of edges or attributes of the graph contains."""
 
 _BOUNDS = ("lower", "upper")
 """Derived attributes, which Enterprise Architect writes."""
@@ -83,10 +84,8 @@ def lower_attributes(context: Context, element: Element, row: int, values: dict[
 
 def lower_attribute(context: Context, element: Element, row: int, name: str, value: str) -> None:
     """Lower one attribute or list of references of UML."""
-    edge = v.REFERENCES.get(name)
+    edge = v.REFERENCES_BY_KIND.get((element.kind, name)) or v.REFERENCES.get(name)
     if edge is not None:
-        if name in v.KIND_DEPENDENT:
-            edge = v.REFERENCES_BY_KIND.get((element.kind, name), edge)
         for target in _limit_targets(context, row, name, value):
             context.add_reference(edge, element.id, WrittenReference(target, row), name)
     elif name in _STORED:

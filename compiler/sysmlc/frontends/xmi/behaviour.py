@@ -62,7 +62,7 @@ def _lower_weight(context: Context, row: int) -> None:
 
 
 def _make_record_handler(key: str) -> RowHandler:
-    """Return a handler of rows that become records in an attribute of their owner."""
+    """Return a handler of rows that become records: tuples of ids in an attribute of the owner."""
 
     def lower(context: Context, row: int) -> None:
         owner = context.find_owner(row)

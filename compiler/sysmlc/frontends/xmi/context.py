@@ -87,7 +87,7 @@ class Context:
     # -- verdicts ----------------------------------------------------------------------------------
 
     def mark_mapped(self, row: int) -> None:
-        """Mark the row as mapped to the element above it."""
+        """Mark a row as mapped that becomes no element, but belongs to the element above it."""
         parent = self.document.parents[row]
         self.element_ids[row] = self.element_ids[parent] if parent >= 0 else ""
         self.verdicts[row] = Verdict.MAPPED

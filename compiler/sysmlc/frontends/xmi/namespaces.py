@@ -42,7 +42,7 @@ def is_sysml(namespace: str) -> bool:
 
 
 class Profiles:
-    """The stereotypes of a compile unit by namespace and name."""
+    """Finds the stereotypes of a compile unit by the namespace of their profile and their name."""
 
     def __init__(self) -> None:
         self._packages: dict[str, list[str]] = {}

@@ -181,7 +181,10 @@ FEATURES: dict[str, RowHandler] = {
 
 
 def _make_packaged_value_handler(type_name: str) -> RowHandler:
-    """Return a handler of values in packages: elements, because constraints refer to them."""
+    """Return a handler of values that packages own.
+
+    They are elements, because constraints and observations refer to them.
+    """
 
     def lower(context: Context, row: int) -> None:
         if context.document.features[row] != "packagedElement":

@@ -107,9 +107,6 @@ REFERENCES_BY_KIND: dict[tuple[Kind, str], Edge] = {
 }
 """Edges of features that have another meaning for these kinds."""
 
-KIND_DEPENDENT = frozenset(name for _, name in REFERENCES_BY_KIND)
-"""Features whose edge depends on the kind."""
-
 _SUBJECTS = (
     Kind.CLASS,
     Kind.COMPONENT,
