@@ -22,25 +22,25 @@ def attribute(key, text):
 def stereotype(name, profile="SysML", **tags):
     head = f'<attribute key="stereotypeName">{name}</attribute>'
     head += f'<attribute key="profileName">{profile}</attribute>'
-    told = "".join(
+    tags = "".join(
         f'<attribute key="stereotypeTaggedValue">{head}<attribute key="taggedValueName">{tag}'
         '</attribute><attribute key="values"><attribute key="value"><attribute key="value">'
         f"{value}</attribute></attribute></attribute></attribute>"
         for tag, value in tags.items()
     )
-    return f'<attribute key="stereotype">{head}</attribute>{told}'
+    return f'<attribute key="stereotype">{head}</attribute>{tags}'
 
 
 def data(type, id, parent="", name="", more="", **relations):
     related = {"hasParent": parent, **relations} if parent else relations
-    told = "".join(
+    relationships = "".join(
         f"<{relation}><type>x</type><id>{target}</id><relationship_metadata/></{relation}>"
         for relation, targets in related.items()
         for target in targets.split()
     )
     return (
         f"<data><attributes>{attribute('name', name)}{more}</attributes>"
-        f"<id><cameo>{id}</cameo></id><relationships>{told}</relationships>"
+        f"<id><cameo>{id}</cameo></id><relationships>{relationships}</relationships>"
         f"<type>sysml.{type}</type></data>\n"
     )
 
@@ -58,7 +58,7 @@ class Read:
         if resolved:
             pipeline.load("resolve").run(self.graph, self.sink)
         assert verify(self.graph) == []
-        self.found = [f"{found.rule.code} {found.message}" for found in self.sink]
+        self.findings = [f"{diagnostic.rule.code} {diagnostic.message}" for diagnostic in self.sink]
         self.totals = {k: n for k, n in self.coverage.as_json()["total"].items() if n}
 
 
@@ -81,7 +81,10 @@ STRUCTURE = packet(
 def test_blocks_ports_parts_connectors_and_requirements():
     read = Read(STRUCTURE)
     graph = read.graph
-    assert (read.found, read.totals) == ([], {"elements": 12, "mapped": 11, "ignored_notation": 1})
+    assert (read.findings, read.totals) == (
+        [],
+        {"elements": 12, "mapped": 11, "ignored_notation": 1},
+    )
     assert graph.qualified_name(graph["p"]) == "Plant::Gate::in"
     assert graph.target(graph["p"], Edge.TYPED_BY) is graph["i"]
     assert graph["q"].attrs == {"multiplicity": "*", "aggregation": "composite"}
@@ -132,7 +135,7 @@ def test_behaviour_has_the_shape_that_xmi_gives():
         )
     )
     graph = read.graph
-    assert read.found == []
+    assert read.findings == []
     assert "guard" in graph["f"].attrs
     assert graph.target(graph["x"], Edge.CALLS) is graph["l"]
     assert graph["o"].attrs["direction"] == "out"
@@ -141,24 +144,24 @@ def test_behaviour_has_the_shape_that_xmi_gives():
     assert graph["tg"].attrs == {"subkind": "time", "when": "1s", "relative": True}
 
 
-def test_tagged_values_stay_with_their_stereotype():
+def test_tagged_values_belong_to_their_stereotype():
     read = Read(packet(data("Class", "c", "", "C", stereotype("Cost", "Own", euro="5"))))
-    (application,) = [one for one in read.graph if one.name == "Cost"]
+    (application,) = [element for element in read.graph if element.name == "Cost"]
     assert application.attrs == {"stereotype": "Cost", "namespace": "Own", "tag.euro": "5"}
 
 
-def test_what_mtip_left_out_is_known_by_name_only():
+def test_elements_that_mtip_omits_are_stubs():
     read = Read(
         packet(data("Property", "p", "c", "speed", typedBy="gone"), data("Class", "c", name="C"))
     )
-    assert read.found == [
+    assert read.findings == [
         "SM152 'MTIP:not-exported' is not part of the compile unit; "
         "what it holds (1) is known by name only"
     ]
     assert read.graph.target(read.graph["p"], Edge.TYPED_BY).attrs["external"] is True
 
 
-def test_a_flow_from_what_is_not_there_has_no_source_and_says_so():
+def test_a_flow_from_a_missing_node_has_no_source_and_is_reported():
     read = Read(
         packet(
             data("Activity", "a", name="A"),
@@ -168,10 +171,10 @@ def test_a_flow_from_what_is_not_there_has_no_source_and_says_so():
     )
     assert read.totals == {"elements": 3, "mapped": 2, "approximated": 1}
     assert read.graph["f"].attrs["unresolved"] == ("flow-source",)
-    assert [line[:5] for line in read.found] == ["SM184"]
+    assert [line[:5] for line in read.findings] == ["SM184"]
 
 
-def test_what_is_not_read_is_counted_and_told():
+def test_unread_records_are_counted_and_reported():
     read = Read(
         packet(
             data("Model", "m", name="M"),
@@ -182,29 +185,30 @@ def test_what_is_not_read_is_counted_and_told():
         )
     )
     assert read.totals == {"elements": 5, "mapped": 1, "unsupported": 4}
-    assert [line.partition(" ")[0] for line in read.found] == ["SM183", "SM181", "SM182"]
+    assert [line.partition(" ")[0] for line in read.findings] == ["SM183", "SM181", "SM182"]
 
 
-def test_what_is_nearly_that_is_not_told():
+def test_a_wholly_read_model_gives_no_diagnostics():
     read = Read(packet(data("Model", "m", name="M"), data("Class", "n", "m", "N")))
-    assert read.found == []
+    assert read.findings == []
 
 
 def test_the_order_of_records_does_not_matter():
     records = [data("Class", f"c{n}", f"c{n - 1}" if n else "", f"C{n}") for n in range(5)]
     forwards, backwards = Read(packet(*records)), Read(packet(*reversed(records)))
     names = [
-        {e.id: one.graph.qualified_name(e) for e in one.graph} for one in (forwards, backwards)
+        {e.id: reading.graph.qualified_name(e) for e in reading.graph}
+        for reading in (forwards, backwards)
     ]
     assert names[0] == names[1]
 
 
-def test_owners_in_circles_are_not_read():
+def test_cyclic_owners_are_not_read():
     read = Read(packet(data("Class", "a", "b"), data("Class", "b", "a"), data("Class", "c")))
     assert [element.id for element in read.graph] == ["c"]
 
 
-def test_owners_without_end_are_refused():
+def test_owners_nested_too_deeply_are_refused():
     records = [data("Class", f"c{n}", f"c{n - 1}" if n else "") for n in range(600)]
     with pytest.raises(SourceError, match="nested more than 500 deep") as raised:
         Read(packet(*records))
@@ -221,24 +225,24 @@ def test_owners_without_end_are_refused():
         ),
     ],
 )
-def test_a_damaged_file_is_located_and_left_out(spoil, reason):
+def test_a_damaged_file_is_located_and_skipped(spoil, reason):
     spoilt = Source("plant_mtip.xml", spoil(STRUCTURE.data))
     assert FRONTEND.detect(spoilt) == 1.0
     sink, graph = Sink(), Graph()
     FRONTEND.read([spoilt, packet(data("Class", "z"), name="z.xml")], graph, sink, Coverage())
-    (found,) = sink
-    assert (found.rule.code, [element.id for element in graph]) == ("SM185", ["z"])
-    assert reason in found.message
-    assert found.subject.place.offset > 0
+    (diagnostic,) = sink
+    assert (diagnostic.rule.code, [element.id for element in graph]) == ("SM185", ["z"])
+    assert reason in diagnostic.message
+    assert diagnostic.subject.place.offset > 0
 
 
-def test_other_files_are_left_to_others():
+def test_other_files_are_not_detected():
     assert FRONTEND.detect(STRUCTURE) == 1.0
     for text in (b"<packet/>", b"<x><packet mtipVersion=''/></x>", b"", b"<uml:Model/>"):
         assert FRONTEND.detect(Source("m.xml", text)) == 0.0
 
 
-def test_spoilt_files_are_a_graph_or_a_located_fault(tmp_path):
+def test_damaged_files_give_a_graph_or_a_located_fault(tmp_path):
     """Whatever is done to a file, no exception of ours comes of it."""
     for seed in range(200):
         random = Random(seed)
@@ -246,8 +250,8 @@ def test_spoilt_files_are_a_graph_or_a_located_fault(tmp_path):
         _, spoilt = spoil(STRUCTURE.data, random)
         path = tmp_path / "plant.xml"
         path.write_bytes(spoilt)
-        made = compile_model(Request((path,), verify_each=True))
-        assert not [f for f in made.diagnostics if f.rule.code.startswith("SM9")], seed
+        compilation = compile_model(Request((path,), verify_each=True))
+        assert not [f for f in compilation.diagnostics if f.rule.code.startswith("SM9")], seed
 
 
 @pytest.mark.long
@@ -261,7 +265,7 @@ def test_the_telescope_is_read(corpus):
     shares = [read.totals[k] for k in ("mapped", "approximated", "ignored_notation", "unsupported")]
     assert sum(shares) == read.totals["elements"]
     assert read.totals["mapped"] >= 0.93 * read.totals["elements"]
-    assert {line[:5] for line in read.found} == {"SM152", "SM181", "SM182", "SM184"}
+    assert {line[:5] for line in read.findings} == {"SM152", "SM181", "SM182", "SM184"}
 
 
 def test_the_text_form_shows_what_was_read():
@@ -269,7 +273,7 @@ def test_the_text_form_shows_what_was_read():
     assert lines[0] == 'Package m "Plant" subkind="model" @plant_mtip.xml:3'
 
 
-def test_what_follows_from_a_node_that_is_not_there_is_not_an_error(tmp_path):
+def test_consequences_of_a_missing_node_are_no_errors(tmp_path):
     """MTIP leaves nodes out; that is one warning, not an error for each of their flows."""
     records = (
         data("Activity", "a", name="A"),
@@ -277,5 +281,5 @@ def test_what_follows_from_a_node_that_is_not_there_is_not_an_error(tmp_path):
         data("ControlFlow", "f", "a", supplier="gone", client="n"),
     )
     (tmp_path / "plant.xml").write_bytes(packet(*records).data)
-    made = compile_model(Request((tmp_path / "plant.xml",)))
-    assert [f.rule.code for f in made.diagnostics if f.severity != "info"] == ["SM184"]
+    compilation = compile_model(Request((tmp_path / "plant.xml",)))
+    assert [f.rule.code for f in compilation.diagnostics if f.severity != "info"] == ["SM184"]

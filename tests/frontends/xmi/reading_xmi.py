@@ -25,7 +25,7 @@ MAGICDRAW = """<?xml version='1.0' encoding='UTF-8'?>
 
 
 class Read:
-    """What came out of reading some files."""
+    """The graph, the diagnostics and the coverage of some files."""
 
     def __init__(self, sources, graph=None):
         self.graph = graph or Graph()
@@ -40,7 +40,7 @@ class Read:
 
     @property
     def findings(self):
-        return [f"{found.rule.name}: {found.message}" for found in self.sink]
+        return [f"{diagnostic.rule.name}: {diagnostic.message}" for diagnostic in self.sink]
 
     @property
     def totals(self):

@@ -129,13 +129,13 @@ CLAUSES = """<packagedElement xmi:type="uml:Activity" xmi:id="a">
         (('predecessorClause="gone"', "", ""), "t1 t2 t3"),
     ],
 )
-def test_clauses_are_tried_in_the_order_that_they_say(relations, order):
+def test_clauses_are_sorted_by_predecessor_and_successor(relations, order):
     clauses = (
-        f'<clause xmi:id="c{number}" test="t{number}" {said}/>'
-        for number, said in enumerate(relations, 1)
+        f'<clause xmi:id="c{number}" test="t{number}" {relation}/>'
+        for number, relation in enumerate(relations, 1)
     )
-    found = read(papyrus(CLAUSES.format("".join(clauses)))).graph["n"].attrs["clauses"]
-    assert " ".join(test for (test,), _ in found) == order
+    records = read(papyrus(CLAUSES.format("".join(clauses)))).graph["n"].attrs["clauses"]
+    assert " ".join(test for (test,), _ in records) == order
 
 
 @pytest.mark.parametrize(
@@ -148,19 +148,21 @@ def test_clauses_are_tried_in_the_order_that_they_say(relations, order):
         ('<generalization xmi:id="g" general="k" isSubstitutable="true"/>', ""),
     ],
 )
-def test_what_an_edge_has_no_room_for_is_told(model, lost):
+def test_attributes_that_an_edge_cannot_store_are_reported(model, lost):
     text = '<packagedElement xmi:type="uml:Class" xmi:id="x">{}</packagedElement>{}'
     other = '<packagedElement xmi:type="uml:Interface" xmi:id="k"/>'
     reading = read(papyrus(text.format(model, other)))
     assert reading.totals.get("approximated", 0) == bool(lost)
-    assert [found.split("without ")[1] for found in reading.findings] == ([lost] if lost else [])
+    assert [finding.split("without ")[1] for finding in reading.findings] == (
+        [lost] if lost else []
+    )
 
 
 @pytest.mark.parametrize(
     ("written", "mode"),
     [("", "iterative"), ('mode="iterative"', "iterative"), ('mode="parallel"', "parallel")],
 )
-def test_an_expansion_region_is_iterative_unless_it_says_otherwise(written, mode):
+def test_an_expansion_region_is_iterative_by_default(written, mode):
     """UML 2.5.1 clause 16.14; an element of the graph without a mode would be parallel."""
     region = f'<node xmi:type="uml:ExpansionRegion" xmi:id="r" {written}/>'
     model = f'<packagedElement xmi:type="uml:Activity" xmi:id="a">{region}</packagedElement>'
@@ -247,7 +249,7 @@ def machine(start):
   </packagedElement>"""
 
 
-def test_all_triggers_of_one_event_say_what_it_says():
+def test_all_triggers_of_an_event_get_its_content():
     reading = read(
         papyrus(
             """

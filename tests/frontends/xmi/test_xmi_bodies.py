@@ -55,7 +55,7 @@ def element(model, id="x"):
     ],
     ids=["behaviour", "action", "constraint", "guard", "default", "value-pin"],
 )
-def test_all_bodies_are_kept_and_the_legible_one_counts(model, key):
+def test_all_bodies_are_stored_and_the_one_in_an_expression_language_counts(model, key):
     attrs = element(model)
     assert {name: attrs[f"{key}{name}"] for name in BOTH} == BOTH
     assert attrs[key.rstrip("_") or "body"] == "self.full"

@@ -1,4 +1,4 @@
-"""Every reference that a file writes leads somewhere or is told, whoever follows it."""
+"""Every reference that a file writes has a target or is reported, also if no edge follows it."""
 
 import pytest
 from reading_xmi import magicdraw, papyrus, read
@@ -14,7 +14,7 @@ def findings(*sources):
     """What the front end and ``resolve`` find."""
     reading = read(*sources)
     pipeline.load("resolve").run(reading.graph, reading.sink)
-    return [f"{one.rule.code} {one.severity}: {one.message}" for one in reading.sink]
+    return [f"{item.rule.code} {item.severity}: {item.message}" for item in reading.sink]
 
 
 def node(incoming):
@@ -22,7 +22,7 @@ def node(incoming):
     return papyrus(ACTIVITY.format(START + merge + FLOW))
 
 
-def test_what_the_other_end_says_is_a_warning_once_for_element_and_feature():
+def test_a_missing_target_of_a_redundant_feature_is_one_warning_for_each_element_and_feature():
     assert findings(node("e gone lost")) == [
         "SM116 warning: 'incoming' of 'M::Open::again' names 'gone' and 1 more that do not exist"
     ]
@@ -40,13 +40,13 @@ def test_references_as_children_are_one_list():
     ]
 
 
-def test_what_nothing_else_says_is_an_error_and_what_is_there_stays():
+def test_a_missing_target_of_another_feature_is_an_error_and_the_other_targets_remain():
     region = (
         '<node xmi:type="uml:ExpansionRegion" xmi:id="r" name="each" inputElement="n gone"/>'
         '<node xmi:type="uml:ExpansionNode" xmi:id="n" name="all" regionAsInput="{}"/>'
     )
-    found = read(papyrus(ACTIVITY.format(region.format("r"))))
-    assert found.graph["r"].attrs["input_element"] == ("n",)
+    reading = read(papyrus(ACTIVITY.format(region.format("r"))))
+    assert reading.graph["r"].attrs["input_element"] == ("n",)
     assert findings(papyrus(ACTIVITY.format(region.format("lost")))) == [
         "SM120 error: 'input_element' of 'M::Open::each' names 'gone', which does not exist",
         "SM120 error: 'region_as_input' of 'M::Open::all' names 'lost', which does not exist",
@@ -82,19 +82,19 @@ INSIDE = {
 
 
 @pytest.mark.parametrize("what", INSIDE)
-def test_what_becomes_no_element_is_looked_at_too(what):
-    model, told = INSIDE[what]
-    assert [one for one in findings(papyrus(model)) if one[:5] in ("SM116", "SM120")] == [
-        f"{told} 'gone', which does not exist"
+def test_rows_that_become_no_elements_are_checked_too(what):
+    model, expected = INSIDE[what]
+    assert [item for item in findings(papyrus(model)) if item[:5] in ("SM116", "SM120")] == [
+        f"{expected} 'gone', which does not exist"
     ]
 
 
-def test_an_element_of_another_file_of_the_unit_is_there():
+def test_a_target_in_another_file_of_the_unit_exists():
     other = papyrus('<packagedElement xmi:type="uml:Class" xmi:id="gone"/>', name="other.uml")
-    assert not [one for one in findings(node("gone"), other) if one.startswith("SM116")]
+    assert not [item for item in findings(node("gone"), other) if item.startswith("SM116")]
 
 
-def test_the_place_is_that_of_the_element_that_has_the_feature():
+def test_the_location_is_that_of_the_element_with_the_feature():
     reading = read(node("gone"))
-    (found,) = reading.sink
-    assert (found.subject.id, found.subject.place.ordinal) == ("j", 4)
+    (diagnostic,) = reading.sink
+    assert (diagnostic.subject.id, diagnostic.subject.place.ordinal) == ("j", 4)

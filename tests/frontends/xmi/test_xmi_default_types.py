@@ -126,7 +126,7 @@ PLACES = [
 @pytest.mark.parametrize(
     ("feature", "metaclass", "place"), PLACES, ids=[f"{f}-{m}" for f, m, _ in PLACES]
 )
-def test_leaving_out_the_type_changes_nothing(feature, metaclass, place):
+def test_omitting_the_type_changes_nothing(feature, metaclass, place):
     is_unnamed = metaclass in _EDGES or is_misplaced(metaclass, "name")
     name = "" if is_unnamed else ' name="it"'
     plain = read(papyrus(place % f'<{feature} xmi:id="x"{name}/>'))
@@ -136,7 +136,7 @@ def test_leaving_out_the_type_changes_nothing(feature, metaclass, place):
 
 
 _EDGES = ("InterfaceRealization", "Include")
-"""Relations that the graph has as edges: their names are told as lost."""
+"""Relations that the graph has as edges: their names are reported as lost."""
 
 OWN_READERS = {"icon", "mapping", "nameExpression", "subExpression", "when", "operand", "guard"}
 """Features whose content is a value or notation, or whose type depends on where it stands."""
@@ -165,15 +165,15 @@ def test_every_feature_of_the_metamodel_has_its_type(corpus):
 @pytest.mark.corpus
 def test_the_features_that_the_corpus_leaves_untyped_are_all_tested(corpus):
     """The 36 features of the notes on XMI are these, icons, and columns of tool's tables."""
-    found = {
+    untyped = {
         etree.QName(child).localname
         for path in sorted((corpus / "xmi").rglob("*.uml"))
         for child in etree.parse(path, etree.XMLParser(huge_tree=True)).getroot().iter()
         if _is_untyped_element(child)
     }
     tested = {feature for feature, _, _ in PLACES}
-    assert len(found) == 34
-    assert found - tested == set()
+    assert len(untyped) == 34
+    assert untyped - tested == set()
 
 
 def _is_untyped_element(child):

@@ -211,13 +211,13 @@ EXPRESSION = '<upperValue xmi:type="uml:OpaqueExpression"><body>size</body></upp
         ("<lower>0</lower><upper>many</upper>", "0..many"),
     ],
 )
-def test_a_bound_that_is_no_number_is_told_at_its_element(value, multiplicity):
+def test_a_bound_that_is_no_number_is_reported_at_its_element(value, multiplicity):
     reading = read(
         papyrus(CLASS % f'<ownedAttribute xmi:id="x" name="motors">{value}</ownedAttribute>')
     )
-    (found,) = reading.sink
-    assert (found.rule.code, found.subject.id) == ("SM117", "x")
-    assert found.message.startswith(f"multiplicity {multiplicity} of 'M::")
+    (diagnostic,) = reading.sink
+    assert (diagnostic.rule.code, diagnostic.subject.id) == ("SM117", "x")
+    assert diagnostic.message.startswith(f"multiplicity {multiplicity} of 'M::")
     assert reading.graph["x"].attrs["multiplicity"] == multiplicity
 
 
@@ -257,5 +257,5 @@ def test_bounds_as_attributes(lower, upper):
 def test_a_literal_without_value(literal, value):
     value_of = f'<defaultValue xmi:type="uml:{literal}"/>'
     model = CLASS % f'<ownedAttribute xmi:id="x">{value_of}</ownedAttribute>'
-    found = read(papyrus(model)).graph["x"].attrs["default"]
-    assert (found, type(found)) == (value, type(value))
+    literal = read(papyrus(model)).graph["x"].attrs["default"]
+    assert (literal, type(literal)) == (value, type(value))

@@ -60,33 +60,34 @@ ENTRY = "com.nomagic.magicdraw.uml_model.model"
 
 def archive(path, shapes, model=MAGICDRAW % ""):
     packed = io.BytesIO()
-    with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED) as made:
-        made.writestr(ENTRY, model)
-        made.writestr("BINARY-1", shapes)
-        made.writestr("BINARY-2", b"PK\x03\x04 no xml")
+    with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED) as entries:
+        entries.writestr(ENTRY, model)
+        entries.writestr("BINARY-1", shapes)
+        entries.writestr("BINARY-2", b"PK\x03\x04 no xml")
     path.write_bytes(packed.getvalue())
     return path
 
 
-def compiled(path, diagrams="author"):
+def compile_diagrams(path, diagrams="author"):
     asked = Request(inputs=(path,), diagrams=diagrams, backends=(BACKEND,), verify_each=True)
-    made = compile_model(asked)
-    assert "SM900" not in codes(made)
-    assert "SM901" not in codes(made)
-    return made
+    compilation = compile_model(asked)
+    assert "SM900" not in codes(compilation)
+    assert "SM901" not in codes(compilation)
+    return compilation
 
 
-def codes(made):
-    return [found.rule.code for found in made.diagnostics]
+def codes(compilation):
+    return [diagnostic.rule.code for diagnostic in compilation.diagnostics]
 
 
-def view(made):
-    (found,) = [one for one in made.graph.of_kind(Kind.VIEW) if one.subkind == "diagram"]
-    return found
+def view(compilation):
+    views = compilation.graph.of_kind(Kind.VIEW)
+    (diagram,) = [view for view in views if view.subkind == "diagram"]
+    return diagram
 
 
-def shown(made, edge=Edge.REFERENCES):
-    return [one.id for one in made.graph.targets(view(made), edge)]
+def list_shown(compilation, edge=Edge.REFERENCES):
+    return [target.id for target in compilation.graph.targets(view(compilation), edge)]
 
 
 # -- MagicDraw ---------------------------------------------------------------------------------
@@ -107,11 +108,11 @@ def in_one_file(folder):
 
 
 @pytest.mark.parametrize("write", [in_archive, in_one_file])
-def test_magicdraw_keeps_names_types_contents_and_nesting(tmp_path, write):
-    made = compiled(write(tmp_path))
-    found = view(made)
-    assert (found.name, found.owner) == ("Gates", "m")
-    assert found.attrs == {
+def test_diagrams_of_magicdraw_have_names_types_contents_and_nesting(tmp_path, write):
+    compilation = compile_diagrams(write(tmp_path))
+    diagram = view(compilation)
+    assert (diagram.name, diagram.owner) == ("Gates", "m")
+    assert diagram.attrs == {
         "subkind": "diagram",
         "diagram": "bdd",
         "diagram_type": "SysML Block Definition Diagram",
@@ -119,24 +120,24 @@ def test_magicdraw_keeps_names_types_contents_and_nesting(tmp_path, write):
         "listed": ("item",),
         "relations": (("specializes", "gate", "lift"),),
     }
-    assert shown(made) == ["gate", "in", "lift", "item"]
-    assert shown(made, Edge.REPRESENTS) == ["gate"]
+    assert list_shown(compilation) == ["gate", "in", "lift", "item"]
+    assert list_shown(compilation, Edge.REPRESENTS) == ["gate"]
 
 
-def test_what_is_in_no_file_is_reported_at_the_diagram(tmp_path):
-    made = compiled(in_one_file(tmp_path))
-    (found,) = [one for one in made.diagnostics if one.rule.code == "SM162"]
-    assert found.message == (
+def test_missing_elements_are_reported_at_the_diagram(tmp_path):
+    compilation = compile_diagrams(in_one_file(tmp_path))
+    (diagnostic,) = [item for item in compilation.diagnostics if item.rule.code == "SM162"]
+    assert diagnostic.message == (
         "1 of the 5 elements that diagram 'Gates' shows are in no file of the unit"
     )
-    assert found.subject.name == "Plant::Gates"
-    assert found.subject.place.ordinal == 4
+    assert diagnostic.subject.name == "Plant::Gates"
+    assert diagnostic.subject.place.ordinal == 4
 
 
-def test_derived_diagrams_read_nothing_of_it(tmp_path):
-    made = compiled(archive(tmp_path / "plant.mdzip", "<damaged"), "derived")
-    assert made.graph.of_kind(Kind.VIEW) == []
-    assert not any(code.startswith("SM1") for code in codes(made))
+def test_derived_diagrams_read_no_shapes(tmp_path):
+    compilation = compile_diagrams(archive(tmp_path / "plant.mdzip", "<damaged"), "derived")
+    assert compilation.graph.of_kind(Kind.VIEW) == []
+    assert not any(code.startswith("SM1") for code in codes(compilation))
 
 
 @pytest.mark.parametrize(
@@ -147,29 +148,31 @@ def test_derived_diagrams_read_nothing_of_it(tmp_path):
         "<mdOwnedViews>&undefined;</mdOwnedViews>",
     ],
 )
-def test_damaged_shapes_are_reported_and_the_rest_is_there(tmp_path, shapes):
-    made = compiled(archive(tmp_path / "plant.mdzip", shapes))
-    (found,) = [one for one in made.diagnostics if one.rule.code == "SM161"]
-    assert found.subject.place.file == "plant.mdzip!BINARY-1"
-    assert shown(made) == ["gate", "item", "lift"]
+def test_damaged_shapes_are_reported_and_the_rest_is_read(tmp_path, shapes):
+    compilation = compile_diagrams(archive(tmp_path / "plant.mdzip", shapes))
+    (diagnostic,) = [item for item in compilation.diagnostics if item.rule.code == "SM161"]
+    assert diagnostic.subject.place.file == "plant.mdzip!BINARY-1"
+    assert list_shown(compilation) == ["gate", "item", "lift"]
 
 
 def test_an_entry_that_is_no_xml_has_no_shapes(tmp_path):
-    made = compiled(archive(tmp_path / "plant.mdzip", b"PK\x03\x04 a document"))
-    assert "SM161" not in codes(made)
-    assert "nesting" not in view(made).attrs
+    compilation = compile_diagrams(archive(tmp_path / "plant.mdzip", b"PK\x03\x04 a document"))
+    assert "SM161" not in codes(compilation)
+    assert "nesting" not in view(compilation).attrs
 
 
 def test_a_damaged_model_is_reported_once(tmp_path):
     path = tmp_path / "plant.xml"
     path.write_text((MAGICDRAW % "")[:-20])
-    assert codes(compiled(path)) == ["SM100"]
+    assert codes(compile_diagrams(path)) == ["SM100"]
 
 
-def test_shapes_as_deep_as_you_like(tmp_path):
+def test_shapes_nested_beyond_the_limit(tmp_path):
     deep = "<mdElement><elementID xmi:idref='gate'/>" * 50_000 + "</mdElement>" * 50_000
-    made = compiled(archive(tmp_path / "plant.mdzip", f"<mdOwnedViews>{deep}</mdOwnedViews>"))
-    assert shown(made) == ["gate", "item", "lift"]
+    compilation = compile_diagrams(
+        archive(tmp_path / "plant.mdzip", f"<mdOwnedViews>{deep}</mdOwnedViews>")
+    )
+    assert list_shown(compilation) == ["gate", "item", "lift"]
 
 
 # -- Papyrus -----------------------------------------------------------------------------------
@@ -220,47 +223,49 @@ def papyrus(folder, notation=NOTATION):
     return folder / "plant.uml"
 
 
-def test_papyrus_shows_what_can_be_seen_in_the_notation_file(tmp_path):
-    made = compiled(papyrus(tmp_path))
-    found = view(made)
-    assert (found.name, found.owner, found.source) == ("Gates", "m", "plant.notation")
-    assert found.attrs["diagram"] == "bdd"
-    assert found.attrs["relations"] == (("specializes", "gate", "lift"),)
-    assert found.attrs["nesting"] == (("gate", "in"),)
-    assert sorted(shown(made)) == ["gate", "in", "lift"]
-    assert shown(made, Edge.REPRESENTS) == ["gate"]
-    assert "SM162" not in codes(made)
+def test_diagrams_of_papyrus_show_the_visible_nodes_of_the_notation_file(tmp_path):
+    compilation = compile_diagrams(papyrus(tmp_path))
+    diagram = view(compilation)
+    assert (diagram.name, diagram.owner, diagram.source) == ("Gates", "m", "plant.notation")
+    assert diagram.attrs["diagram"] == "bdd"
+    assert diagram.attrs["relations"] == (("specializes", "gate", "lift"),)
+    assert diagram.attrs["nesting"] == (("gate", "in"),)
+    assert sorted(list_shown(compilation)) == ["gate", "in", "lift"]
+    assert list_shown(compilation, Edge.REPRESENTS) == ["gate"]
+    assert "SM162" not in codes(compilation)
 
 
 def test_the_notation_file_is_an_input_only_when_it_is_read(tmp_path):
-    made = compiled(papyrus(tmp_path))
-    assert [one.path for one in made.inputs] == ["plant.uml", "plant.notation"]
-    assert [one.path for one in compiled(papyrus(tmp_path), "derived").inputs] == ["plant.uml"]
+    compilation = compile_diagrams(papyrus(tmp_path))
+    assert [item.path for item in compilation.inputs] == ["plant.uml", "plant.notation"]
+    assert [item.path for item in compile_diagrams(papyrus(tmp_path), "derived").inputs] == [
+        "plant.uml"
+    ]
 
 
 def test_a_damaged_notation_file_is_reported_where_it_is_damaged(tmp_path):
-    made = compiled(papyrus(tmp_path, NOTATION.replace("</styles>", "</style>")))
-    (found,) = [
-        one
-        for one in make_report(made.diagnostics, made.sources).findings
-        if one.diagnostic.rule.code == "SM161"
+    compilation = compile_diagrams(papyrus(tmp_path, NOTATION.replace("</styles>", "</style>")))
+    (diagnostic,) = [
+        item
+        for item in make_report(compilation.diagnostics, compilation.sources).findings
+        if item.diagnostic.rule.code == "SM161"
     ]
-    assert found.where.startswith("plant.notation:20:5")
-    assert found.xpath.startswith("/xmi:XMI/notation:Diagram[1]/styles[1]")
+    assert diagnostic.where.startswith("plant.notation:20:5")
+    assert diagnostic.xpath.startswith("/xmi:XMI/notation:Diagram[1]/styles[1]")
 
 
-def test_a_notation_file_that_leads_out_of_the_folder_is_passed_over(tmp_path):
+def test_a_notation_file_that_links_out_of_the_folder_is_skipped(tmp_path):
     (tmp_path / "models").mkdir()
     path = papyrus(tmp_path / "models")
     (tmp_path / "models" / "plant.notation").rename(tmp_path / "secret.notation")
     (tmp_path / "models" / "plant.notation").symlink_to(tmp_path / "secret.notation")
-    assert compiled(path).graph.of_kind(Kind.VIEW) == []
+    assert compile_diagrams(path).graph.of_kind(Kind.VIEW) == []
 
 
-def test_a_folder_in_the_place_of_the_notation_file_is_passed_over(tmp_path):
+def test_a_folder_instead_of_the_notation_file_is_skipped(tmp_path):
     (tmp_path / "plant.uml").write_text(PAPYRUS)
     (tmp_path / "plant.notation").mkdir()
-    assert compiled(tmp_path / "plant.uml").graph.of_kind(Kind.VIEW) == []
+    assert compile_diagrams(tmp_path / "plant.uml").graph.of_kind(Kind.VIEW) == []
 
 
 # -- Enterprise Architect ----------------------------------------------------------------------
@@ -289,28 +294,30 @@ EA = f"""{HEAD}
 
 def test_enterprise_architect_lists_what_is_shown_and_no_features(tmp_path):
     (tmp_path / "plant.xmi").write_text(EA)
-    made = compiled(tmp_path / "plant.xmi")
-    found = view(made)
-    assert (found.name, found.owner, found.attrs["diagram"]) == ("Gates", "EAPK_1", "bdd")
-    assert shown(made) == ["EAID_1", "EAID_2"]
-    assert found.attrs["relations"] == (("specializes", "EAID_1", "EAID_2"),)
-    assert "SM162" not in codes(made)
+    compilation = compile_diagrams(tmp_path / "plant.xmi")
+    diagram = view(compilation)
+    assert (diagram.name, diagram.owner, diagram.attrs["diagram"]) == ("Gates", "EAPK_1", "bdd")
+    assert list_shown(compilation) == ["EAID_1", "EAID_2"]
+    assert diagram.attrs["relations"] == (("specializes", "EAID_1", "EAID_2"),)
+    assert "SM162" not in codes(compilation)
 
 
 # -- damage ------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("seed", range(40))
-def test_spoilt_diagrams_are_no_fault_of_ours(tmp_path, seed):
+def test_damaged_diagrams_cause_no_internal_error(tmp_path, seed):
     random = Random(seed)
 
     def spoilt(text):
         return mutate(text.encode(), random)[1]
 
-    compiled(archive(tmp_path / "a.mdzip", spoilt(SHAPES.replace("xmi:", "")), MAGICDRAW % ""))
-    compiled(archive(tmp_path / "b.mdzip", SHAPES, spoilt(MAGICDRAW % "")))
+    compile_diagrams(
+        archive(tmp_path / "a.mdzip", spoilt(SHAPES.replace("xmi:", "")), MAGICDRAW % "")
+    )
+    compile_diagrams(archive(tmp_path / "b.mdzip", SHAPES, spoilt(MAGICDRAW % "")))
     (tmp_path / "plant.uml").write_bytes(spoilt(PAPYRUS))
     (tmp_path / "plant.notation").write_bytes(spoilt(NOTATION))
-    compiled(tmp_path / "plant.uml")
+    compile_diagrams(tmp_path / "plant.uml")
     (tmp_path / "plant.xmi").write_bytes(spoilt(EA))
-    compiled(tmp_path / "plant.xmi")
+    compile_diagrams(tmp_path / "plant.xmi")

@@ -45,10 +45,10 @@ def test_notes_are_comments():
     assert reading.findings == []
 
 
-def test_a_note_that_the_model_has_too_is_one_comment():
-    said = '<ownedComment xmi:type="uml:Comment" xmi:id="n" body="Opens"/>'
+def test_a_note_that_repeats_a_comment_is_not_added():
+    comment = '<ownedComment xmi:type="uml:Comment" xmi:id="n" body="Opens"/>'
     note = about("EAID_G", '<properties documentation="Opens"/>')
-    reading = ea(GATE.replace("{}", said), note)
+    reading = ea(GATE.replace("{}", comment), note)
     assert [e.id for e in reading.graph if e.kind == "Comment"] == ["n"]
 
 
@@ -74,8 +74,8 @@ def test_notes_of_features_parameters_connectors_and_ends():
         "connector",
     )
     graph = ea(model, elements + connectors).graph
-    said = {e.attrs["body"]: e.owner for e in graph if e.kind == "Comment"}
-    assert said == {
+    owners = {e.attrs["body"]: e.owner for e in graph if e.kind == "Comment"}
+    assert owners == {
         "attribute": "EAID_A",
         "operation": "EAID_O",
         "parameter": "EAID_P",
@@ -88,7 +88,7 @@ def constraint(values):
     return about("EAID_G", f"<constraints><constraint {values}/></constraints>")
 
 
-def test_a_note_on_an_event_is_one_on_its_package():
+def test_a_note_on_an_event_belongs_to_its_package():
     """An event is no element of the graph; the note of the package itself goes first."""
     model = (
         '<packagedElement xmi:type="uml:Package" xmi:id="EAPK_P" name="Signals"><packagedElement'
@@ -102,7 +102,7 @@ def test_a_note_on_an_event_is_one_on_its_package():
 
 
 @pytest.mark.parametrize(
-    ("values", "told"),
+    ("values", "expected"),
     [
         ('name="speed &lt; 3" type="OCL"', 'body="speed < 3" language="OCL"'),
         (
@@ -117,20 +117,21 @@ def test_a_note_on_an_event_is_one_on_its_package():
         ('name="by hand" type="Process"', 'body="by hand" tag.type="Process"'),
     ],
 )
-def test_constraints_of_the_extension_are_constraints(values, told):
+def test_constraints_of_the_extension_are_constraints(values, expected):
     reading = ea(extension=constraint(values))
-    (found,) = [e for e in reading.graph if e.kind == "Constraint"]
-    assert found.owner == "EAID_G"
-    assert " ".join(f'{key}="{value}"' for key, value in sorted(found.attrs.items())) == told
-    assert found.name == ("slow" if "notes" in values else "")
+    (element,) = [e for e in reading.graph if e.kind == "Constraint"]
+    assert element.owner == "EAID_G"
+    attributes = " ".join(f'{key}="{value}"' for key, value in sorted(element.attrs.items()))
+    assert attributes == expected
+    assert element.name == ("slow" if "notes" in values else "")
     assert (reading.findings, reading.totals["mapped"]) == ([], 5)
 
 
-@pytest.mark.parametrize("said", ['name="slow"', 'name="other"', ""])
-def test_a_constraint_that_the_model_has_too_is_one(said):
+@pytest.mark.parametrize("attribute", ['name="slow"', 'name="other"', ""])
+def test_a_constraint_that_the_model_has_is_not_added(attribute):
     model = GATE.replace(
         "{}",
-        f'<ownedRule xmi:type="uml:Constraint" xmi:id="r" {said}><specification'
+        f'<ownedRule xmi:type="uml:Constraint" xmi:id="r" {attribute}><specification'
         ' xmi:type="uml:OpaqueExpression" body="v &lt; 3"/></ownedRule>',
     )
     extension = constraint('name="slow" type="Invariant" notes="v &lt; 3"')
@@ -149,7 +150,7 @@ def test_tagged_values_without_a_stereotype_belong_to_the_element():
     assert ea(extension=about("EAID_G", tags)).graph["EAID_G"].attrs == {"tag.Mass": "12 kg"}
 
 
-def test_tagged_values_of_a_stereotype_are_not_told_twice():
+def test_tagged_values_of_a_stereotype_are_not_repeated():
     tags = '<tags><tag xmi:id="t" name="Plant::maker" value="ACME"/></tags>'
     applied = '<Plant:Robot base_Class="EAID_G" maker="ACME"/>'
     graph = ea(extension=about("EAID_G", tags), applications=applied).graph
@@ -166,11 +167,11 @@ def test_a_tagged_value_may_refer_to_an_element_by_its_guid():
     package = f'<packagedElement xmi:type="uml:Package" xmi:id="{id}" name="P"/>'
     applied = f'<Plant:Robot base_Class="EAID_G" cell="{GUID}"/>'
     tags = about("EAID_G", f'<tags><tag xmi:id="t" name="Other" value="{GUID}"/></tags>')
-    for model, told in ((GATE + package, id), (GATE, GUID)):
+    for model, expected in ((GATE + package, id), (GATE, GUID)):
         graph = ea(model, tags, applied).graph
         (application,) = [e for e in graph if e.kind == "Application"]
-        assert application.attrs["tag.cell"] == told
-        assert graph["EAID_G"].attrs == {"tag.Other": told}
+        assert application.attrs["tag.cell"] == expected
+        assert graph["EAID_G"].attrs == {"tag.Other": expected}
 
 
 def test_a_mangled_stereotype_has_its_own_name_and_profile():
@@ -187,7 +188,7 @@ def test_a_mangled_stereotype_has_its_own_name_and_profile():
     }
 
 
-def test_a_stereotype_that_only_the_extension_tells_of():
+def test_a_stereotype_that_only_the_extension_applies():
     xrefs = XREFS.format("@STEREO;Name=Robot;FQName=Plant::Robot;@ENDSTEREO;")
     graph = ea(extension=about("EAID_G", f'<xrefs value="{xrefs}"/>')).graph
     (application,) = [e for e in graph if e.kind == "Application"]
@@ -212,7 +213,7 @@ def test_a_stereotype_that_the_extension_repeats_is_applied_once():
 
 
 @pytest.mark.parametrize(
-    ("name", "told"),
+    ("name", "expected"),
     [
         ("block", "Block"),
         ("proxyPort", "ProxyPort"),
@@ -221,12 +222,12 @@ def test_a_stereotype_that_the_extension_repeats_is_applied_once():
         ("extendedRequirement", "extendedRequirement"),
     ],
 )
-def test_names_of_sysml_begin_as_the_standard_writes_them(name, told):
+def test_names_of_sysml_begin_as_the_standard_writes_them(name, expected):
     """Untested with a real file: none was there."""
     graph = ea(applications=f'<SysML1.4:{name} base_Class="EAID_G"/>').graph
     (application,) = [e for e in graph if e.kind == "Application"]
     assert application.attrs == {
-        "stereotype": told,
+        "stereotype": expected,
         "namespace": "http://www.sparxsystems.com/profiles/SysML1.4/1.4",
     }
 
@@ -267,7 +268,7 @@ def test_the_rest_of_the_extension_is_counted_as_notation():
     assert lines(reading) == ['Class EAID_G "Gate"']
 
 
-def test_another_tools_extension_is_not_read_so():
+def test_extensions_of_other_tools_are_not_read():
     text = FILE.format(
         model=GATE.replace("{}", ""),
         extension=about("EAID_G", '<properties documentation="not for us"/>'),
@@ -305,7 +306,7 @@ def test_a_file_may_mix_two_versions_of_xmi(name):
     mixed = text.replace(model, model.replace(f"xmi:{name}=", f"old:{name}=")).replace(
         "<xmi:XMI ", '<xmi:XMI xmlns:old="http://schema.omg.org/spec/XMI/2.1" ', 1
     )
-    readings = [read(source(one.encode("cp1252"), "m.xmi")) for one in (text, mixed)]
+    readings = [read(source(xmi.encode("cp1252"), "m.xmi")) for xmi in (text, mixed)]
     assert readings[1].findings == []
     assert readings[0].text == readings[1].text
 

@@ -151,7 +151,7 @@ def test_consider_names_the_messages_and_a_lifeline_its_destruction():
     ]
 
 
-def test_times_are_told_of_occurrences():
+def test_times_refer_to_occurrences():
     """Papyrus packages durations; MagicDraw writes them inside the interval."""
     reading = read(
         papyrus(
@@ -194,7 +194,7 @@ def test_times_are_told_of_occurrences():
     assert graph["do"].attrs["first_event"] == (False, True)
 
 
-def test_uml_before_2_4_says_in_events_what_is_sent_and_destroyed():
+def test_events_of_uml_before_2_4_give_signatures_and_destructions():
     old = """<?xml version="1.0" encoding="UTF-8"?>
 <uml:Model xmi:version="2.1" xmlns:xmi="http://schema.omg.org/spec/XMI/2.1"
  xmlns:uml="http://www.eclipse.org/uml2/3.0.0/UML" xmi:id="m" name="M">

@@ -25,17 +25,17 @@ def name_of(reading, id):
 
 @pytest.mark.parametrize("fragment", ["robots", "/0", "/"])
 @pytest.mark.parametrize("is_reversed", [False, True])
-def test_a_part_belongs_to_what_refers_to_it(fragment, is_reversed):
+def test_a_contained_element_belongs_to_the_element_that_refers_to_it(fragment, is_reversed):
     files = [papyrus(holds(f"parts/robots.uml#{fragment}") + PUMP), part()]
     done = read(*reversed(files)) if is_reversed else read(*files)
     assert done.findings == []
     assert name_of(done, "arm") == "M::Robots::Arm"
     assert done.graph["arm"].source == "parts/robots.uml"
-    assert [one.id for one in done.graph.roots()] == ["m"]
+    assert [root.id for root in done.graph.roots()] == ["m"]
     assert "external" not in done.totals
 
 
-def test_a_part_of_a_part():
+def test_a_contained_element_may_contain_another():
     arm = '<uml:Class xmi:id="hand" name="Hand"/>'
     done = read(
         papyrus(holds("parts/robots.uml#robots")),
@@ -45,7 +45,7 @@ def test_a_part_of_a_part():
     assert name_of(done, "hand") == "M::Robots::Hand"
 
 
-def test_a_part_that_is_not_there_is_told():
+def test_a_missing_contained_element_is_reported():
     done = read(papyrus(holds("gone.uml#robots") + PUMP))
     assert done.findings == [
         "missing-part: 'M' contains 'gone.uml#robots', which no file of the compile unit has"
@@ -60,17 +60,17 @@ def test_a_part_that_is_not_there_is_told():
         ("parts/robots.uml#robots", holds("../m.uml#m"), "which it is in itself"),
     ],
 )
-def test_an_element_has_one_owner_and_does_not_hold_itself(href, back, problem):
+def test_an_element_has_one_owner_and_does_not_contain_itself(href, back, problem):
     (finding,) = read(papyrus(holds(href)), part(back)).findings
     assert finding.startswith("missing-part: ")
     assert finding.endswith(problem)
 
 
-def test_a_part_that_is_not_read_is_told():
+def test_a_contained_element_that_is_not_read_is_reported():
     region = source(PAPYRUS % '<uml:Region xmi:id="region"/>', "region.uml")
     done = read(papyrus(holds("region.uml#region")), region)
     assert "region" not in done.graph
-    assert any(found.startswith("missing-part: ") for found in done.findings)
+    assert any(finding.startswith("missing-part: ") for finding in done.findings)
 
 
 def test_packages_of_projects_that_magicdraw_uses_are_not_the_models_own():

@@ -72,7 +72,7 @@ def test_an_application_may_name_its_base_by_a_child():
     assert reading.graph["a"].owner == "p"
 
 
-def test_an_application_without_id_gets_one_that_stays():
+def test_an_application_without_id_gets_a_stable_one():
     model = papyrus(PORT, '<Blocks:Block base_Class="k"/>')
     ids = {read(model).graph.of_kind("Application")[0].id for _ in range(2)}
     assert len(ids) == 1

@@ -34,7 +34,7 @@ def target(fragment, file="lib/Other.uml"):
 
 
 @pytest.mark.parametrize(
-    ("fragment", "found"),
+    ("fragment", "expected"),
     [
         ("/", "lib/Other.uml#m"),
         ("/0", "lib/Other.uml#m"),
@@ -46,8 +46,8 @@ def target(fragment, file="lib/Other.uml"):
         ("/1", "app"),
     ],
 )
-def test_paths_of_emf_lead_through_the_file_that_they_name(fragment, found):
-    assert target(fragment) == found
+def test_paths_of_emf_lead_through_the_file_that_they_name(fragment, expected):
+    assert target(fragment) == expected
 
 
 @pytest.mark.parametrize(
@@ -64,7 +64,7 @@ def test_paths_of_emf_lead_through_the_file_that_they_name(fragment, found):
         "///",
     ],
 )
-def test_a_path_to_nothing_stays_outside(fragment):
+def test_a_path_without_target_becomes_an_external_stub(fragment):
     assert target(fragment) == f"lib/Other.uml#{fragment}"
 
 
@@ -143,8 +143,8 @@ def test_files_of_two_dialects_refer_to_each_other():
     texts = set()
     for order in itertools.permutations((lib, cell, line)):
         reading = read(*order)
-        found = {(r.source, r.target) for r in reading.graph.pending}
-        assert {("w", "wheel"), ("line", "cell")} <= found
+        references = {(r.source, r.target) for r in reading.graph.pending}
+        assert {("w", "wheel"), ("line", "cell")} <= references
         assert "external" not in reading.totals
         texts.add(reading.text)
     assert len(texts) == 1
@@ -182,7 +182,7 @@ def test_roots_of_magicdraw_have_the_same_id_in_every_project():
     assert alone.target == elsewhere
 
 
-def test_percent_encoded_folders_tell_files_of_one_name_apart():
+def test_percent_encoded_folders_distinguish_files_of_the_same_name():
     """Ids as short as this one are in many files: only the whole path says which is meant."""
     model = refers_to("wheel", "my%20parts/lib.uml")
     others = [papyrus(LIBRARY, name=f"{folder}/lib.uml") for folder in ("my parts", "others")]

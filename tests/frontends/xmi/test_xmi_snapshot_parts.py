@@ -40,7 +40,7 @@ def test_every_element_is_counted_once():
     assert reading.totals["ignored_notation"] >= 28
 
 
-def test_what_a_part_refers_to_is_not_what_the_model_refers_to():
+def test_references_of_a_part_are_not_references_of_the_model():
     """A snapshot has references of its own, which say nothing of the model."""
     assert library(read(whole(part(COMPANY), inside="")).graph) == {}
 
@@ -55,7 +55,7 @@ def test_what_a_part_refers_to_is_not_what_the_model_refers_to():
         f"<filePart name='{NAME % 'a'}' type='XML'><a><b/></a></filePart>",
     ],
 )
-def test_other_parts_are_passed_over(text):
+def test_other_parts_are_skipped(text):
     reading = read(whole(text))
     assert library(reading.graph) == {}
     assert [f for f in reading.findings if "snapshot" in f] == []

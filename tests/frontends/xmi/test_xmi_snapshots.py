@@ -99,7 +99,7 @@ def library(graph):
     return {e.id: graph.qualified_name(e) for e in graph if e.attrs.get("library")}
 
 
-def test_what_the_model_refers_to_is_read_with_what_it_needs():
+def test_elements_that_the_model_refers_to_are_read_with_their_needs():
     reading = read(model(), snapshot(COMPANY))
     graph = reading.graph
     assert {id: name for id, name in library(graph).items() if "Application" not in id} == {
@@ -129,7 +129,7 @@ def test_what_the_model_refers_to_is_read_with_what_it_needs():
     assert graph.target(graph["arm"], Edge.TYPED_BY) is graph["tool"]
 
 
-def test_what_no_snapshot_has_is_told_on_the_library_element():
+def test_targets_in_no_snapshot_are_noted_at_the_library_element():
     graph = read(model(), snapshot(COMPANY)).graph
     assert graph["in"].attrs["unresolved"] == ("typed-by",)
     assert "unresolved" not in graph["arm"].attrs
@@ -168,24 +168,27 @@ def test_an_applied_stereotype_is_found_by_the_name_of_its_profile():
 
 
 def test_classes_become_blocks_by_generalization(tmp_path):
-    made = compile_model(
+    compilation = compile_model(
         Request(
             (archive(tmp_path, model(applied=APPLIED), snapshot(COMPANY), snapshot(SYSML, "b")),)
         )
     )
-    assert made.graph["app"].attrs["lineage"] == ("Work-Station", "Block")
-    assert made.graph["cell"].role == made.graph["robot"].role == "block"
-    assert made.graph["p"].role == "part"
-    assert [found.rule.code for found in made.diagnostics] == []
+    assert compilation.graph["app"].attrs["lineage"] == ("Work-Station", "Block")
+    assert compilation.graph["cell"].role == compilation.graph["robot"].role == "block"
+    assert compilation.graph["p"].role == "part"
+    assert [diagnostic.rule.code for diagnostic in compilation.diagnostics] == []
 
 
 def test_without_the_snapshot_of_its_profile_a_stereotype_is_unknown(tmp_path):
-    made = compile_model(Request((archive(tmp_path, model(applied=APPLIED)),)))
-    assert sorted(found.rule.code for found in made.diagnostics) == ["SM152", "SM211"]
-    assert made.graph["cell"].role == ""
+    compilation = compile_model(Request((archive(tmp_path, model(applied=APPLIED)),)))
+    assert sorted(diagnostic.rule.code for diagnostic in compilation.diagnostics) == [
+        "SM152",
+        "SM211",
+    ]
+    assert compilation.graph["cell"].role == ""
 
 
-def test_of_several_copies_the_one_with_most_inside_counts():
+def test_of_several_copies_the_largest_counts():
     small = """<uml:Package xmi:id="lib" ID="lib" name="Library">
       <packagedElement xsi:type="uml:Class" xmi:id="robot" ID="robot" name="Robot" isActive="true"/>
     </uml:Package>"""
@@ -232,16 +235,16 @@ def test_every_element_of_a_snapshot_is_counted():
     assert counted["by_type"]["uml:Class"] == {"external": 2, "mapped": 3}
 
 
-def test_library_content_gives_no_findings_and_no_outputs(tmp_path):
+def test_library_content_gives_no_diagnostics_and_no_outputs(tmp_path):
     from sysmlc.driver.registry import list_backend_names, load_backends
 
     inside = COMPANY.replace('type="lost"', 'isConjugated="true"')
     path = archive(tmp_path, model(), snapshot(inside), snapshot(SYSML, "b"))
     # What CAEX and SysML v2 cannot say of the model is theirs to tell.
     names = [name for name in list_backend_names() if name not in ("aml", "sysml", "sysmlx")]
-    made = compile_model(Request((path,), backends=tuple(load_backends(names))))
-    assert made.diagnostics == ()
-    drawn = {a.path: a.text for a in made.list_published() if a.path.endswith(".puml")}
+    compilation = compile_model(Request((path,), backends=tuple(load_backends(names))))
+    assert compilation.diagnostics == ()
+    drawn = {a.path: a.text for a in compilation.list_published() if a.path.endswith(".puml")}
     assert list(drawn) == ["diagrams/M.bdd.puml"]
     assert "**Cell**" in drawn["diagrams/M.bdd.puml"]
     assert "**Robot**" not in drawn["diagrams/M.bdd.puml"]
@@ -251,10 +254,10 @@ def test_library_content_gives_no_findings_and_no_outputs(tmp_path):
     ("damage", "findings"),
     [(lambda text: text[:-20], ["broken-snapshot"]), (lambda text: text + b"\n", [])],
 )
-def test_a_damaged_snapshot_is_left_out_with_a_warning(damage, findings):
+def test_a_damaged_snapshot_is_skipped_with_a_warning(damage, findings):
     one = snapshot(COMPANY)
     reading = read(model(), source(damage(one.data), one.name))
-    assert [found.rule.name for found in reading.sink] == findings
+    assert [diagnostic.rule.name for diagnostic in reading.sink] == findings
     assert ("robot" in reading.graph) is (not findings)
     assert not reading.sink.has_errors()
 
@@ -272,14 +275,14 @@ def test_a_damaged_snapshot_is_left_out_with_a_warning(damage, findings):
         "</uml:Stereotype>",
     ],
 )
-def test_nonsense_in_a_snapshot_does_no_harm(inside):
+def test_invalid_content_of_a_snapshot_is_ignored(inside):
     graph = read(model(), snapshot(inside)).graph
     assert [r.target.rpartition("#")[2] for r in graph.pending] == ["robot"]
 
 
 def test_an_archive_of_snapshots_alone_holds_no_model(tmp_path):
-    made = compile_model(Request((archive(tmp_path, snapshot(COMPANY)),)))
-    assert [found.message for found in made.diagnostics] == [
+    compilation = compile_model(Request((archive(tmp_path, snapshot(COMPANY)),)))
+    assert [diagnostic.message for diagnostic in compilation.diagnostics] == [
         "'plant.mdzip' cannot be read: the archive holds no model"
     ]
 
@@ -291,7 +294,7 @@ def test_a_snapshot_is_recognised_by_its_namespace_and_place():
     assert FRONTEND.detect(lone) < 1.0
 
 
-def test_the_library_itself_is_better_than_its_snapshots(tmp_path):
+def test_the_library_itself_overrides_its_snapshots(tmp_path):
     whole = model(
         "<packagedElement xmi:type='uml:Class' xmi:id='robot' name='Robot'>"
         "<ownedAttribute xmi:type='uml:Property' xmi:id='arm' name='whole arm'/></packagedElement>"
@@ -299,15 +302,18 @@ def test_the_library_itself_is_better_than_its_snapshots(tmp_path):
     with zipfile.ZipFile(tmp_path / "Company Library.mdzip", "w") as zipped:
         zipped.writestr("com.nomagic.magicdraw.uml_model.model", whole)
     archive(tmp_path, model(), snapshot(COMPANY))
-    made = compile_model(Request((tmp_path / "plant.mdzip",)))
-    assert [file.path.partition("!")[0] for file in made.inputs] == [
+    compilation = compile_model(Request((tmp_path / "plant.mdzip",)))
+    assert [file.path.partition("!")[0] for file in compilation.inputs] == [
         "Company Library.mdzip",
         "plant.mdzip",
         "plant.mdzip",
     ]
-    assert not library(made.graph)
-    assert made.graph["arm"].name == "whole arm"
-    assert made.graph.target(made.graph["p"], Edge.TYPED_BY) is made.graph["robot"]
+    assert not library(compilation.graph)
+    assert compilation.graph["arm"].name == "whole arm"
+    assert (
+        compilation.graph.target(compilation.graph["p"], Edge.TYPED_BY)
+        is compilation.graph["robot"]
+    )
 
 
 def test_archives_that_use_the_same_library_share_its_elements(tmp_path):
@@ -318,10 +324,10 @@ def test_archives_that_use_the_same_library_share_its_elements(tmp_path):
     with zipfile.ZipFile(tmp_path / "other.mdzip", "w") as zipped:
         zipped.writestr("com.nomagic.magicdraw.uml_model.model", other)
         zipped.writestr(snapshot(COMPANY).name.partition("!")[2], snapshot(COMPANY).data)
-    made = compile_model(Request((tmp_path,)))
-    users = made.graph.sources(made.graph["robot"], Edge.TYPED_BY)
-    assert sorted(one.id for one in users) == ["p", "p2"]
-    assert [found.rule.code for found in made.diagnostics] == []
+    compilation = compile_model(Request((tmp_path,)))
+    users = compilation.graph.sources(compilation.graph["robot"], Edge.TYPED_BY)
+    assert sorted(user.id for user in users) == ["p", "p2"]
+    assert [diagnostic.rule.code for diagnostic in compilation.diagnostics] == []
 
 
 def test_an_id_that_many_files_have_does_not_lead_into_a_snapshot():

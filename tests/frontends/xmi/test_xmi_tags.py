@@ -23,22 +23,22 @@ def test_an_id_is_that_of_an_element():
     assert applied(f'robot="{HERE} c"') == ((HERE, "c"), [])
 
 
-def test_an_id_that_leads_nowhere_is_told():
+def test_an_id_without_target_is_reported():
     assert applied(f'robot="{GONE}"') == (GONE, [LOST.format(GONE)])
 
 
-def test_of_several_ids_those_that_exist_are_kept():
+def test_the_existing_ids_of_several_are_stored():
     assert applied(f'robot="{HERE} {GONE}"') == ((HERE,), [LOST.format(GONE)])
 
 
-def test_many_ids_that_lead_nowhere_are_one_finding():
+def test_many_ids_without_target_are_one_diagnostic():
     gone = " ".join(f"_Zk3cQPoREe2dJ8u5Yq1{i:03}" for i in range(500))
     tag, (finding,) = applied(f'robot="{gone}"')
     assert tag == gone
     assert finding == LOST.format("_Zk3cQPoREe2dJ8u5Yq1000")
 
 
-def test_a_child_that_leads_nowhere_is_told():
+def test_a_child_without_target_is_reported():
     assert applied(children='<robot xmi:idref="gone"/>') == ("gone", [LOST.format("gone")])
     assert applied(children=f'<robot xmi:idref="{HERE}"/>') == (HERE, [])
 

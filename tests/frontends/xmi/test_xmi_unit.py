@@ -5,7 +5,7 @@ import itertools
 from reading_xmi import magicdraw, papyrus, read
 
 
-def test_ids_that_two_files_share_are_told_apart_by_the_file():
+def test_ids_shared_by_two_files_are_qualified_by_the_file():
     one = magicdraw("<packagedElement xmi:type='uml:Class' xmi:id='k' name='K'/>", name="1.xml")
     two = magicdraw(
         "<packagedElement xmi:type='uml:Class' xmi:id='k' name='K'>"
@@ -116,7 +116,7 @@ def test_ids_in_attributes_lead_into_other_files():
     assert read(activity).graph["d"].attrs["decision_input"] == "functions.uml#f"
 
 
-def test_what_a_trigger_or_transition_cannot_find_is_left_for_resolve_to_report():
+def test_missing_events_and_guards_are_left_to_the_pass_resolve():
     reading = read(
         papyrus(
             '<packagedElement xmi:type="uml:StateMachine" xmi:id="sm"><region xmi:id="r">'

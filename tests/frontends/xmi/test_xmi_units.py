@@ -34,8 +34,8 @@ def measured(source, sink=None):
         graph, sink or Sink(), verify_each=True
     )
     load = graph["load"]
-    found = unit_of(graph, load), quantity_kind_of(graph, load)
-    return [one.name if one else None for one in found], graph
+    measures = unit_of(graph, load), quantity_kind_of(graph, load)
+    return [element.name if element else None for element in measures], graph
 
 
 def test_an_instance_of_the_librarys_unit():
@@ -73,7 +73,7 @@ def test_a_data_type_as_sysml_1_0_has_it():
     assert names == ["kilogram", "mass"]
 
 
-def test_a_unit_of_a_library_that_is_not_there_is_a_named_stub():
+def test_a_unit_of_a_missing_library_is_a_named_stub():
     application = (
         "<sysml:ValueType xmi:id='a' base_DataType='mass'>"
         "<unit href='ISO-80000.mdzip#_18_0beta_903028d_1388650199539_575789_174162'>"
@@ -84,7 +84,7 @@ def test_a_unit_of_a_library_that_is_not_there_is_a_named_stub():
     )
     names, graph = measured(magicdraw(MASS, application))
     assert names[0] == "kilogram"
-    (unit,) = [one for one in graph.of_kind(Kind.INSTANCE) if one.attrs.get("external")]
+    (unit,) = [item for item in graph.of_kind(Kind.INSTANCE) if item.attrs.get("external")]
     assert unit.role == "unit"
     (kind,) = graph.of_kind(Kind.QUANTITY_KIND)
     assert kind.attrs["external"] is True
@@ -121,7 +121,7 @@ def test_names_of_the_iso_80000_library_tell_unit_and_quantity_kind(used):
     assert names == (["metre per second", "length"] if used else [None, None])
 
 
-def test_the_unit_is_inherited_and_an_own_one_goes_first():
+def test_a_value_type_inherits_its_unit_unless_it_has_one():
     special = (
         '<packagedElement xmi:type="uml:DataType" xmi:id="mass" name="Load">'
         '<generalization xmi:type="uml:Generalization" xmi:id="g" general="all"/></packagedElement>'
@@ -146,7 +146,7 @@ def test_martes_unit_is_not_sysmls():
     assert graph["kg"].role == ""
 
 
-def test_a_second_run_makes_no_second_unit():
+def test_a_second_run_adds_no_unit():
     application = '<Blocks:ValueType xmi:id="a" base_DataType="mass" unit="kg"/>'
     _, graph = measured(papyrus(MASS, application))
     once = print_text(graph)
@@ -181,7 +181,7 @@ def test_a_generalization_that_conforms_realises_the_viewpoint():
     assert list(sink) == []
 
 
-def test_a_change_of_a_feature_is_said_of_the_trigger():
+def test_a_changed_feature_is_stored_at_the_trigger():
     model = (
         '<packagedElement xmi:type="uml:Class" xmi:id="gate" name="Gate">'
         '<ownedAttribute xmi:type="uml:Property" xmi:id="load" name="load"/></packagedElement>'

@@ -1,4 +1,4 @@
-"""Attributes that neither UML nor XMI has, or UML elsewhere, are told, each once for each file."""
+"""Attributes that neither UML nor XMI has, or UML elsewhere, are reported once for each file."""
 
 import pytest
 from lxml import etree
@@ -10,14 +10,14 @@ from sysmlc.frontends.xmi.uml_features import is_misplaced
 CLASS = '<packagedElement xmi:type="uml:Class" xmi:id="{}" name="{}" {}/>'
 
 
-def told(reading):
+def list_findings(reading):
     return [finding.message for finding in reading.sink if finding.rule.code == "SM124"]
 
 
-def test_a_name_is_told_once_at_the_first_element_that_has_it():
+def test_an_unknown_name_is_reported_once_at_its_first_element():
     classes = [CLASS.format(x, x.upper(), 'isAbstrct="true"') for x in "abc"]
     reading = read(papyrus("".join(classes)))
-    assert told(reading) == [
+    assert list_findings(reading) == [
         "attribute 'isAbstrct' of 'M::A' and 2 more is known neither to UML nor to XMI"
     ]
     (finding,) = reading.sink
@@ -26,7 +26,7 @@ def test_a_name_is_told_once_at_the_first_element_that_has_it():
     assert reading.totals == {"elements": 5, "mapped": 2, "approximated": 3}
 
 
-def test_each_file_tells_its_own():
+def test_each_file_reports_its_own_names():
     files = [papyrus(CLASS.format(x, x, 'colour="red"'), name=f"{x}.uml") for x in "ab"]
     reading = read(*files)
     assert [finding.subject.place.file for finding in reading.sink] == ["a.uml", "b.uml"]
@@ -35,7 +35,7 @@ def test_each_file_tells_its_own():
 def test_names_beyond_fifty_are_counted():
     names = " ".join(f'colour{number}="red"' for number in range(60))
     reading = read(papyrus(CLASS.format("a", "A", names)))
-    assert len(told(reading)) == 50
+    assert len(list_findings(reading)) == 50
     assert [finding.notes for finding in reading.sink][-1] == (
         "10 more such names are in the file",
     )
@@ -53,8 +53,8 @@ def test_names_beyond_fifty_are_counted():
         ('<packagedElement xmi:type="uml:Class" xmi:idd="k"/>', "xmi:idd"),
     ],
 )  # fmt: skip
-def test_also_of_rows_that_are_no_elements_and_in_the_namespace_of_xmi(model, name):
-    (message,) = told(read(papyrus(model)))
+def test_rows_that_are_no_elements_and_the_namespace_of_xmi_are_checked(model, name):
+    (message,) = list_findings(read(papyrus(model)))
     assert message.startswith(f"attribute '{name}' of ")
 
 
@@ -67,10 +67,8 @@ def test_also_of_rows_that_are_no_elements_and_in_the_namespace_of_xmi(model, na
         ('<eAnnotations xmi:id="e" source="tool" colour="red"/>', ""),
     ],
 )
-def test_tags_notation_and_what_tools_name_in_their_own_namespaces_are_not_meant(
-    model, applications
-):
-    assert told(read(papyrus(model, applications))) == []
+def test_tags_notation_and_namespaces_of_tools_are_not_checked(model, applications):
+    assert list_findings(read(papyrus(model, applications))) == []
 
 
 def test_magicdraws_own_values_name_an_element_by_an_attribute():
@@ -80,25 +78,28 @@ def test_magicdraws_own_values_name_an_element_by_an_attribute():
     assert read(magicdraw(model)).findings == []
 
 
-def test_what_tools_keep_in_extensions_is_not_meant():
+def test_extensions_of_tools_are_not_checked():
     extension = "<xmi:Extension extender='T'><modelExtension colour='red'/></xmi:Extension>"
     held = "<packagedElement xmi:type='uml:Class' xmi:id='a'>{}</packagedElement>"
-    assert told(read(magicdraw(held.format(extension)))) == []
-    assert len(told(read(magicdraw(held.format("<ownedComment xmi:id='c' colour='red'/>"))))) == 1
+    assert list_findings(read(magicdraw(held.format(extension)))) == []
+    assert (
+        len(list_findings(read(magicdraw(held.format("<ownedComment xmi:id='c' colour='red'/>")))))
+        == 1
+    )
 
 
-def test_a_template_parameter_is_asked_too():
+def test_a_template_parameter_is_checked():
     model = """<packagedElement xmi:type="uml:Class" xmi:id="c"><ownedTemplateSignature xmi:id="s">
  <ownedParameter xmi:id="t" colour="red"/></ownedTemplateSignature></packagedElement>"""
-    assert len(told(read(papyrus(model)))) == 1
+    assert len(list_findings(read(papyrus(model)))) == 1
 
 
-def test_a_bare_model_is_asked_as_well():
+def test_a_model_without_envelope_is_checked():
     bare = (
         '<uml:Model xmlns:xmi="http://schema.omg.org/spec/XMI/2.1" xmi:version="2.1" colour="red"'
         ' xmlns:uml="http://www.eclipse.org/uml2/3.0.0/UML" xmi:id="m" name="M"/>'
     )
-    assert told(read(source(bare))) == [
+    assert list_findings(read(source(bare))) == [
         "attribute 'colour' of 'M' is known neither to UML nor to XMI"
     ]
 
@@ -106,7 +107,7 @@ def test_a_bare_model_is_asked_as_well():
 @pytest.mark.corpus
 def test_every_feature_of_the_metamodel_is_known(corpus):
     tree = etree.parse(corpus / "xmi" / "metamodel" / "uml.ecore")
-    features = {found.get("name") for found in tree.iter("eStructuralFeatures")}
+    features = {feature.get("name") for feature in tree.iter("eStructuralFeatures")}
     assert len(features) > 400
     assert features - uml_features.FEATURES == set()
     assert {
@@ -118,7 +119,7 @@ def misplaced(reading):
     return [finding.message for finding in reading.sink if finding.rule.code == "SM154"]
 
 
-def test_an_attribute_of_another_metaclass_is_told_once():
+def test_an_attribute_of_another_metaclass_is_reported_once():
     properties = "".join(
         f'<ownedAttribute xmi:type="uml:Property" xmi:id="{x}" name="{x}" isAbstract="true"/>'
         for x in "pq"
@@ -141,7 +142,7 @@ def test_an_attribute_of_another_metaclass_is_told_once():
         '<packagedElement xmi:type="uml:Thing" xmi:id="a" memberEnd=""/>',
     ],
 )
-def test_what_the_metaclass_or_a_general_one_has_is_not(model):
+def test_own_and_inherited_attributes_of_the_metaclass_are_not_reported(model):
     assert misplaced(read(papyrus(model))) == []
 
 

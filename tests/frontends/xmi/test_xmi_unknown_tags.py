@@ -1,4 +1,4 @@
-"""Tags that SysML does not have on its stereotypes: told once a stereotype, name and file."""
+"""Tags that SysML does not have on its stereotypes: reported once for each file."""
 
 import pytest
 from lxml import etree
@@ -11,7 +11,7 @@ PROPERTY = """<packagedElement xmi:type="uml:Class" xmi:id="c" name="C">
 FLOW = '<PortsAndFlows:FlowProperty xmi:id="s{0}" base_Property="{0}" {1}/>'
 
 
-def test_a_misspelt_tag_is_told_once():
+def test_a_misspelt_tag_is_reported_once():
     applied = FLOW.format("p", 'directon="in"') + FLOW.format("q", 'directon="out"')
     reading = read(papyrus(PROPERTY, applied))
     assert reading.findings == [
@@ -31,7 +31,7 @@ def test_tags_beyond_fifty_are_counted():
     assert findings[-1].notes == ("4950 more such tags are in the file",)
 
 
-def test_of_an_application_to_nothing_only_that_is_told():
+def test_tags_of_an_application_without_base_are_not_reported():
     reading = read(papyrus(PROPERTY, FLOW.format("gone", 'directon="in"')))
     assert [finding.rule.code for finding in reading.sink] == ["SM113"]
 

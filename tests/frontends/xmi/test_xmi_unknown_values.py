@@ -1,4 +1,4 @@
-"""Values that UML does not know for an attribute are told, once a value and file."""
+"""Values that UML does not know for an attribute are reported, once for each value and file."""
 
 import pytest
 from reading_xmi import papyrus, read
@@ -10,7 +10,7 @@ NODE = (
 )
 
 
-def test_a_value_is_told_once_and_counts_as_not_said():
+def test_an_unknown_value_is_reported_once_and_omitted():
     reading = read(papyrus("".join(CLASS.format(x, 'isAbstract="yes"') for x in "bc")))
     assert reading.findings == [
         "unknown-value: 'isAbstract' of 'M::b' and 1 more is 'yes', which is none of true, false"
@@ -38,13 +38,13 @@ def test_a_value_is_told_once_and_counts_as_not_said():
         ),
     ],
 )
-def test_attributes_that_are_one_of_some_words(model, known):
+def test_enumerated_attributes(model, known):
     (message,) = read(papyrus(model)).findings
     assert message.endswith(f"which is none of {known}")
 
 
 @pytest.mark.parametrize(("written", "leaf"), [("1", True), ("0", None), ("true", True)])
-def test_truth_values_are_written_in_two_ways_whatever_reads_them(written, leaf):
+def test_truth_values_have_two_spellings_in_every_attribute(written, leaf):
     reading = read(papyrus(CLASS.format("k", f'isLeaf="{written}" isActive="{written}"')))
     assert reading.findings == []
     assert reading.graph["k"].attrs.get("leaf") is leaf
@@ -52,7 +52,7 @@ def test_truth_values_are_written_in_two_ways_whatever_reads_them(written, leaf)
 
 
 @pytest.mark.parametrize(("written", "unique"), [("1", None), ("0", False), ("false", False)])
-def test_what_is_true_unless_it_is_said(written, unique):
+def test_flags_that_are_true_by_default(written, unique):
     owned = f'<ownedAttribute xmi:id="p" isUnique="{written}"/>'
     model = f'<packagedElement xmi:type="uml:Class" xmi:id="k">{owned}</packagedElement>'
     reading = read(papyrus(model))

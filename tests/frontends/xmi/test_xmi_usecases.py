@@ -153,7 +153,7 @@ def test_a_template_of_another_file_is_bound_by_its_signature():
     assert targets(reading, "s3", Edge.INSTANCE_OF) == ["t"]
 
 
-def test_a_name_is_put_together_of_expressions():
+def test_a_name_expression_joins_its_operands():
     """UML 2.5.1, 7.4.3: in templates the name depends on what the parameters stand for."""
     reading = read(
         papyrus(

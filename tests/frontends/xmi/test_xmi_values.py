@@ -46,7 +46,8 @@ def test_an_expression_is_written_with_its_operands():
 )
 def test_words_of_logic_stand_between_their_operands(symbol, operands, text):
     inside = "".join(
-        f'<operand xmi:type="uml:OpaqueExpression"><body>{one}</body></operand>' for one in operands
+        f'<operand xmi:type="uml:OpaqueExpression"><body>{operand}</body></operand>'
+        for operand in operands
     )
     assert (
         body(f'<specification xmi:type="uml:Expression" symbol="{symbol}">{inside}</specification>')
@@ -102,8 +103,8 @@ def test_times_may_nest_as_deep_as_a_file_may():
     ],
 )
 def test_a_literal_is_a_json_value_or_stays_text(type_name, written, value):
-    found = default(type_name, written)
-    assert (found, type(found)) == (value, type(value))
+    literal = default(type_name, written)
+    assert (literal, type(literal)) == (value, type(value))
 
 
 @pytest.mark.parametrize(("written", "meant"), [("true", True), ("1", True), ("false", False)])
@@ -121,7 +122,7 @@ def test_truth_is_written_in_two_ways(written, meant):
         '<ownedComment xmi:id="c"><body>why</body><annotatedElement xmi:idref="v"/></ownedComment>',
     ],
 )
-def test_a_comment_on_a_value_is_one_on_what_has_the_value(comment):
+def test_a_comment_on_a_value_belongs_to_the_element_with_the_value(comment):
     value = f'<defaultValue xmi:type="uml:LiteralInteger" xmi:id="v" value="3">{comment}'
     owned = f'<ownedAttribute xmi:id="p">{value}</defaultValue></ownedAttribute>'
     model = f'<packagedElement xmi:type="uml:Class" xmi:id="k">{owned}</packagedElement>'

@@ -1,4 +1,4 @@
-"""Every element has one verdict; what is not read is said, and hostile files are refused."""
+"""Every element has one verdict; unread elements are reported, and hostile files are refused."""
 
 import pytest
 from reading_xmi import MAGICDRAW, PAPYRUS, Read, papyrus, read, source
@@ -40,20 +40,20 @@ def test_the_five_verdicts():
     ]
 
 
-def test_a_finding_is_about_the_first_place():
+def test_a_diagnostic_has_the_first_location():
     model = papyrus('<packagedElement xmi:type="uml:State" xmi:id="o"/>')
     (finding,) = read(model).sink
     (location,) = locate([model], [finding.subject.place]).values()
     assert location.text[location.column - 1 :].startswith("<packagedElement")
 
 
-def test_an_element_where_it_cannot_stand_is_not_read():
+def test_an_element_below_an_owner_that_cannot_own_it_is_not_read():
     reading = read(papyrus('<packagedElement xmi:type="uml:State" xmi:id="s"/>'))
     assert reading.totals["unsupported"] == 1
     assert [element.id for element in reading.graph] == ["m"]
 
 
-def test_a_file_in_which_nothing_is_known_is_an_error():
+def test_a_file_without_known_content_is_an_error():
     reading = read(source(PAPYRUS % "<settings/>"))
     assert reading.findings[-1].startswith("no-known-content: 'm.uml' looks like UML in XMI")
     assert [f for f in read(papyrus("")).findings if "no-known" in f] == []
@@ -79,7 +79,7 @@ def test_an_undeclared_entity_is_an_error():
     assert "not well-formed XML: undefined entity" in read(papyrus("&x;")).findings[0]
 
 
-def test_truncation_is_an_error_with_its_place():
+def test_truncation_is_an_error_with_its_location():
     whole = papyrus('<packagedElement xmi:type="uml:Class" xmi:id="k"/>')
     cut = Source("m.uml", whole.data[:-30])
     (finding,) = read(cut).sink
@@ -149,7 +149,7 @@ def test_files_are_recognised_by_content(text, score):
     assert FRONTEND.detect(source(text, "any.thing")) == score
 
 
-def test_a_text_that_is_no_feature_of_uml_is_kept_and_told_at_its_place():
+def test_a_text_that_is_no_feature_of_uml_is_stored_and_reported_at_its_location():
     owned = '<ownedAttribute xmi:id="p" name="speed">{}</ownedAttribute>'
     model = f'<packagedElement xmi:type="uml:Class" xmi:id="c" name="C">{owned}</packagedElement>'
     reading = read(papyrus(model.format("<unit>mm/s</unit>")))
@@ -163,7 +163,7 @@ def test_a_text_that_is_no_feature_of_uml_is_kept_and_told_at_its_place():
         assert read(papyrus(model.format(known))).findings == []
 
 
-def test_an_empty_element_that_is_no_feature_of_uml_is_told():
+def test_an_empty_element_that_is_no_feature_of_uml_is_reported():
     reading = read(
         papyrus('<packagedElement xmi:type="uml:Class" xmi:id="c"><unit/></packagedElement>')
     )
@@ -177,7 +177,7 @@ def test_a_text_beside_the_model_belongs_to_nothing():
     assert reading.totals["unsupported"] == 1
 
 
-def test_drawings_are_counted_but_not_kept():
+def test_drawings_are_counted_but_not_stored():
     reading = read(
         source(
             MAGICDRAW
