@@ -179,7 +179,7 @@ def test_requirements_have_the_id_and_text_of_the_file(corpus, compiled):
 
 
 def test_connectors_of_old_papyrus_stand_where_their_paths_lead(compiled):
-    from sysmlc.backends.plantuml.bindings import bindings
+    from sysmlc.backends.plantuml.parametric import bindings
 
     graph = compiled("papyrus/INCOSE.uml")
     (block,) = bindings(graph)

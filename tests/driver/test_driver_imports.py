@@ -63,7 +63,7 @@ def uml_modules(tmp_path_factory):
 
 
 NOT_IN_A_RUN_OF_SYSML = [
-    "sysmlc.backends.plantuml.uc_relations",
+    "sysmlc.backends.plantuml.relations",
     "sysmlc.driver.companions",
     "sysmlc.frontends.sysml.interactions",
     "sysmlc.frontends.sysml.requirements",

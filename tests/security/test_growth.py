@@ -8,7 +8,7 @@ from pathlib import Path
 import hostile_families as families
 import pytest
 
-from sysmlc.backends.plantuml import bdd
+from sysmlc.backends.plantuml import block_definition
 from sysmlc.driver import Request, compile_model, list_backend_names, load_backends
 from sysmlc.logic.machines import conflicts as competition
 
@@ -85,7 +85,7 @@ def test_block_diagrams_of_many_packages_take_linear_time(tmp_path):
         path.write_text(families.small_packages(size))
 
         def count(frame, event, _argument, size=size):
-            calls[size] += event == "call" and frame.f_code.co_filename == bdd.__file__
+            calls[size] += event == "call" and frame.f_code.co_filename == block_definition.__file__
 
         sys.setprofile(count)
         try:

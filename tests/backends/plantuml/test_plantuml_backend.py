@@ -3,10 +3,10 @@
 import pytest
 from drawing import emitted, texts
 
-from sysmlc.backends.plantuml import pieces, split
+from sysmlc.backends.plantuml import partitioning
 from sysmlc.backends.plantuml.backend import BAD_TEMPLATE
-from sysmlc.backends.plantuml.missing import NOT_DRAWN
-from sysmlc.backends.plantuml.sd_remarks import OVERTAKEN
+from sysmlc.backends.plantuml.partitioning import split_view
+from sysmlc.backends.plantuml.undrawn import NOT_DRAWN, OVERTAKEN
 from sysmlc.backends.plantuml.views import GraphView, Line, Node
 from sysmlc.ir.text import parse_text
 
@@ -18,24 +18,24 @@ def test_a_package_of_95_blocks_is_split_and_loses_none():
     made = texts(parse_text(f'Package p "Plant"\n{blocks}'))
     names = [f"Plant.{n}-of-3.bdd.puml" for n in (1, 2, 3)]
     assert sorted(made) == names
-    assert all(text.count('\nclass "') <= split.LIMIT for text in made.values())
+    assert all(text.count('\nclass "') <= partitioning.LIMIT for text in made.values())
     assert all(f"part {n} of 3 of Plant" in made[name] for n, name in enumerate(names, 1))
     assert all(any(f"**Block{n}**" in text for text in made.values()) for n in range(95))
 
 
 def test_connected_blocks_stay_together():
     near = {"a": ["c"], "b": ["d"], "c": ["a"], "d": ["b"]}
-    assert split.chunks(["a", "b", "c", "d"], near, limit=2) == [["a", "c"], ["b", "d"]]
+    assert partitioning.chunks(["a", "b", "c", "d"], near, limit=2) == [["a", "c"], ["b", "d"]]
 
 
 def test_an_item_with_too_many_neighbours_is_a_part_of_its_own():
-    assert split.chunks(["a", "b"], {"a": ["x", "y", "z"]}, limit=3) == [["a"], ["b"]]
+    assert partitioning.chunks(["a", "b"], {"a": ["x", "y", "z"]}, limit=3) == [["a"], ["b"]]
 
 
 def test_a_cut_graph_shows_every_node_and_every_line():
     nodes = tuple(Node(f"n{n}", f"n{n}", "action", shows=(f"n{n}",)) for n in range(100))
     lines = tuple(Line(f"n{n}", "-->", f"n{n + 1}") for n in range(99))
-    parts = pieces.pieces(GraphView(nodes, lines), limit=40)
+    parts = split_view(GraphView(nodes, lines), limit=40)
     assert len(parts) == 3
     assert {line for part in parts for line in part.lines} == set(lines)
     assert {id for part in parts for node in part.nodes for id in node.shows} == {
@@ -47,7 +47,7 @@ def test_a_large_node_is_closed_and_opened_in_its_own_part():
     inner = tuple(Node(f"i{n}", f"i{n}", "state") for n in range(30))
     nodes = (Node("big", "big", "state", children=inner), Node("out", "out", "state"))
     view = GraphView(nodes, (Line("big", "-->", "out"), Line("i3", "-->", "i4")))
-    first, second = pieces.pieces(view, limit=30)
+    first, second = split_view(view, limit=30)
     assert [node.alias for node in first.nodes] == ["big", "out"]
     assert first.nodes[0].children == ()
     assert {node.alias for node in second.nodes} == {node.alias for node in inner}

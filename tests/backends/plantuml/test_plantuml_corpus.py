@@ -6,7 +6,7 @@ import pytest
 from drawing import emitted
 
 from long_runs import quick_first
-from sysmlc.backends.plantuml.split import LIMIT
+from sysmlc.backends.plantuml.partitioning import LIMIT
 from sysmlc.diagnostics import Coverage, Sink
 from sysmlc.driver.reading import read_unit
 from sysmlc.frontends.xmi import FRONTEND

@@ -5,9 +5,8 @@ import re
 import pytest
 from drawing import emitted
 
-from sysmlc.backends.plantuml.connections import Connection, Path
-from sysmlc.backends.plantuml.domains import styled
-from sysmlc.backends.plantuml.sides import sides
+from sysmlc.backends.plantuml.connections import Connection, Path, styled
+from sysmlc.backends.plantuml.layout import find_port_sides
 from sysmlc.diagnostics import Sink
 from sysmlc.ir.text import parse_text
 from sysmlc.passes import pipeline
@@ -204,12 +203,12 @@ def link(first, second, arrow="--"):
     ],
 )
 def test_ports_stand_on_the_side_to_which_their_lines_run(links, right):
-    found = {".".join(key) for key, form in sides(links).items() if form == "portout"}
+    found = {".".join(key) for key, form in find_port_sides(links).items() if form == "portout"}
     assert found == right
 
 
 def test_ports_of_nested_parts_stay_where_the_layout_can_cope():
-    assert sides([link("a.b.p", "c.q")]) == {}
+    assert find_port_sides([link("a.b.p", "c.q")]) == {}
 
 
 @pytest.mark.plantuml

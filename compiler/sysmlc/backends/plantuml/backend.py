@@ -8,17 +8,18 @@ from msgspec import Struct
 
 from sysmlc.backends.base import AUTHOR, DERIVED, EmitOptions
 from sysmlc.backends.plantuml import (
-    act,
-    bdd,
-    ibd,
-    missing,
-    par,
-    req,
-    sd,
-    sd_remarks,
-    stm,
-    uc,
+    activity,
+    block_definition,
+    internal_block,
+    parametric,
+    requirement,
+    sequence,
+    state_machine,
+    undrawn,
+    use_case,
 )
+from sysmlc.backends.plantuml.undrawn import report_overtaken_messages
+from sysmlc.backends.plantuml.author import diagrams as author_diagrams
 from sysmlc.backends.plantuml.views import Diagram
 from sysmlc.backends.templates import TemplateError, Templates
 from sysmlc.diagnostics import Severity, Sink, Subject, rule
@@ -37,14 +38,14 @@ BAD_TEMPLATE = rule(
 )
 
 KINDS: tuple[Callable[[Graph], Iterator[Diagram]], ...] = (
-    bdd.diagrams,
-    ibd.diagrams,
-    par.diagrams,
-    act.diagrams,
-    stm.diagrams,
-    req.diagrams,
-    sd.diagrams,
-    uc.diagrams,
+    block_definition.diagrams,
+    internal_block.diagrams,
+    parametric.diagrams,
+    activity.diagrams,
+    state_machine.diagrams,
+    requirement.diagrams,
+    sequence.diagrams,
+    use_case.diagrams,
 )
 
 
@@ -57,20 +58,18 @@ class PlantUml(Struct, frozen=True):
 
     def emit(self, graph: Graph, output: Output, sink: Sink, options: EmitOptions) -> None:
         """Write every diagram that shows something; report what none of them shows."""
-        with allow_recursion(stm.depth(graph)):
+        with allow_recursion(state_machine.depth(graph)):
             self._emit(graph, output, sink, options)
 
     def _emit(self, graph: Graph, output: Output, sink: Sink, options: EmitOptions) -> None:
         if options.diagrams != AUTHOR:
             found = [_Traced(one, one.trace()) for kind in KINDS for one in kind(graph)]
-            missing.report(graph, {id for one in found for id in one.trace}, sink)
-            sd_remarks.report(graph, sink)
+            undrawn.report(graph, {id for one in found for id in one.trace}, sink)
+            report_overtaken_messages(graph, sink)
             _write(graph, found, "", output, sink, options)
         if options.diagrams != DERIVED:
-            from sysmlc.backends.plantuml import author
-
-            drawn = [_Traced(one, one.trace()) for one in author.diagrams(graph, sink)]
-            _write(graph, drawn, author.FOLDER, output, sink, options)
+            drawn = [_Traced(one, one.trace()) for one in diagrams(graph, sink)]
+            _write(graph, drawn, author_diagrams.FOLDER, output, sink, options)
 
 
 class _Traced(NamedTuple):

@@ -2,10 +2,12 @@
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 
-from sysmlc.backends.plantuml import allocated, labels, measured
+from sysmlc.backends.plantuml import labels
 from sysmlc.backends.plantuml.aliases import Aliases
+from sysmlc.backends.plantuml.allocations import list_block_allocations
 from sysmlc.backends.plantuml.views import Box, Compartment
-from sysmlc.ir import Element, Graph, Kind
+from sysmlc.ir import Edge, Element, Graph, Kind
+from sysmlc.ir.query.units import is_quantity_kind, is_unit, quantity_kind_of, unit_of
 from sysmlc.support.plantuml_text import lines, plain, small, stack
 
 _BY_ROLE = {
@@ -60,13 +62,13 @@ def box(
             shows += [part.id for part in _all(graph, feature)]
             shows += in_rows.get(feature.id, ())
     if features is None:
-        rows["allocations"], allocations = allocated.of_block(graph, item)
+        rows["allocations"], allocations = list_block_allocations(graph, item)
         shows += allocations
     compartments = tuple(Compartment(t, tuple(rows[t])) for t in _ORDER if rows.get(t))
-    measures = measured.rows(graph, item)
+    measures = list_measure_rows(graph, item)
     if measures:
         compartments = (Compartment("", measures), *compartments)
-        shows += measured.shown(graph, item)
+        shows += iter_measure_ids(graph, item)
     alias = aliases.make(item.id, item.name, str(item.kind))
     return Box(alias, heading(graph, item), _style(item), compartments, tuple(shows))
 
@@ -104,7 +106,7 @@ _TEXTS: dict[Kind, Callable[[Graph, Element], str]] = {
 
 
 def _unit(graph: Graph, feature: Element) -> str:
-    return measured.unit_text(graph, feature) if feature.role == "value" else ""
+    return format_unit(graph, feature) if feature.role == "value" else ""
 
 
 def _feature_words(graph: Graph, feature: Element) -> str:
@@ -151,3 +153,35 @@ def _all(graph: Graph, feature: Element) -> Iterator[Element]:
         yield from (item for item in graph.owned(feature) if item.kind is Kind.PARAMETER)
     if feature.kind is Kind.COLLABORATION_USE:
         yield from graph.owned(feature)
+
+
+def list_measure_rows(graph: Graph, item: Element) -> tuple[str, ...]:
+    """``unit = kilogram (kg)`` and the like: of a value type its own, of a unit what it says."""
+    if item.role != "value type" or is_unit(item) or is_quantity_kind(item):
+        return ()
+    measures = (("unit", unit_of(graph, item)), ("quantityKind", quantity_kind_of(graph, item)))
+    found = ((title, one) for title, one in measures if one is not None)
+    return tuple(row for title, one in found for row in lines(f"{title} = {_format_measure(one)}"))
+
+
+def iter_measure_ids(graph: Graph, item: Element) -> Iterator[str]:
+    """Ids of the elements that the rows stand for."""
+    for one in graph.targets(item, Edge.REFERENCES):
+        if is_unit(one) or is_quantity_kind(one):
+            yield one.id
+
+
+def format_unit(graph: Graph, feature: Element) -> str:
+    """``{unit = kg}`` behind a value property, unless the name of its type says it already."""
+    unit = unit_of(graph, feature)
+    if unit is None:
+        return ""
+    text = str(unit.attrs.get("symbol") or labels.name(unit))
+    type_ = labels.type_name(graph, feature)
+    return "" if text in type_ or labels.name(unit) in type_ else f"{{unit = {text}}}"
+
+
+def _format_measure(element: Element) -> str:
+    symbol = str(element.attrs.get("symbol", ""))
+    name = labels.name(element)
+    return f"{name} ({symbol})" if symbol and symbol != name else name

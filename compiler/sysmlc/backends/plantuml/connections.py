@@ -4,11 +4,11 @@ from collections.abc import Iterable, Iterator, Mapping
 
 from msgspec import Struct
 
-from sysmlc.backends.plantuml import allocated, labels
-from sysmlc.backends.plantuml.domains import coloured, styled
+from sysmlc.backends.plantuml import labels
+from sysmlc.backends.plantuml.allocations import iter_feature_allocations
 from sysmlc.backends.plantuml.relations import conveyed
 from sysmlc.ir import Edge, Element, Graph, Kind
-from sysmlc.ir.query import runs_both_ways
+from sysmlc.ir.query import DOMAINS, runs_both_ways
 from sysmlc.support.plantuml_text import keyword_label, label, stack
 
 
@@ -214,10 +214,35 @@ def _free_flow(graph: Graph, flow: Element, source: Element, target: Element) ->
 
 
 def _allocations(graph: Graph, block: Element) -> Iterator[Connection]:
-    for dependency, client, supplier in allocated.between_features(graph, block):
+    for dependency, client, supplier in iter_feature_allocations(graph, block):
         text = " ".join(part for part in ("«allocate»", dependency.name) if part)
         yield Connection(_direct(client), _direct(supplier), "..>", text, shows=(dependency.id,))
 
 
 def _direct(feature: Element) -> Path:
     return Path(port=feature.id) if _is_port(feature) else Path((feature.id,))
+
+
+# The template gives these PlantUML variables their colours and line styles; a name of the model
+# never has a ``$`` that is not escaped.
+
+
+def styled(arrow: str, domain: str) -> str:
+    """The arrow in the style of a domain; one that has a style of its own stays."""
+    if domain not in DOMAINS or "[" in arrow:
+        return arrow
+    for sign in ("-", "."):
+        if sign * 2 in arrow:
+            return arrow.replace(sign * 2, f"{sign}[${domain}_line]{sign}", 1)
+    return arrow
+
+
+def coloured(row: str, domain: str) -> str:
+    """Escaped text in the colour of a domain."""
+    return f"<color:${domain}>{row}</color>" if domain in DOMAINS else row
+
+
+def in_order(found: Iterable[str]) -> tuple[str, ...]:
+    """The domains among these, each once, as legends list them."""
+    there = set(found)
+    return tuple(domain for domain in DOMAINS if domain in there)

@@ -4,14 +4,14 @@ from collections.abc import Callable, Iterable, Iterator
 
 from msgspec.structs import replace
 
-from sysmlc.backends.plantuml import act, stm
-from sysmlc.backends.plantuml.author_choice import Choice
+from sysmlc.backends.plantuml import activity, state_machine
+from sysmlc.backends.plantuml.author.selection import Choice
 from sysmlc.backends.plantuml.views import GraphView, Line, Node, Note
 from sysmlc.ir import Element, Graph, Kind
 
 _WHOLE: dict[Kind, Callable[[Graph, Element], GraphView]] = {
-    Kind.ACTIVITY: act.whole,
-    Kind.STATE_MACHINE: stm.whole,
+    Kind.ACTIVITY: activity.whole,
+    Kind.STATE_MACHINE: state_machine.whole,
 }
 
 

@@ -2,12 +2,11 @@
 
 from collections.abc import Iterable, Iterator
 
-from sysmlc.backends.plantuml import bdd, boxes, labels, req
+from sysmlc.backends.plantuml import block_definition, boxes, labels, requirement
 from sysmlc.backends.plantuml.aliases import Aliases
-from sysmlc.backends.plantuml.author_choice import FEATURES, LINES, Choice
-from sysmlc.backends.plantuml.grid import box_view
-from sysmlc.backends.plantuml.relations import Relation, relations
-from sysmlc.backends.plantuml.uc_relations import use_case_relations
+from sysmlc.backends.plantuml.author.selection import FEATURES, LINES, Choice
+from sysmlc.backends.plantuml.layout import box_view
+from sysmlc.backends.plantuml.relations import Relation, relations, use_case_relations
 from sysmlc.backends.plantuml.views import Box, BoxView
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.ir.query import is_requirement
@@ -21,7 +20,7 @@ def every_relation(graph: Graph) -> list[Relation]:
     """All lines that diagrams of boxes may show."""
     return [
         *relations(graph),
-        *req.relations(graph),
+        *requirement.relations(graph),
         *use_case_relations(graph),
         *_anchors(graph),
     ]
@@ -35,7 +34,7 @@ def view(choice: Choice, every: Iterable[Relation]) -> BoxView:
     in_lines = {id for one in inside for id in one.shows}
     aliases = Aliases()
     boxes = [_box(choice, item, aliases, in_lines) for item in boxed]
-    return box_view(boxes, [bdd.line(one, aliases) for one in inside])
+    return box_view(boxes, [block_definition.line(one, aliases) for one in inside])
 
 
 def _is_boxed(choice: Choice, item: Element) -> bool:
@@ -74,7 +73,7 @@ def _box(choice: Choice, item: Element, aliases: Aliases, in_lines: set[str]) ->
     if item.attrs.get("external"):
         return boxes.stub(graph, item, aliases)
     if is_requirement(item):
-        return req.box(graph, item, aliases)
+        return requirement.box(graph, item, aliases)
     features = _features(choice, item)
     return boxes.box(graph, item, aliases, in_lines, {}, features)
 

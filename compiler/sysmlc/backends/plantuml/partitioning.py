@@ -1,14 +1,69 @@
-"""Cut a large graph of nodes into views that one can read, without losing a line."""
+"""Split what is too much for one picture: connected things stay together as far as they fit."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 
 from msgspec.structs import replace
 
-from sysmlc.backends.plantuml import split
 from sysmlc.backends.plantuml.views import GraphView, Line, Node, Note
 
+LIMIT = 40
+"""Boxes in one diagram; above it pictures measured on real models are no longer readable."""
 
-def pieces(view: GraphView, limit: int = split.LIMIT) -> list[GraphView]:
+
+def chunks(
+    items: Sequence[str],
+    neighbours: Mapping[str, Collection[str]],
+    limit: int = LIMIT,
+    sizes: Mapping[str, int] | None = None,
+) -> list[list[str]]:
+    """Divide ``items`` so that each part with its neighbours has at most ``limit`` members.
+
+    ``sizes`` says for how many members an item counts (1 when it is not there). An item that
+    has more neighbours than fit is a part of its own. Inside a part the order of ``items`` is
+    kept.
+    """
+    size = sizes or {}
+    every = {*items, *(near for item in items for near in neighbours.get(item, ()))}
+    if items and sum(size.get(member, 1) for member in every) <= limit:
+        return [list(dict.fromkeys(items))]
+    place = {item: index for index, item in enumerate(items)}
+    parts: list[list[str]] = []
+    shown: set[str] = set()
+    for item in _connected(items, neighbours):
+        wider = shown | {item} | set(neighbours.get(item, ()))
+        if not parts or sum(size.get(member, 1) for member in wider) > limit:
+            parts.append([])
+            wider = {item} | set(neighbours.get(item, ()))
+        parts[-1].append(item)
+        shown = wider
+    return [sorted(part, key=place.__getitem__) for part in parts]
+
+
+def _connected(items: Sequence[str], neighbours: Mapping[str, Collection[str]]) -> Iterator[str]:
+    """The items component by component, each breadth first from its first item."""
+    waiting = dict.fromkeys(items)
+    for start in items:
+        queue = [start] if start in waiting else []
+        waiting.pop(start, None)
+        for item in queue:
+            yield item
+            near = [o for o in dict.fromkeys(neighbours.get(item, ())) if o in waiting]
+            for other in near:
+                del waiting[other]
+            queue.extend(near)
+
+
+def numbered(name: str, index: int, count: int) -> str:
+    """Name of one part: the name itself when there is only one."""
+    return name if count == 1 else f"{name}::{index + 1}-of-{count}"
+
+
+def footer(index: int, count: int, whole: str) -> str:
+    """The note on a part that says what it is a part of; nothing when it is the whole."""
+    return "" if count == 1 else f"part {index + 1} of {count} of {whole}; grey: shown elsewhere"
+
+
+def split_view(view: GraphView, limit: int = LIMIT) -> list[GraphView]:
     """The view itself when it is small, else parts of it.
 
     A node with more than ``limit`` nodes inside is closed in its own part and opened in parts
@@ -31,18 +86,18 @@ def _bare(notes: tuple[Note, ...]) -> tuple[Note, ...]:
 def _groups(nodes: Sequence[Node], lines: Sequence[Line], limit: int) -> Iterator[tuple[Node, ...]]:
     """Sets of nodes that are drawn together, large ones closed; then what the large ones hold."""
     large = [node for node in nodes if 1 + _total(node.children) > limit]
-    shown = [_closed(node) if node in large else node for node in nodes]
+    shown = [_close_node(node) if node in large else node for node in nodes]
     by_alias = {node.alias: node for node in shown}
     near = _neighbours(shown, lines)
     sizes = {node.alias: 1 + _total(node.children) for node in shown}
     if len(shown) > 1 or not large:
-        for part in split.chunks(list(by_alias), near, limit, sizes):
+        for part in chunks(list(by_alias), near, limit, sizes):
             yield tuple(by_alias[alias] for alias in part)
     for node in large:
         yield from _groups(node.children, lines, limit)
 
 
-def _closed(node: Node) -> Node:
+def _close_node(node: Node) -> Node:
     return replace(node, children=(), rows=(*node.rows, "⋯ opened in another part"))
 
 

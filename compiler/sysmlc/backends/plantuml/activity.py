@@ -3,15 +3,23 @@
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
-from sysmlc.backends.plantuml import actions, labels
+from sysmlc.backends.plantuml import activity_nodes, labels
 from sysmlc.backends.plantuml.aliases import Aliases
-from sysmlc.backends.plantuml.bdd import ACTIVITY_NODES
-from sysmlc.backends.plantuml.lanes import tint
-from sysmlc.backends.plantuml.notes import notes
-from sysmlc.backends.plantuml.stm import divided, guard_text
+from sysmlc.backends.plantuml.behaviour_notes import notes
+from sysmlc.backends.plantuml.block_definition import ACTIVITY_NODES
+from sysmlc.backends.plantuml.state_machine import divided, guard_text
 from sysmlc.backends.plantuml.views import Diagram, GraphView, Line, Node
 from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind
 from sysmlc.support.plantuml_text import label, plain, small, stack
+
+TINTS = 6
+"""Number of tints in ``_style.j2``; further partitions take them again."""
+
+
+def tint(number: int) -> str:
+    """Style of the nodes in the partition with this number, from 0."""
+    return f"lane{number % TINTS + 1}"
+
 
 FLOWS = (Kind.CONTROL_FLOW, Kind.OBJECT_FLOW)
 _CONTROL_FLOW = "-[dashed]->"
@@ -115,7 +123,7 @@ class _Drawing:
 
     def _node(self, node: Element) -> Node:
         alias = self.aliases.make(node.id, node.name, node.subkind or str(node.kind))
-        look = actions.look(self.graph, node)
+        look = activity_nodes.look(self.graph, node)
         self.homes[node.id] = alias
         self.homes.update(dict.fromkeys(look.pins, alias))
         lanes = self._written_lanes(node)
@@ -167,7 +175,7 @@ class _Drawing:
     def _handlers(self) -> Iterator[Line]:
         """From each protected node to the bodies of its exception handlers."""
         for node in (one for one in self.inside if "handlers" in one.attrs):
-            for body, types in actions.handlers(self.graph, node):
+            for body, types in activity_nodes.handlers(self.graph, node):
                 if node.id in self.homes and body in self.homes:
                     text = label(" ".join(["⚡", ", ".join(types)]).strip(), _LABEL)
                     yield Line(self.homes[node.id], _INTERRUPTING, self.homes[body], text)

@@ -2,14 +2,16 @@
 
 from collections.abc import Iterable, Iterator, Mapping
 
-from sysmlc.backends.plantuml import foreign, labels, split, uc
+from msgspec.structs import replace
+
+from sysmlc.backends.plantuml import labels, partitioning, use_case
 from sysmlc.backends.plantuml.aliases import Aliases
 from sysmlc.backends.plantuml.boxes import box, stub
-from sysmlc.backends.plantuml.grid import box_view
+from sysmlc.backends.plantuml.layout import box_view
 from sysmlc.backends.plantuml.relations import Relation, relations
-from sysmlc.backends.plantuml.views import BoxView, Diagram, Line
+from sysmlc.backends.plantuml.views import Box, BoxView, Compartment, Diagram, Line
 from sysmlc.ir import Edge, Element, Graph, Kind
-from sysmlc.support.plantuml_text import keyword_label, padded, plain
+from sysmlc.support.plantuml_text import keyword_label, lines, padded, plain
 
 CLASSIFIERS = (
     Kind.CLASS,
@@ -68,7 +70,7 @@ def _group_by_package(
 def _homes(graph: Graph) -> dict[str | None, list[Element]]:
     """The classifiers that each package shows: its own and those inside its classifiers."""
     homes: dict[str | None, list[Element]] = {}
-    of_use_cases = uc.actors(graph)
+    of_use_cases = use_case.actors(graph)
     for root in graph.roots():
         for element in graph.subtree(root):
             is_shown = element.kind in _WITH_BOX and _is_shown(graph, element)
@@ -111,9 +113,9 @@ def _of_package(
     in_rows = {r.row: r.shows for r in found if r.row and r.target not in own}
     ours = [relation for relation in found if relation.row not in in_rows]
     ours += _containments(graph, [graph[id] for id in ids])
-    ours, rows = foreign.folded(ours, own)
+    ours, rows = fold_foreign_clients(ours, own)
     near = neighbours(own, ours)
-    parts = split.chunks(ids, near)
+    parts = partitioning.chunks(ids, near)
     whole = graph.qualified_name(about) if about is not None else "model"
     for index, part in enumerate(parts):
         shown = [graph[id] for id in part]
@@ -121,18 +123,18 @@ def _of_package(
         inside += _property_lines(graph, shown, inside)
         yield Diagram(
             kind="bdd",
-            name=split.numbered(whole, index, len(parts)),
+            name=partitioning.numbered(whole, index, len(parts)),
             frame=plain(f"bdd [package] {whole}"),
             heading=("Block definition diagram", whole),
             view=_view(graph, shown, inside, in_rows, rows),
             about=package or "",
-            footer=plain(split.footer(index, len(parts), whole)),
+            footer=plain(partitioning.footer(index, len(parts), whole)),
         )
 
 
 def _is_between_boxes(graph: Graph, relation: Relation) -> bool:
     ends = (graph[relation.source], graph[relation.target])
-    return all(map(_is_boxable, ends)) and {end.kind for end in ends} != set(uc.FIGURES)
+    return all(map(_is_boxable, ends)) and {end.kind for end in ends} != set(use_case.FIGURES)
 
 
 def _is_boxable(element: Element) -> bool:
@@ -204,7 +206,7 @@ def _view(
     in_lines = {id for relation in inside for id in relation.shows}
     boxes = [box(graph, item, aliases, in_lines, in_rows) for item in shown]
     boxes = [
-        foreign.added(graph, made, rows.get(item.id, []))
+        add_client_rows(graph, made, rows.get(item.id, []))
         for item, made in zip(shown, boxes, strict=True)
     ]
     outside = [id for r in inside for id in (r.source, r.target) if id not in aliases]
@@ -226,4 +228,43 @@ def line(relation: Relation, aliases: Aliases | Mapping[str, str]) -> Line:
         padded(relation.near),
         padded(relation.far),
         relation.shows,
+    )
+
+
+MAX_FOREIGN_CLIENTS = 3
+"""Foreign clients in one diagram that still are boxes with lines."""
+
+_CLIENTS_TITLE = "depended on by"
+_CLIENT_WIDTH = 46
+
+
+def fold_foreign_clients(
+    found: Iterable[Relation], own: set[str]
+) -> tuple[list[Relation], dict[str, list[Relation]]]:
+    """The relations that stay lines, and those that become rows, by the box that has them."""
+    every = list(found)
+    inward = [one for one in every if _is_inward(one, own)]
+    if len({one.source for one in inward}) <= MAX_FOREIGN_CLIENTS:
+        return every, {}
+    rows: dict[str, list[Relation]] = {}
+    for one in inward:
+        rows.setdefault(one.target, []).append(one)
+    return [one for one in every if not _is_inward(one, own)], rows
+
+
+def _is_inward(relation: Relation, own: set[str]) -> bool:
+    is_plain = relation.arrow == "..>" and not relation.near and not relation.far
+    return is_plain and relation.source not in own and relation.target in own
+
+
+def add_client_rows(graph: Graph, box: Box, rows: list[Relation]) -> Box:
+    """The box with a row for each relation."""
+    if not rows:
+        return box
+    texts = (f"{labels.name(graph[one.source])} {one.label}".strip() for one in rows)
+    shown = tuple(row for text in texts for row in lines(text, _CLIENT_WIDTH))
+    return replace(
+        box,
+        compartments=(*box.compartments, Compartment(_CLIENTS_TITLE, shown)),
+        shows=(*box.shows, *(id for one in rows for id in one.shows)),
     )

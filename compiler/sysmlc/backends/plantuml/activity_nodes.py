@@ -4,8 +4,9 @@ from collections.abc import Iterator
 
 from msgspec import Struct
 
-from sysmlc.backends.plantuml import allocated, labels
-from sysmlc.backends.plantuml.stm import trigger_text
+from sysmlc.backends.plantuml import labels
+from sysmlc.backends.plantuml.allocations import list_node_allocations
+from sysmlc.backends.plantuml.state_machine import trigger_text
 from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind
 from sysmlc.support.plantuml_text import label, lines
 
@@ -113,7 +114,7 @@ def _action(graph: Graph, node: Element) -> Look:
     extra = [item for item in graph.owned(node) if item.kind in (Kind.TRIGGER, Kind.CONSTRAINT)]
     rows = [*_body(node), *_called(node, called), *_extra(graph, node, extra)]
     rows += [row for pin in pins for row in _pin(graph, pin)]
-    allocations, ids = allocated.of_node(graph, node)
+    allocations, ids = list_node_allocations(graph, node)
     return Look(
         _SHAPES.get(node.subkind, "structured" if node.kind is Kind.STRUCTURED else "action"),
         label(_title(graph, node, called)),

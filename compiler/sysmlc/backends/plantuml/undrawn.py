@@ -3,7 +3,8 @@
 from collections.abc import Collection
 
 from sysmlc.diagnostics import Severity, Sink, rule
-from sysmlc.ir import Element, Graph, Kind
+from sysmlc.ir import Edge, Element, Graph, Kind
+from sysmlc.ir.query import interactions as sequence
 
 NOT_DRAWN = rule(
     "SM701",
@@ -125,4 +126,67 @@ def _report(
         kind=kind if len(items) == 1 else f"{kind} elements",
         owner=graph.qualified_name(owner) if owner is not None else "the model",
         names=", ".join(names),
+    )
+
+
+OVERTAKEN = rule(
+    "SM710",
+    "overtaken-message",
+    Severity.INFO,
+    "message '{message}' of '{interaction}' is drawn where it is sent, though '{other}' comes "
+    "first on lifeline '{lifeline}'",
+)
+
+
+def report_overtaken_messages(graph: Graph, sink: Sink) -> None:
+    """Report each message that something else overtakes on the lifeline that receives it."""
+    for interaction in graph.of_kind(Kind.INTERACTION):
+        for container in sequence.containers(graph, interaction):
+            items = sequence.happenings(graph, container)
+            at = {item.id: number for number, item in enumerate(items)}
+            for item in items:
+                _check_overtaking(graph, sink, interaction, items, at, item)
+
+
+def _check_overtaking(
+    graph: Graph,
+    sink: Sink,
+    interaction: Element,
+    items: list[Element],
+    at: dict[str, int],
+    sent: Element,
+) -> None:
+    message = sequence.sent(graph, sent)
+    received = graph.target(message, Edge.RECEIVE_EVENT) if message is not None else None
+    if message is None or received is None or received.id not in at:
+        return
+    lifelines = {one.id for one in sequence.covered(graph, received)}
+    for other in items[at[sent.id] + 1 : at[received.id]]:
+        found = [one for one in sequence.covered(graph, other) if one.id in lifelines]
+        if found and _drawn_position(graph, at, other) > at[sent.id]:
+            _report_overtaken(graph, sink, interaction, message, other, found[0])
+            return
+
+
+def _drawn_position(graph: Graph, at: dict[str, int], other: Element) -> int:
+    """Where it is drawn: a message at the first of its ends, an execution with its ends."""
+    if other.kind is Kind.EXECUTION:
+        return -1
+    message = sequence.received(graph, other)
+    first = graph.target(message, Edge.SEND_EVENT) if message is not None else None
+    return min(at[other.id], at.get(first.id, at[other.id]) if first is not None else at[other.id])
+
+
+def _report_overtaken(
+    graph: Graph, sink: Sink, interaction: Element, message: Element, other: Element, line: Element
+) -> None:
+    from sysmlc.backends.plantuml.sequence_labels import event_name
+
+    sink.report(
+        OVERTAKEN,
+        graph.subject(message),
+        message=event_name(graph, message),
+        interaction=graph.qualified_name(interaction),
+        other=event_name(graph, other),
+        lifeline=line.name or "without name",
     )

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 
-from sysmlc.backends.plantuml import labels, split
+from sysmlc.backends.plantuml import labels, partitioning
 from sysmlc.backends.plantuml.aliases import Aliases
 from sysmlc.backends.plantuml.relations import Relation, relations
 from sysmlc.backends.plantuml.views import Diagram, Figure, Line, Note, SubjectView, UseCaseView
@@ -45,7 +45,7 @@ def actors(graph: Graph) -> set[str]:
 
 def _relations(graph: Graph) -> list[Relation]:
     """Lines between use cases and actors."""
-    from sysmlc.backends.plantuml.uc_relations import use_case_relations
+    from sysmlc.backends.plantuml.relations import use_case_relations
 
     between = [*relations(graph), *use_case_relations(graph)]
     return [r for r in between if {graph[r.source].kind, graph[r.target].kind} <= set(FIGURES)]
@@ -56,19 +56,19 @@ def _of_package(
 ) -> Iterator[Diagram]:
     at_home = package.id if package is not None else None
     alone = [one for one in graph.of_kind(Kind.ACTOR) if labels.home(graph, one) == at_home]
-    parts = split.chunks([item.id for item in own], _near(own, every))
+    parts = partitioning.chunks([item.id for item in own], _near(own, every))
     whole = graph.qualified_name(package) if package is not None else "model"
     for index, part in enumerate(parts):
         shown = [graph[id] for id in part]
         inside = [r for r in every if {r.source, r.target} & _with(part, alone, every)]
         yield Diagram(
             kind="uc",
-            name=split.numbered(whole, index, len(parts)),
+            name=partitioning.numbered(whole, index, len(parts)),
             frame=plain(f"uc [package] {whole}"),
             heading=("Use case diagram", whole),
             view=view(graph, shown, alone if index == 0 else [], inside),
             about=package.id if package is not None else "",
-            footer=plain(split.footer(index, len(parts), whole)),
+            footer=plain(partitioning.footer(index, len(parts), whole)),
         )
 
 

@@ -6,17 +6,12 @@ from functools import cached_property
 
 from msgspec.structs import replace
 
-from sysmlc.backends.plantuml import (
-    author_behaviours,
-    author_boxes,
-    author_parts,
-    labels,
-    par,
-    sd,
-    uc,
-)
-from sysmlc.backends.plantuml.author_choice import Choice
-from sysmlc.backends.plantuml.bindings import Binding, bindings
+from sysmlc.backends.plantuml import labels, parametric, sequence, use_case
+from sysmlc.backends.plantuml.author import behaviours as author_behaviours
+from sysmlc.backends.plantuml.author import boxes as author_boxes
+from sysmlc.backends.plantuml.author import internal_block as author_parts
+from sysmlc.backends.plantuml.author.selection import Choice
+from sysmlc.backends.plantuml.parametric import Binding, bindings
 from sysmlc.backends.plantuml.relations import Relation
 from sysmlc.backends.plantuml.views import (
     BoxView,
@@ -94,7 +89,7 @@ class _Drawer:
 
     @cached_property
     def _sequences(self) -> dict[str, Diagram]:
-        return {diagram.about: diagram for diagram in sd.diagrams(self.graph)}
+        return {diagram.about: diagram for diagram in sequence.diagrams(self.graph)}
 
     def diagram(self, choice: Choice, sink: Sink) -> Diagram | None:
         word = str(choice.view.attrs.get("diagram", ""))
@@ -119,12 +114,12 @@ class _Drawer:
         return self._sequence(choice) if word == "sd" else None
 
     def _use_cases(self, choice: Choice) -> View:
-        figures = [one for one in choice.shown if one.kind in uc.FIGURES]
+        figures = [one for one in choice.shown if one.kind in use_case.FIGURES]
         ids = {one.id for one in figures}
         inside = [r for r in self._relations if author_boxes.is_inside(choice, r, ids)]
         cases = [one for one in figures if one.kind is Kind.USE_CASE]
         actors = [one for one in figures if one not in cases]
-        made = uc.view(self.graph, cases, actors, inside)
+        made = use_case.view(self.graph, cases, actors, inside)
         notes = (note for note in made.notes if not choice.ids.isdisjoint(note.shows))
         return replace(made, notes=tuple(notes))
 
@@ -140,7 +135,7 @@ class _Drawer:
         found = [one for one in every if not choice.ids.isdisjoint(one.shows)]
         if about is None or not found:
             return None
-        return par.chosen(self.graph, about, choice.shown, found)
+        return parametric.chosen(self.graph, about, choice.shown, found)
 
 
 def _is_empty(view: View) -> bool:

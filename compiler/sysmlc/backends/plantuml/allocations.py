@@ -24,7 +24,7 @@ _BOXED = (
 """Kinds between which block definition diagrams draw allocations as lines."""
 
 
-def of_node(graph: Graph, node: Element) -> tuple[list[str], list[str]]:
+def list_node_allocations(graph: Graph, node: Element) -> tuple[list[str], list[str]]:
     """Rows of an activity node, and the ids of the allocations that they stand for."""
     rows: list[str] = []
     ids: list[str] = []
@@ -34,7 +34,7 @@ def of_node(graph: Graph, node: Element) -> tuple[list[str], list[str]]:
     return rows, ids
 
 
-def of_block(graph: Graph, block: Element) -> tuple[list[str], list[str]]:
+def list_block_allocations(graph: Graph, block: Element) -> tuple[list[str], list[str]]:
     """Rows of a block for itself and its features, and the ids of the allocations."""
     rows: list[str] = []
     ids: list[str] = []
@@ -50,7 +50,9 @@ def of_block(graph: Graph, block: Element) -> tuple[list[str], list[str]]:
     return rows, ids
 
 
-def between_features(graph: Graph, block: Element) -> Iterator[tuple[Element, Element, Element]]:
+def iter_feature_allocations(
+    graph: Graph, block: Element
+) -> Iterator[tuple[Element, Element, Element]]:
     """Allocations from one feature of the block to another: dependency, client, supplier."""
     for own in _features(graph, block):
         for dependency, other in _opposite(graph, own, Edge.CLIENT):

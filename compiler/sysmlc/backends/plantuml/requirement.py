@@ -2,9 +2,9 @@
 
 from collections.abc import Iterable, Iterator
 
-from sysmlc.backends.plantuml import bdd, boxes, labels, split
+from sysmlc.backends.plantuml import block_definition, boxes, labels, partitioning
 from sysmlc.backends.plantuml.aliases import Aliases
-from sysmlc.backends.plantuml.grid import box_view
+from sysmlc.backends.plantuml.layout import box_view
 from sysmlc.backends.plantuml.relations import REQUIREMENT_ROLES, Relation
 from sysmlc.backends.plantuml.views import Box, BoxView, Compartment, Diagram
 from sysmlc.ir import Edge, Element, Graph, Kind
@@ -76,18 +76,20 @@ def _of_package(
 ) -> Iterator[Diagram]:
     own = {item.id for item in requirements}
     ours = [relation for relation in every if own & {relation.source, relation.target}]
-    parts = split.chunks([item.id for item in requirements], bdd.neighbours(own, ours))
+    parts = partitioning.chunks(
+        [item.id for item in requirements], block_definition.neighbours(own, ours)
+    )
     whole = graph.qualified_name(package) if package is not None else "model"
     for index, part in enumerate(parts):
         inside = [r for r in ours if {r.source, r.target} & set(part)]
         yield Diagram(
             kind="req",
-            name=split.numbered(whole, index, len(parts)),
+            name=partitioning.numbered(whole, index, len(parts)),
             frame=plain(f"req [package] {whole}"),
             heading=("Requirement diagram", whole),
             view=_view(graph, [graph[id] for id in part], inside),
             about=package.id if package is not None else "",
-            footer=plain(split.footer(index, len(parts), whole)),
+            footer=plain(partitioning.footer(index, len(parts), whole)),
         )
 
 
@@ -96,7 +98,7 @@ def _view(graph: Graph, shown: list[Element], inside: list[Relation]) -> BoxView
     boxes = [box(graph, item, aliases) for item in shown]
     outside = [id for r in inside for id in (r.source, r.target) if id not in aliases]
     boxes += [_other(graph, graph[id], aliases) for id in dict.fromkeys(outside)]
-    return box_view(boxes, [bdd.line(relation, aliases) for relation in inside])
+    return box_view(boxes, [block_definition.line(relation, aliases) for relation in inside])
 
 
 def box(graph: Graph, item: Element, aliases: Aliases) -> Box:

@@ -6,17 +6,132 @@ A feature of a part stands in a box of its own, with the path as its name (claus
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
+from itertools import pairwise
 
+from msgspec import Struct
 from msgspec.structs import replace
 
-from sysmlc.backends.plantuml import labels, measured, split
+from sysmlc.backends.plantuml import labels, partitioning
 from sysmlc.backends.plantuml.aliases import Aliases
-from sysmlc.backends.plantuml.bindings import OWNERS, Binding, bindings, usages
-from sysmlc.backends.plantuml.connections import Path
+from sysmlc.backends.plantuml.boxes import format_unit
+from sysmlc.backends.plantuml.connections import Path, is_parametric, path_of
 from sysmlc.backends.plantuml.views import Diagram, InternalView, Line, PartView, PortView
-from sysmlc.ir import Element, Graph, Kind
+from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.ir.query import features, type_of
 from sysmlc.support.plantuml_text import label, lines, plain, small, stack
+
+OWNERS = (Kind.CLASS, Kind.COMPONENT)
+_DEEPEST = 4
+_WIDEST = 1000
+"""Steps from a block to a feature of its parts that a connector without a path can mean, and
+the ways that are followed in each."""
+
+
+class Binding(Struct, frozen=True):
+    """One line of a parametric diagram; ``shows`` are the ids that it stands for."""
+
+    source: Path
+    target: Path
+    shows: tuple[str, ...]
+
+    @property
+    def ends(self) -> tuple[Path, Path]:
+        """Both ends."""
+        return self.source, self.target
+
+
+def usages(graph: Graph, block: Element) -> list[Element]:
+    """Constraint properties that instances of the block have, inherited ones too."""
+    return [one for one in features(graph, block) if one.role == "constraint property"]
+
+
+def bindings(graph: Graph) -> dict[str, list[Binding]]:
+    """Bindings at constraint parameters by the block in whose parametric diagram they stand.
+
+    That is the owner of the connector. Papyrus before 1.0 put the connectors of a parametric
+    diagram below any classifier, and wrote no paths: what leads to features of another block
+    with constraint properties, to each in a single shortest way, stands there.
+    """
+    found: dict[str, list[Binding]] = {}
+    homes = _homes(graph)
+    for connector in graph.of_kind(Kind.CONNECTOR):
+        if is_parametric(graph, connector):
+            for block, paths in _place_connector(graph, connector, homes):
+                found.setdefault(block, []).extend(_iter_bindings(graph, connector, paths))
+    return found
+
+
+def _homes(graph: Graph) -> dict[str, list[Element]]:
+    """Blocks by the constraint blocks that their constraint properties are typed by."""
+    found: dict[str, list[Element]] = {}
+    for block in graph.of_kind(*OWNERS):
+        types = (type_of(graph, one) for one in usages(graph, block))
+        for id in dict.fromkeys(type_.id for type_ in types if type_ is not None):
+            found.setdefault(id, []).append(block)
+    return found
+
+
+def _place_connector(
+    graph: Graph, connector: Element, homes: dict[str, list[Element]]
+) -> list[tuple[str, list[Path]]]:
+    ends = graph.targets(connector, Edge.END)
+    if _is_stray(graph, connector):
+        owners = (role.owner for role in _roles(graph, connector) if role.owner in homes)
+        blocks = dict.fromkeys(block for id in owners for block in homes[id or ""])
+        ways = [(block.id, [_find_path(graph, block, end) for end in ends]) for block in blocks]
+        known = [(id, [way for way in found if way is not None]) for id, found in ways]
+        placed = [(id, paths) for id, paths in known if len(paths) == len(ends)]
+        if placed:
+            return placed
+    own = [path for end in ends if (path := path_of(graph, end)) is not None]
+    return [(connector.owner, own)] if connector.owner is not None else []
+
+
+def _roles(graph: Graph, connector: Element) -> list[Element]:
+    ends = graph.targets(connector, Edge.END)
+    return [role for end in ends for role in graph.targets(end, Edge.ROLE)]
+
+
+def _iter_bindings(graph: Graph, connector: Element, paths: list[Path]) -> Iterator[Binding]:
+    shows = (connector.id, *(end.id for end in graph.targets(connector, Edge.END)))
+    for one, other in pairwise(paths):
+        yield Binding(one, other, shows)
+
+
+def _is_stray(graph: Graph, connector: Element) -> bool:
+    """Whether it has no paths and leads to what its owner does not have."""
+    owner, ends = graph.owner(connector), graph.targets(connector, Edge.END)
+    if owner is None or any(graph.targets(end, Edge.PATH) for end in ends):
+        return False
+    own = features(graph, owner)
+    return any(role not in own for role in _roles(graph, connector))
+
+
+def _find_path(graph: Graph, block: Element, end: Element) -> Path | None:
+    """The one shortest way from the block to the role of the end."""
+    role = graph.target(end, Edge.ROLE)
+    level: list[tuple[Element, ...]] = [(one,) for one in features(graph, block)]
+    for _ in range(_DEEPEST):
+        ways = [way for way in level if way[-1] is role]
+        if ways:
+            return _as_path(ways[0]) if len(ways) == 1 else None
+        level = [(*way, one) for way in level[:_WIDEST] for one in _list_features_below(graph, way)]
+    return None
+
+
+def _list_features_below(graph: Graph, way: tuple[Element, ...]) -> list[Element]:
+    type_ = type_of(graph, way[-1])
+    if type_ is None or way[-1].kind is not Kind.PROPERTY:
+        return []
+    return [one for one in features(graph, type_) if one not in way]
+
+
+def _as_path(way: tuple[Element, ...]) -> Path:
+    ids = tuple(one.id for one in way)
+    if way[-1].role == "constraint parameter":
+        return Path(ids[:-1], port=ids[-1])
+    return Path(ids)
+
 
 _ROW = 40
 
@@ -57,12 +172,12 @@ def _of_block(
         drawing = _Drawing(graph, block, shown, inside)
         yield Diagram(
             kind="par",
-            name=split.numbered(whole, index, len(parts)),
+            name=partitioning.numbered(whole, index, len(parts)),
             frame=plain(f"par [{' '.join(labels.keywords(graph, block))}] {labels.name(block)}"),
             heading=("Parametric diagram", whole),
             view=drawing.view(),
             about=block.id,
-            footer=plain(split.footer(index, len(parts), whole)),
+            footer=plain(partitioning.footer(index, len(parts), whole)),
         )
 
 
@@ -79,7 +194,7 @@ def _divided(
         if first in near and second in near and first != second:
             near[first].append(second)
             near[second].append(first)
-    groups = split.chunks(list(names), near) or [[]]
+    groups = partitioning.chunks(list(names), near) or [[]]
     return [_group(set(group), names, found, at == 0) for at, group in enumerate(groups)]
 
 
@@ -144,7 +259,7 @@ class _Drawing:
         text = labels.typed(self.graph, shown, steps)
         rows = [lines(labels.condition(one), _ROW) for one in self._conditions(law)]
         words = small(plain(labels.guillemets(["constraint"]))) if law is not None else ""
-        unit = measured.unit_text(self.graph, shown) if law is None else ""
+        unit = format_unit(self.graph, shown) if law is None else ""
         return stack([words, label(text), label(unit), *(row for some in rows for row in some)])
 
     def _conditions(self, law: Element | None) -> list[Element]:

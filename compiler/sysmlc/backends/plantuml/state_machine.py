@@ -2,10 +2,10 @@
 
 from collections.abc import Iterator
 
-from sysmlc.backends.plantuml import labels, split
+from sysmlc.backends.plantuml import labels, partitioning
 from sysmlc.backends.plantuml.aliases import Aliases
-from sysmlc.backends.plantuml.notes import notes
-from sysmlc.backends.plantuml.pieces import pieces
+from sysmlc.backends.plantuml.behaviour_notes import notes
+from sysmlc.backends.plantuml.partitioning import split_view
 from sysmlc.backends.plantuml.views import Diagram, GraphView, Line, Node
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.support.plantuml_text import label, lines, plain, small, stack
@@ -52,16 +52,16 @@ def divided(
     ``signature`` follows the name in the frame; ``details`` are the ids that it stands for.
     """
     whole = graph.qualified_name(about)
-    parts = pieces(view)
+    parts = split_view(view)
     for index, part in enumerate(parts):
         yield Diagram(
             kind=kind,
-            name=split.numbered(whole, index, len(parts)),
+            name=partitioning.numbered(whole, index, len(parts)),
             frame=plain(f"{kind} {labels.name(about)}{signature}"),
             heading=(title, whole),
             view=part,
             about=about.id,
-            footer=plain(split.footer(index, len(parts), whole)),
+            footer=plain(partitioning.footer(index, len(parts), whole)),
             details=details,
         )
 

@@ -3,11 +3,11 @@
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
-from sysmlc.backends.plantuml import ibd, labels
+from sysmlc.backends.plantuml import internal_block, labels
 from sysmlc.backends.plantuml.aliases import Aliases
-from sysmlc.backends.plantuml.author_choice import Choice
+from sysmlc.backends.plantuml.author.selection import Choice
 from sysmlc.backends.plantuml.connections import Connection, Path, connections, free_flows
-from sysmlc.backends.plantuml.guides import guides
+from sysmlc.backends.plantuml.layout import iter_port_guides
 from sysmlc.backends.plantuml.views import InternalView, Line, PartView, PortView
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.ir.query import features, generals, type_of
@@ -46,8 +46,8 @@ class _Drawing:
         )
         drawn = tuple(self._lines())
         has_ports = any(self._is_port(path) for path in self.paths)
-        domains = ibd.domains_of(self.used)
-        return InternalView(frame, drawn, has_ports, tuple(guides(frame, drawn)), domains)
+        domains = internal_block.domains_of(self.used)
+        return InternalView(frame, drawn, has_ports, tuple(iter_port_guides(frame, drawn)), domains)
 
     # -- parts ---------------------------------------------------------------------------------
 
@@ -69,7 +69,10 @@ class _Drawing:
         graph, part = self.choice.graph, self._element(path)
         words = (word for word in labels.applied(graph, part) if word not in _SAID)
         listed = list(self._listed(part))
-        rows = [*ibd.bold(labels.typed(graph, part)), *(_row(graph, one) for one in listed)]
+        rows = [
+            *internal_block.bold(labels.typed(graph, part)),
+            *(_row(graph, one) for one in listed),
+        ]
         return PartView(
             self._alias(path),
             stack([small(plain(labels.guillemets(words))), *rows]),
@@ -99,7 +102,7 @@ class _Drawing:
         named = [labels.name(self.choice.graph[id]) for id in (*above, port.id)]
         text = ".".join(named) if port.name.strip() else labels.typed(self.choice.graph, port)
         rows = (f"<back:#FFFFFF>{row}</back>" for row in lines(text, _PORT_WIDTH))
-        form = ibd.FORMS.get(str(port.attrs.get("direction", "")), "port")
+        form = internal_block.FORMS.get(str(port.attrs.get("direction", "")), "port")
         return PortView(self._alias(path), stack(rows), form, (port.id,))
 
     def _alias(self, path: _Ids) -> str:

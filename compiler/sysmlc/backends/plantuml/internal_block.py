@@ -6,7 +6,7 @@ An instance, and a hierarchy of AutomationML whose instances are linked, have on
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
-from sysmlc.backends.plantuml import labels, split
+from sysmlc.backends.plantuml import labels, partitioning
 from sysmlc.backends.plantuml.aliases import Aliases
 from sysmlc.backends.plantuml.connections import (
     Connection,
@@ -14,10 +14,9 @@ from sysmlc.backends.plantuml.connections import (
     Path,
     connections,
     free_flows,
+    in_order,
 )
-from sysmlc.backends.plantuml.domains import in_order
-from sysmlc.backends.plantuml.guides import guides
-from sysmlc.backends.plantuml.sides import sides
+from sysmlc.backends.plantuml.layout import find_port_sides, iter_port_guides
 from sysmlc.backends.plantuml.views import Diagram, InternalView, Line, PartView, PortView
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.ir.query import generals, opposite
@@ -51,12 +50,12 @@ def _of_block(graph: Graph, block: Element, flows: tuple[FreeFlow, ...]) -> Iter
         drawing = _Drawing(graph, block, shown, inside)
         yield Diagram(
             kind="ibd",
-            name=split.numbered(whole, index, len(parts)),
+            name=partitioning.numbered(whole, index, len(parts)),
             frame=plain(f"ibd [{_keyword(graph, block)}] {_title(graph, block)}"),
             heading=("Internal block diagram", whole),
             view=drawing.view(),
             about=block.id,
-            footer=plain(split.footer(index, len(parts), whole)),
+            footer=plain(partitioning.footer(index, len(parts), whole)),
         )
 
 
@@ -93,7 +92,7 @@ def _divided(
             near[one].append(other)
             near[other].append(one)
     sizes = {part.id: 1 + _nested_count(part.id, found) for part in tops}
-    groups = split.chunks([part.id for part in tops], near, sizes=sizes) or [[]]
+    groups = partitioning.chunks([part.id for part in tops], near, sizes=sizes) or [[]]
     if len(groups) == 1:
         return [(tops, found)]
     return [_group(graph, set(group), tops, found, index) for index, group in enumerate(groups)]
@@ -149,7 +148,7 @@ class _Drawing:
     """Instances with the values of parts, by the parts that lead to them."""
 
     def __post_init__(self) -> None:
-        self.sides = sides(self.connections)
+        self.sides = find_port_sides(self.connections)
         self.instances |= {(top.id,): top for top in self.tops if top.kind is Kind.INSTANCE}
         waiting: list[tuple[tuple[str, ...], Element]] = [((), self.block)]
         waiting += self.instances.items()
@@ -172,7 +171,7 @@ class _Drawing:
             (self.block.id, *(slot.id for slot in slots)),
         )
         drawn = tuple(self._line(connection) for connection in self.connections)
-        hidden = tuple(guides(frame, drawn))
+        hidden = tuple(iter_port_guides(frame, drawn))
         return InternalView(frame, drawn, self.has_ports, hidden, domains_of(self.connections))
 
     def _part(self, path: tuple[str, ...], part: Element) -> PartView:
