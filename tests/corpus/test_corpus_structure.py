@@ -179,14 +179,14 @@ def test_requirements_have_the_id_and_text_of_the_file(corpus, compiled):
 
 
 def test_connectors_of_old_papyrus_stand_where_their_paths_lead(compiled):
-    from sysmlc.backends.plantuml.parametric import bindings
+    from sysmlc.backends.plantuml.parametric import find_bindings
 
     graph = compiled("papyrus/INCOSE.uml")
-    (block,) = bindings(graph)
+    (block,) = find_bindings(graph)
     assert graph[block].name == "Straight Line Vehicle Dynamics"
     shown = {
         graph[one.shows[0]].name: [".".join(graph[id].name for id in end.ids()) for end in one.ends]
-        for one in bindings(graph)[block]
+        for one in find_bindings(graph)[block]
     }
     assert shown["c5"] == ["e1.bf", "v.b.r.braking force"]
     assert shown["c6"] == ["v.b.duty cycle", "e1.tl"]

@@ -25,11 +25,11 @@ def test_a_package_of_95_blocks_is_split_and_loses_none():
 
 def test_connected_blocks_stay_together():
     near = {"a": ["c"], "b": ["d"], "c": ["a"], "d": ["b"]}
-    assert partitioning.chunks(["a", "b", "c", "d"], near, limit=2) == [["a", "c"], ["b", "d"]]
+    assert partitioning.partition(["a", "b", "c", "d"], near, limit=2) == [["a", "c"], ["b", "d"]]
 
 
 def test_an_item_with_too_many_neighbours_is_a_part_of_its_own():
-    assert partitioning.chunks(["a", "b"], {"a": ["x", "y", "z"]}, limit=3) == [["a"], ["b"]]
+    assert partitioning.partition(["a", "b"], {"a": ["x", "y", "z"]}, limit=3) == [["a"], ["b"]]
 
 
 def test_a_cut_graph_shows_every_node_and_every_line():

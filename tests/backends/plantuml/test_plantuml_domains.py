@@ -5,7 +5,7 @@ import re
 import pytest
 from drawing import emitted
 
-from sysmlc.backends.plantuml.connections import Connection, Path, styled
+from sysmlc.backends.plantuml.connections import Connection, Path, style_arrow
 from sysmlc.backends.plantuml.layout import find_port_sides
 from sysmlc.diagnostics import Sink
 from sysmlc.ir.text import parse_text
@@ -144,7 +144,7 @@ def test_two_domains_over_one_connector_keep_their_colours_and_the_line_has_none
     ],
 )
 def test_arrows_are_styled_by_domain(arrow, domain, expected):
-    assert styled(arrow, domain) == expected
+    assert style_arrow(arrow, domain) == expected
 
 
 HALL = """\

@@ -1,13 +1,18 @@
-"""Activity diagrams: one for each activity with nodes, drawn as a graph (docs/decisions)."""
+"""Activity diagrams: one for each activity with nodes, drawn as a graph (docs/decisions).
+
+Activity partitions are written on their nodes, with a tint for each partition. UML 2.5.1, clause
+15.6.4 allows ``(Robot)`` above a name instead of a lane; docs/decisions says why lanes as boxes
+were given up.
+"""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 from sysmlc.backends.plantuml import activity_nodes, labels
 from sysmlc.backends.plantuml.aliases import Aliases
-from sysmlc.backends.plantuml.behaviour_notes import notes
+from sysmlc.backends.plantuml.behaviour_notes import make_notes
 from sysmlc.backends.plantuml.block_definition import ACTIVITY_NODES
-from sysmlc.backends.plantuml.state_machine import divided, guard_text
+from sysmlc.backends.plantuml.state_machine import draw_parts, format_guard
 from sysmlc.backends.plantuml.views import Diagram, GraphView, Line, Node
 from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind
 from sysmlc.support.plantuml_text import label, plain, small, stack
@@ -16,8 +21,8 @@ TINTS = 6
 """Number of tints in ``_style.j2``; further partitions take them again."""
 
 
-def tint(number: int) -> str:
-    """Style of the nodes in the partition with this number, from 0."""
+def choose_tint(number: int) -> str:
+    """Return the style of the nodes in the partition with this number, from 0."""
     return f"lane{number % TINTS + 1}"
 
 
@@ -31,34 +36,34 @@ _LABEL = 30
 _FRAME = 60
 
 
-def diagrams(graph: Graph) -> Iterator[Diagram]:
-    """All activity diagrams, in the order of the model."""
+def draw_activities(graph: Graph) -> Iterator[Diagram]:
+    """Yield all activity diagrams, in the order of the model."""
     for activity in graph.of_kind(Kind.ACTIVITY):
         if not activity.attrs.get("external"):
-            yield from _of_activity(graph, activity)
+            yield from _draw_activity(graph, activity)
 
 
-def _of_activity(graph: Graph, activity: Element) -> Iterator[Diagram]:
+def _draw_activity(graph: Graph, activity: Element) -> Iterator[Diagram]:
     inside = list(graph.subtree(activity))
     if not any(item.kind in _DRAWN for item in inside):
         return
-    drawing = _Drawing(graph, activity, inside)
-    view = drawing.view()
+    drawing = _ActivityDrawing(graph, activity, inside)
+    view = drawing.build_view()
     if view.nodes:
-        said = (item.id for item in graph.owned(activity) if item.kind is _PARAMETER)
-        details = tuple(said) if drawing.signature else ()
+        parameters = (item.id for item in graph.owned(activity) if item.kind is _PARAMETER)
+        details = tuple(parameters) if drawing.signature else ()
         title = "Activity diagram"
-        yield from divided(graph, activity, view, "act", title, drawing.signature, details)
+        yield from draw_parts(graph, activity, view, "act", title, drawing.signature, details)
 
 
-def whole(graph: Graph, activity: Element) -> GraphView:
-    """All of an activity in one view, however large."""
-    return _Drawing(graph, activity, list(graph.subtree(activity))).view()
+def draw_whole(graph: Graph, activity: Element) -> GraphView:
+    """Return the complete view of an activity, however large."""
+    return _ActivityDrawing(graph, activity, list(graph.subtree(activity))).build_view()
 
 
 @dataclass(slots=True)
-class _Drawing:
-    """One activity on its way to a picture; ``homes`` maps what a flow may touch to a node."""
+class _ActivityDrawing:
+    """One activity while its view is built; ``homes`` maps the ids of flow ends to node aliases."""
 
     graph: Graph
     activity: Element
@@ -74,59 +79,65 @@ class _Drawing:
         text = labels.signature(self.graph, self.activity)
         self.signature = text if len(text) <= _FRAME else ""
 
-    def view(self) -> GraphView:
-        nodes = [node for node in self._nodes(self.activity) if self._region(node) is None]
-        self.tints = self._tints()
-        drawn = (*self._empty_lanes(), *map(self._node, nodes))
-        said = notes(self.graph, self.activity, self.aliases, not self.signature, self.inside)
-        return GraphView(drawn, (*self._lines(), *self._handlers()), said)
+    def build_view(self) -> GraphView:
+        top_nodes = [
+            node for node in self._list_nodes(self.activity) if self._find_region(node) is None
+        ]
+        self.tints = self._assign_tints()
+        nodes = (*self._iter_unwritten_partitions(), *map(self._make_node, top_nodes))
+        note_boxes = make_notes(
+            self.graph, self.activity, self.aliases, not self.signature, self.inside
+        )
+        return GraphView(nodes, (*self._iter_lines(), *self._iter_handler_lines()), note_boxes)
 
-    def _tints(self) -> dict[str, str]:
-        found = (item for item in self.inside if item.kind is _PARTITION)
-        return {partition.id: tint(number) for number, partition in enumerate(found)}
+    def _assign_tints(self) -> dict[str, str]:
+        partitions = (item for item in self.inside if item.kind is _PARTITION)
+        return {partition.id: choose_tint(number) for number, partition in enumerate(partitions)}
 
-    def _region(self, node: Element) -> Element | None:
-        """The interruptible region that holds the node."""
+    def _find_region(self, node: Element) -> Element | None:
+        """Return the interruptible region that contains the node."""
         groups = self.graph.targets(node, Edge.IN_PARTITION)
         return next((item for item in groups if item.kind is Kind.STRUCTURED), None)
 
-    def _owned(self, owner: Element) -> list[Element]:
+    def _list_owned(self, owner: Element) -> list[Element]:
         return self.graph.owned(owner)
 
-    def _nodes(self, owner: Element) -> list[Element]:
-        return [item for item in self._owned(owner) if item.kind in ACTIVITY_NODES]
+    def _list_nodes(self, owner: Element) -> list[Element]:
+        return [item for item in self._list_owned(owner) if item.kind in ACTIVITY_NODES]
 
-    def _partitions(self, node: Element) -> list[Element]:
+    def _list_partitions(self, node: Element) -> list[Element]:
         groups = self.graph.targets(node, Edge.IN_PARTITION)
         return [group for group in groups if group.kind is Kind.PARTITION]
 
-    def _empty_lanes(self) -> Iterator[Node]:
-        """Boxes for partitions that no node has written on it."""
+    def _iter_unwritten_partitions(self) -> Iterator[Node]:
+        """Yield boxes for the partitions that no node has written on it."""
         for partition in map(self.graph.__getitem__, self.tints):
             nodes = self.graph.sources(partition, Edge.IN_PARTITION)
             if all(node.kind is Kind.CONTROL for node in nodes):
                 alias = self.aliases.make(partition.id, partition.name, "partition")
-                title = label(self._lane_name(partition))
+                title = label(self._format_partition(partition))
                 yield Node(alias, title, "lane", shows=(partition.id,))
 
-    def _lane_name(self, partition: Element) -> str:
+    def _format_partition(self, partition: Element) -> str:
         word = "«allocate» " if partition.role == "allocate partition" else ""
         represented = self.graph.targets(partition, Edge.REPRESENTS)
-        names = ", ".join(labels.typed(self.graph, item) for item in represented)
+        names = ", ".join(labels.format_typed(self.graph, item) for item in represented)
         if not partition.name.strip() or partition.name == names:
             return word + (names or "partition")
         return word + (f"{partition.name}: {names}" if names else partition.name)
 
-    def _group(self, element: Element, title: str, shape: str, children: tuple[Node, ...]) -> Node:
+    def _make_group(
+        self, element: Element, title: str, shape: str, children: tuple[Node, ...]
+    ) -> Node:
         alias = self.aliases.make(element.id, element.name, str(element.kind))
         return Node(alias, title, shape, children=children, shows=(element.id,))
 
-    def _node(self, node: Element) -> Node:
+    def _make_node(self, node: Element) -> Node:
         alias = self.aliases.make(node.id, node.name, node.subkind or str(node.kind))
-        look = activity_nodes.look(self.graph, node)
+        look = activity_nodes.choose_look(self.graph, node)
         self.homes[node.id] = alias
         self.homes.update(dict.fromkeys(look.pins, alias))
-        lanes = self._written_lanes(node)
+        lanes = self._list_written_partitions(node)
         where = small(plain(", ".join(f"({lane})" for lane in lanes.values())))
         title = stack([where, small(plain(labels.guillemets(look.words))), look.title])
         return Node(
@@ -134,34 +145,34 @@ class _Drawing:
             title,
             look.shape,
             look.rows,
-            self._content(node),
+            self._list_content(node),
             look.note,
             (node.id, *look.pins, *look.shows, *lanes),
             next((self.tints[lane] for lane in lanes if lane in self.tints), ""),
         )
 
-    def _written_lanes(self, node: Element) -> dict[str, str]:
-        """Names of the node's partitions; diamonds and bars have no room for them."""
-        found = () if node.kind is Kind.CONTROL else self._partitions(node)
-        return {partition.id: self._lane_name(partition) for partition in found}
+    def _list_written_partitions(self, node: Element) -> dict[str, str]:
+        """Return the names of the node's partitions; diamonds and bars have no room for them."""
+        partitions = () if node.kind is Kind.CONTROL else self._list_partitions(node)
+        return {partition.id: self._format_partition(partition) for partition in partitions}
 
-    def _content(self, node: Element) -> tuple[Node, ...]:
+    def _list_content(self, node: Element) -> tuple[Node, ...]:
         if node.kind is not Kind.STRUCTURED:
             return ()
-        held = [self._inner(node, item) for item in self._nodes(node)]
-        held += self._regional(node)
-        return _in_sections(node, held, self.aliases)
+        members = [self._make_member(node, item) for item in self._list_nodes(node)]
+        members += self._iter_region_members(node)
+        return _group_by_section(node, members, self.aliases)
 
-    def _inner(self, owner: Element, item: Element) -> tuple[str, Node]:
-        return item.id, self._node(item)
+    def _make_member(self, owner: Element, item: Element) -> tuple[str, Node]:
+        return item.id, self._make_node(item)
 
-    def _regional(self, region: Element) -> Iterator[tuple[str, Node]]:
-        """Nodes of the activity that are in an interruptible region."""
+    def _iter_region_members(self, region: Element) -> Iterator[tuple[str, Node]]:
+        """Yield the nodes of the activity that are in an interruptible region."""
         for node in self.graph.sources(region, Edge.IN_PARTITION):
-            if node.owner == self.activity.id and self._region(node) is region:
-                yield node.id, self._node(node)
+            if node.owner == self.activity.id and self._find_region(node) is region:
+                yield node.id, self._make_node(node)
 
-    def _lines(self) -> Iterator[Line]:
+    def _iter_lines(self) -> Iterator[Line]:
         for flow in self.inside:
             if flow.kind not in FLOWS:
                 continue
@@ -170,26 +181,26 @@ class _Drawing:
             if source is None or target is None:
                 continue
             if source.id in self.homes and target.id in self.homes:
-                yield self._line(flow, source, target)
+                yield self._make_line(flow, source, target)
 
-    def _handlers(self) -> Iterator[Line]:
-        """From each protected node to the bodies of its exception handlers."""
-        for node in (one for one in self.inside if "handlers" in one.attrs):
-            for body, types in activity_nodes.handlers(self.graph, node):
+    def _iter_handler_lines(self) -> Iterator[Line]:
+        """Yield lines from each protected node to the bodies of its exception handlers."""
+        for node in (element for element in self.inside if "handlers" in element.attrs):
+            for body, types in activity_nodes.iter_handlers(self.graph, node):
                 if node.id in self.homes and body in self.homes:
                     text = label(" ".join(["⚡", ", ".join(types)]).strip(), _LABEL)
                     yield Line(self.homes[node.id], _INTERRUPTING, self.homes[body], text)
 
-    def _line(self, flow: Element, source: Element, target: Element) -> Line:
+    def _make_line(self, flow: Element, source: Element, target: Element) -> Line:
         arrow = _CONTROL_FLOW if flow.kind is Kind.CONTROL_FLOW else _OBJECT_FLOW
         if flow.attrs.get("interrupts"):
             arrow = _INTERRUPTING
-        text = label(self._flow_text(flow, source, target), _LABEL)
-        owned = [item.id for item in self._owned(flow) if item.kind is not Kind.APPLICATION]
+        text = label(self._format_flow(flow, source, target), _LABEL)
+        owned = [item.id for item in self._list_owned(flow) if item.kind is not Kind.APPLICATION]
         shows = (flow.id, *owned)
         return Line(self.homes[source.id], arrow, self.homes[target.id], text, shows=shows)
 
-    def _flow_text(self, flow: Element, source: Element, target: Element) -> str:
+    def _format_flow(self, flow: Element, source: Element, target: Element) -> str:
         pins = [item.name for item in (source, target) if item.kind is Kind.PIN and item.name]
         weight = flow.attrs.get("weight")
         parts = [
@@ -197,50 +208,53 @@ class _Drawing:
             "⚡" if flow.attrs.get("interrupts") else "",
             "«decisionInputFlow»" if target.attrs.get("decision_input_flow") == flow.id else "",
             " → ".join(dict.fromkeys(pins)),
-            "" if _is_default_guard(flow, source) else guard_text(self.graph, flow),
+            "" if _is_default_guard(flow, source) else format_guard(self.graph, flow),
             f"{{weight = {labels.literal(weight)}}}" if _is_weighted(weight) else "",
         ]
         return " ".join(part for part in parts if part)
 
 
 def _is_default_guard(flow: Element, source: Element) -> bool:
-    """Tools write the literal true by themselves; it says something after a decision only."""
+    """Whether the guard is the literal true that tools write by themselves.
+
+    After a decision the literal has a meaning and is shown.
+    """
     is_literal = flow.attrs.get("guard_literal") is True and flow.attrs.get("guard") == "true"
     return is_literal and source.subkind != "decision"
 
 
 def _is_weighted(weight: AttrValue) -> bool:
-    """Whether someone set the weight: 1 is the default, and Papyrus writes 0 by itself."""
+    """Whether the author set the weight: 1 is the default, and Papyrus writes 0 by itself."""
     return weight is not None and str(weight) not in ("0", "1")
 
 
-def _in_sections(
-    owner: Element, held: list[tuple[str, Node]], aliases: Aliases
+def _group_by_section(
+    owner: Element, members: list[tuple[str, Node]], aliases: Aliases
 ) -> tuple[Node, ...]:
-    """Nodes of a loop or a conditional in dashed boxes named after its sections."""
-    left = dict(held)
+    """Put the nodes of a loop or a conditional into dashed boxes named after its sections."""
+    remaining = dict(members)
     boxes = []
-    for title, ids in _sections(owner):
-        members = tuple(left.pop(id) for id in ids if id in left)
-        if members:
+    for title, ids in _iter_sections(owner):
+        section_nodes = tuple(remaining.pop(id) for id in ids if id in remaining)
+        if section_nodes:
             alias = aliases.make(f"{owner.id} {title}", title, "section")
-            boxes.append(Node(alias, small(plain(title)), "section", children=members))
-    return (*boxes, *left.values())
+            boxes.append(Node(alias, small(plain(title)), "section", children=section_nodes))
+    return (*boxes, *remaining.values())
 
 
-def _sections(owner: Element) -> Iterator[tuple[str, tuple[str, ...]]]:
+def _iter_sections(owner: Element) -> Iterator[tuple[str, tuple[str, ...]]]:
     if owner.subkind == "loop":
         tested = "while" if owner.attrs.get("tested_first") else "until test"
         keys = {"setup_part": "setup", "test": tested, "body_part": "body"}
-        yield from ((title, _ids(owner.attrs.get(key))) for key, title in keys.items())
+        yield from ((title, _list_ids(owner.attrs.get(key))) for key, title in keys.items())
     clauses = owner.attrs.get("clauses")
     for number, clause in enumerate(clauses if isinstance(clauses, tuple) else (), 1):
         tests, bodies = clause if isinstance(clause, tuple) and len(clause) == 2 else ((), ())
-        yield f"if {number}", _ids(tests)
-        yield f"then {number}", _ids(bodies)
+        yield f"if {number}", _list_ids(tests)
+        yield f"then {number}", _list_ids(bodies)
 
 
-def _ids(value: AttrValue) -> tuple[str, ...]:
+def _list_ids(value: AttrValue) -> tuple[str, ...]:
     if isinstance(value, tuple):
         return tuple(str(item) for item in value)
     return () if value is None else tuple(str(value).split())

@@ -1,4 +1,4 @@
-"""How one activity node looks: its shape, its title, and its pins as rows."""
+"""The look of activity nodes: shape, title, and pins as rows."""
 
 from collections.abc import Iterator
 
@@ -6,7 +6,7 @@ from msgspec import Struct
 
 from sysmlc.backends.plantuml import labels
 from sysmlc.backends.plantuml.allocations import list_node_allocations
-from sysmlc.backends.plantuml.state_machine import trigger_text
+from sysmlc.backends.plantuml.state_machine import format_trigger
 from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind
 from sysmlc.support.plantuml_text import label, lines
 
@@ -33,7 +33,7 @@ _ROW = 44
 
 
 class Look(Struct, frozen=True):
-    """What a node shows; ``pins`` and ``shows`` are the ids that its rows stand for."""
+    """The look of a node; ``pins`` and ``shows`` are the ids of the elements that its rows show."""
 
     shape: str
     title: str
@@ -44,38 +44,43 @@ class Look(Struct, frozen=True):
     shows: tuple[str, ...] = ()
 
 
-def look(graph: Graph, node: Element) -> Look:
-    """The look of an activity node, from its kind and subkind."""
+def choose_look(graph: Graph, node: Element) -> Look:
+    """Return the look of an activity node, from its kind and subkind."""
     if node.kind is Kind.CONTROL:
-        return _control(graph, node)
+        return _look_of_control(graph, node)
     if node.kind in (Kind.ACTION, Kind.STRUCTURED):
-        return _action(graph, node)
-    return _object(graph, node)
+        return _look_of_action(graph, node)
+    return _look_of_object(graph, node)
 
 
-def handlers(graph: Graph, node: Element) -> Iterator[tuple[str, list[str]]]:
-    """Exception handlers of a protected node: id of the body, names of the types."""
+def iter_handlers(graph: Graph, node: Element) -> Iterator[tuple[str, list[str]]]:
+    """Yield the exception handlers of a protected node: id of the body, names of the exception
+    types.
+    """
     value = node.attrs.get("handlers")
     for handler in value if isinstance(value, tuple) else ():
         parts = handler if isinstance(handler, tuple) else ()
-        body, types = (_ids(parts[place]) if len(parts) > place else () for place in (0, 2))
-        named = (graph.get(id) for id in types)
-        yield next(iter(body), ""), [labels.name(one) for one in named if one is not None]
+        body, types = (_list_ids(parts[index]) if len(parts) > index else () for index in (0, 2))
+        elements = (graph.get(id) for id in types)
+        yield (
+            next(iter(body), ""),
+            [labels.name(element) for element in elements if element is not None],
+        )
 
 
-def _ids(value: AttrValue) -> tuple[str, ...]:
+def _list_ids(value: AttrValue) -> tuple[str, ...]:
     return tuple(map(str, value)) if isinstance(value, tuple) else (str(value),)
 
 
-def _control(graph: Graph, node: Element) -> Look:
+def _look_of_control(graph: Graph, node: Element) -> Look:
     shape = _CONTROL.get(node.subkind, "control")
     if shape == "flowfinal":
         return Look("flowfinal", "<size:22>⊗</size>")
-    return Look(shape, label(labels.name(node)), note=label(_control_note(graph, node)))
+    return Look(shape, label(labels.name(node)), note=label(_format_control_note(graph, node)))
 
 
-def _control_note(graph: Graph, node: Element) -> str:
-    """What PlantUML does not print inside a diamond or a bar."""
+def _format_control_note(graph: Graph, node: Element) -> str:
+    """Return the texts that PlantUML cannot print inside a diamond or a bar."""
     behaviour = graph.get(str(node.attrs.get("decision_input", "")))
     parts = [
         "" if node.subkind in _PLAIN else node.name,
@@ -85,59 +90,65 @@ def _control_note(graph: Graph, node: Element) -> str:
     return "\n".join(part for part in parts if part)
 
 
-def _object(graph: Graph, node: Element) -> Look:
+def _look_of_object(graph: Graph, node: Element) -> Look:
     words = {Kind.DATA_STORE: ("datastore",), Kind.OBJECT_NODE: ("centralBuffer",)}
     if node.subkind == "expansion":
         words[Kind.OBJECT_NODE] = ("expansionNode",)
     direction = node.attrs.get("direction")
-    applied = labels.applied(graph, node)
+    applied = labels.list_stereotypes(graph, node)
     typed = next((t for t in (node, *graph.targets(node, Edge.REFERENCES)) if t.name), node)
-    text = labels.typed(graph, node)
+    text = labels.format_typed(graph, node)
     if node.kind is Kind.ACTIVITY_PARAMETER:
         parameter = graph.target(node, Edge.REFERENCES)
         source = parameter if parameter is not None else node
-        text = labels.typed(graph, source, node.name or typed.name)
+        text = labels.format_typed(graph, source, node.name or typed.name)
         words = {Kind.ACTIVITY_PARAMETER: (f"parameter {direction}" if direction else "parameter",)}
     shape = "store" if node.kind is Kind.DATA_STORE else "object"
-    return Look(shape, label(text), applied or words.get(node.kind, ()), _states(graph, node))
+    return Look(
+        shape, label(text), applied or words.get(node.kind, ()), _format_states(graph, node)
+    )
 
 
-def _states(graph: Graph, node: Element) -> tuple[str, ...]:
-    """The state that objects in this node are in."""
+def _format_states(graph: Graph, node: Element) -> tuple[str, ...]:
+    """Return the row with the states of the objects in this node."""
     names = [s.name for s in graph.targets(node, Edge.REFERENCES) if s.kind is Kind.STATE]
     return lines(f"[{', '.join(names)}]") if names else ()
 
 
-def _action(graph: Graph, node: Element) -> Look:
+def _look_of_action(graph: Graph, node: Element) -> Look:
     pins = [item for item in graph.owned(node) if item.kind is Kind.PIN]
-    called = graph.targets(node, Edge.CALLS)
-    extra = [item for item in graph.owned(node) if item.kind in (Kind.TRIGGER, Kind.CONSTRAINT)]
-    rows = [*_body(node), *_called(node, called), *_extra(graph, node, extra)]
-    rows += [row for pin in pins for row in _pin(graph, pin)]
+    behaviours = graph.targets(node, Edge.CALLS)
+    details = [item for item in graph.owned(node) if item.kind in (Kind.TRIGGER, Kind.CONSTRAINT)]
+    rows = [
+        *_iter_body_rows(node),
+        *_iter_called_rows(node, behaviours),
+        *_iter_detail_rows(graph, node, details),
+    ]
+    rows += [row for pin in pins for row in _format_pin(graph, pin)]
     allocations, ids = list_node_allocations(graph, node)
     return Look(
         _SHAPES.get(node.subkind, "structured" if node.kind is Kind.STRUCTURED else "action"),
-        label(_title(graph, node, called)),
-        _words(graph, node),
+        label(_format_title(graph, node, behaviours)),
+        _list_keywords(graph, node),
         (*rows, *allocations),
         pins=tuple(pin.id for pin in pins),
-        shows=(*(item.id for item in extra), *ids),
+        shows=(*(item.id for item in details), *ids),
     )
 
 
-def _title(graph: Graph, node: Element, called: list[Element]) -> str:
+def _format_title(graph: Graph, node: Element, behaviours: list[Element]) -> str:
     if node.name:
         return node.name
-    if called:
-        return ", ".join(labels.name(item) for item in called)
+    if behaviours:
+        return ", ".join(labels.name(item) for item in behaviours)
     if "collection" in node.attrs:
-        variables = (one.name for one in graph.owned(node) if one.subkind == "variable")
+        variables = (feature.name for feature in graph.owned(node) if feature.subkind == "variable")
         return f"for each {next(variables, 'one')} of {node.attrs['collection']}"
     return labels.literal(node.attrs.get("value")) if "value" in node.attrs else labels.name(node)
 
 
-def _words(graph: Graph, node: Element) -> tuple[str, ...]:
-    applied = labels.applied(graph, node)
+def _list_keywords(graph: Graph, node: Element) -> tuple[str, ...]:
+    applied = labels.list_stereotypes(graph, node)
     if node.subkind == "expansion":
         return (str(node.attrs.get("mode") or "parallel"), *applied)
     if node.kind is Kind.STRUCTURED:
@@ -148,8 +159,8 @@ def _words(graph: Graph, node: Element) -> tuple[str, ...]:
     )
 
 
-def _body(node: Element) -> Iterator[str]:
-    """Body of an opaque action, value of a value action."""
+def _iter_body_rows(node: Element) -> Iterator[str]:
+    """Yield the body of an opaque action, or the value of a value action."""
     if node.attrs.get("body"):
         for part in labels.literal(node.attrs["body"]).splitlines():
             yield from lines(part, _ROW)
@@ -157,26 +168,26 @@ def _body(node: Element) -> Iterator[str]:
         yield from lines(f"= {labels.literal(node.attrs['value'])}", _ROW)
 
 
-def _called(node: Element, called: list[Element]) -> Iterator[str]:
-    for item in called:
+def _iter_called_rows(node: Element, behaviours: list[Element]) -> Iterator[str]:
+    for item in behaviours:
         if node.name and item.name.lower() != node.name.lower():
             yield from lines(f"calls {labels.name(item)}", _ROW)
 
 
-def _extra(graph: Graph, node: Element, extra: list[Element]) -> Iterator[str]:
-    for item in extra:
+def _iter_detail_rows(graph: Graph, node: Element, details: list[Element]) -> Iterator[str]:
+    for item in details:
         if item.kind is Kind.TRIGGER:
-            text = trigger_text(graph, item)
+            text = format_trigger(graph, item)
             yield from lines(text, _ROW) if text != node.name else ()
         else:
             yield from lines(labels.condition(item), _ROW)
 
 
-def _pin(graph: Graph, pin: Element) -> tuple[str, ...]:
-    """``in name : Type = value unit``."""
+def _format_pin(graph: Graph, pin: Element) -> tuple[str, ...]:
+    """Return the rows ``in name : Type = value unit``."""
     direction = str(pin.attrs.get("direction", ""))
-    shown = pin.name or (pin.subkind if not graph.targets(pin, Edge.TYPED_BY) else "")
+    name = pin.name or (pin.subkind if not graph.targets(pin, Edge.TYPED_BY) else "")
     value = f" = {labels.literal(pin.attrs['value'])}" if "value" in pin.attrs else ""
     unit = f" {pin.attrs['value_unit']}" if "value_unit" in pin.attrs else ""
-    text = f"{direction} {labels.typed(graph, pin, shown)}{value}{unit}".strip()
+    text = f"{direction} {labels.format_typed(graph, pin, name)}{value}{unit}".strip()
     return lines(text, _ROW)

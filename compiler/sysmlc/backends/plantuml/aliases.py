@@ -1,4 +1,4 @@
-"""Short names for the elements of one diagram, the same in every run."""
+"""Aliases: short names for the elements of one diagram, the same in every run."""
 
 import re
 from collections import Counter
@@ -10,10 +10,10 @@ _REMEMBERED = 1 << 12
 
 
 class Aliases:
-    """Gives each key a name made of its words and a number; never a word of PlantUML's own.
+    """Assigns an alias to each key: words of its name and a number, never a keyword of PlantUML.
 
-    The number counts equal words in the order of the diagram, so that an element that is
-    added elsewhere changes no other line.
+    The number counts equal words in the order of the diagram, so that an element that is added
+    elsewhere changes no other line.
     """
 
     def __init__(self) -> None:
@@ -21,9 +21,11 @@ class Aliases:
         self._taken: Counter[str] = Counter()
 
     def make(self, key: str, name: str, otherwise: str) -> str:
-        """The alias of ``key``, made from ``name`` or, if that has no letters, ``otherwise``."""
+        """Return the alias of *key*, made from *name* or, if that has no letters, from
+        *otherwise*.
+        """
         if key not in self._of:
-            words = _words(name) or _words(otherwise) or "e"
+            words = _normalize(name) or _normalize(otherwise) or "e"
             self._taken[words] += 1
             self._of[key] = f"{words}_{self._taken[words]}"
         return self._of[key]
@@ -35,10 +37,10 @@ class Aliases:
         return self._of[key]
 
     def keys(self) -> KeysView[str]:
-        """What has an alias."""
+        """Return the keys that have an alias."""
         return self._of.keys()
 
 
 @lru_cache(_REMEMBERED)
-def _words(name: str) -> str:
+def _normalize(name: str) -> str:
     return re.sub(r"[^a-z0-9]+", "_", name.lower())[:24].strip("_")

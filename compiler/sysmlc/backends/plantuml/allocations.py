@@ -25,27 +25,35 @@ _BOXED = (
 
 
 def list_node_allocations(graph: Graph, node: Element) -> tuple[list[str], list[str]]:
-    """Rows of an activity node, and the ids of the allocations that they stand for."""
+    """Return the rows of an activity node, and the ids of the allocations that they show."""
     rows: list[str] = []
     ids: list[str] = []
-    for dependency, target in _opposite(graph, node, Edge.CLIENT):
-        rows += lines(f"allocated to {_title(graph, target)}", _WIDTH)
+    for dependency, target in _iter_opposite_ends(graph, node, Edge.CLIENT):
+        rows += lines(f"allocated to {_format_opposite_end(graph, target)}", _WIDTH)
         ids.append(dependency.id)
     return rows, ids
 
 
 def list_block_allocations(graph: Graph, block: Element) -> tuple[list[str], list[str]]:
-    """Rows of a block for itself and its features, and the ids of the allocations."""
+    """Return the rows of a block and its features, and the ids of the allocations that they
+    show.
+    """
     rows: list[str] = []
     ids: list[str] = []
-    for own in (block, *_features(graph, block)):
-        for dependency, other in _opposite(graph, own, Edge.CLIENT):
-            if not _has_line(own, other):
-                rows += lines(f"{_short(block, own)}→ {_title(graph, other)}", _WIDTH)
+    for element in (block, *_list_features(graph, block)):
+        for dependency, other in _iter_opposite_ends(graph, element, Edge.CLIENT):
+            if not _has_line(element, other):
+                rows += lines(
+                    f"{_format_own_end(block, element)}→ {_format_opposite_end(graph, other)}",
+                    _WIDTH,
+                )
                 ids.append(dependency.id)
-        for dependency, other in _opposite(graph, own, Edge.SUPPLIER):
-            if not _has_line(own, other) and not _has_home(graph, other):
-                rows += lines(f"{_short(block, own)}← {_title(graph, other)}", _WIDTH)
+        for dependency, other in _iter_opposite_ends(graph, element, Edge.SUPPLIER):
+            if not _has_line(element, other) and not _has_row_at_client(graph, other):
+                rows += lines(
+                    f"{_format_own_end(block, element)}← {_format_opposite_end(graph, other)}",
+                    _WIDTH,
+                )
                 ids.append(dependency.id)
     return rows, ids
 
@@ -53,14 +61,16 @@ def list_block_allocations(graph: Graph, block: Element) -> tuple[list[str], lis
 def iter_feature_allocations(
     graph: Graph, block: Element
 ) -> Iterator[tuple[Element, Element, Element]]:
-    """Allocations from one feature of the block to another: dependency, client, supplier."""
-    for own in _features(graph, block):
-        for dependency, other in _opposite(graph, own, Edge.CLIENT):
-            if own.kind in _PLACES and other.kind in _PLACES and other.owner == block.id:
-                yield dependency, own, other
+    """Yield allocations between two features of the block: dependency, client, supplier."""
+    for client in _list_features(graph, block):
+        for dependency, other in _iter_opposite_ends(graph, client, Edge.CLIENT):
+            if client.kind in _PLACES and other.kind in _PLACES and other.owner == block.id:
+                yield dependency, client, other
 
 
-def _opposite(graph: Graph, element: Element, edge: Edge) -> Iterator[tuple[Element, Element]]:
+def _iter_opposite_ends(
+    graph: Graph, element: Element, edge: Edge
+) -> Iterator[tuple[Element, Element]]:
     other = Edge.SUPPLIER if edge is Edge.CLIENT else Edge.CLIENT
     for dependency in graph.sources(element, edge):
         if dependency.kind is Kind.DEPENDENCY and dependency.role == "allocate":
@@ -68,31 +78,31 @@ def _opposite(graph: Graph, element: Element, edge: Edge) -> Iterator[tuple[Elem
                 yield dependency, opposite
 
 
-def _features(graph: Graph, block: Element) -> list[Element]:
-    return [one for one in graph.owned(block) if one.kind in _FEATURES]
+def _list_features(graph: Graph, block: Element) -> list[Element]:
+    return [member for member in graph.owned(block) if member.kind in _FEATURES]
 
 
-def _has_line(one: Element, other: Element) -> bool:
-    """Whether a block definition or an internal block diagram draws it."""
-    if one.kind in _PLACES and other.kind in _PLACES:
-        return one.owner == other.owner
-    return one.kind in _BOXED and other.kind in _BOXED
+def _has_line(left: Element, right: Element) -> bool:
+    """Whether a block definition or an internal block diagram draws the allocation as a line."""
+    if left.kind in _PLACES and right.kind in _PLACES:
+        return left.owner == right.owner
+    return left.kind in _BOXED and right.kind in _BOXED
 
 
-def _has_home(graph: Graph, client: Element) -> bool:
-    """Whether the client's own block has the row."""
-    home = graph.owner(client) if client.kind in _FEATURES else client
-    if home is None or home.attrs.get("external"):
+def _has_row_at_client(graph: Graph, client: Element) -> bool:
+    """Whether the box of the client's own block has a row for the allocation."""
+    block = graph.owner(client) if client.kind in _FEATURES else client
+    if block is None or block.attrs.get("external"):
         return False
-    return home.kind in _BOXED and home.kind is not Kind.ACTIVITY
+    return block.kind in _BOXED and block.kind is not Kind.ACTIVITY
 
 
-def _short(block: Element, own: Element) -> str:
-    return "" if own is block else f"{labels.name(own)} "
+def _format_own_end(block: Element, element: Element) -> str:
+    return "" if element is block else f"{labels.name(element)} "
 
 
-def _title(graph: Graph, element: Element) -> str:
-    """The element by its name; a feature or an action with what it belongs to."""
+def _format_opposite_end(graph: Graph, element: Element) -> str:
+    """Return the name of an element; a feature or an action with its owner."""
     owner = graph.owner(element)
     if element.kind in (*_FEATURES, Kind.ACTION) and owner is not None:
         return f"{labels.name(owner)}.{labels.name(element)}"

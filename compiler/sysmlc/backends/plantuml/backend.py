@@ -1,4 +1,4 @@
-"""All diagrams of a graph: views, file names, templates, and what no diagram shows."""
+"""The back end ``plantuml``: build views, assign file names, render templates."""
 
 from collections.abc import Callable, Collection, Iterable, Iterator
 from itertools import groupby
@@ -18,8 +18,8 @@ from sysmlc.backends.plantuml import (
     undrawn,
     use_case,
 )
+from sysmlc.backends.plantuml.author.diagrams import FOLDER, draw_author_diagrams
 from sysmlc.backends.plantuml.undrawn import report_overtaken_messages
-from sysmlc.backends.plantuml.author import diagrams as author_diagrams
 from sysmlc.backends.plantuml.views import Diagram
 from sysmlc.backends.templates import TemplateError, Templates
 from sysmlc.diagnostics import Severity, Sink, Subject, rule
@@ -38,14 +38,14 @@ BAD_TEMPLATE = rule(
 )
 
 KINDS: tuple[Callable[[Graph], Iterator[Diagram]], ...] = (
-    block_definition.diagrams,
-    internal_block.diagrams,
-    parametric.diagrams,
-    activity.diagrams,
-    state_machine.diagrams,
-    requirement.diagrams,
-    sequence.diagrams,
-    use_case.diagrams,
+    block_definition.draw_block_definitions,
+    internal_block.draw_internal_blocks,
+    parametric.draw_parametric_diagrams,
+    activity.draw_activities,
+    state_machine.draw_state_machines,
+    requirement.draw_requirements,
+    sequence.draw_sequences,
+    use_case.draw_use_cases,
 )
 
 
@@ -57,23 +57,28 @@ class PlantUml(Struct, frozen=True):
     is_default: bool = True
 
     def emit(self, graph: Graph, output: Output, sink: Sink, options: EmitOptions) -> None:
-        """Write every diagram that shows something; report what none of them shows."""
-        with allow_recursion(state_machine.depth(graph)):
+        """Write every diagram that is not empty; report the elements that no diagram shows."""
+        with allow_recursion(state_machine.find_depth(graph)):
             self._emit(graph, output, sink, options)
 
     def _emit(self, graph: Graph, output: Output, sink: Sink, options: EmitOptions) -> None:
         if options.diagrams != AUTHOR:
-            found = [_Traced(one, one.trace()) for kind in KINDS for one in kind(graph)]
-            undrawn.report(graph, {id for one in found for id in one.trace}, sink)
+            traced = [
+                _Traced(diagram, diagram.list_trace()) for kind in KINDS for diagram in kind(graph)
+            ]
+            undrawn.report_undrawn(graph, {id for item in traced for id in item.trace}, sink)
             report_overtaken_messages(graph, sink)
-            _write(graph, found, "", output, sink, options)
+            _write(graph, traced, "", output, sink, options)
         if options.diagrams != DERIVED:
-            drawn = [_Traced(one, one.trace()) for one in diagrams(graph, sink)]
-            _write(graph, drawn, author_diagrams.FOLDER, output, sink, options)
+            author_traced = [
+                _Traced(diagram, diagram.list_trace())
+                for diagram in draw_author_diagrams(graph, sink)
+            ]
+            _write(graph, author_traced, FOLDER, output, sink, options)
 
 
 class _Traced(NamedTuple):
-    """A diagram with the ids of everything that it shows."""
+    """A diagram with the ids of all elements that it shows."""
 
     diagram: Diagram
     trace: tuple[str, ...]
@@ -81,37 +86,37 @@ class _Traced(NamedTuple):
 
 def _write(
     graph: Graph,
-    found: list[_Traced],
+    traced: list[_Traced],
     folder: str,
     output: Output,
     sink: Sink,
     options: EmitOptions,
 ) -> None:
-    if not found:
+    if not traced:
         return
-    found.sort(key=lambda one: one.diagram.kind)
+    traced.sort(key=lambda item: item.diagram.kind)
     with Templates("plantuml", options.templates) as templates:
-        for kind, group in groupby(found, lambda one: one.diagram.kind):
+        for kind, group in groupby(traced, lambda item: item.diagram.kind):
             try:
-                for (diagram, trace), file in _named(list(group)):
+                for (diagram, trace), file in _assign_files(list(group)):
                     text = _render(graph, diagram, templates)
                     output.add(f"diagrams/{folder}{file}.{kind}.puml", text, trace, "plantuml")
             except TemplateError as fault:
                 sink.report(BAD_TEMPLATE, Subject(f"{kind}.puml.j2"), kind=kind, fault=fault)
 
 
-def _named(found: list[_Traced]) -> Iterable[tuple[_Traced, str]]:
-    """File name for each diagram of one kind; equal names are numbered in model order."""
+def _assign_files(traced: list[_Traced]) -> Iterable[tuple[_Traced, str]]:
+    """Return the file name of each diagram of one kind; equal names are numbered in model order."""
     keys: dict[str, _Traced] = {}
-    for one in found:
-        keys[_free(one.diagram.name, keys)] = one
+    for item in traced:
+        keys[_make_unique(item.diagram.name, keys)] = item
     files = assign_file_names(keys)
-    return [(one, files[key]) for key, one in keys.items()]
+    return [(item, files[key]) for key, item in keys.items()]
 
 
-def _free(name: str, taken: Collection[str]) -> str:
+def _make_unique(name: str, names: Collection[str]) -> str:
     number, key = 1, name
-    while key in taken:
+    while key in names:
         number += 1
         key = f"{name}-{number}"
     return key
@@ -124,11 +129,11 @@ def _render(graph: Graph, diagram: Diagram, templates: Templates) -> str:
         f"{diagram.kind}.puml.j2",
         diagram=diagram,
         view=diagram.view,
-        header=_header(diagram, source),
+        header=_list_header_comments(diagram, source),
     )
 
 
-def _header(diagram: Diagram, source: str) -> tuple[str, ...]:
+def _list_header_comments(diagram: Diagram, source: str) -> tuple[str, ...]:
     kind, name = diagram.heading
     parts = [f"{kind} of {name}", f"from {source}" if source else ""]
     parts.append("made by sysmlc; change the model, not this file")

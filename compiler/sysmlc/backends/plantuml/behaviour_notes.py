@@ -13,36 +13,40 @@ _NOTED = (Kind.COMMENT, Kind.CONSTRAINT)
 _FEATURES = (Kind.PROPERTY, Kind.PORT, Kind.OPERATION, Kind.RECEPTION)
 
 
-def notes(
+def make_notes(
     graph: Graph,
     behaviour: Element,
     aliases: Aliases,
     with_parameters: bool = False,
     inside: Iterable[Element] | None = None,
 ) -> tuple[Note, ...]:
-    """Notes for the comments ``inside`` the behaviour, and its own constraints and features."""
+    """Return notes for the comments *inside* the behaviour, and for its own constraints and
+    features.
+    """
     texts = tuple(
-        _note(graph, item, aliases)
+        _make_note(graph, item, aliases)
         for item in (graph.subtree(behaviour) if inside is None else inside)
         if item.kind in _NOTED and _is_note(item, behaviour) and label(labels.note_text(item))
     )
     kinds = (Kind.PARAMETER, *_FEATURES) if with_parameters else _FEATURES
-    return (*_features(graph, behaviour, aliases, kinds), *texts)
+    return (*_make_feature_note(graph, behaviour, aliases, kinds), *texts)
 
 
-def _features(
+def _make_feature_note(
     graph: Graph, behaviour: Element, aliases: Aliases, kinds: tuple[Kind, ...]
 ) -> tuple[Note, ...]:
-    """Attributes and operations of the behaviour, which is a class as well, in one note."""
-    owned = [item for item in graph.owned(behaviour) if item.kind in kinds]
-    if not owned:
+    """Return one note with the attributes and operations of the behaviour, which is a class as
+    well.
+    """
+    members = [item for item in graph.owned(behaviour) if item.kind in kinds]
+    if not members:
         return ()
-    rows = [row for item in owned for row in lines(_feature(graph, item), _WIDTH)]
+    rows = [row for item in members for row in lines(_format_feature(graph, item), _WIDTH)]
     alias = aliases.make(f"features of {behaviour.id}", "", "note")
-    return (Note(alias, stack(rows), (), tuple(item.id for item in owned)),)
+    return (Note(alias, stack(rows), (), tuple(item.id for item in members)),)
 
 
-def _feature(graph: Graph, item: Element) -> str:
+def _format_feature(graph: Graph, item: Element) -> str:
     if item.kind is Kind.OPERATION:
         return labels.operation(graph, item)
     return labels.feature(graph, item)
@@ -52,7 +56,7 @@ def _is_note(item: Element, behaviour: Element) -> bool:
     return item.kind is Kind.COMMENT or item.owner == behaviour.id
 
 
-def _note(graph: Graph, item: Element, aliases: Aliases) -> Note:
+def _make_note(graph: Graph, item: Element, aliases: Aliases) -> Note:
     about = [target.id for target in graph.targets(item, Edge.REFERENCES)]
     about = about or ([item.owner] if item.owner else [])
     targets = tuple(aliases[id] for id in about if id in aliases)

@@ -6,9 +6,9 @@ from msgspec.structs import replace
 
 from sysmlc.backends.plantuml import labels, partitioning, use_case
 from sysmlc.backends.plantuml.aliases import Aliases
-from sysmlc.backends.plantuml.boxes import box, stub
-from sysmlc.backends.plantuml.layout import box_view
-from sysmlc.backends.plantuml.relations import Relation, relations
+from sysmlc.backends.plantuml.boxes import make_box, make_stub
+from sysmlc.backends.plantuml.layout import arrange_boxes
+from sysmlc.backends.plantuml.relations import Relation, list_relations
 from sysmlc.backends.plantuml.views import Box, BoxView, Compartment, Diagram, Line
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.support.plantuml_text import keyword_label, lines, padded, plain
@@ -39,19 +39,21 @@ _UPWARDS = {"--|>": "<|--", "..|>": "<|.."}
 _DRAWN_AS_LINE = frozenset(["part", "reference"])
 
 
-def diagrams(graph: Graph) -> Iterator[Diagram]:
-    """All block definition diagrams, in the order of the packages."""
-    every = [relation for relation in relations(graph) if _is_between_boxes(graph, relation)]
-    homes = _homes(graph)
-    relations_of = _group_by_package(every, homes)
+def draw_block_definitions(graph: Graph) -> Iterator[Diagram]:
+    """Yield all block definition diagrams, in the order of the packages."""
+    candidates = [
+        relation for relation in list_relations(graph) if _is_between_boxes(graph, relation)
+    ]
+    homes = _group_classifiers(graph)
+    relations_of = _group_by_package(candidates, homes)
     for package, classifiers in homes.items():
-        own = tuple(item.id for item in classifiers)
-        ours = tuple(relations_of.get(package, ()))
-        yield from _of_package(graph, package, own, ours)
+        ids = tuple(item.id for item in classifiers)
+        package_relations = tuple(relations_of.get(package, ()))
+        yield from _draw_package(graph, package, ids, package_relations)
 
 
 def _group_by_package(
-    every: Iterable[Relation], homes: Mapping[str | None, list[Element]]
+    candidates: Iterable[Relation], homes: Mapping[str | None, list[Element]]
 ) -> dict[str | None, list[Relation]]:
     """Return the relations that the diagrams of each package show, in their order.
 
@@ -60,33 +62,35 @@ def _group_by_package(
     """
     package_of = {item.id: package for package, items in homes.items() for item in items}
     groups: dict[str | None, list[Relation]] = {}
-    for relation in every:
+    for relation in candidates:
         end = relation.source if relation.source in package_of else relation.target
         if end in package_of:
             groups.setdefault(package_of[end], []).append(relation)
     return groups
 
 
-def _homes(graph: Graph) -> dict[str | None, list[Element]]:
-    """The classifiers that each package shows: its own and those inside its classifiers."""
+def _group_classifiers(graph: Graph) -> dict[str | None, list[Element]]:
+    """Return the classifiers that each package shows: its own and those nested in its
+    classifiers.
+    """
     homes: dict[str | None, list[Element]] = {}
-    of_use_cases = use_case.actors(graph)
+    of_use_cases = use_case.find_use_case_actors(graph)
     for root in graph.roots():
         for element in graph.subtree(root):
             is_shown = element.kind in _WITH_BOX and _is_shown(graph, element)
             if is_shown and element.id not in of_use_cases:
-                homes.setdefault(labels.home(graph, element), []).append(element)
+                homes.setdefault(labels.find_package(graph, element), []).append(element)
     return homes
 
 
 def is_block(element: Element) -> bool:
-    """Whether a block definition diagram has a box for it."""
+    """Whether a block definition diagram has a box for the element."""
     is_kind = element.kind in BOXES and element.role != "requirement"
     return is_kind and not element.attrs.get("external")
 
 
 def _is_shown(graph: Graph, element: Element) -> bool:
-    """A behaviour has a box when it stands in a package and has no diagram of its own."""
+    """Whether a diagram shows the element; a behaviour without a diagram of its own has a box."""
     if element.kind is not Kind.ACTIVITY and not is_block(element):
         return False
     owner = graph.owner(element)
@@ -100,35 +104,37 @@ def _is_shown(graph: Graph, element: Element) -> bool:
 
 
 def is_in_frame(graph: Graph, instance: Element) -> bool:
-    """Whether it, or an instance around it, frames an internal block diagram: it is drawn there."""
+    """Whether an internal block diagram shows the instance, in its own frame or in that of an
+    owner.
+    """
     around = (instance, *graph.ancestors(instance))
-    frames = (one for one in around if one.kind is Kind.INSTANCE)
-    return any(item.kind is Kind.CONNECTOR for one in frames for item in graph.owned(one))
+    frames = (outer for outer in around if outer.kind is Kind.INSTANCE)
+    return any(item.kind is Kind.CONNECTOR for outer in frames for item in graph.owned(outer))
 
 
-def _of_package(
-    graph: Graph, package: str | None, ids: tuple[str, ...], found: tuple[Relation, ...]
+def _draw_package(
+    graph: Graph, package: str | None, ids: tuple[str, ...], candidates: tuple[Relation, ...]
 ) -> Iterator[Diagram]:
-    about, own = graph.get(package), set(ids)
-    in_rows = {r.row: r.shows for r in found if r.row and r.target not in own}
-    ours = [relation for relation in found if relation.row not in in_rows]
-    ours += _containments(graph, [graph[id] for id in ids])
-    ours, rows = fold_foreign_clients(ours, own)
-    near = neighbours(own, ours)
-    parts = partitioning.chunks(ids, near)
-    whole = graph.qualified_name(about) if about is not None else "model"
+    about, own_ids = graph.get(package), set(ids)
+    in_rows = {r.row: r.shows for r in candidates if r.row and r.target not in own_ids}
+    lines = [relation for relation in candidates if relation.row not in in_rows]
+    lines += _list_containments(graph, [graph[id] for id in ids])
+    lines, rows = fold_foreign_clients(lines, own_ids)
+    adjacency = find_neighbours(own_ids, lines)
+    parts = partitioning.partition(ids, adjacency)
+    title = graph.qualified_name(about) if about is not None else "model"
     for index, part in enumerate(parts):
         shown = [graph[id] for id in part]
-        inside = [r for r in ours if _belongs(r, set(part), own)]
-        inside += _property_lines(graph, shown, inside)
+        inside = [r for r in lines if _belongs_to_part(r, set(part), own_ids)]
+        inside += _list_property_lines(graph, shown, inside)
         yield Diagram(
             kind="bdd",
-            name=partitioning.numbered(whole, index, len(parts)),
-            frame=plain(f"bdd [package] {whole}"),
-            heading=("Block definition diagram", whole),
-            view=_view(graph, shown, inside, in_rows, rows),
+            name=partitioning.number_part(title, index, len(parts)),
+            frame=plain(f"bdd [package] {title}"),
+            heading=("Block definition diagram", title),
+            view=_build_view(graph, shown, inside, in_rows, rows),
             about=package or "",
-            footer=plain(partitioning.footer(index, len(parts), whole)),
+            footer=plain(partitioning.make_footer(index, len(parts), title)),
         )
 
 
@@ -145,7 +151,7 @@ _STUBS = (Kind.ACTIVITY, Kind.STATE_MACHINE, Kind.USE_CASE, Kind.UNIT, Kind.PACK
 _BOXABLE = frozenset([*BOXES, *_STUBS])
 
 
-def _containments(graph: Graph, classifiers: list[Element]) -> list[Relation]:
+def _list_containments(graph: Graph, classifiers: list[Element]) -> list[Relation]:
     pairs = ((graph.owner(item), item) for item in classifiers)
     return [
         Relation(owner.id, item.id, "+--")
@@ -154,68 +160,72 @@ def _containments(graph: Graph, classifiers: list[Element]) -> list[Relation]:
     ]
 
 
-def neighbours(own: set[str], found: Iterable[Relation]) -> dict[str, list[str]]:
-    """For each id in ``own`` what it is related to."""
-    near: dict[str, list[str]] = {id: [] for id in sorted(own)}
-    for relation in found:
-        for one, other in (
+def find_neighbours(ids: set[str], candidates: Iterable[Relation]) -> dict[str, list[str]]:
+    """Return, for each of *ids*, the ids that relations connect it with."""
+    adjacency: dict[str, list[str]] = {id: [] for id in sorted(ids)}
+    for relation in candidates:
+        for end, opposite_end in (
             (relation.source, relation.target),
             (relation.target, relation.source),
         ):
-            if one in near and one != other:
-                near[one].append(other)
-    return near
+            if end in adjacency and end != opposite_end:
+                adjacency[end].append(opposite_end)
+    return adjacency
 
 
-def _belongs(relation: Relation, part: set[str], own: set[str]) -> bool:
-    """In a split package a line stands with its source, or with its target when that is ours."""
+def _belongs_to_part(relation: Relation, part: set[str], own: set[str]) -> bool:
+    """Whether a part of a split package shows the relation: at its source, else at its own
+    target.
+    """
     return relation.source in part or (relation.source not in own and relation.target in part)
 
 
-def _property_lines(
+def _list_property_lines(
     graph: Graph, shown: list[Element], inside: Iterable[Relation]
 ) -> list[Relation]:
-    """Parts and references without association whose type has a box: lines instead of rows."""
+    """Return parts and references without association whose type has a box, as lines instead of
+    rows.
+    """
     boxes = {item.id for item in shown}
-    taken = {id for relation in inside for id in relation.shows}
-    found = []
+    shown_ids = {id for relation in inside for id in relation.shows}
+    property_relations = []
     for owner in shown:
         for item in graph.owned(owner):
             type_ = graph.target(item, Edge.TYPED_BY)
-            is_line = item.role in _DRAWN_AS_LINE and item.id not in taken
+            is_line = item.role in _DRAWN_AS_LINE and item.id not in shown_ids
             if is_line and type_ is not None and type_.id in boxes:
-                found.append(_property_line(owner, item, type_))
-    return found
+                property_relations.append(_make_property_line(owner, item, type_))
+    return property_relations
 
 
-def _property_line(owner: Element, item: Element, type_: Element) -> Relation:
+def _make_property_line(owner: Element, item: Element, type_: Element) -> Relation:
     arrow = {"composite": "*-->", "shared": "o-->"}.get(str(item.attrs.get("aggregation")), "-->")
     far = " ".join(part for part in (item.name, labels.multiplicity(item)) if part)
     return Relation(owner.id, type_.id, arrow, far=far, shows=(item.id,))
 
 
-def _view(
+def _build_view(
     graph: Graph,
     shown: list[Element],
     inside: list[Relation],
     in_rows: Mapping[str, tuple[str, ...]],
     rows: Mapping[str, list[Relation]],
 ) -> BoxView:
-    """``in_rows`` maps properties to what their row stands for, besides themselves."""
+    """Build the view; *in_rows* maps a property to the other ids that its row shows."""
     aliases = Aliases()
     in_lines = {id for relation in inside for id in relation.shows}
-    boxes = [box(graph, item, aliases, in_lines, in_rows) for item in shown]
+    boxes = [make_box(graph, item, aliases, in_lines, in_rows) for item in shown]
     boxes = [
-        add_client_rows(graph, made, rows.get(item.id, []))
-        for item, made in zip(shown, boxes, strict=True)
+        add_client_rows(graph, classifier_box, rows.get(item.id, []))
+        for item, classifier_box in zip(shown, boxes, strict=True)
     ]
     outside = [id for r in inside for id in (r.source, r.target) if id not in aliases]
-    boxes += [stub(graph, graph[id], aliases) for id in dict.fromkeys(outside)]
-    return box_view(boxes, [line(relation, aliases) for relation in inside])
+    boxes += [make_stub(graph, graph[id], aliases) for id in dict.fromkeys(outside)]
+    return arrange_boxes(boxes, [make_line(relation, aliases) for relation in inside])
 
 
-def line(relation: Relation, aliases: Aliases | Mapping[str, str]) -> Line:
-    """The relation between the aliases of its ends; the general classifier stands above."""
+def make_line(relation: Relation, aliases: Aliases | Mapping[str, str]) -> Line:
+    """Return the line between the aliases of both ends; the general classifier stands above."""
     if relation.arrow in _UPWARDS:
         upper, lower = aliases[relation.target], aliases[relation.source]
         text = keyword_label(relation.label)
@@ -239,17 +249,22 @@ _CLIENT_WIDTH = 46
 
 
 def fold_foreign_clients(
-    found: Iterable[Relation], own: set[str]
+    candidates: Iterable[Relation], own: set[str]
 ) -> tuple[list[Relation], dict[str, list[Relation]]]:
-    """The relations that stay lines, and those that become rows, by the box that has them."""
-    every = list(found)
-    inward = [one for one in every if _is_inward(one, own)]
-    if len({one.source for one in inward}) <= MAX_FOREIGN_CLIENTS:
-        return every, {}
+    """Return the relations that stay lines, and those that become rows, by the id of the box.
+
+    Dependencies of clients that other diagrams show become rows of the supplier's box if there are
+    more than three: a package of machines on which twenty services depend would otherwise be as
+    wide as twenty grey boxes.
+    """
+    all_relations = list(candidates)
+    inward_relations = [relation for relation in all_relations if _is_inward(relation, own)]
+    if len({relation.source for relation in inward_relations}) <= MAX_FOREIGN_CLIENTS:
+        return all_relations, {}
     rows: dict[str, list[Relation]] = {}
-    for one in inward:
-        rows.setdefault(one.target, []).append(one)
-    return [one for one in every if not _is_inward(one, own)], rows
+    for relation in inward_relations:
+        rows.setdefault(relation.target, []).append(relation)
+    return [relation for relation in all_relations if not _is_inward(relation, own)], rows
 
 
 def _is_inward(relation: Relation, own: set[str]) -> bool:
@@ -258,13 +273,13 @@ def _is_inward(relation: Relation, own: set[str]) -> bool:
 
 
 def add_client_rows(graph: Graph, box: Box, rows: list[Relation]) -> Box:
-    """The box with a row for each relation."""
+    """Return the box with a row for each relation."""
     if not rows:
         return box
-    texts = (f"{labels.name(graph[one.source])} {one.label}".strip() for one in rows)
-    shown = tuple(row for text in texts for row in lines(text, _CLIENT_WIDTH))
+    texts = (f"{labels.name(graph[relation.source])} {relation.label}".strip() for relation in rows)
+    client_rows = tuple(row for text in texts for row in lines(text, _CLIENT_WIDTH))
     return replace(
         box,
-        compartments=(*box.compartments, Compartment(_CLIENTS_TITLE, shown)),
-        shows=(*box.shows, *(id for one in rows for id in one.shows)),
+        compartments=(*box.compartments, Compartment(_CLIENTS_TITLE, client_rows)),
+        shows=(*box.shows, *(id for relation in rows for id in relation.shows)),
     )

@@ -1,4 +1,4 @@
-"""Boxes of classifiers: their heads, and their features in compartments."""
+"""Boxes of classifiers: their headings, and their features in compartments."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 
@@ -41,7 +41,7 @@ _ORDER = tuple(title.replace("_", " ") for title in _TITLES.split())
 _ROW = 64
 
 
-def box(
+def make_box(
     graph: Graph,
     item: Element,
     aliases: Aliases,
@@ -49,17 +49,18 @@ def box(
     in_rows: Mapping[str, tuple[str, ...]],
     features: Sequence[Element] | None = None,
 ) -> Box:
-    """The box of a classifier, with all that it owns in compartments, or some ``features``.
+    """Return the box of a classifier, with all its features in compartments, or only *features*.
 
-    What ``in_lines`` names has a line instead of a row; ``in_rows`` says what else a row shows.
+    A feature in *in_lines* is drawn as a line instead of a row; *in_rows* lists further ids that a
+    row shows.
     """
     rows: dict[str, list[str]] = {}
     shows = [item.id]
     for feature in graph.owned(item) if features is None else features:
-        title = _title(feature)
+        title = _find_compartment(feature)
         if title and feature.id not in in_lines:
-            rows.setdefault(title, []).extend(_rows(graph, feature))
-            shows += [part.id for part in _all(graph, feature)]
+            rows.setdefault(title, []).extend(_format_rows(graph, feature))
+            shows += [part.id for part in _iter_shown(graph, feature)]
             shows += in_rows.get(feature.id, ())
     if features is None:
         rows["allocations"], allocations = list_block_allocations(graph, item)
@@ -70,24 +71,28 @@ def box(
         compartments = (Compartment("", measures), *compartments)
         shows += iter_measure_ids(graph, item)
     alias = aliases.make(item.id, item.name, str(item.kind))
-    return Box(alias, heading(graph, item), _style(item), compartments, tuple(shows))
+    return Box(alias, make_heading(graph, item), _choose_style(item), compartments, tuple(shows))
 
 
-def _title(feature: Element) -> str:
+def _find_compartment(feature: Element) -> str:
     if feature.kind is Kind.PROPERTY or feature.role == "constraint parameter":
         return _BY_ROLE.get(feature.role, "attributes")
     return _BY_KIND.get(feature.kind, "")
 
 
-def _rows(graph: Graph, feature: Element) -> tuple[str, ...]:
+def _format_rows(graph: Graph, feature: Element) -> tuple[str, ...]:
     text = _TEXTS.get(feature.kind)
     if text is not None:
         return lines(text(graph, feature), _ROW)
-    parts = _feature_words(graph, feature), labels.feature(graph, feature), _unit(graph, feature)
+    parts = (
+        _format_keywords(graph, feature),
+        labels.feature(graph, feature),
+        _format_value_unit(graph, feature),
+    )
     return lines(" ".join(part for part in parts if part), _ROW)
 
 
-def _behaviour(graph: Graph, feature: Element) -> str:
+def _format_behaviour(graph: Graph, feature: Element) -> str:
     words = labels.guillemets(labels.keywords(graph, feature))
     return f"{words} {labels.name(feature)}{labels.signature(graph, feature)}".strip()
 
@@ -95,9 +100,9 @@ def _behaviour(graph: Graph, feature: Element) -> str:
 _TEXTS: dict[Kind, Callable[[Graph, Element], str]] = {
     Kind.OPERATION: labels.operation,
     Kind.CONSTRAINT: lambda _, feature: labels.condition(feature),
-    Kind.ACTIVITY: _behaviour,
-    Kind.STATE_MACHINE: _behaviour,
-    Kind.INTERACTION: _behaviour,
+    Kind.ACTIVITY: _format_behaviour,
+    Kind.STATE_MACHINE: _format_behaviour,
+    Kind.INTERACTION: _format_behaviour,
     Kind.SLOT: labels.slot,
     Kind.COLLABORATION_USE: labels.collaboration_use,
     Kind.ENUMERATION_LITERAL: lambda _, feature: labels.name(feature),
@@ -105,49 +110,56 @@ _TEXTS: dict[Kind, Callable[[Graph, Element], str]] = {
 """How features read that are no properties, ports or parameters."""
 
 
-def _unit(graph: Graph, feature: Element) -> str:
+def _format_value_unit(graph: Graph, feature: Element) -> str:
     return format_unit(graph, feature) if feature.role == "value" else ""
 
 
-def _feature_words(graph: Graph, feature: Element) -> str:
-    """Stereotypes of a feature, except those that its compartment says already."""
-    said = {"flowProperty", "partProperty", "valueProperty", "constraintProperty", "part", "value"}
+def _format_keywords(graph: Graph, feature: Element) -> str:
+    """Return the stereotypes of a feature, except those that its compartment implies."""
+    implied = {
+        "flowProperty",
+        "partProperty",
+        "valueProperty",
+        "constraintProperty",
+        "part",
+        "value",
+    }
     words = labels.keywords(graph, feature) if feature.kind is not Kind.RECEPTION else ("signal",)
     return labels.guillemets(
-        word for word in words if word not in said and feature.role != "constraint property"
+        word for word in words if word not in implied and feature.role != "constraint property"
     )
 
 
-def heading(graph: Graph, item: Element, where: str = "") -> str:
-    """The head of a box: stereotypes, name, and where it comes from when it is foreign."""
+def make_heading(graph: Graph, item: Element, where: str = "") -> str:
+    """Return the heading of a box: stereotypes, name, and the origin of a foreign element."""
     words = small(plain(labels.guillemets(labels.keywords(graph, item))))
     mark = "//" if item.attrs.get("abstract") else "**"
     is_instance = item.kind is Kind.INSTANCE
-    own = labels.name(item) + labels.template(graph, item)
-    text = labels.instance(graph, item) if is_instance else own
+    own_text = labels.name(item) + labels.template(graph, item)
+    text = labels.instance(graph, item) if is_instance else own_text
     rows = [f"{mark}{row}{mark}" for row in lines(text)]
     return stack([words, *rows, *(small(row) for row in lines(where, 48))])
 
 
-def stub(graph: Graph, item: Element, aliases: Aliases) -> Box:
-    """The box of something that another diagram defines."""
+def make_stub(graph: Graph, item: Element, aliases: Aliases) -> Box:
+    """Return the box of an element that another diagram defines."""
     owner = graph.owner(item)
     where = f"from {graph.qualified_name(owner)}" if owner is not None else ""
     if item.attrs.get("external"):
         file = str(item.attrs.get("href", "")).partition("#")[0]
         where = f"in {file}" if file else "external"
     alias = aliases.make(item.id, item.name, str(item.kind))
-    return Box(alias, heading(graph, item, where), "elsewhere", shows=(item.id,))
+    return Box(alias, make_heading(graph, item, where), "elsewhere", shows=(item.id,))
 
 
-def _style(item: Element) -> str:
+def _choose_style(item: Element) -> str:
     if item.kind in (Kind.DATA_TYPE, Kind.ENUMERATION, Kind.SIGNAL, Kind.INSTANCE):
         return "value"
     return "interface" if item.kind is Kind.INTERFACE or "interface" in item.role else "block"
 
 
-def _all(graph: Graph, feature: Element) -> Iterator[Element]:
-    """The feature, and the parameters that its signature shows."""
+def _iter_shown(graph: Graph, feature: Element) -> Iterator[Element]:
+    """Yield the feature, and the parameters that its signature shows."""
     yield feature
     if feature.kind in (Kind.OPERATION, Kind.ACTIVITY, Kind.STATE_MACHINE):
         yield from (item for item in graph.owned(feature) if item.kind is Kind.PARAMETER)
@@ -156,23 +168,27 @@ def _all(graph: Graph, feature: Element) -> Iterator[Element]:
 
 
 def list_measure_rows(graph: Graph, item: Element) -> tuple[str, ...]:
-    """``unit = kilogram (kg)`` and the like: of a value type its own, of a unit what it says."""
+    """Return rows such as ``unit = kilogram (kg)`` of a value type."""
     if item.role != "value type" or is_unit(item) or is_quantity_kind(item):
         return ()
     measures = (("unit", unit_of(graph, item)), ("quantityKind", quantity_kind_of(graph, item)))
-    found = ((title, one) for title, one in measures if one is not None)
-    return tuple(row for title, one in found for row in lines(f"{title} = {_format_measure(one)}"))
+    pairs = ((title, element) for title, element in measures if element is not None)
+    return tuple(
+        row for title, element in pairs for row in lines(f"{title} = {_format_measure(element)}")
+    )
 
 
 def iter_measure_ids(graph: Graph, item: Element) -> Iterator[str]:
-    """Ids of the elements that the rows stand for."""
-    for one in graph.targets(item, Edge.REFERENCES):
-        if is_unit(one) or is_quantity_kind(one):
-            yield one.id
+    """Yield the ids of the units and quantity kinds that the rows show."""
+    for element in graph.targets(item, Edge.REFERENCES):
+        if is_unit(element) or is_quantity_kind(element):
+            yield element.id
 
 
 def format_unit(graph: Graph, feature: Element) -> str:
-    """``{unit = kg}`` behind a value property, unless the name of its type says it already."""
+    """Return ``{unit = kg}`` for a value property, unless the name of its type contains the
+    unit.
+    """
     unit = unit_of(graph, feature)
     if unit is None:
         return ""

@@ -1,4 +1,7 @@
-"""Connections inside a block: connectors with their item flows, and item flows between parts."""
+"""Connections inside a block: connectors with their item flows, and item flows between parts.
+
+Physical items and information have different arrows and colours (thesis 3.4.1).
+"""
 
 from collections.abc import Iterable, Iterator, Mapping
 
@@ -6,17 +9,17 @@ from msgspec import Struct
 
 from sysmlc.backends.plantuml import labels
 from sysmlc.backends.plantuml.allocations import iter_feature_allocations
-from sysmlc.backends.plantuml.relations import conveyed
+from sysmlc.backends.plantuml.relations import format_conveyed
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.ir.query import DOMAINS, runs_both_ways
 from sysmlc.support.plantuml_text import keyword_label, label, stack
 
 
 class Path(Struct, frozen=True):
-    """Where a connection ends: through ``parts`` and ``ports`` to ``port``.
+    """The path to the end of a connection: through ``parts`` and ``ports`` to ``port``.
 
-    All are ids, outermost first. Without a port it ends at the last part, without parts at
-    the frame.
+    All are ids, outermost first. Without a port it ends at the last part, without parts at the
+    frame.
     """
 
     parts: tuple[str, ...] = ()
@@ -25,18 +28,18 @@ class Path(Struct, frozen=True):
 
     @property
     def top(self) -> str:
-        """Id of the part of the frame's block that the path leads into, or nothing."""
+        """The id of the part of the frame's block that the path leads into, or an empty text."""
         return self.parts[0] if self.parts else ""
 
     def ids(self) -> tuple[str, ...]:
-        """Everything on the path."""
+        """Return all ids on the path."""
         return (*self.parts, *self.ports, *([self.port] if self.port else []))
 
 
 class Connection(Struct, frozen=True):
-    """One line of an internal block diagram; ``shows`` are the ids that it stands for.
+    """One line of an internal block diagram; ``shows`` are the ids of its elements.
 
-    ``carried`` are the items that flow over it, each with its domain or the empty text.
+    ``carried`` are the items that flow over it, each with its domain or an empty text.
     """
 
     source: Path
@@ -48,13 +51,13 @@ class Connection(Struct, frozen=True):
     shows: tuple[str, ...] = ()
     carried: tuple[tuple[str, str], ...] = ()
 
-    def tops(self) -> set[str]:
-        """Ids of the parts of the frame's block that it connects."""
+    def find_top_parts(self) -> set[str]:
+        """Return the ids of the parts of the frame's block that the line connects."""
         return {end.top for end in (self.source, self.target) if end.top}
 
-    def text(self) -> str:
-        """What stands at the line, as PlantUML text."""
-        rows = [coloured(label(text), domain) for text, domain in self.carried]
+    def format_label(self) -> str:
+        """Return the label of the line as PlantUML text."""
+        rows = [color_text(label(text), domain) for text, domain in self.carried]
         return stack([keyword_label(self.label), *rows])
 
 
@@ -62,45 +65,53 @@ FreeFlow = tuple[str, str, str]
 """Ids of flow, source and target."""
 
 
-def connections(graph: Graph, block: Element, flows: Iterable[FreeFlow]) -> list[Connection]:
-    """Connectors of the block; item flows without a connector and allocations between features.
+def list_connections(graph: Graph, block: Element, flows: Iterable[FreeFlow]) -> list[Connection]:
+    """Return the connectors of the block, item flows without connector, allocations between
+    features.
 
-    ``flows`` are those of the block (``free_flows``), for they are few and blocks are many.
-    What is bound to a constraint parameter stands in the parametric diagram.
+    *flows* are those of the block (``find_free_flows``). Bindings to constraint parameters stand in
+    the parametric diagram.
     """
-    owned = [item for item in graph.owned(block) if item.kind is Kind.CONNECTOR]
-    drawn = [made for item in owned for made in _connector(graph, item)]
-    free = [_free_flow(graph, *map(graph.__getitem__, ends)) for ends in flows]
-    return [*drawn, *free, *_allocations(graph, block)]
+    members = [item for item in graph.owned(block) if item.kind is Kind.CONNECTOR]
+    connectors = [
+        connection for item in members for connection in _iter_connector_lines(graph, item)
+    ]
+    free_connections = [
+        _make_free_connection(graph, *map(graph.__getitem__, ends)) for ends in flows
+    ]
+    return [*connectors, *free_connections, *_iter_allocations(graph, block)]
 
 
-def _connector(graph: Graph, connector: Element) -> Iterator[Connection]:
-    """One line, or as many as join the first end to all others (UML 2.5.1 clause 11.2.3)."""
+def _iter_connector_lines(graph: Graph, connector: Element) -> Iterator[Connection]:
+    """Yield the line, or lines from the first end to all others (UML 2.5.1 clause 11.2.3)."""
     if is_parametric(graph, connector):
         return
     ends = graph.targets(connector, Edge.END)
-    known = [(end, path) for end in ends if (path := path_of(graph, end)) is not None]
-    if len(known) == len(ends) == 2:
-        yield _line(graph, connector, known)
-    elif len(known) > 2:
-        yield from (_line(graph, connector, [known[0], other]) for other in known[1:])
+    located = [(end, path) for end in ends if (path := path_of(graph, end)) is not None]
+    if len(located) == len(ends) == 2:
+        yield _make_line(graph, connector, located)
+    elif len(located) > 2:
+        yield from (_make_line(graph, connector, [located[0], other]) for other in located[1:])
 
 
-def _line(graph: Graph, connector: Element, joined: list[tuple[Element, Path]]) -> Connection:
-    (near, first), (far, second) = joined
+def _make_line(graph: Graph, connector: Element, located: list[tuple[Element, Path]]) -> Connection:
+    (near, first), (far, second) = located
     flows = graph.sources(connector, Edge.REALIZING)
-    ways = [_way(graph, flow, first, second) for flow in flows]
-    aims = {"→": _end_name(graph, second), "←": _end_name(graph, first)}
+    ways = [_find_direction(graph, flow, first, second) for flow in flows]
+    aims = {"→": _name_of_end(graph, second), "←": _name_of_end(graph, first)}
     rows = [
-        (_row(conveyed(graph, flow), way, aims, is_both=len(set(ways)) > 1), _domain(flow))
+        (
+            _format_item(format_conveyed(graph, flow), way, aims, is_both=len(set(ways)) > 1),
+            _domain_of(flow),
+        )
         for way, flow in zip(ways, flows, strict=True)
     ]
     ends = graph.targets(connector, Edge.END)
     return Connection(
         first,
         second,
-        styled(_arrow(connector, ways), _domain(connector)),
-        _name(graph, connector),
+        style_arrow(_choose_arrow(connector, ways), _domain_of(connector)),
+        _format_name(graph, connector),
         labels.multiplicity(near),
         labels.multiplicity(far),
         (connector.id, *(end.id for end in ends), *(flow.id for flow in flows)),
@@ -108,20 +119,20 @@ def _line(graph: Graph, connector: Element, joined: list[tuple[Element, Path]]) 
     )
 
 
-def _domain(relation: Element) -> str:
+def _domain_of(relation: Element) -> str:
     return str(relation.attrs.get("domain", ""))
 
 
-def _end_name(graph: Graph, path: Path) -> str:
+def _name_of_end(graph: Graph, path: Path) -> str:
     return graph[path.ids()[-1]].name
 
 
-def _row(text: str, way: str, aims: Mapping[str, str], is_both: bool) -> str:
-    """One way is told by the arrow head; two ways need the end that each flow runs to.
+def _format_item(text: str, way: str, end_names: Mapping[str, str], is_both: bool) -> str:
+    """Return the text of an item flow; with two directions it names the end that the flow leads to.
 
     A layout may draw either end on the left, so that an arrow sign alone would mislead.
     """
-    return f"to {aims[way]}: {text}" if is_both and way in aims else text
+    return f"to {end_names[way]}: {text}" if is_both and way in end_names else text
 
 
 def is_parametric(graph: Graph, connector: Element) -> bool:
@@ -132,9 +143,10 @@ def is_parametric(graph: Graph, connector: Element) -> bool:
 
 
 def path_of(graph: Graph, end: Element) -> Path | None:
-    """Where a connector end is, seen from the connector's owner; None when nothing is there.
+    """Return the path to a connector end, seen from the connector's owner; None for an end without
+    role.
 
-    What is inside a port (a flow property of its type) is drawn as that port's inner one.
+    A flow property inside a port is drawn as an inner port.
     """
     role = graph.target(end, Edge.ROLE)
     if role is None:
@@ -151,16 +163,16 @@ def _is_port(item: Element) -> bool:
     return item.kind is Kind.PORT or item.role == "constraint parameter"
 
 
-def _name(graph: Graph, connector: Element) -> str:
+def _format_name(graph: Graph, connector: Element) -> str:
     if connector.role == "binding connector":
         return "="
     type_ = labels.type_name(graph, connector)
-    words = labels.guillemets(labels.applied(graph, connector))
+    words = labels.guillemets(labels.list_stereotypes(graph, connector))
     text = f"{connector.name} : {type_}".strip() if type_ else connector.name
     return " ".join(part for part in (words, text) if part)
 
 
-def _arrow(connector: Element, ways: list[str]) -> str:
+def _choose_arrow(connector: Element, ways: list[str]) -> str:
     if connector.role == "binding connector":
         return "-[dashed]-"
     tail = "<" if "←" in ways or "⇄" in ways else ""
@@ -168,58 +180,69 @@ def _arrow(connector: Element, ways: list[str]) -> str:
     return f"{tail}--{tip}"
 
 
-def _way(graph: Graph, flow: Element, first: Path, second: Path) -> str:
-    """``→`` when the flow runs from the first end to the second, ``←`` back, ``⇄`` both ways.
+def _find_direction(graph: Graph, flow: Element, first: Path, second: Path) -> str:
+    """Return ``→`` for a flow from the first end to the second, ``←`` back, ``⇄`` in both
+    directions.
 
-    ``↔`` when that is not known.
+    An unknown direction is ``↔``.
     """
     sources = {item.id for item in graph.targets(flow, Edge.FLOW_SOURCE)}
     targets = {item.id for item in graph.targets(flow, Edge.FLOW_TARGET)}
     if runs_both_ways(graph, flow):
         return "⇄"
-    forward = _fits(graph, first, sources) + _fits(graph, second, targets)
-    back = _fits(graph, second, sources) + _fits(graph, first, targets)
+    forward = _count_matches(graph, first, sources) + _count_matches(graph, second, targets)
+    back = _count_matches(graph, second, sources) + _count_matches(graph, first, targets)
     if forward == back:
         return "↔"
     return "→" if forward > back else "←"
 
 
-def _fits(graph: Graph, path: Path, named: set[str]) -> int:
-    """2 if the flow names something on the path, 1 if it names a type of something there."""
-    if named & set(path.ids()):
+def _count_matches(graph: Graph, path: Path, ids: set[str]) -> int:
+    """Return 2 if the flow names an element of the path, 1 if it names the type of one, else 0."""
+    if ids & set(path.ids()):
         return 2
     steps = [graph[id] for id in path.ids()]
     types = {type_.id for step in steps for type_ in graph.targets(step, Edge.TYPED_BY)}
-    return 1 if named & types else 0
+    return 1 if ids & types else 0
 
 
-def free_flows(graph: Graph) -> dict[str, tuple[FreeFlow, ...]]:
-    """Item flows that no connector realises, by what owns both the features that they join."""
-    found: dict[str, list[FreeFlow]] = {}
+def find_free_flows(graph: Graph) -> dict[str, tuple[FreeFlow, ...]]:
+    """Return the item flows without a connector, by the owner of both their ends."""
+    flows_by_owner: dict[str, list[FreeFlow]] = {}
     for flow in graph.of_kind(Kind.ITEM_FLOW):
         if graph.targets(flow, Edge.REALIZING):
             continue
         for source in graph.targets(flow, Edge.FLOW_SOURCE):
             for target in graph.targets(flow, Edge.FLOW_TARGET):
                 if source.owner is not None and source.owner == target.owner:
-                    found.setdefault(source.owner, []).append((flow.id, source.id, target.id))
-    return {owner: tuple(flows) for owner, flows in found.items()}
+                    flows_by_owner.setdefault(source.owner, []).append(
+                        (flow.id, source.id, target.id)
+                    )
+    return {owner: tuple(flows) for owner, flows in flows_by_owner.items()}
 
 
-def _free_flow(graph: Graph, flow: Element, source: Element, target: Element) -> Connection:
-    carried = ((conveyed(graph, flow), _domain(flow)),)
-    arrow = styled("..>", _domain(flow))
-    ends = (_direct(source), _direct(target))
+def _make_free_connection(
+    graph: Graph, flow: Element, source: Element, target: Element
+) -> Connection:
+    carried = ((format_conveyed(graph, flow), _domain_of(flow)),)
+    arrow = style_arrow("..>", _domain_of(flow))
+    ends = (_make_direct_path(source), _make_direct_path(target))
     return Connection(*ends, arrow, "«flow»", shows=(flow.id,), carried=carried)
 
 
-def _allocations(graph: Graph, block: Element) -> Iterator[Connection]:
+def _iter_allocations(graph: Graph, block: Element) -> Iterator[Connection]:
     for dependency, client, supplier in iter_feature_allocations(graph, block):
         text = " ".join(part for part in ("«allocate»", dependency.name) if part)
-        yield Connection(_direct(client), _direct(supplier), "..>", text, shows=(dependency.id,))
+        yield Connection(
+            _make_direct_path(client),
+            _make_direct_path(supplier),
+            "..>",
+            text,
+            shows=(dependency.id,),
+        )
 
 
-def _direct(feature: Element) -> Path:
+def _make_direct_path(feature: Element) -> Path:
     return Path(port=feature.id) if _is_port(feature) else Path((feature.id,))
 
 
@@ -227,8 +250,8 @@ def _direct(feature: Element) -> Path:
 # never has a ``$`` that is not escaped.
 
 
-def styled(arrow: str, domain: str) -> str:
-    """The arrow in the style of a domain; one that has a style of its own stays."""
+def style_arrow(arrow: str, domain: str) -> str:
+    """Return the arrow in the style of a domain; an arrow with a style of its own is unchanged."""
     if domain not in DOMAINS or "[" in arrow:
         return arrow
     for sign in ("-", "."):
@@ -237,12 +260,12 @@ def styled(arrow: str, domain: str) -> str:
     return arrow
 
 
-def coloured(row: str, domain: str) -> str:
-    """Escaped text in the colour of a domain."""
+def color_text(row: str, domain: str) -> str:
+    """Return escaped text in the colour of a domain."""
     return f"<color:${domain}>{row}</color>" if domain in DOMAINS else row
 
 
-def in_order(found: Iterable[str]) -> tuple[str, ...]:
-    """The domains among these, each once, as legends list them."""
-    there = set(found)
-    return tuple(domain for domain in DOMAINS if domain in there)
+def sort_domains(domains: Iterable[str]) -> tuple[str, ...]:
+    """Return these domains, each once, in the order of legends."""
+    present = set(domains)
+    return tuple(domain for domain in DOMAINS if domain in present)

@@ -1,4 +1,4 @@
-"""Bars of executions across the operands of a fragment: only one of these happens."""
+"""Execution bars across the operands of a combined fragment, of which only one runs."""
 
 from collections import Counter
 from collections.abc import Iterator, Sequence
@@ -8,34 +8,35 @@ from sysmlc.backends.plantuml.views import Step
 _CHANGES = {"activate": 1, "deactivate": -1}
 
 
-def operands(contents: Sequence[Sequence[Step]]) -> list[list[Step]]:
-    """The contents of the operands, so that each begins with the bars of the first.
+def balance_operands(contents: Sequence[Sequence[Step]]) -> list[list[Step]]:
+    """Return the steps of the operands, so that each begins with the bars that the first begins
+    with.
 
-    PlantUML goes from one to the next as if all happened; bars are corrected behind the first
-    message, for the same line may not end and begin one. Behind the last operand has ended what
-    ends in any of them.
+    PlantUML continues from one operand to the next as if all of them ran. Bars are corrected after
+    the first message, because one line cannot end and start a bar. The last list closes the bars
+    that end in any of the operands.
     """
-    made: list[list[Step]] = []
-    now: Counter[str] = Counter()
+    balanced: list[list[Step]] = []
+    open_bars: Counter[str] = Counter()
     for content in contents:
-        made.append(_corrected(content, now))
-        now.update(_change(made[-1]))
-    wanted = _change([step for content in contents for step in content])
-    if made:
-        made.append([*_changes(_difference(wanted, now))])
-    return made
+        balanced.append(_correct(content, open_bars))
+        open_bars.update(_count_bars(balanced[-1]))
+    wanted = _count_bars([step for content in contents for step in content])
+    if balanced:
+        balanced.append([*_iter_corrections(_subtract(wanted, open_bars))])
+    return balanced
 
 
-def _corrected(content: Sequence[Step], now: Counter[str]) -> list[Step]:
+def _correct(content: Sequence[Step], open_bars: Counter[str]) -> list[Step]:
     first = next((i for i, step in enumerate(content) if step.word == "message"), None)
     if first is None:
         return list(content)
-    back = _changes(_difference(Counter(), now))
-    return [*content[: first + 1], *back, *content[first + 1 :]]
+    corrections = _iter_corrections(_subtract(Counter(), open_bars))
+    return [*content[: first + 1], *corrections, *content[first + 1 :]]
 
 
-def _change(steps: Sequence[Step]) -> Counter[str]:
-    """By how many bars each lifeline has more (or less) after the steps."""
+def _count_bars(steps: Sequence[Step]) -> Counter[str]:
+    """Return by how many bars each lifeline has more (or less) after the steps."""
     bars: Counter[str] = Counter()
     for step in steps:
         if step.word in _CHANGES:
@@ -43,13 +44,13 @@ def _change(steps: Sequence[Step]) -> Counter[str]:
     return bars
 
 
-def _difference(wanted: Counter[str], now: Counter[str]) -> Counter[str]:
-    made = Counter(wanted)
-    made.subtract(now)
-    return made
+def _subtract(wanted: Counter[str], open_bars: Counter[str]) -> Counter[str]:
+    result = Counter(wanted)
+    result.subtract(open_bars)
+    return result
 
 
-def _changes(bars: Counter[str]) -> Iterator[Step]:
+def _iter_corrections(bars: Counter[str]) -> Iterator[Step]:
     for alias, number in bars.items():
         word = "activate" if number > 0 else "deactivate"
         for _ in range(abs(number)):

@@ -12,9 +12,9 @@ from sysmlc.backends.plantuml.connections import (
     Connection,
     FreeFlow,
     Path,
-    connections,
-    free_flows,
-    in_order,
+    find_free_flows,
+    list_connections,
+    sort_domains,
 )
 from sysmlc.backends.plantuml.layout import find_port_sides, iter_port_guides
 from sysmlc.backends.plantuml.views import Diagram, InternalView, Line, PartView, PortView
@@ -32,110 +32,129 @@ _TYPE = (Edge.TYPED_BY, Edge.INSTANCE_OF)
 """What leads from a part to its type, and from an instance that is drawn like one."""
 
 
-def diagrams(graph: Graph) -> Iterator[Diagram]:
-    """All internal block diagrams, in the order of the model."""
+def draw_internal_blocks(graph: Graph) -> Iterator[Diagram]:
+    """Yield all internal block diagrams, in the order of the model."""
     hierarchies = (p for p in graph.of_kind(Kind.PACKAGE) if p.subkind == "instance-hierarchy")
-    flows = free_flows(graph)
+    flows = find_free_flows(graph)
     for block in (*graph.of_kind(*_CLASSES, Kind.INSTANCE), *hierarchies):
-        yield from _of_block(graph, block, flows.get(block.id, ()))
+        yield from _draw_block(graph, block, flows.get(block.id, ()))
 
 
-def _of_block(graph: Graph, block: Element, flows: tuple[FreeFlow, ...]) -> Iterator[Diagram]:
-    found = connections(graph, block, flows)
-    if not found or block.attrs.get("external"):
+def _draw_block(graph: Graph, block: Element, flows: tuple[FreeFlow, ...]) -> Iterator[Diagram]:
+    block_connections = list_connections(graph, block, flows)
+    if not block_connections or block.attrs.get("external"):
         return
-    whole = graph.qualified_name(block)
-    parts = _divided(graph, block, found)
+    title = graph.qualified_name(block)
+    parts = _partition(graph, block, block_connections)
     for index, (shown, inside) in enumerate(parts):
-        drawing = _Drawing(graph, block, shown, inside)
+        drawing = _InternalBlockDrawing(graph, block, shown, inside)
         yield Diagram(
             kind="ibd",
-            name=partitioning.numbered(whole, index, len(parts)),
-            frame=plain(f"ibd [{_keyword(graph, block)}] {_title(graph, block)}"),
-            heading=("Internal block diagram", whole),
-            view=drawing.view(),
+            name=partitioning.number_part(title, index, len(parts)),
+            frame=plain(f"ibd [{_format_keywords(graph, block)}] {_format_title(graph, block)}"),
+            heading=("Internal block diagram", title),
+            view=drawing.build_view(),
             about=block.id,
-            footer=plain(partitioning.footer(index, len(parts), whole)),
+            footer=plain(partitioning.make_footer(index, len(parts), title)),
         )
 
 
-def _keyword(graph: Graph, block: Element) -> str:
-    return " ".join(labels.keywords(graph, _classifier(graph, block)))
+def _format_keywords(graph: Graph, block: Element) -> str:
+    return " ".join(labels.keywords(graph, _classifier_of(graph, block)))
 
 
-def _title(graph: Graph, block: Element) -> str:
-    """Name of the block; an instance is told with what classifies it."""
-    classifier = _classifier(graph, block)
+def _format_title(graph: Graph, block: Element) -> str:
+    """Return the name of the block; an instance with its classifier."""
+    classifier = _classifier_of(graph, block)
     if classifier is block:
         return labels.name(block)
     return f"{labels.name(block)} : {labels.name(classifier)}"
 
 
-def _classifier(graph: Graph, block: Element) -> Element:
-    """What has the parts and ports inside the frame: of an instance what classifies it."""
-    found = graph.target(block, Edge.INSTANCE_OF) if block.kind is Kind.INSTANCE else None
-    return block if found is None else found
+def _classifier_of(graph: Graph, block: Element) -> Element:
+    """Return the element whose parts and ports the frame shows: the classifier of an instance."""
+    classifier = graph.target(block, Edge.INSTANCE_OF) if block.kind is Kind.INSTANCE else None
+    return block if classifier is None else classifier
 
 
-def _divided(
-    graph: Graph, block: Element, found: list[Connection]
+def _partition(
+    graph: Graph, block: Element, block_connections: list[Connection]
 ) -> list[tuple[list[Element], list[Connection]]]:
-    """Parts that are drawn together, and the connections that leave none of them out.
+    """Return groups of parts, each with all connections of its parts.
 
     A connection between two groups is drawn in both; the foreign part is a neighbour there.
     """
-    tops = _top_parts(graph, block, found)
-    near: dict[str, list[str]] = {part.id: [] for part in tops}
-    for connection in found:
-        one, other = connection.source.top, connection.target.top
-        if one in near and other in near and one != other:
-            near[one].append(other)
-            near[other].append(one)
-    sizes = {part.id: 1 + _nested_count(part.id, found) for part in tops}
-    groups = partitioning.chunks([part.id for part in tops], near, sizes=sizes) or [[]]
+    tops = _list_top_parts(graph, block, block_connections)
+    adjacency: dict[str, list[str]] = {part.id: [] for part in tops}
+    for connection in block_connections:
+        source, target = connection.source.top, connection.target.top
+        if source in adjacency and target in adjacency and source != target:
+            adjacency[source].append(target)
+            adjacency[target].append(source)
+    sizes = {part.id: 1 + _count_nested_parts(part.id, block_connections) for part in tops}
+    groups = partitioning.partition([part.id for part in tops], adjacency, sizes=sizes) or [[]]
     if len(groups) == 1:
-        return [(tops, found)]
-    return [_group(graph, set(group), tops, found, index) for index, group in enumerate(groups)]
+        return [(tops, block_connections)]
+    return [
+        _make_group(graph, set(group), tops, block_connections, index)
+        for index, group in enumerate(groups)
+    ]
 
 
-def _group(
-    graph: Graph, group: set[str], tops: list[Element], found: list[Connection], index: int
+def _make_group(
+    graph: Graph,
+    group: set[str],
+    tops: list[Element],
+    block_connections: list[Connection],
+    index: int,
 ) -> tuple[list[Element], list[Connection]]:
-    """One group; what connects the frame with itself stands in the first."""
-    inside = [c for c in found if c.tops() & group or (not c.tops() and index == 0)]
-    near = {top for connection in inside for top in connection.tops()} | group
-    return [part for part in tops if part.id in near], inside
+    """Return one group; connections of the frame with itself stand in the first."""
+    inside = [
+        c
+        for c in block_connections
+        if c.find_top_parts() & group or (not c.find_top_parts() and index == 0)
+    ]
+    connected = {top for connection in inside for top in connection.find_top_parts()} | group
+    return [part for part in tops if part.id in connected], inside
 
 
-def _nested_count(top: str, found: list[Connection]) -> int:
-    paths = (end for connection in found for end in (connection.source, connection.target))
+def _count_nested_parts(top: str, block_connections: list[Connection]) -> int:
+    paths = (
+        end for connection in block_connections for end in (connection.source, connection.target)
+    )
     return len({path.parts for path in paths if path.top == top and len(path.parts) > 1})
 
 
-def _top_parts(graph: Graph, block: Element, found: list[Connection]) -> list[Element]:
-    """Parts and references of the block, with inherited and foreign ones that connectors name."""
-    own = list(_properties(graph, block))
-    named = [end.top for c in found for end in (c.source, c.target) if end.top]
-    wanted = [item for item in own if item.role in _DRAWN_ROLES]
-    ids = dict.fromkeys([*(item.id for item in wanted), *named])
+def _list_top_parts(
+    graph: Graph, block: Element, block_connections: list[Connection]
+) -> list[Element]:
+    """Return the parts and references of the block, with inherited and foreign ones that are
+    connected.
+    """
+    properties = list(_iter_properties(graph, block))
+    connected = [end.top for c in block_connections for end in (c.source, c.target) if end.top]
+    drawn = [item for item in properties if item.role in _DRAWN_ROLES]
+    ids = dict.fromkeys([*(item.id for item in drawn), *connected])
     return [graph[id] for id in ids]
 
 
-def _properties(graph: Graph, block: Element) -> Iterator[Element]:
-    """Properties of the block; of an instance all that its classifier has, inherited ones too."""
+def _iter_properties(graph: Graph, block: Element) -> Iterator[Element]:
+    """Yield the properties of the block; of an instance those of its classifier, with inherited
+    ones.
+    """
     if block.kind is not Kind.INSTANCE:
         yield from (item for item in graph.owned(block) if item.kind is Kind.PROPERTY)
         return
-    classifier = _classifier(graph, block)
+    classifier = _classifier_of(graph, block)
     family = (classifier, *generals(graph, classifier))
-    found = [p for one in family for p in graph.owned(one) if p.kind is Kind.PROPERTY]
-    gone = {old.id for one in found for old in graph.targets(one, Edge.REDEFINES)}
-    yield from (item for item in found if item.id not in gone)
+    inherited = [p for element in family for p in graph.owned(element) if p.kind is Kind.PROPERTY]
+    redefined = {old.id for element in inherited for old in graph.targets(element, Edge.REDEFINES)}
+    yield from (item for item in inherited if item.id not in redefined)
 
 
 @dataclass(slots=True)
-class _Drawing:
-    """One internal block diagram in the making."""
+class _InternalBlockDrawing:
+    """One internal block diagram while its view is built."""
 
     graph: Graph
     block: Element
@@ -150,153 +169,178 @@ class _Drawing:
     def __post_init__(self) -> None:
         self.sides = find_port_sides(self.connections)
         self.instances |= {(top.id,): top for top in self.tops if top.kind is Kind.INSTANCE}
-        waiting: list[tuple[tuple[str, ...], Element]] = [((), self.block)]
-        waiting += self.instances.items()
-        for path, owner in waiting:
+        worklist: list[tuple[tuple[str, ...], Element]] = [((), self.block)]
+        worklist += self.instances.items()
+        for path, owner in worklist:
             for inner in self.graph.owned(owner):
                 part = self.graph.target(inner, Edge.REPRESENTS)
                 if inner.kind is Kind.INSTANCE and part is not None:
                     self.instances[*path, part.id] = inner
-                    waiting.append(((*path, part.id), inner))
+                    worklist.append(((*path, part.id), inner))
 
-    def view(self) -> InternalView:
-        parts = tuple(self._part((part.id,), part) for part in self.tops)
-        slots = _slots(self.graph, self.block)
+    def build_view(self) -> InternalView:
+        parts = tuple(self._make_part((part.id,), part) for part in self.tops)
+        slots = _list_slots(self.graph, self.block)
         frame = PartView(
             self.aliases.make("frame", self.block.name, "block"),
-            stack(_rows(self.graph, slots)) or " ",
+            stack(_format_slots(self.graph, slots)) or " ",
             "frame",
-            tuple(self._ports((), _classifier(self.graph, self.block))),
+            tuple(self._iter_ports((), _classifier_of(self.graph, self.block))),
             parts,
             (self.block.id, *(slot.id for slot in slots)),
         )
-        drawn = tuple(self._line(connection) for connection in self.connections)
-        hidden = tuple(iter_port_guides(frame, drawn))
-        return InternalView(frame, drawn, self.has_ports, hidden, domains_of(self.connections))
+        lines = tuple(self._make_line(connection) for connection in self.connections)
+        hidden = tuple(iter_port_guides(frame, lines))
+        return InternalView(frame, lines, self.has_ports, hidden, domains_of(self.connections))
 
-    def _part(self, path: tuple[str, ...], part: Element) -> PartView:
-        alias = self.aliases.make(_key(path), part.name, "part")
-        inner = tuple(self._part((*path, item.id), item) for item in self._inner(path))
+    def _make_part(self, path: tuple[str, ...], part: Element) -> PartView:
+        alias = self.aliases.make(_make_key(path), part.name, "part")
+        inner = tuple(
+            self._make_part((*path, item.id), item) for item in self._list_inner_parts(path)
+        )
         type_ = self.graph.target(part, _TYPE[part.kind is Kind.INSTANCE])
         instance = self.instances.get(path)
-        slots = [] if instance is None else _slots(self.graph, instance)
-        rows = _rows(self.graph, slots)
+        slots = [] if instance is None else _list_slots(self.graph, instance)
+        rows = _format_slots(self.graph, slots)
         values = () if instance is None else (instance.id, *(slot.id for slot in slots))
         return PartView(
             alias,
-            stack([small(plain(self._words(part))), *bold(_named(self.graph, part)), *rows]),
-            _style(part),
-            tuple(self._ports(path, type_)),
+            stack(
+                [
+                    small(plain(self._format_stereotypes(part))),
+                    *embolden(_format_part(self.graph, part)),
+                    *rows,
+                ]
+            ),
+            _choose_style(part),
+            tuple(self._iter_ports(path, type_)),
             inner,
             (part.id, *values),
         )
 
-    def _words(self, part: Element) -> str:
-        words = labels.applied(self.graph, part)
-        kept = [word for word in words if word not in ("partProperty", "referenceProperty")]
-        return labels.guillemets(kept)
+    def _format_stereotypes(self, part: Element) -> str:
+        words = labels.list_stereotypes(self.graph, part)
+        shown = [word for word in words if word not in ("partProperty", "referenceProperty")]
+        return labels.guillemets(shown)
 
-    def _inner(self, path: tuple[str, ...]) -> list[Element]:
-        """Parts inside the part at ``path`` that a connection names, in order of first use."""
-        found: dict[str, None] = {}
+    def _list_inner_parts(self, path: tuple[str, ...]) -> list[Element]:
+        """Return the parts inside the part at *path* that are connected or have values, in order of
+        use.
+        """
+        ids: dict[str, None] = {}
         for connection in self.connections:
             for end in (connection.source, connection.target):
                 if len(end.parts) > len(path) and end.parts[: len(path)] == path:
-                    found[end.parts[len(path)]] = None
-        for deep, instance in self.instances.items():
-            if len(deep) > len(path) and deep[: len(path)] == path and _slots(self.graph, instance):
-                found[deep[len(path)]] = None
-        return [self.graph[id] for id in found]
+                    ids[end.parts[len(path)]] = None
+        for instance_path, instance in self.instances.items():
+            if (
+                len(instance_path) > len(path)
+                and instance_path[: len(path)] == path
+                and _list_slots(self.graph, instance)
+            ):
+                ids[instance_path[len(path)]] = None
+        return [self.graph[id] for id in ids]
 
-    def _ports(self, path: tuple[str, ...], owner: Element | None) -> Iterator[PortView]:
-        """All ports of the part's type, inherited ones too, and what connections name there."""
-        every = [port.id for port in _ports_of(self.graph, owner)] if owner is not None else []
-        ends = [(end.port,) for end in self._ends(path) if end.port]
-        keys = dict.fromkeys([*((id,) for id in every), *ends, *self._nested_ports(path)])
+    def _iter_ports(self, path: tuple[str, ...], owner: Element | None) -> Iterator[PortView]:
+        """Yield all ports of the part's type, inherited ones included, and those that connections
+        name.
+        """
+        type_ports = (
+            [port.id for port in _list_ports(self.graph, owner)] if owner is not None else []
+        )
+        ends = [(end.port,) for end in self._iter_ends(path) if end.port]
+        keys = dict.fromkeys([*((id,) for id in type_ports), *ends, *self._iter_nested_ports(path)])
         for key in keys:
-            yield self._port(path, key)
+            yield self._make_port(path, key)
 
-    def _ends(self, path: tuple[str, ...]) -> Iterator[Path]:
+    def _iter_ends(self, path: tuple[str, ...]) -> Iterator[Path]:
         for connection in self.connections:
             for end in (connection.source, connection.target):
                 if end.parts == path and not end.ports:
                     yield end
 
-    def _nested_ports(self, path: tuple[str, ...]) -> Iterator[tuple[str, ...]]:
+    def _iter_nested_ports(self, path: tuple[str, ...]) -> Iterator[tuple[str, ...]]:
         for connection in self.connections:
             for end in (connection.source, connection.target):
                 if end.parts == path and end.ports:
                     yield (*end.ports, end.port)
 
-    def _port(self, path: tuple[str, ...], key: tuple[str, ...]) -> PortView:
+    def _make_port(self, path: tuple[str, ...], key: tuple[str, ...]) -> PortView:
         port = self.graph[key[-1]]
         self.has_ports = True
-        shown = ".".join(labels.name(self.graph[id]) for id in key)
-        alias = self.aliases.make(_key((*path, *key)), port.name, "port")
-        text = shown if port.name.strip() else labels.typed(self.graph, port)
-        form = FORMS.get(self._direction(key)) or self.sides.get((*path, *key), "port")
+        dotted_name = ".".join(labels.name(self.graph[id]) for id in key)
+        alias = self.aliases.make(_make_key((*path, *key)), port.name, "port")
+        text = dotted_name if port.name.strip() else labels.format_typed(self.graph, port)
+        form = FORMS.get(self._find_direction(key)) or self.sides.get((*path, *key), "port")
         rows = (f"<back:#FFFFFF>{row}</back>" for row in lines(text, _PORT_WIDTH))
         return PortView(alias, stack(rows), form, key)
 
-    def _direction(self, key: tuple[str, ...]) -> str:
-        """Direction of the innermost port; conjugated ones around it turn it round."""
+    def _find_direction(self, key: tuple[str, ...]) -> str:
+        """Return the direction of the innermost port; conjugated ports around it reverse it."""
         direction = str(self.graph[key[-1]].attrs.get("direction", ""))
-        around = [self.graph[id] for id in key[:-1]]
-        is_turned = len([one for one in around if one.attrs.get("conjugated")]) % 2 == 1
+        outer_ports = [self.graph[id] for id in key[:-1]]
+        is_turned = len([port for port in outer_ports if port.attrs.get("conjugated")]) % 2 == 1
         return (opposite(direction) or "") if is_turned else direction
 
-    def _line(self, connection: Connection) -> Line:
+    def _make_line(self, connection: Connection) -> Line:
         return Line(
-            self._end(connection.source),
+            self._find_alias(connection.source),
             connection.arrow,
-            self._end(connection.target),
-            connection.text(),
+            self._find_alias(connection.target),
+            connection.format_label(),
             label(connection.near),
             label(connection.far),
             connection.shows,
         )
 
-    def _end(self, path: Path) -> str:
+    def _find_alias(self, path: Path) -> str:
         key = (*path.parts, *path.ports, path.port) if path.port else path.parts
-        return self.aliases[_key(key) if key else "frame"]
+        return self.aliases[_make_key(key) if key else "frame"]
 
 
-def _named(graph: Graph, part: Element) -> str:
-    return _title(graph, part) if part.kind is Kind.INSTANCE else labels.typed(graph, part)
+def _format_part(graph: Graph, part: Element) -> str:
+    return (
+        _format_title(graph, part)
+        if part.kind is Kind.INSTANCE
+        else labels.format_typed(graph, part)
+    )
 
 
-def _slots(graph: Graph, instance: Element) -> list[Element]:
-    return [one for one in graph.owned(instance) if one.kind is Kind.SLOT]
+def _list_slots(graph: Graph, instance: Element) -> list[Element]:
+    return [member for member in graph.owned(instance) if member.kind is Kind.SLOT]
 
 
-def _rows(graph: Graph, slots: list[Element]) -> list[str]:
-    """What the slots say; what one says of a port stands in none of its rows."""
-    told = [slot for slot in slots if "value" in slot.attrs]
-    return [small(plain(f"{one.name} = {one.attrs['value']}{_unit(graph, one)}")) for one in told]
+def _format_slots(graph: Graph, slots: list[Element]) -> list[str]:
+    """Return the rows of the slots that have a value."""
+    slots_with_value = [slot for slot in slots if "value" in slot.attrs]
+    return [
+        small(plain(f"{slot.name} = {slot.attrs['value']}{_format_unit(graph, slot)}"))
+        for slot in slots_with_value
+    ]
 
 
-def _unit(graph: Graph, slot: Element) -> str:
-    """The unit of what the slot gives a value to, behind the value."""
+def _format_unit(graph: Graph, slot: Element) -> str:
+    """Return the unit of the slot's feature, with a leading blank."""
     feature = graph.target(slot, Edge.INSTANCE_OF)
     unit = None if feature is None else unit_of(graph, feature)
     return "" if unit is None else f" {unit.attrs.get('symbol') or labels.name(unit)}"
 
 
-def bold(text: str) -> list[str]:
-    """The name of a part in escaped lines."""
+def embolden(text: str) -> list[str]:
+    """Return escaped lines in bold type."""
     return [f"**{row}**" for row in lines(text)]
 
 
-def domains_of(drawn: list[Connection]) -> tuple[str, ...]:
-    """Domains of what flows in the diagram."""
-    return in_order(domain for one in drawn for _, domain in one.carried)
+def domains_of(lines: list[Connection]) -> tuple[str, ...]:
+    """Return the domains of the items that flow in the diagram."""
+    return sort_domains(domain for connection in lines for _, domain in connection.carried)
 
 
-def _key(path: tuple[str, ...]) -> str:
+def _make_key(path: tuple[str, ...]) -> str:
     return "\x1f".join(("part", *path))
 
 
-def _style(part: Element) -> str:
+def _choose_style(part: Element) -> str:
     is_shared = (
         not part.role
         and part.kind is not Kind.INSTANCE
@@ -305,18 +349,18 @@ def _style(part: Element) -> str:
     return "reference" if is_shared or part.role == "reference" else "part"
 
 
-def _ports_of(graph: Graph, classifier: Element) -> list[Element]:
-    """Ports of a classifier and of what it specialises; a redefined port does not count."""
-    found: dict[str, Element] = {}
-    seen: dict[str, None] = {}
+def _list_ports(graph: Graph, classifier: Element) -> list[Element]:
+    """Return the ports of a classifier and of its generalizations, without redefined ports."""
+    ports: dict[str, Element] = {}
+    visited: dict[str, None] = {}
     queue = [classifier]
     for type_ in queue:
-        if type_.id not in seen:
-            seen[type_.id] = None
-            found |= {p.id: p for p in graph.owned(type_) if _is_port(p)}
+        if type_.id not in visited:
+            visited[type_.id] = None
+            ports |= {p.id: p for p in graph.owned(type_) if _is_port(p)}
             queue.extend(graph.targets(type_, Edge.SPECIALIZES))
-    gone = {old.id for port in found.values() for old in graph.targets(port, Edge.REDEFINES)}
-    return [port for port in found.values() if port.id not in gone]
+    redefined = {old.id for port in ports.values() for old in graph.targets(port, Edge.REDEFINES)}
+    return [port for port in ports.values() if port.id not in redefined]
 
 
 def _is_port(item: Element) -> bool:

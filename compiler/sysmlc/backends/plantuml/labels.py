@@ -1,4 +1,4 @@
-"""How one element reads in a diagram, in UML notation (UML 2.5.1, clauses 9 and 11)."""
+"""Labels of single elements in UML notation (UML 2.5.1, clauses 9 and 11)."""
 
 import re
 from collections.abc import Iterable
@@ -50,37 +50,45 @@ _KIND_WORDS = {
 
 
 def keywords(graph: Graph, element: Element) -> tuple[str, ...]:
-    """Stereotypes as the model has them, else the word for the role, else for the kind."""
-    found = applied(graph, element)
+    """Return the stereotypes of the model, else the keyword of the role, else that of the kind."""
+    stereotypes = list_stereotypes(graph, element)
     by_kind = _KIND_WORDS.get(element.kind, "")
-    if found:
-        first = by_kind if element.kind in _ALWAYS_NAMED else _unsaid_role(graph, element, found)
-        return (first, *found) if first else found
+    if stereotypes:
+        first = (
+            by_kind
+            if element.kind in _ALWAYS_NAMED
+            else _find_role_keyword(graph, element, stereotypes)
+        )
+        return (first, *stereotypes) if first else stereotypes
     if element.kind is Kind.ACTIVITY:
         by_kind = f"{element.subkind} behavior" if element.subkind else "activity"
     word = _ROLE_WORDS.get(element.role, "") or by_kind
     return (word,) if word else ()
 
 
-def _unsaid_role(graph: Graph, element: Element, found: tuple[str, ...]) -> str:
-    """The word for a role that no applied stereotype gives: SysML v2 says it with a keyword."""
+def _find_role_keyword(graph: Graph, element: Element, stereotypes: tuple[str, ...]) -> str:
+    """Return the keyword of a role that no applied stereotype expresses: SysML v2 uses keywords."""
     word = _ROLE_WORDS.get(element.role, "")
     if not word:
         return ""
-    general = (one for app in applications(graph, element) for one in lineage(app))
-    return "" if word.lower() in {one.lower() for one in (*found, *general)} else word
+    base_names = (name for app in applications(graph, element) for name in lineage(app))
+    return "" if word.lower() in {name.lower() for name in (*stereotypes, *base_names)} else word
 
 
-def applied(graph: Graph, element: Element) -> tuple[str, ...]:
-    """Names of the stereotypes that are applied to the element."""
-    found = [item for item in graph.owned(element) if item.kind is _APPLICATION]
-    if not found:
+def list_stereotypes(graph: Graph, element: Element) -> tuple[str, ...]:
+    """Return the names of the stereotypes that are applied to the element."""
+    applications_of = [item for item in graph.owned(element) if item.kind is _APPLICATION]
+    if not applications_of:
         return ()
-    told = (str(one.attrs.get("stereotype", one.name)) for one in found if _is_telling(one))
-    return tuple(dict.fromkeys(_lower_first(name) for name in told if name))
+    names = (
+        str(application.attrs.get("stereotype", application.name))
+        for application in applications_of
+        if _is_shown(application)
+    )
+    return tuple(dict.fromkeys(_lower_first(name) for name in names if name))
 
 
-def _is_telling(application: Element) -> bool:
+def _is_shown(application: Element) -> bool:
     if "on" in application.attrs:
         return False
     return not _TOOL_NAMESPACE.match(str(application.attrs.get("namespace", "")))
@@ -90,65 +98,68 @@ _ALWAYS_NAMED = frozenset([Kind.INTERFACE, Kind.ENUMERATION, Kind.SIGNAL, Kind.A
 
 
 def guillemets(words: Iterable[str]) -> str:
-    """``«a, b»``, or nothing."""
+    """Return ``«a, b»``, or an empty text."""
     text = ", ".join(words)
     return f"«{text}»" if text else ""
 
 
 def name(element: Element) -> str:
-    """The element's name, or its kind when it has none; a stub is called by its id at times."""
+    """Return the element's name, or its kind if it has none; a stub may be named by a tool's id."""
     if element.attrs.get("external") and _TOOL_ID.fullmatch(element.name):
         return "external"
     return element.name.strip() or str(element.attrs.get("subkind") or element.kind)
 
 
 def type_name(graph: Graph, element: Element) -> str:
-    """Name of the element's type; a conjugated port shows ``~``.
+    """Return the name of the element's type; a conjugated port shows ``~``.
 
     A type that is specific to the property is ``[General]`` (SysML 1.6 clause 8.3.1.1).
     """
-    names = [_specific(graph, type_) for type_ in graph.targets(element, Edge.TYPED_BY)]
+    names = [_name_of_type(graph, type_) for type_ in graph.targets(element, Edge.TYPED_BY)]
     return ("~" if element.attrs.get("conjugated") else "") + ", ".join(names) if names else ""
 
 
-def _specific(graph: Graph, type_: Element) -> str:
+def _name_of_type(graph: Graph, type_: Element) -> str:
     if not type_.attrs.get("property_specific"):
         return name(type_)
     return f"[{', '.join(map(name, graph.targets(type_, Edge.SPECIALIZES))) or name(type_)}]"
 
 
 def multiplicity(element: Element) -> str:
-    """``0..1``, or nothing for exactly one."""
+    """Return ``0..1``, or an empty text for exactly one."""
     value = element.attrs.get("multiplicity")
     return "" if value is None else str(value)
 
 
-def typed(graph: Graph, element: Element, shown: str | None = None) -> str:
-    """``name : Type [multiplicity]``."""
-    own = (element.name if shown is None else shown).strip()
+def format_typed(graph: Graph, element: Element, name_shown: str | None = None) -> str:
+    """Return ``name : Type [multiplicity]``."""
+    own_name = (element.name if name_shown is None else name_shown).strip()
     type_ = type_name(graph, element)
-    text = f"{own} : {type_}".strip() if type_ else own or name(element)
+    text = f"{own_name} : {type_}".strip() if type_ else own_name or name(element)
     bounds = multiplicity(element)
     return f"{text} [{bounds}]" if bounds else text
 
 
 def feature(graph: Graph, element: Element) -> str:
-    """A property, port or parameter: ``/in name : Type [1..2] = 5 {ordered, redefines x}``."""
+    """Return the label of a property, port or parameter.
+
+    It reads ``/in name : Type [1..2] = 5 {ordered, redefines x}``.
+    """
     direction = element.attrs.get("direction")
     slash = "/" if element.attrs.get("derived") else ""
     value = element.attrs.get("default")
     parts = [
-        _visibility(element),
+        _format_visibility(element),
         f"{direction} " if direction else "",
-        slash + typed(graph, element),
+        slash + format_typed(graph, element),
         "" if value is None else f" = {literal(value)}",
-        _modifiers(graph, element),
+        _format_modifiers(graph, element),
     ]
     return "".join(parts)
 
 
 def literal(value: object) -> str:
-    """A value in model notation: booleans in lower case, lists in braces."""
+    """Return a value in model notation: booleans in lower case, lists in braces."""
     if isinstance(value, bool):
         return str(value).lower()
     if isinstance(value, tuple):
@@ -157,37 +168,37 @@ def literal(value: object) -> str:
 
 
 def operation(graph: Graph, element: Element) -> str:
-    """``name(in a : T) : R``."""
-    text = f"{_visibility(element)}{name(element)}{signature(graph, element) or '()'}"
+    """Return ``name(in a : T) : R``."""
+    text = f"{_format_visibility(element)}{name(element)}{signature(graph, element) or '()'}"
     return text + (" {abstract}" if element.attrs.get("abstract") else "")
 
 
 def signature(graph: Graph, element: Element) -> str:
-    """``(in a : T) : R`` of an operation or behaviour; nothing when it has no parameters."""
+    """Return ``(in a : T) : R`` of an operation or behaviour; an empty text without parameters."""
     parameters = [item for item in graph.owned(element) if item.kind is _PARAMETER]
-    taken = [feature(graph, p) for p in parameters if p.attrs.get("direction") != "return"]
-    text = template(graph, element) + (f"({', '.join(taken)})" if parameters else "")
+    inputs = [feature(graph, p) for p in parameters if p.attrs.get("direction") != "return"]
+    text = template(graph, element) + (f"({', '.join(inputs)})" if parameters else "")
     for result in parameters:
         if result.attrs.get("direction") == "return":
-            shown = typed(graph, result)
-            text += f" {shown}" if shown.startswith(":") else f" : {shown}"
+            result_text = format_typed(graph, result)
+            text += f" {result_text}" if result_text.startswith(":") else f" : {result_text}"
     return text
 
 
 def template(graph: Graph, element: Element) -> str:
-    """``<T, n>`` behind the name of a template; nothing for what is none."""
+    """Return ``<T, n>`` for the name of a template; an empty text for other elements."""
     names = [name(item) for item in templates.parameters(graph, element)]
     return f"<{', '.join(names)}>" if names else ""
 
 
 def instance(graph: Graph, element: Element) -> str:
-    """``name : Class`` of an instance specification."""
+    """Return ``name : Class`` of an instance specification."""
     classes = ", ".join(name(item) for item in graph.targets(element, Edge.INSTANCE_OF))
     return f"{element.name} : {classes}" if classes else name(element)
 
 
 def slot(graph: Graph, element: Element) -> str:
-    """``feature = value``."""
+    """Return ``feature = value``."""
     features = ", ".join(name(item) for item in graph.targets(element, Edge.INSTANCE_OF))
     values = [name(item) for item in graph.targets(element, Edge.REFERENCES)]
     if element.attrs.get("value") is not None:
@@ -196,7 +207,7 @@ def slot(graph: Graph, element: Element) -> str:
 
 
 def collaboration_use(graph: Graph, element: Element) -> str:
-    """``name : Collaboration (role = part, ...)``."""
+    """Return ``name : Collaboration (role = part, ...)``."""
     bindings = [item for item in graph.owned(element) if item.subkind == "role-binding"]
     parts = [
         f"{name(role)} = {name(part)}"
@@ -204,55 +215,61 @@ def collaboration_use(graph: Graph, element: Element) -> str:
         for role in graph.targets(item, Edge.CLIENT)
         for part in graph.targets(item, Edge.SUPPLIER)
     ]
-    text = typed(graph, element)
+    text = format_typed(graph, element)
     return f"{text} ({', '.join(parts)})" if parts else text
 
 
-def home(graph: Graph, element: Element) -> str | None:
-    """Id of the package whose diagram shows the element."""
-    return next((one.id for one in graph.ancestors(element) if one.kind in _PACKAGES), None)
+def find_package(graph: Graph, element: Element) -> str | None:
+    """Return the id of the package whose diagram shows the element."""
+    return next((owner.id for owner in graph.ancestors(element) if owner.kind in _PACKAGES), None)
 
 
 def note_text(item: Element) -> str:
-    """The text of a comment, or a constraint in braces."""
+    """Return the text of a comment, or a constraint in braces."""
     if item.kind is Kind.CONSTRAINT:
         return condition(item)
     return str(item.attrs.get("body", item.name))
 
 
 def condition(element: Element) -> str:
-    """``{name: body}`` of a constraint."""
+    """Return ``{name: body}`` of a constraint."""
     body = str(element.attrs.get("body", ""))
     inner = ": ".join(part for part in (element.name, body) if part)
     return "{" + inner + "}"
 
 
-def _visibility(element: Element) -> str:
+def _format_visibility(element: Element) -> str:
     signs = {"private": "-", "protected": "#", "package": "~"}
     return signs.get(str(element.attrs.get("visibility", "")), "")
 
 
-def _modifiers(graph: Graph, element: Element) -> str:
+def _format_modifiers(graph: Graph, element: Element) -> str:
     attrs = element.attrs
     words = [word for word in _MODIFIERS if attrs.get(word)]
     words += ["nonunique"] if attrs.get("unique") is False else []
     for edge, verb in ((Edge.REDEFINES, "redefines"), (Edge.SUBSETS, "subsets")):
-        words += [f"{verb} {_referred(graph, target)}" for target in graph.targets(element, edge)]
+        words += [
+            f"{verb} {_name_of_redefined(graph, target)}" for target in graph.targets(element, edge)
+        ]
     return " {" + ", ".join(words) + "}" if words else ""
 
 
-def _referred(graph: Graph, feature: Element) -> str:
-    """Name of a feature that another one redefines; without one it is told by what names it.
+def _name_of_redefined(graph: Graph, feature: Element) -> str:
+    """Return the name of a redefined feature, which may have none of its own.
 
-    That is the named feature that it redefines itself, else its type, as in ``: Pump``.
+    It is then named after the feature that it redefines, else after its type, as in ``: Pump``.
     """
     if feature.name.strip():
         return name(feature)
-    known = next((one for one in redefined_features(graph, feature) if one.name.strip()), None)
-    types = "" if known else type_name(graph, feature)
-    return f": {types}" if types else name(known or feature)
+    ancestor = next(
+        (candidate for candidate in redefined_features(graph, feature) if candidate.name.strip()), None
+    )
+    types = "" if ancestor else type_name(graph, feature)
+    return f": {types}" if types else name(ancestor or feature)
 
 
 def _lower_first(text: str) -> str:
-    """``ValueType`` as SysML prints it, ``valueType``; abbreviations (``SD_DD``) stay."""
+    """Return ``ValueType`` as SysML prints it, ``valueType``; abbreviations (``SD_DD``) are
+    unchanged.
+    """
     return text[:1].lower() + text[1:] if text[1:2].islower() else text

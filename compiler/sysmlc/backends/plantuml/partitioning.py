@@ -1,4 +1,4 @@
-"""Split what is too much for one picture: connected things stay together as far as they fit."""
+"""Partitioning of diagrams that are too large to read, without losing a line."""
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
 
@@ -10,136 +10,150 @@ LIMIT = 40
 """Boxes in one diagram; above it pictures measured on real models are no longer readable."""
 
 
-def chunks(
+def partition(
     items: Sequence[str],
     neighbours: Mapping[str, Collection[str]],
     limit: int = LIMIT,
     sizes: Mapping[str, int] | None = None,
 ) -> list[list[str]]:
-    """Divide ``items`` so that each part with its neighbours has at most ``limit`` members.
+    """Divide *items* so that each part with its neighbours has at most *limit* members.
 
-    ``sizes`` says for how many members an item counts (1 when it is not there). An item that
-    has more neighbours than fit is a part of its own. Inside a part the order of ``items`` is
-    kept.
+    *sizes* states for how many members an item counts (1 by default). An item with more neighbours
+    than fit is a part of its own. Connected items stay together where possible, and a part has the
+    order of *items*.
     """
     size = sizes or {}
-    every = {*items, *(near for item in items for near in neighbours.get(item, ()))}
-    if items and sum(size.get(member, 1) for member in every) <= limit:
+    all_members = {*items, *(neighbour for item in items for neighbour in neighbours.get(item, ()))}
+    if items and sum(size.get(member, 1) for member in all_members) <= limit:
         return [list(dict.fromkeys(items))]
-    place = {item: index for index, item in enumerate(items)}
+    index_of = {item: index for index, item in enumerate(items)}
     parts: list[list[str]] = []
-    shown: set[str] = set()
-    for item in _connected(items, neighbours):
-        wider = shown | {item} | set(neighbours.get(item, ()))
-        if not parts or sum(size.get(member, 1) for member in wider) > limit:
+    members: set[str] = set()
+    for item in _iter_connected(items, neighbours):
+        grown = members | {item} | set(neighbours.get(item, ()))
+        if not parts or sum(size.get(member, 1) for member in grown) > limit:
             parts.append([])
-            wider = {item} | set(neighbours.get(item, ()))
+            grown = {item} | set(neighbours.get(item, ()))
         parts[-1].append(item)
-        shown = wider
-    return [sorted(part, key=place.__getitem__) for part in parts]
+        members = grown
+    return [sorted(part, key=index_of.__getitem__) for part in parts]
 
 
-def _connected(items: Sequence[str], neighbours: Mapping[str, Collection[str]]) -> Iterator[str]:
-    """The items component by component, each breadth first from its first item."""
-    waiting = dict.fromkeys(items)
+def _iter_connected(
+    items: Sequence[str], neighbours: Mapping[str, Collection[str]]
+) -> Iterator[str]:
+    """Yield the items component by component, each breadth first from its first item."""
+    unvisited = dict.fromkeys(items)
     for start in items:
-        queue = [start] if start in waiting else []
-        waiting.pop(start, None)
+        queue = [start] if start in unvisited else []
+        unvisited.pop(start, None)
         for item in queue:
             yield item
-            near = [o for o in dict.fromkeys(neighbours.get(item, ())) if o in waiting]
-            for other in near:
-                del waiting[other]
-            queue.extend(near)
+            adjacent = [
+                neighbour
+                for neighbour in dict.fromkeys(neighbours.get(item, ()))
+                if neighbour in unvisited
+            ]
+            for other in adjacent:
+                del unvisited[other]
+            queue.extend(adjacent)
 
 
-def numbered(name: str, index: int, count: int) -> str:
-    """Name of one part: the name itself when there is only one."""
+def number_part(name: str, index: int, count: int) -> str:
+    """Return the name of one part: *name* itself if there is only one."""
     return name if count == 1 else f"{name}::{index + 1}-of-{count}"
 
 
-def footer(index: int, count: int, whole: str) -> str:
-    """The note on a part that says what it is a part of; nothing when it is the whole."""
+def make_footer(index: int, count: int, whole: str) -> str:
+    """Return the note that names the whole of a part; an empty text if there is only one part."""
     return "" if count == 1 else f"part {index + 1} of {count} of {whole}; grey: shown elsewhere"
 
 
 def split_view(view: GraphView, limit: int = LIMIT) -> list[GraphView]:
-    """The view itself when it is small, else parts of it.
+    """Return the view itself if it is small, else parts of it.
 
-    A node with more than ``limit`` nodes inside is closed in its own part and opened in parts
-    that follow. A line that leaves a part ends at a grey stub. Notes stand in the first part.
+    A node with more than *limit* nodes inside is closed in its own part and opened in later parts.
+    A line that leaves a part ends at a grey stub. Notes stand in the first part.
     """
-    if _total(view.nodes) <= limit:
+    if _count_nodes(view.nodes) <= limit:
         return [view]
-    parts = [_part(view, group) for group in _groups(view.nodes, view.lines, limit)]
-    return [replace(parts[0], notes=_bare(view.notes)), *parts[1:]]
+    parts = [_make_part(view, group) for group in _iter_groups(view.nodes, view.lines, limit)]
+    return [replace(parts[0], notes=_detach_notes(view.notes)), *parts[1:]]
 
 
-def _total(nodes: Sequence[Node]) -> int:
-    return sum(1 + _total(node.children) for node in nodes)
+def _count_nodes(nodes: Sequence[Node]) -> int:
+    return sum(1 + _count_nodes(node.children) for node in nodes)
 
 
-def _bare(notes: tuple[Note, ...]) -> tuple[Note, ...]:
+def _detach_notes(notes: tuple[Note, ...]) -> tuple[Note, ...]:
     return tuple(replace(note, targets=()) for note in notes)
 
 
-def _groups(nodes: Sequence[Node], lines: Sequence[Line], limit: int) -> Iterator[tuple[Node, ...]]:
-    """Sets of nodes that are drawn together, large ones closed; then what the large ones hold."""
-    large = [node for node in nodes if 1 + _total(node.children) > limit]
+def _iter_groups(
+    nodes: Sequence[Node], lines: Sequence[Line], limit: int
+) -> Iterator[tuple[Node, ...]]:
+    """Yield groups of nodes, large nodes closed, and then the groups inside the large nodes."""
+    large = [node for node in nodes if 1 + _count_nodes(node.children) > limit]
     shown = [_close_node(node) if node in large else node for node in nodes]
     by_alias = {node.alias: node for node in shown}
-    near = _neighbours(shown, lines)
-    sizes = {node.alias: 1 + _total(node.children) for node in shown}
+    adjacency = _find_neighbours(shown, lines)
+    sizes = {node.alias: 1 + _count_nodes(node.children) for node in shown}
     if len(shown) > 1 or not large:
-        for part in chunks(list(by_alias), near, limit, sizes):
+        for part in partition(list(by_alias), adjacency, limit, sizes):
             yield tuple(by_alias[alias] for alias in part)
     for node in large:
-        yield from _groups(node.children, lines, limit)
+        yield from _iter_groups(node.children, lines, limit)
 
 
 def _close_node(node: Node) -> Node:
     return replace(node, children=(), rows=(*node.rows, "⋯ opened in another part"))
 
 
-def _neighbours(nodes: Sequence[Node], lines: Sequence[Line]) -> dict[str, list[str]]:
-    home = {alias: node.alias for node in nodes for alias in _aliases(node)}
-    near: dict[str, list[str]] = {node.alias: [] for node in nodes}
+def _find_neighbours(nodes: Sequence[Node], lines: Sequence[Line]) -> dict[str, list[str]]:
+    home = {alias: node.alias for node in nodes for alias in _iter_aliases(node)}
+    adjacency: dict[str, list[str]] = {node.alias: [] for node in nodes}
     for line in lines:
-        for one, other in ((line.source, line.target), (line.target, line.source)):
-            if one in home and home[one] != home.get(other, other):
-                near[home[one]].append(home.get(other, other))
-    return near
+        for end, opposite_end in ((line.source, line.target), (line.target, line.source)):
+            if end in home and home[end] != home.get(opposite_end, opposite_end):
+                adjacency[home[end]].append(home.get(opposite_end, opposite_end))
+    return adjacency
 
 
-def _aliases(node: Node) -> Iterator[str]:
+def _iter_aliases(node: Node) -> Iterator[str]:
     yield node.alias
     for child in node.children:
-        yield from _aliases(child)
+        yield from _iter_aliases(child)
 
 
-def _part(view: GraphView, group: tuple[Node, ...]) -> GraphView:
-    inside = {alias for node in group for alias in _aliases(node)}
-    every = {node.alias: node for top in view.nodes for node in _all(top)}
+def _make_part(view: GraphView, group: tuple[Node, ...]) -> GraphView:
+    inside = {alias for node in group for alias in _iter_aliases(node)}
+    nodes_by_alias = {node.alias: node for top in view.nodes for node in _iter_nodes(top)}
     lines = [line for line in view.lines if line.source in inside or line.target in inside]
-    lines = [line for line in lines if not _is_hidden(line, inside, every)]
+    lines = [line for line in lines if not _is_hidden(line, inside, nodes_by_alias)]
     ends = dict.fromkeys(end for line in lines for end in (line.source, line.target))
-    stubs = tuple(_stub(every[end]) for end in ends if end not in inside)
+    stubs = tuple(_make_stub(nodes_by_alias[end]) for end in ends if end not in inside)
     return GraphView((*group, *stubs), tuple(lines))
 
 
-def _is_hidden(line: Line, inside: set[str], every: dict[str, Node]) -> bool:
-    """A line between a closed node and what it holds is shown where the node is open."""
-    for one, other in ((line.source, line.target), (line.target, line.source)):
-        if one in inside and other not in inside and other in set(_aliases(every[one])):
+def _is_hidden(line: Line, inside: set[str], nodes_by_alias: dict[str, Node]) -> bool:
+    """Whether the line connects a closed node with its content, which is shown where the node is
+    open.
+    """
+    for end, opposite_end in ((line.source, line.target), (line.target, line.source)):
+        if (
+            end in inside
+            and opposite_end not in inside
+            and opposite_end in set(_iter_aliases(nodes_by_alias[end]))
+        ):
             return True
     return False
 
 
-def _all(node: Node) -> Iterator[Node]:
+def _iter_nodes(node: Node) -> Iterator[Node]:
     yield node
     for child in node.children:
-        yield from _all(child)
+        yield from _iter_nodes(child)
 
 
-def _stub(node: Node) -> Node:
+def _make_stub(node: Node) -> Node:
     return Node(node.alias, node.label or node.alias, "elsewhere", shows=())

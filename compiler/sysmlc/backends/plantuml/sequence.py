@@ -1,22 +1,22 @@
-"""Sequence diagrams: one for each interaction with lifelines (UML 2.5.1 clause 17.8)."""
+"""Sequence diagrams: one for each interaction with lifelines (UML 2.5.1 clauses 17.4 and 17.8)."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 
 from sysmlc.backends.plantuml import labels
 from sysmlc.backends.plantuml.aliases import Aliases
-from sysmlc.backends.plantuml.execution_bars import operands
+from sysmlc.backends.plantuml.execution_bars import balance_operands
 from sysmlc.backends.plantuml.sequence_labels import (
-    arguments,
-    message_text,
-    notes,
-    operand_text,
-    time_text,
-    times,
+    format_arguments,
+    format_message,
+    format_operand,
+    format_time,
+    index_notes,
+    index_times,
 )
 from sysmlc.backends.plantuml.views import Diagram, Participant, SequenceView, Step
 from sysmlc.ir import Edge, Element, Graph, Kind
-from sysmlc.ir.query import interactions as sequence
+from sysmlc.ir.query import interactions
 from sysmlc.support.plantuml_text import label, lines, plain, small, stack
 
 _NOTE_WIDTH = 44
@@ -24,7 +24,7 @@ _NOTE_WIDTH = 44
 
 @dataclass(slots=True)
 class Walk:
-    """The state of one drawing; ``aliases`` has the lifelines."""
+    """The state while the steps of one interaction are listed; ``aliases`` has the lifelines."""
 
     graph: Graph
     aliases: Aliases
@@ -35,33 +35,42 @@ class Walk:
     _notes: dict[str, list[Element]] = field(default_factory=dict)
 
     def begin(self, interaction: Element) -> None:
-        """Find what is said about the elements of the interaction."""
-        self._participants = sequence.lifelines(self.graph, interaction)
-        self._times = times(self.graph, interaction)
-        self._notes = notes(self.graph, interaction)
+        """Index the times and notes about the elements of the interaction."""
+        self._participants = interactions.lifelines(self.graph, interaction)
+        self._times = index_times(self.graph, interaction)
+        self._notes = index_notes(self.graph, interaction)
 
-    def lifelines(self, item: Element) -> tuple[str, ...]:
-        """Aliases of the lifelines that it covers; a use that names none covers all."""
-        covered = sequence.covered(self.graph, item)
-        if not covered and item.subkind in sequence.USES:
+    def list_lifelines(self, item: Element) -> tuple[str, ...]:
+        """Return the aliases of the lifelines that *item* covers; a use without lifelines covers
+        all.
+        """
+        covered = interactions.covered_lifelines(self.graph, item)
+        if not covered and item.subkind in interactions.INTERACTION_USES:
             covered = self._participants
-        return tuple(self.aliases[one.id] for one in covered if one.id in self.aliases)
+        return tuple(
+            self.aliases[lifeline.id] for lifeline in covered if lifeline.id in self.aliases
+        )
 
     def is_new(self, item: Element) -> bool:
-        """Whether it is not drawn yet; from now on it is."""
+        """Whether *item* is not drawn yet; the call marks it as drawn."""
         is_new = item.id not in self.drawn
         self.drawn.add(item.id)
         return is_new
 
-    def text(self, about: Sequence[Element], *texts: str) -> tuple[str, tuple[str, ...]]:
-        """The texts, with the times that are said of the elements below; and those times' ids."""
-        found = [item for one in about for item in self._times.get(one.id, ()) if self.is_new(item)]
-        rows = [*texts, *(time_text(self.graph, item) for item in found)]
+    def format_text(self, about: Sequence[Element], *texts: str) -> tuple[str, tuple[str, ...]]:
+        """Return the texts with the times about these elements, and the ids of the times."""
+        times_found = [
+            item
+            for element in about
+            for item in self._times.get(element.id, ())
+            if self.is_new(item)
+        ]
+        rows = [*texts, *(format_time(self.graph, item) for item in times_found)]
         text = stack(row for part in rows for row in lines(part, _NOTE_WIDTH))
-        return text, tuple(item.id for item in found)
+        return text, tuple(item.id for item in times_found)
 
-    def notes(self, item: Element, over: Sequence[str] = ()) -> Iterator[Step]:
-        """Notes about the element, over these lifelines or all."""
+    def iter_notes(self, item: Element, over: Sequence[str] = ()) -> Iterator[Step]:
+        """Yield the notes about the element, over these lifelines or all."""
         for note in self._notes.get(item.id, ()):
             text = label(labels.note_text(note), _NOTE_WIDTH)
             if self.is_new(note) and text:
@@ -71,26 +80,26 @@ class Walk:
 _HEAD_WIDTH = 24
 
 
-def diagrams(graph: Graph) -> Iterator[Diagram]:
-    """All sequence diagrams, in the order of the model."""
+def draw_sequences(graph: Graph) -> Iterator[Diagram]:
+    """Yield all sequence diagrams, in the order of the model."""
     for interaction in graph.of_kind(Kind.INTERACTION):
-        lifelines = sequence.lifelines(graph, interaction)
+        lifelines = interactions.lifelines(graph, interaction)
         if lifelines and not interaction.attrs.get("external"):
-            yield _diagram(graph, interaction, lifelines)
+            yield _make_diagram(graph, interaction, lifelines)
 
 
-def _diagram(graph: Graph, interaction: Element, lifelines: list[Element]) -> Diagram:
+def _make_diagram(graph: Graph, interaction: Element, lifelines: list[Element]) -> Diagram:
 
     aliases = Aliases()
-    participants = tuple(_participant(graph, one, aliases) for one in lifelines)
-    whole = graph.qualified_name(interaction)
+    participants = tuple(_make_participant(graph, lifeline, aliases) for lifeline in lifelines)
+    title = graph.qualified_name(interaction)
     features = [item.id for item in graph.owned(interaction) if item.kind in _IN_FRAME]
     return Diagram(
         kind="sd",
-        name=whole,
+        name=title,
         frame=plain(f"sd {labels.name(interaction)}{labels.signature(graph, interaction)}"),
-        heading=("Sequence diagram", whole),
-        view=SequenceView(participants, tuple(steps(graph, interaction, aliases))),
+        heading=("Sequence diagram", title),
+        view=SequenceView(participants, tuple(iter_steps(graph, interaction, aliases))),
         about=interaction.id,
         details=tuple(features),
     )
@@ -99,43 +108,43 @@ def _diagram(graph: Graph, interaction: Element, lifelines: list[Element]) -> Di
 _IN_FRAME = (Kind.PARAMETER,)
 
 
-def _participant(graph: Graph, lifeline: Element, aliases: Aliases) -> Participant:
-    represented = sequence.participant(graph, lifeline)
+def _make_participant(graph: Graph, lifeline: Element, aliases: Aliases) -> Participant:
+    represented = interactions.participant(graph, lifeline)
     shows = [lifeline.id]
     if represented is not None and represented.owner == lifeline.owner:
         shows.append(represented.id)
-    words = small(plain(labels.guillemets(labels.applied(graph, lifeline))))
+    words = small(plain(labels.guillemets(labels.list_stereotypes(graph, lifeline))))
     return Participant(
-        aliases.make(lifeline.id, _name(graph, lifeline), "lifeline"),
-        stack([words, label(_title(graph, lifeline), _HEAD_WIDTH)]),
+        aliases.make(lifeline.id, _name_of_lifeline(graph, lifeline), "lifeline"),
+        stack([words, label(_format_lifeline(graph, lifeline), _HEAD_WIDTH)]),
         "actor" if _is_actor(graph, lifeline) else "participant",
         tuple(shows),
     )
 
 
-def _title(graph: Graph, lifeline: Element) -> str:
-    """``name[selector] : Type`` (UML 2.5.1, 17.3.4)."""
-    name = _name(graph, lifeline)
+def _format_lifeline(graph: Graph, lifeline: Element) -> str:
+    """Return ``name[selector] : Type`` (UML 2.5.1, 17.3.4)."""
+    name = _name_of_lifeline(graph, lifeline)
     if lifeline.attrs.get("selector"):
         name += f"[{lifeline.attrs['selector']}]"
-    type_ = sequence.type_of(graph, lifeline)
+    type_ = interactions.type_of(graph, lifeline)
     if type_ is None:
         return name or labels.name(lifeline)
     return f"{name} : {labels.name(type_)}".strip()
 
 
-def _name(graph: Graph, lifeline: Element) -> str:
-    """The name of what it represents; tools number the lifelines themselves."""
-    represented = sequence.participant(graph, lifeline)
+def _name_of_lifeline(graph: Graph, lifeline: Element) -> str:
+    """Return the name of the represented element; tools number lifelines by themselves."""
+    represented = interactions.participant(graph, lifeline)
     if represented is None:
         return lifeline.name.strip()
-    is_told = represented.name.strip() or sequence.type_of(graph, lifeline) is not None
-    return (represented.name if is_told else lifeline.name).strip()
+    has_name = represented.name.strip() or interactions.type_of(graph, lifeline) is not None
+    return (represented.name if has_name else lifeline.name).strip()
 
 
 def _is_actor(graph: Graph, lifeline: Element) -> bool:
-    found = (sequence.participant(graph, lifeline), sequence.type_of(graph, lifeline))
-    return any(item is not None and item.kind is Kind.ACTOR for item in found)
+    candidates = (interactions.participant(graph, lifeline), interactions.type_of(graph, lifeline))
+    return any(item is not None and item.kind is Kind.ACTOR for item in candidates)
 
 
 _ARROWS = {
@@ -147,8 +156,8 @@ _ARROWS = {
 """Arrows by message sort; a filled head is a synchronous call (17.4.4)."""
 
 
-def message_steps(walk: Walk, message: Element) -> Iterator[Step]:
-    """The message, once: at the first of its two occurrences."""
+def iter_message_steps(walk: Walk, message: Element) -> Iterator[Step]:
+    """Yield the message once, at the first of its two occurrences."""
     source, target = (
         _find_end(walk, message, Edge.FLOW_SOURCE),
         _find_end(walk, message, Edge.FLOW_TARGET),
@@ -158,19 +167,19 @@ def message_steps(walk: Walk, message: Element) -> Iterator[Step]:
     graph = walk.graph
     ends = [*graph.targets(message, Edge.SEND_EVENT), *graph.targets(message, Edge.RECEIVE_EVENT)]
     about = [message, *(end for end in ends if end.kind is Kind.OCCURRENCE)]
-    text, times = walk.text(about, message_text(graph, message))
+    text, times = walk.format_text(about, format_message(graph, message))
     if message.subkind == "create-message" and target != source:
         yield Step("create", source=target)
     yield Step(
         "message",
         text,
-        source or _outside(graph, message, Edge.SEND_EVENT),
+        source or _choose_outer_end(graph, message, Edge.SEND_EVENT),
         _ARROWS.get(message.subkind, "->"),
-        target or _outside(graph, message, Edge.RECEIVE_EVENT),
+        target or _choose_outer_end(graph, message, Edge.RECEIVE_EVENT),
         shows=(message.id, *(end.id for end in ends), *times),
     )
     for item in about:
-        yield from walk.notes(item, [alias for alias in (source, target) if alias])
+        yield from walk.iter_notes(item, [alias for alias in (source, target) if alias])
 
 
 def _find_end(walk: Walk, message: Element, edge: Edge) -> str:
@@ -178,8 +187,10 @@ def _find_end(walk: Walk, message: Element, edge: Edge) -> str:
     return walk.aliases[lifeline.id] if lifeline is not None and lifeline.id in walk.aliases else ""
 
 
-def _outside(graph: Graph, message: Element, edge: Edge) -> str:
-    """A gate is on the frame; an end that nobody knows is a point (17.4.4)."""
+def _choose_outer_end(graph: Graph, message: Element, edge: Edge) -> str:
+    """Return the end of a message outside all lifelines: a gate on the frame, else a point
+    (17.4.4).
+    """
     is_sent = edge is Edge.SEND_EVENT
     end = graph.target(message, Edge.SEND_EVENT if is_sent else Edge.RECEIVE_EVENT)
     if end is not None and end.kind is Kind.GATE:
@@ -191,77 +202,77 @@ _FRAMES = frozenset(["alt", "opt", "loop", "par", "break", "critical"])
 """Operators that PlantUML has words for; others are groups."""
 
 
-def steps(graph: Graph, interaction: Element, aliases: Aliases) -> Iterator[Step]:
-    """The steps in their order; ``aliases`` has the lifelines."""
+def iter_steps(graph: Graph, interaction: Element, aliases: Aliases) -> Iterator[Step]:
+    """Yield the steps of an interaction in their order; *aliases* has the lifelines."""
     walk = Walk(graph, aliases)
     walk.begin(interaction)
-    seen: set[str] = set()
-    for step in _every(walk, interaction):
-        if step.word != "create" or (step.source and step.source not in seen):
+    known_aliases: set[str] = set()
+    for step in _iter_all_steps(walk, interaction):
+        if step.word != "create" or (step.source and step.source not in known_aliases):
             yield step
-        seen.update((step.source, step.target, *step.over))
+        known_aliases.update((step.source, step.target, *step.over))
 
 
-def _every(walk: Walk, interaction: Element) -> Iterator[Step]:
-    """All steps; PlantUML cannot create what is there already (SM447 reports it)."""
+def _iter_all_steps(walk: Walk, interaction: Element) -> Iterator[Step]:
+    """Yield all steps, also "create" of lifelines that exist already (SM447 reports these)."""
     graph, aliases = walk.graph, walk.aliases
-    yield from walk.notes(interaction)
-    for lifeline in sequence.lifelines(graph, interaction):
-        yield from walk.notes(lifeline, [aliases[lifeline.id]])
-    yield from _inside(walk, interaction)
-    for message in sequence.messages(graph, interaction):
-        yield from message_steps(walk, message)
+    yield from walk.iter_notes(interaction)
+    for lifeline in interactions.lifelines(graph, interaction):
+        yield from walk.iter_notes(lifeline, [aliases[lifeline.id]])
+    yield from _iter_container(walk, interaction)
+    for message in interactions.messages(graph, interaction):
+        yield from iter_message_steps(walk, message)
 
 
-def _inside(walk: Walk, container: Element) -> Iterator[Step]:
-    for item in sequence.happenings(walk.graph, container):
+def _iter_container(walk: Walk, container: Element) -> Iterator[Step]:
+    for item in interactions.interaction_fragments(walk.graph, container):
         if item.kind is Kind.OCCURRENCE:
-            yield from _occurrence(walk, item)
+            yield from _iter_occurrence(walk, item)
         elif item.kind is Kind.FRAGMENT:
-            yield from _fragment(walk, item)
+            yield from _iter_fragment(walk, item)
         elif walk.graph.target(item, Edge.START) is None:
-            yield from _start(walk, item)
+            yield from _iter_start(walk, item)
 
 
 # -- occurrences -------------------------------------------------------------------------------
 
 
-def _occurrence(walk: Walk, item: Element) -> Iterator[Step]:
-    found = (sequence.sent(walk.graph, item), sequence.received(walk.graph, item))
-    messages = [message for message in found if message is not None]
+def _iter_occurrence(walk: Walk, item: Element) -> Iterator[Step]:
+    candidates = (interactions.sent_message(walk.graph, item), interactions.received_message(walk.graph, item))
+    messages = [message for message in candidates if message is not None]
     for message in messages:
-        yield from message_steps(walk, message)
+        yield from iter_message_steps(walk, message)
     if not messages:
-        yield from _said(walk, item)
+        yield from _iter_note_steps(walk, item)
     for execution in walk.graph.sources(item, Edge.FINISH):
-        yield from _finish(walk, execution)
+        yield from _iter_finish(walk, execution)
     for execution in walk.graph.sources(item, Edge.START):
-        yield from _start(walk, execution)
+        yield from _iter_start(walk, execution)
     if item.subkind == "destruction":
-        for alias in walk.lifelines(item):
+        for alias in walk.list_lifelines(item):
             yield Step("destroy", source=alias, shows=(item.id,))
 
 
-def _said(walk: Walk, item: Element, *texts: str) -> Iterator[Step]:
-    """What is said of it, in a note; nothing when that is nothing."""
-    over = walk.lifelines(item)
-    text, times = walk.text([item], *texts)
+def _iter_note_steps(walk: Walk, item: Element, *texts: str) -> Iterator[Step]:
+    """Yield the note about an element, if it has text."""
+    over = walk.list_lifelines(item)
+    text, times = walk.format_text([item], *texts)
     if text:
         yield Step("note", text, over=over, shows=(item.id, *times))
-    yield from walk.notes(item, over)
+    yield from walk.iter_notes(item, over)
 
 
-def _start(walk: Walk, execution: Element) -> Iterator[Step]:
-    """The bar begins; one that has ended already is not drawn (SM445 reports it)."""
-    aliases = walk.lifelines(execution)
+def _iter_start(walk: Walk, execution: Element) -> Iterator[Step]:
+    """Yield the start of an execution bar, unless the execution has ended already (SM445)."""
+    aliases = walk.list_lifelines(execution)
     if aliases and walk.is_new(execution):
-        called = [labels.name(item) for item in walk.graph.targets(execution, Edge.CALLS)]
+        behaviours = [labels.name(item) for item in walk.graph.targets(execution, Edge.CALLS)]
         yield Step("activate", source=aliases[0], shows=(execution.id,))
-        yield from _said(walk, execution, *called)
+        yield from _iter_note_steps(walk, execution, *behaviours)
 
 
-def _finish(walk: Walk, execution: Element) -> Iterator[Step]:
-    aliases = walk.lifelines(execution)
+def _iter_finish(walk: Walk, execution: Element) -> Iterator[Step]:
+    aliases = walk.list_lifelines(execution)
     if aliases and not walk.is_new(execution):
         yield Step("deactivate", source=aliases[0], shows=(execution.id,))
 
@@ -269,43 +280,49 @@ def _finish(walk: Walk, execution: Element) -> Iterator[Step]:
 # -- fragments ---------------------------------------------------------------------------------
 
 
-def _fragment(walk: Walk, item: Element) -> Iterator[Step]:
-    if item.subkind in sequence.USES:
-        yield _use(walk, item)
+def _iter_fragment(walk: Walk, item: Element) -> Iterator[Step]:
+    if item.subkind in interactions.INTERACTION_USES:
+        yield _make_use(walk, item)
     elif item.subkind == "state-invariant":
-        yield _invariant(walk, item)
+        yield _make_invariant(walk, item)
     elif item.subkind == "continuation":
         text = label(labels.name(item))
-        yield Step("hnote", text, over=walk.lifelines(item), shows=(item.id,))
+        yield Step("hnote", text, over=walk.list_lifelines(item), shows=(item.id,))
     else:
-        yield from _combined(walk, item)
-    yield from walk.notes(item, walk.lifelines(item))
+        yield from _iter_combined_fragment(walk, item)
+    yield from walk.iter_notes(item, walk.list_lifelines(item))
 
 
-def _use(walk: Walk, item: Element) -> Step:
-    called = [labels.name(one) for one in walk.graph.targets(item, Edge.CALLS)]
+def _make_use(walk: Walk, item: Element) -> Step:
+    called = [
+        labels.name(interaction) for interaction in walk.graph.targets(item, Edge.CALLS)
+    ]
     result = item.attrs.get("return_value")
-    text = f"{', '.join(called) or labels.name(item)}{arguments(item)}"
+    text = f"{', '.join(called) or labels.name(item)}{format_arguments(item)}"
     text += f" : {labels.literal(result)}" if result is not None else ""
-    return Step("ref", label(text), over=walk.lifelines(item), shows=(item.id,))
+    return Step("ref", label(text), over=walk.list_lifelines(item), shows=(item.id,))
 
 
-def _invariant(walk: Walk, item: Element) -> Step:
-    owned = [one for one in walk.graph.owned(item) if one.kind is Kind.CONSTRAINT]
-    texts = [str(one.attrs.get("body") or labels.name(one)) for one in owned]
+def _make_invariant(walk: Walk, item: Element) -> Step:
+    constraints = [
+        constraint for constraint in walk.graph.owned(item) if constraint.kind is Kind.CONSTRAINT
+    ]
+    texts = [
+        str(constraint.attrs.get("body") or labels.name(constraint)) for constraint in constraints
+    ]
     text = stack(row for text in texts or [labels.name(item)] for row in lines(text))
-    shows = (item.id, *(one.id for one in owned))
-    return Step("hnote", text, over=walk.lifelines(item), shows=shows)
+    shows = (item.id, *(constraint.id for constraint in constraints))
+    return Step("hnote", text, over=walk.list_lifelines(item), shows=shows)
 
 
-def _combined(walk: Walk, item: Element) -> Iterator[Step]:
-    parts = sequence.operands(walk.graph, item)
-    contents = [[*walk.notes(part), *_inside(walk, part)] for part in parts]
-    heads = [_head(walk, part) for part in parts] or [("", ())]
+def _iter_combined_fragment(walk: Walk, item: Element) -> Iterator[Step]:
+    parts = interactions.operands(walk.graph, item)
+    contents = [[*walk.iter_notes(part), *_iter_container(walk, part)] for part in parts]
+    heads = [_make_operand_head(walk, part) for part in parts] or [("", ())]
     is_group = item.subkind not in _FRAMES
     first = f"[{heads[0][0]}]" if heads[0][0] and is_group else heads[0][0]
-    yield Step("open", first, arrow=_operator(walk, item), shows=(item.id, *heads[0][1]))
-    *inside, after = operands(contents) or [[]]
+    yield Step("open", first, arrow=_format_operator(walk, item), shows=(item.id, *heads[0][1]))
+    *inside, after = balance_operands(contents) or [[]]
     for number, content in enumerate(inside):
         if number:
             text, shown = heads[number]
@@ -315,15 +332,15 @@ def _combined(walk: Walk, item: Element) -> Iterator[Step]:
     yield from after
 
 
-def _head(walk: Walk, operand: Element) -> tuple[str, tuple[str, ...]]:
-    """What stands above an operand, and the ids that it shows."""
-    guards = (one.id for one in walk.graph.targets(operand, Edge.GUARD))
-    return plain(operand_text(operand)), (operand.id, *guards)
+def _make_operand_head(walk: Walk, operand: Element) -> tuple[str, tuple[str, ...]]:
+    """Return the text above an operand, and the ids that it shows."""
+    guards = (guard.id for guard in walk.graph.targets(operand, Edge.GUARD))
+    return plain(format_operand(operand)), (operand.id, *guards)
 
 
-def _operator(walk: Walk, item: Element) -> str:
+def _format_operator(walk: Walk, item: Element) -> str:
     if item.subkind in _FRAMES:
         return item.subkind
-    named = ", ".join(labels.name(one) for one in walk.graph.targets(item, Edge.REFERENCES))
-    text = f"{item.subkind} {{{named}}}" if named else item.subkind
+    gates = ", ".join(labels.name(gate) for gate in walk.graph.targets(item, Edge.REFERENCES))
+    text = f"{item.subkind} {{{gates}}}" if gates else item.subkind
     return f"group {plain(text)}"

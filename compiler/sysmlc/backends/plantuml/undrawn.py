@@ -1,10 +1,10 @@
-"""What no diagram shows: one finding for each owner and kind."""
+"""Reports about elements that no diagram shows, and about messages that PlantUML cannot draw."""
 
 from collections.abc import Collection
 
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Edge, Element, Graph, Kind
-from sysmlc.ir.query import interactions as sequence
+from sysmlc.ir.query import interactions
 
 NOT_DRAWN = rule(
     "SM701",
@@ -87,34 +87,36 @@ _FILES = frozenset({"caex", "collada", "plcopen", "external-data"})
 _NAMES_SHOWN = 3
 
 
-def report(graph: Graph, shown: Collection[str], sink: Sink) -> None:
-    """Report every element of the model that no diagram shows; ``shown`` are the ids of the others.
+def report_undrawn(graph: Graph, shown: Collection[str], sink: Sink) -> None:
+    """Report every element of the model whose id is not in *shown*, once for each owner and kind.
 
-    What stands inside an element that is reported is not reported again. What a parameter of a
-    template stands for is named behind the template's name.
+    An element inside a reported element is not reported again. Parameters of a template are part of
+    the template's name.
     """
-    known = graph.of_kind(*DRAWN_KINDS, *OTHER_KINDS)
-    missed = [item for item in known if item.id not in shown and _is_ours(item)]
+    candidates = graph.of_kind(*DRAWN_KINDS, *OTHER_KINDS)
+    undrawn = [item for item in candidates if item.id not in shown and _is_expected(item)]
     formal = {
-        item.id for one in graph.of_kind(Kind.TEMPLATE_PARAMETER) for item in graph.owned(one)
+        item.id
+        for parameter in graph.of_kind(Kind.TEMPLATE_PARAMETER)
+        for item in graph.owned(parameter)
     }
-    missed = [item for item in missed if item.id not in formal]
-    gone = {item.id for item in missed}
+    undrawn = [item for item in undrawn if item.id not in formal]
+    undrawn_ids = {item.id for item in undrawn}
     groups: dict[tuple[str, Kind], list[Element]] = {}
-    for item in missed:
-        if not any(above.id in gone for above in graph.ancestors(item)):
+    for item in undrawn:
+        if not any(owner_.id in undrawn_ids for owner_ in graph.ancestors(item)):
             groups.setdefault((item.owner or "", item.kind), []).append(item)
     for (owner, kind), items in groups.items():
-        _report(graph, graph.get(owner), kind, items, sink)
+        _report_group(graph, graph.get(owner), kind, items, sink)
 
 
-def _is_ours(item: Element) -> bool:
+def _is_expected(item: Element) -> bool:
     is_drawing = item.kind is Kind.VIEW and item.subkind == "diagram"
     is_file = item.kind is Kind.DOCUMENT and item.subkind in _FILES
     return not item.attrs.get("external") and not is_drawing and not is_file
 
 
-def _report(
+def _report_group(
     graph: Graph, owner: Element | None, kind: Kind, items: list[Element], sink: Sink
 ) -> None:
     names = [" ".join(item.name.split()) or "without name" for item in items[:_NAMES_SHOWN]]
@@ -139,13 +141,16 @@ OVERTAKEN = rule(
 
 
 def report_overtaken_messages(graph: Graph, sink: Sink) -> None:
-    """Report each message that something else overtakes on the lifeline that receives it."""
+    """Report each message that another event overtakes on the receiving lifeline.
+
+    PlantUML draws a message at one height, so that it cannot show a message that is under way.
+    """
     for interaction in graph.of_kind(Kind.INTERACTION):
-        for container in sequence.containers(graph, interaction):
-            items = sequence.happenings(graph, container)
-            at = {item.id: number for number, item in enumerate(items)}
+        for container in interactions.iter_containers(graph, interaction):
+            items = interactions.interaction_fragments(graph, container)
+            positions = {item.id: number for number, item in enumerate(items)}
             for item in items:
-                _check_overtaking(graph, sink, interaction, items, at, item)
+                _check_overtaking(graph, sink, interaction, items, positions, item)
 
 
 def _check_overtaking(
@@ -153,40 +158,47 @@ def _check_overtaking(
     sink: Sink,
     interaction: Element,
     items: list[Element],
-    at: dict[str, int],
-    sent: Element,
+    positions: dict[str, int],
+    send_event: Element,
 ) -> None:
-    message = sequence.sent(graph, sent)
-    received = graph.target(message, Edge.RECEIVE_EVENT) if message is not None else None
-    if message is None or received is None or received.id not in at:
+    message = interactions.sent_message(graph, send_event)
+    receive_event = graph.target(message, Edge.RECEIVE_EVENT) if message is not None else None
+    if message is None or receive_event is None or receive_event.id not in positions:
         return
-    lifelines = {one.id for one in sequence.covered(graph, received)}
-    for other in items[at[sent.id] + 1 : at[received.id]]:
-        found = [one for one in sequence.covered(graph, other) if one.id in lifelines]
-        if found and _drawn_position(graph, at, other) > at[sent.id]:
-            _report_overtaken(graph, sink, interaction, message, other, found[0])
+    lifelines = {lifeline.id for lifeline in interactions.covered_lifelines(graph, receive_event)}
+    for other in items[positions[send_event.id] + 1 : positions[receive_event.id]]:
+        shared = [
+            lifeline for lifeline in interactions.covered_lifelines(graph, other) if lifeline.id in lifelines
+        ]
+        if shared and _find_drawn_position(graph, positions, other) > positions[send_event.id]:
+            _report_overtaken(graph, sink, interaction, message, other, shared[0])
             return
 
 
-def _drawn_position(graph: Graph, at: dict[str, int], other: Element) -> int:
-    """Where it is drawn: a message at the first of its ends, an execution with its ends."""
-    if other.kind is Kind.EXECUTION:
+def _find_drawn_position(graph: Graph, positions: dict[str, int], event: Element) -> int:
+    """Return the height of an event: a message is drawn at its first end, an execution with its
+    ends.
+    """
+    if event.kind is Kind.EXECUTION:
         return -1
-    message = sequence.received(graph, other)
+    message = interactions.received_message(graph, event)
     first = graph.target(message, Edge.SEND_EVENT) if message is not None else None
-    return min(at[other.id], at.get(first.id, at[other.id]) if first is not None else at[other.id])
+    return min(
+        positions[event.id],
+        positions.get(first.id, positions[event.id]) if first is not None else positions[event.id],
+    )
 
 
 def _report_overtaken(
     graph: Graph, sink: Sink, interaction: Element, message: Element, other: Element, line: Element
 ) -> None:
-    from sysmlc.backends.plantuml.sequence_labels import event_name
+    from sysmlc.backends.plantuml.sequence_labels import name_of_event
 
     sink.report(
         OVERTAKEN,
         graph.subject(message),
-        message=event_name(graph, message),
+        message=name_of_event(graph, message),
         interaction=graph.qualified_name(interaction),
-        other=event_name(graph, other),
+        other=name_of_event(graph, other),
         lifeline=line.name or "without name",
     )

@@ -1,4 +1,4 @@
-"""View models: what the templates see. Every text in them is PlantUML text, already escaped."""
+"""View models: the data of the templates. Every text in them is PlantUML text, already escaped."""
 
 from collections.abc import Iterator
 
@@ -64,7 +64,7 @@ class Node(Struct, frozen=True):
 
 
 class Note(Struct, frozen=True):
-    """Text in a corner of its own, tied to the nodes with the aliases in ``targets``."""
+    """A note, tied to the nodes whose aliases are in ``targets``."""
 
     alias: str
     text: str
@@ -90,7 +90,7 @@ class PortView(Struct, frozen=True):
 
 
 class PartView(Struct, frozen=True):
-    """A part with its ports and what is shown inside."""
+    """A part with its ports and its inner parts."""
 
     alias: str
     label: str
@@ -112,7 +112,7 @@ class InternalView(Struct, frozen=True):
 
 
 class Participant(Struct, frozen=True):
-    """A lifeline; ``form`` is the word of PlantUML for it (``participant``, ``actor``)."""
+    """A lifeline; ``form`` is PlantUML's keyword (``participant``, ``actor``)."""
 
     alias: str
     label: str
@@ -123,10 +123,10 @@ class Participant(Struct, frozen=True):
 class Step(Struct, frozen=True):
     """One line of a sequence diagram.
 
-    ``word`` is ``message`` (``source arrow target : text``), a word of PlantUML about the
-    lifeline ``source`` (``activate``, ``deactivate``, ``create``, ``destroy``), ``open`` (a
-    frame ``arrow`` with ``text``), ``else``, ``end``, or a box over the lifelines ``over``
-    (``note``, ``hnote``, ``ref``), over all of them when it names none.
+    ``word`` is ``message`` (``source arrow target : text``), a keyword of PlantUML about the
+    lifeline ``source`` (``activate``, ``deactivate``, ``create``, ``destroy``), ``open`` (a frame
+    ``arrow`` with ``text``), ``else``, ``end``, or a box over the lifelines ``over`` (``note``,
+    ``hnote``, ``ref``), over all lifelines if ``over`` is empty.
     """
 
     word: str
@@ -139,14 +139,14 @@ class Step(Struct, frozen=True):
 
 
 class SequenceView(Struct, frozen=True):
-    """Lifelines and what happens on them: sequence diagrams."""
+    """Lifelines and the steps between them: sequence diagrams."""
 
     participants: tuple[Participant, ...]
     steps: tuple[Step, ...]
 
 
 class Figure(Struct, frozen=True):
-    """An actor or a use case; ``form`` is the word of PlantUML, ``style`` that of a stub."""
+    """An actor or a use case; ``form`` is PlantUML's keyword, ``style`` the style of a stub."""
 
     alias: str
     label: str
@@ -177,13 +177,11 @@ View = BoxView | GraphView | InternalView | SequenceView | UseCaseView
 
 
 class Diagram(Struct, frozen=True, eq=False, weakref=True):
-    """One diagram: what it is called, what it shows, and the element that it is about.
+    """One diagram: its names, its view, and the element that it is about.
 
-    It is known by identity: one of the last graph that is used again need not be written again.
-
-    ``kind`` is the word of its file name and template (bdd, ibd, act, stm, req, sd, uc),
-    ``name`` the qualified name that makes its file name, ``about`` the id of the element,
-    ``details`` those of what the frame says of it.
+    ``kind`` is the type in its file name and template (bdd, ibd, act, stm, req, sd, uc), ``name``
+    the qualified name behind its file name, ``about`` the id of the element, ``details`` the ids of
+    the elements in the frame's heading.
     """
 
     kind: str
@@ -195,13 +193,13 @@ class Diagram(Struct, frozen=True, eq=False, weakref=True):
     footer: str = ""
     details: tuple[str, ...] = ()
 
-    def trace(self) -> tuple[str, ...]:
-        """Ids of everything that the diagram shows, each once."""
+    def list_trace(self) -> tuple[str, ...]:
+        """Return the ids of all elements that the diagram shows, each once."""
         ids = [self.about, *self.details] if self.about else []
-        return tuple(dict.fromkeys([*ids, *_shown(self.view)]))
+        return tuple(dict.fromkeys([*ids, *_iter_shown_ids(self.view)]))
 
 
-def _shown(view: View) -> Iterator[str]:
+def _iter_shown_ids(view: View) -> Iterator[str]:
     if isinstance(view, SequenceView):
         for participant in view.participants:
             yield from participant.shows
@@ -211,20 +209,20 @@ def _shown(view: View) -> Iterator[str]:
     for line in view.lines:
         yield from line.shows
     if isinstance(view, UseCaseView):
-        yield from _shown_by_use_cases(view)
+        yield from _iter_use_case_ids(view)
     elif isinstance(view, BoxView):
         for box in view.boxes:
             yield from box.shows
     elif isinstance(view, GraphView):
         for node in view.nodes:
-            yield from _shown_by_node(node)
+            yield from _iter_node_ids(node)
         for note in view.notes:
             yield from note.shows
     else:
-        yield from _shown_by_part(view.frame)
+        yield from _iter_part_ids(view.frame)
 
 
-def _shown_by_use_cases(view: UseCaseView) -> Iterator[str]:
+def _iter_use_case_ids(view: UseCaseView) -> Iterator[str]:
     inside = (case for subject in view.subjects for case in subject.cases)
     for figure in (*view.actors, *inside, *view.cases):
         yield from figure.shows
@@ -232,15 +230,15 @@ def _shown_by_use_cases(view: UseCaseView) -> Iterator[str]:
         yield from note.shows
 
 
-def _shown_by_node(node: Node) -> Iterator[str]:
+def _iter_node_ids(node: Node) -> Iterator[str]:
     yield from node.shows
     for child in node.children:
-        yield from _shown_by_node(child)
+        yield from _iter_node_ids(child)
 
 
-def _shown_by_part(part: PartView) -> Iterator[str]:
+def _iter_part_ids(part: PartView) -> Iterator[str]:
     yield from part.shows
     for port in part.ports:
         yield from port.shows
     for inner in part.parts:
-        yield from _shown_by_part(inner)
+        yield from _iter_part_ids(inner)

@@ -1,4 +1,6 @@
-"""What an author chose for a diagram: a View with what it leads to (docs/ir.md)."""
+"""The selection of an author for a diagram: a View and the elements that it refers to
+(docs/ir.md).
+"""
 
 from functools import cached_property
 
@@ -39,54 +41,56 @@ LINES = frozenset(
 """Kinds that are lines, or belong to one."""
 
 
-class Choice(Struct, frozen=True, dict=True):
-    """One diagram of an author."""
+class Selection(Struct, frozen=True, dict=True):
+    """The selection of elements of one author's diagram."""
 
     graph: Graph
     view: Element
 
     @cached_property
     def shown(self) -> tuple[Element, ...]:
-        """Everything that the diagram shows, in the author's order."""
+        """The elements that the diagram shows, in the author's order."""
         return tuple(self.graph.targets(self.view, Edge.REFERENCES))
 
     @cached_property
     def ids(self) -> frozenset[str]:
-        """Ids of everything that the diagram shows."""
+        """The ids of the elements that the diagram shows."""
         return frozenset(element.id for element in self.shown)
 
     @cached_property
     def nesting(self) -> tuple[tuple[str, ...], ...]:
-        """Ids of what is drawn inside something else, outermost first."""
+        """The ids along each path of nested shapes, outermost first."""
         paths = self.view.attrs.get("nesting")
-        found = paths if isinstance(paths, tuple) else ()
-        return tuple(_texts(path) for path in found)
+        entries = paths if isinstance(paths, tuple) else ()
+        return tuple(_convert_to_texts(path) for path in entries)
 
     @cached_property
     def listed(self) -> frozenset[str]:
-        """Ids of what is only named in a compartment of something that is drawn."""
-        return frozenset(_texts(self.view.attrs.get("listed", ())))
+        """The ids of elements that are only listed in a compartment of another shape."""
+        return frozenset(_convert_to_texts(self.view.attrs.get("listed", ())))
 
     @cached_property
     def relations(self) -> frozenset[tuple[str, ...]] | None:
-        """Lines that are edges of the graph (edge, from, to); None when the tool lists none."""
-        found = self.view.attrs.get("relations")
-        return frozenset(map(_texts, found)) if isinstance(found, tuple) else None
+        """The lines that are bare edges of the graph (edge, from, to); None if the tool does not
+        list them.
+        """
+        entries = self.view.attrs.get("relations")
+        return frozenset(map(_convert_to_texts, entries)) if isinstance(entries, tuple) else None
 
     @property
     def is_summary(self) -> bool:
-        """Whether its tool does not say which features it shows: then it shows them all."""
+        """Whether the tool does not store which features are shown, so that all are."""
         return not any(element.kind in FEATURES for element in self.shown)
 
     @cached_property
     def about(self) -> Element | None:
-        """What the frame stands for."""
+        """The element that the frame represents."""
         return self.graph.target(self.view, Edge.REPRESENTS) or self.graph.owner(self.view)
 
     def shows_edge(self, edge: Edge, source: str, target: str) -> bool:
-        """Whether a line without an element of its own is drawn between two boxes."""
+        """Whether the author drew a line that has no element of its own."""
         return self.relations is None or (edge.value, source, target) in self.relations
 
 
-def _texts(values: object) -> tuple[str, ...]:
+def _convert_to_texts(values: object) -> tuple[str, ...]:
     return tuple(map(str, values)) if isinstance(values, tuple) else (str(values),)
