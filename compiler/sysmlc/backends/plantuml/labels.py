@@ -262,7 +262,8 @@ def _name_of_redefined(graph: Graph, feature: Element) -> str:
     if feature.name.strip():
         return name(feature)
     ancestor = next(
-        (candidate for candidate in redefined_features(graph, feature) if candidate.name.strip()), None
+        (candidate for candidate in redefined_features(graph, feature) if candidate.name.strip()),
+        None,
     )
     types = "" if ancestor else type_name(graph, feature)
     return f": {types}" if types else name(ancestor or feature)

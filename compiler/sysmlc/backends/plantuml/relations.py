@@ -145,7 +145,9 @@ def _iter_template_bindings(graph: Graph) -> Iterator[Relation]:
         bound = graph.owner(item)
         binding = templates.read_binding(graph, bound, item) if bound is not None else None
         if binding is not None and binding.template is not None:
-            parts = ", ".join(_format_substitution(substitution) for substitution in binding.substitutions)
+            parts = ", ".join(
+                _format_substitution(substitution) for substitution in binding.substitutions
+            )
             shows = (item.id, *(owned.id for owned in graph.owned(item)))
             text = f"«bind» {parts}".strip()
             yield Relation(binding.bound.id, binding.template.id, "..>", text, shows=shows)

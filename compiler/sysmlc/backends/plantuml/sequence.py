@@ -238,7 +238,10 @@ def _iter_container(walk: Walk, container: Element) -> Iterator[Step]:
 
 
 def _iter_occurrence(walk: Walk, item: Element) -> Iterator[Step]:
-    candidates = (interactions.sent_message(walk.graph, item), interactions.received_message(walk.graph, item))
+    candidates = (
+        interactions.sent_message(walk.graph, item),
+        interactions.received_message(walk.graph, item),
+    )
     messages = [message for message in candidates if message is not None]
     for message in messages:
         yield from iter_message_steps(walk, message)
@@ -294,9 +297,7 @@ def _iter_fragment(walk: Walk, item: Element) -> Iterator[Step]:
 
 
 def _make_use(walk: Walk, item: Element) -> Step:
-    called = [
-        labels.name(interaction) for interaction in walk.graph.targets(item, Edge.CALLS)
-    ]
+    called = [labels.name(interaction) for interaction in walk.graph.targets(item, Edge.CALLS)]
     result = item.attrs.get("return_value")
     text = f"{', '.join(called) or labels.name(item)}{format_arguments(item)}"
     text += f" : {labels.literal(result)}" if result is not None else ""

@@ -59,7 +59,11 @@ def format_time(graph: Graph, item: Element) -> str:
 
 def name_of_event(graph: Graph, event: Element) -> str:
     """Return the message of an occurrence, else the name of the element."""
-    message = interactions.sent_message(graph, event) or interactions.received_message(graph, event) or event
+    message = (
+        interactions.sent_message(graph, event)
+        or interactions.received_message(graph, event)
+        or event
+    )
     return (format_message(graph, message) if message.kind is Kind.MESSAGE else "") or (
         labels.name(message)
     )

@@ -168,7 +168,9 @@ def _check_overtaking(
     lifelines = {lifeline.id for lifeline in interactions.covered_lifelines(graph, receive_event)}
     for other in items[positions[send_event.id] + 1 : positions[receive_event.id]]:
         shared = [
-            lifeline for lifeline in interactions.covered_lifelines(graph, other) if lifeline.id in lifelines
+            lifeline
+            for lifeline in interactions.covered_lifelines(graph, other)
+            if lifeline.id in lifelines
         ]
         if shared and _find_drawn_position(graph, positions, other) > positions[send_event.id]:
             _report_overtaken(graph, sink, interaction, message, other, shared[0])
