@@ -68,9 +68,9 @@ def extend_path(path: tuple[str, ...], id: str) -> tuple[str, ...]:
 
 
 class RelationReader:
-    """Parser handlers that collect the relations of a model file that are edges of the graph.
+    """Parser handlers that collect the relations of a model file that become edges of the graph.
 
-    A generalization, for example, has an id in the file only.
+    Diagrams refer to the id of a generalization, for example, which its edge does not have.
     """
 
     def __init__(self) -> None:
