@@ -5,7 +5,7 @@ from random import Random
 import pytest
 
 from sysmlc.recipe.expression import Var
-from sysmlc.recipe.flow import cycles, duration, forward_edges, in_order
+from sysmlc.recipe.flow import compute_duration, find_cycles, forward_edges, sort_nodes
 from sysmlc.recipe.loops import with_loops
 from sysmlc.recipe.model import FlowEdge, FlowGraph, Node, Range
 
@@ -24,7 +24,7 @@ def graph(text: str, **bounds: int) -> FlowGraph:
 
 def time(text: str, **bounds: int) -> tuple[float, float | None] | None:
     """Shortest and longest time of a graph."""
-    found = duration(graph(text, **bounds), lambda node: Range(*TIMES[node.id[0]]))
+    found = compute_duration(graph(text, **bounds), lambda node: Range(*TIMES[node.id[0]]))
     return None if found is None else (found.min, found.max)
 
 
@@ -49,7 +49,7 @@ def test_times_are_those_worked_out_by_hand(text, bounds, expected):
 
 
 def test_a_step_without_a_time_leaves_the_whole_without():
-    assert duration(graph("i>a a>f"), lambda node: None) is None
+    assert compute_duration(graph("i>a a>f"), lambda node: None) is None
 
 
 def played(found: FlowGraph, limits: dict[str, int]) -> set[int]:
@@ -113,7 +113,7 @@ def test_only_decisions_that_close_a_cycle_become_loops():
 
 def test_a_cycle_that_nothing_leaves_stays():
     found = graph("i>M M>a a>M")
-    assert cycles([node.id for node in found.nodes], [("M", "a"), ("a", "M")]) == [["M", "a"]]
+    assert find_cycles([node.id for node in found.nodes], [("M", "a"), ("a", "M")]) == [["M", "a"]]
     assert not any(edge.role for edge in found.edges)
 
 
@@ -126,7 +126,7 @@ def test_every_way_round_passes_a_loop_node():
         found = graph(" ".join(f"{a}>{b}" for a, b in sorted(edges)))
         plain = {node.id for node in found.nodes if node.kind not in ("loop", "decision")}
         rest = [(e.source, e.target) for e in found.edges if e.role != "body"]
-        left = cycles([node.id for node in found.nodes], rest)
+        left = find_cycles([node.id for node in found.nodes], rest)
         assert all(set(part) <= plain for part in left)
 
 
@@ -135,8 +135,8 @@ def test_forward_edges_hold_no_cycle_and_reach_the_same(text):
     found = graph(text)
     forward = forward_edges(found)
     names = [node.id for node in found.nodes]
-    assert cycles(names, forward) == []
-    rank = {id: number for number, id in enumerate(in_order(found))}
+    assert find_cycles(names, forward) == []
+    rank = {id: number for number, id in enumerate(sort_nodes(found))}
     assert all(rank[a] < rank[b] for a, b in forward)
 
 

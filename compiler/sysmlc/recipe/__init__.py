@@ -1,1 +1,1 @@
-"""Three-level recipe models: values, what follows from them, and what can be wrong with them."""
+"""Three-level recipe models: values, derived data, and checks."""

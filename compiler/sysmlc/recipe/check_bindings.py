@@ -26,11 +26,11 @@ NODE_ID = rule(
 _NODE_ID = re.compile(r"(?:(ns)=\d+;|nsu=[^;]+;)?[isgb]=.+", re.DOTALL)
 
 
-def materials(model: Model, tables: Tables) -> Iterator[Finding]:
-    """REC011: what services consume, their task lists, at least as much."""
+def check_materials(model: Model, tables: Tables) -> Iterator[Finding]:
+    """REC011: a task lists the materials that its services consume, in sufficient quantity."""
     for task in model.recipe.tasks:
-        listed = {one.material: one.quantity for one in task.materials if one.use != "produced"}
-        for material, needed in sorted(_needed(task, tables).items()):
+        listed = {use.material: use.quantity for use in task.materials if use.use != "produced"}
+        for material, needed in sorted(_sum_consumption(task, tables).items()):
             if needed > listed.get(material, 0):
                 facts = {
                     "task": task.id,
@@ -41,48 +41,48 @@ def materials(model: Model, tables: Tables) -> Iterator[Finding]:
                 yield Finding(MATERIAL_MISSING, task.element, facts)
 
 
-def _needed(task: Task, tables: Tables) -> dict[str, float]:
+def _sum_consumption(task: Task, tables: Tables) -> dict[str, float]:
     graph = tables.service_graphs.get(task.implementation)
-    found: dict[str, float] = {}
+    consumption: dict[str, float] = {}
     for node in () if graph is None else graph.nodes:
         service = tables.service(node)
         for use in () if service is None else service.materials:
             if use.use == "consumed":
-                found[use.material] = found.get(use.material, 0) + use.quantity
-    return found
+                consumption[use.material] = consumption.get(use.material, 0) + use.quantity
+    return consumption
 
 
-def calls(model: Model, tables: Tables) -> Iterator[Finding]:
+def check_opc_ua_calls(model: Model, tables: Tables) -> Iterator[Finding]:
     """REC012: node ids are well-formed and do not depend on a session; calls name a method."""
-    for call in _calls(model):
-        for problem in _call_problems(call):
-            facts = {"element": _owner(model, call), "problem": problem}
+    for call in _iter_calls(model):
+        for problem in _iter_problems(call):
+            facts = {"element": _name_owner(model, call), "problem": problem}
             yield Finding(NODE_ID, call.element, facts)
 
 
-def _calls(model: Model) -> Iterator[OpcUa]:
+def _iter_calls(model: Model) -> Iterator[OpcUa]:
     owners: tuple[Service | Function, ...] = (*model.services, *model.functions)
-    direct = [one.opcua for one in owners]
-    offered = [one.opcua for service in model.services for one in service.providers]
-    yield from dict.fromkeys(one for one in (*direct, *offered) if one is not None)
+    own = [owner.opcua for owner in owners]
+    of_providers = [p.opcua for service in model.services for p in service.providers]
+    yield from dict.fromkeys(call for call in (*own, *of_providers) if call is not None)
 
 
-def _owner(model: Model, call: OpcUa) -> str:
+def _name_owner(model: Model, call: OpcUa) -> str:
     for service in model.services:
         for provider in service.providers:
             if provider.opcua == call:
                 return f"{service.id} on {provider.machine}"
     owners: tuple[Service | Function, ...] = (*model.services, *model.functions)
-    return next((one.id for one in owners if one.opcua == call), call.object)
+    return next((owner.id for owner in owners if owner.opcua == call), call.object)
 
 
 def is_complete(call: OpcUa) -> bool:
-    """Whether an executor can make the call: well-formed node ids, and a method to call."""
+    """Return whether an executor can make the call: its node ids are well-formed, with a method."""
     ids = [call.object, *([call.method] if call.method else [])]
     return all(map(_NODE_ID.fullmatch, ids)) and (call.kind != "call" or bool(call.method))
 
 
-def _call_problems(call: OpcUa) -> Iterator[str]:
+def _iter_problems(call: OpcUa) -> Iterator[str]:
     if not call.object:
         yield "names no object"
     if call.kind == "call" and not call.method:

@@ -4,16 +4,16 @@ from collections.abc import Iterator, Mapping
 
 from sysmlc.diagnostics import Severity, rule
 from sysmlc.ir.algorithms import sort_topologically
-from sysmlc.recipe.checks import Finding, declared, graphs
+from sysmlc.recipe.checks import Finding, declared_parameters, iter_graphs
 from sysmlc.recipe.derive import Tables
-from sysmlc.recipe.expression import Expr, unreadable, variables
+from sysmlc.recipe.expression import Expr, iter_opaque_texts, iter_variables
 from sysmlc.recipe.flow import forward_edges
 from sysmlc.recipe.guards import (
     UndecidedError,
-    holds,
     is_condition,
-    literals_as_values,
-    valuations,
+    is_satisfied,
+    iter_valuations,
+    resolve_literals,
 )
 from sysmlc.recipe.model import (
     EnumType,
@@ -57,103 +57,111 @@ UNREADABLE = rule(
 )
 
 
-def guards(model: Model, tables: Tables) -> Iterator[Finding]:
-    """REC005: Boolean guards, one else at most, no overlap, no gap."""
-    for graph in graphs(model):
-        for node, problem in _decision_problems(graph):
+def check_guards(model: Model, tables: Tables) -> Iterator[Finding]:
+    """REC005: guards are Boolean, with at most one else, without overlap or gap."""
+    for graph in iter_graphs(model):
+        for node, problem in _iter_decision_problems(graph):
             yield Finding(GUARDS, node.element, {"decision": node.id, "problem": problem})
 
 
-def _decision_problems(graph: FlowGraph) -> Iterator[tuple[Node, str]]:
-    types = {name: one.type for name, one in declared(graph).items()}
+def _iter_decision_problems(graph: FlowGraph) -> Iterator[tuple[Node, str]]:
+    types = {name: parameter.type for name, parameter in declared_parameters(graph).items()}
     for node in graph.nodes:
         if node.kind in ("decision", "loop"):
             edges = [edge for edge in graph.edges if edge.source == node.id]
-            yield from ((node, problem) for problem in _guard_problems(edges, types))
+            yield from ((node, problem) for problem in _iter_guard_problems(edges, types))
 
 
-def _guard_problems(edges: list[FlowEdge], types: Mapping[str, ValueType | None]) -> Iterator[str]:
-    others = sum(edge.is_else for edge in edges)
-    if others > 1:
-        yield f"have {others} times 'else'"
-    open_ = [edge for edge in edges if edge.guard is None and not edge.is_else]
-    if len(edges) > 1 and open_:
+def _iter_guard_problems(
+    edges: list[FlowEdge], types: Mapping[str, ValueType | None]
+) -> Iterator[str]:
+    else_count = sum(edge.is_else for edge in edges)
+    if else_count > 1:
+        yield f"have {else_count} times 'else'"
+    unguarded = [edge for edge in edges if edge.guard is None and not edge.is_else]
+    if len(edges) > 1 and unguarded:
         yield "leave a way without a guard"
         return
-    found = [(edge.text, edge.guard) for edge in edges if edge.guard is not None]
-    for text, guard in found:
+    guards = [(edge.text, edge.guard) for edge in edges if edge.guard is not None]
+    for text, guard in guards:
         if not is_condition(guard, types):
             yield f"are not all true or false: '{text}'"
             return
-    yield from _tried(found, types, has_else=others > 0)
+    yield from _iter_conflicts(guards, types, has_else=else_count > 0)
 
 
-def _tried(
-    found: list[tuple[str, Expr]], types: Mapping[str, ValueType | None], *, has_else: bool
+def _iter_conflicts(
+    guards: list[tuple[str, Expr]], types: Mapping[str, ValueType | None], *, has_else: bool
 ) -> Iterator[str]:
-    """At most one overlap and one gap, each with values that show it."""
-    expressions = [literals_as_values(guard, types) for _, guard in found]
-    overlaps = gaps = False
-    for values in valuations(expressions, types):
+    """Describe at most one overlap and one gap, each with values that show it."""
+    expressions = [resolve_literals(guard, types) for _, guard in guards]
+    has_overlap = has_gap = False
+    for values in iter_valuations(expressions, types):
         try:
-            true = [
-                text for (text, _), e in zip(found, expressions, strict=True) if holds(e, values)
+            satisfied = [
+                text
+                for (text, _), expression in zip(guards, expressions, strict=True)
+                if is_satisfied(expression, values)
             ]
         except UndecidedError:
             return
-        if len(true) > 1 and not overlaps:
-            overlaps = True
-            yield f"overlap: '{true[0]}' and '{true[1]}' are both true{_when(values)}"
-        if not true and expressions and not has_else and not gaps:
-            gaps = True
-            yield f"leave a gap: none is true{_when(values)}"
+        if len(satisfied) > 1 and not has_overlap:
+            has_overlap = True
+            first, second, *_ = satisfied
+            yield f"overlap: '{first}' and '{second}' are both true{_format_values(values)}"
+        if not satisfied and expressions and not has_else and not has_gap:
+            has_gap = True
+            yield f"leave a gap: none is true{_format_values(values)}"
 
 
-def _when(values: Mapping[str, Scalar]) -> str:
-    shown = ", ".join(f"{name} = {_shown(value)}" for name, value in sorted(values.items()))
-    return f" for {shown}" if shown else ""
+def _format_values(values: Mapping[str, Scalar]) -> str:
+    text = ", ".join(f"{name} = {_format_value(value)}" for name, value in sorted(values.items()))
+    return f" for {text}" if text else ""
 
 
-def _shown(value: Scalar) -> str:
+def _format_value(value: Scalar) -> str:
     return str(value).lower() if isinstance(value, bool) else str(value).replace("\x00", "an")
 
 
 # -- variables ---------------------------------------------------------------------------------
 
 
-def names(model: Model, tables: Tables) -> Iterator[Finding]:
-    """REC006: variables are declared and have a value; what is bound fits in type and unit."""
-    for graph in graphs(model):
-        for element, problem in (*_name_problems(graph), *_misfits(graph, tables)):
+def check_names(model: Model, tables: Tables) -> Iterator[Finding]:
+    """REC006: variables are declared, and set before they are read; bindings fit."""
+    for graph in iter_graphs(model):
+        for element, problem in (*_iter_name_problems(graph), *_iter_misfits(graph, tables)):
             yield Finding(UNDECLARED, element, {"graph": graph.id, "problem": problem})
 
 
-def _name_problems(graph: FlowGraph) -> Iterator[tuple[str, str]]:
-    yield from _undeclared(graph)
-    yield from _unset(graph)
+def _iter_name_problems(graph: FlowGraph) -> Iterator[tuple[str, str]]:
+    yield from _iter_undeclared(graph)
+    yield from _iter_unset(graph)
 
 
-def _uses(graph: FlowGraph) -> Iterator[tuple[str, str, Expr]]:
-    """Element, node whose variables are read (``<`` before it: as it begins), and expression."""
+def _iter_uses(graph: FlowGraph) -> Iterator[tuple[str, str, Expr]]:
+    """Iterate over expressions with their element and the node that reads the variables.
+
+    The prefix ``<`` of a node means that it reads them when it begins, else when it is done.
+    """
     for edge in graph.edges:
         if edge.guard is not None:
             yield edge.element, edge.source, edge.guard
     for node in graph.nodes:
-        for _, bound in node.bind:
-            yield node.element, f"<{node.id}", bound
+        for _, argument in node.bind:
+            yield node.element, f"<{node.id}", argument
         if node.expression is not None and node.kind != "loop":
             yield node.element, f"<{node.id}", node.expression
 
 
-def _literals(graph: FlowGraph) -> set[str]:
-    types = (one.type for one in declared(graph).values())
+def _collect_literals(graph: FlowGraph) -> set[str]:
+    types = (parameter.type for parameter in declared_parameters(graph).values())
     return {name for type_ in types if isinstance(type_, EnumType) for name in type_.literals}
 
 
-def _undeclared(graph: FlowGraph) -> Iterator[tuple[str, str]]:
-    known = set(declared(graph)) | _literals(graph)
-    for element, _, expression in _uses(graph):
-        for name in variables(expression):
+def _iter_undeclared(graph: FlowGraph) -> Iterator[tuple[str, str]]:
+    known = set(declared_parameters(graph)) | _collect_literals(graph)
+    for element, _, expression in _iter_uses(graph):
+        for name in iter_variables(expression):
             base = name.split(".")[0]
             last = name.replace("::", ".").rpartition(".")[2]
             if not {name, base, last} & known:
@@ -163,100 +171,111 @@ def _undeclared(graph: FlowGraph) -> Iterator[tuple[str, str]]:
             yield node.element, f"'{node.variable}' is declared nowhere"
 
 
-def _unset(graph: FlowGraph) -> Iterator[tuple[str, str]]:
-    """Variables that some way reads before anything has set them."""
+def _iter_unset(graph: FlowGraph) -> Iterator[tuple[str, str]]:
+    """Iterate over the variables that some path reads before it sets them."""
     defined = _definitely_set(graph)
-    names = {one.name for one in graph.variables}
-    for element, node, expression in _uses(graph):
-        missing = sorted(set(variables(expression)) & names - defined.get(node, names))
+    names = {variable.name for variable in graph.variables}
+    for element, node, expression in _iter_uses(graph):
+        missing = sorted(set(iter_variables(expression)) & names - defined.get(node, names))
         for name in missing:
             yield element, f"'{name}' is read before it has a value"
 
 
 def _definitely_set(graph: FlowGraph) -> dict[str, set[str]]:
-    """What has a value when a node is done, and with ``<`` when it begins, on every way."""
-    start = {one.name for one in graph.inputs}
-    start |= {one.name for one in graph.variables if one.value is not None}
+    """Return the variables that have a value on every path when a node is done.
+
+    The key of the variables when it begins has the prefix ``<``.
+    """
+    start = {parameter.name for parameter in graph.inputs}
+    start |= {variable.name for variable in graph.variables if variable.value is not None}
     nodes = {node.id: node for node in graph.nodes}
-    before: dict[str, list[str]] = {}
-    pairs = forward_edges(graph)
-    for source, target in pairs:
-        before.setdefault(target, []).append(source)
-    done: dict[str, set[str]] = {}
-    for id in sort_topologically(nodes, pairs):
-        ways = [done[one] for one in before.get(id, ())]
-        joined = nodes[id].kind in ("join", "service", "function")
-        have = set.union(*ways) if ways and joined else set.intersection(*ways) if ways else start
-        done[f"<{id}"] = have
-        done[id] = have | _sets(nodes[id])
-    return done
+    predecessors: dict[str, list[str]] = {}
+    edges = forward_edges(graph)
+    for source, target in edges:
+        predecessors.setdefault(target, []).append(source)
+    defined: dict[str, set[str]] = {}
+    for id in sort_topologically(nodes, edges):
+        incoming = [defined[predecessor] for predecessor in predecessors.get(id, ())]
+        if not incoming:
+            before = start
+        elif nodes[id].kind in ("join", "service", "function"):
+            before = set.union(*incoming)
+        else:
+            before = set.intersection(*incoming)
+        defined[f"<{id}"] = before
+        defined[id] = before | _assigned_variables(nodes[id])
+    return defined
 
 
-def _sets(node: Node) -> set[str]:
+def _assigned_variables(node: Node) -> set[str]:
     return {variable for _, variable in node.assign} | ({node.variable} if node.variable else set())
 
 
-def _misfits(graph: FlowGraph, tables: Tables) -> Iterator[tuple[str, str]]:
-    known = declared(graph)
+def _iter_misfits(graph: FlowGraph, tables: Tables) -> Iterator[tuple[str, str]]:
+    parameters = declared_parameters(graph)
     for node in graph.nodes:
         called = tables.services.get(node.ref) or tables.functions.get(node.ref)
-        inputs = {} if called is None else {one.name: one for one in called.inputs}
-        for name, bound in node.bind:
-            given = next((known.get(one) for one in variables(bound)), None)
-            problem = _misfit(inputs.get(name), given)
+        inputs = (
+            {} if called is None else {parameter.name: parameter for parameter in called.inputs}
+        )
+        for name, argument in node.bind:
+            variables = iter_variables(argument)
+            actual = next((parameters.get(variable) for variable in variables), None)
+            problem = _describe_misfit(inputs.get(name), actual)
             if problem:
                 yield node.element, f"input '{name}' of '{node.ref}' {problem}"
 
 
-def _misfit(wanted: Parameter | None, given: Parameter | None) -> str:
-    if wanted is None or given is None or wanted.type is None or given.type is None:
+def _describe_misfit(formal: Parameter | None, actual: Parameter | None) -> str:
+    if formal is None or actual is None or formal.type is None or actual.type is None:
         return ""
-    if not _fits(given.type, wanted.type):
-        return f"and the variable '{given.name}' have different types"
-    if wanted.unit and given.unit and wanted.unit != given.unit:
-        return f"is in {wanted.unit}, but '{given.name}' in {given.unit}"
+    if not _is_assignable(actual.type, formal.type):
+        return f"and the variable '{actual.name}' have different types"
+    if formal.unit and actual.unit and formal.unit != actual.unit:
+        return f"is in {formal.unit}, but '{actual.name}' in {actual.unit}"
     return ""
 
 
-def _fits(given: ValueType, wanted: ValueType) -> bool:
-    """Whether values of one type are values of the other.
+def _is_assignable(actual: ValueType, formal: ValueType) -> bool:
+    """Return whether values of the actual type are values of the formal type.
 
-    What a reference leads to may be more special than what is wanted; the language judges that.
+    References are not compared: their types may specialise one another, which the language checks.
     An enumeration may be one of numbers (SysML v2, 8.3.8): its values are integers then.
     """
-    if given == wanted or (given, wanted) == ("integer", "real"):
+    types = (actual, formal)
+    if actual == formal or types == ("integer", "real"):
         return True
-    if isinstance(given, ReferenceType) and isinstance(wanted, ReferenceType):
+    if isinstance(actual, ReferenceType) and isinstance(formal, ReferenceType):
         return True
-    return "integer" in (given, wanted) and any(isinstance(t, EnumType) for t in (given, wanted))
+    return "integer" in types and any(isinstance(type_, EnumType) for type_ in types)
 
 
-def readable(model: Model, tables: Tables) -> Iterator[Finding]:
-    """Expressions that stayed text."""
-    for graph in graphs(model):
-        yield from _unreadable_in(graph)
-    for element, id, expression in _conditions(model):
-        yield from _mere_texts(element, id, expression)
+def check_expressions(model: Model, tables: Tables) -> Iterator[Finding]:
+    """Executors can evaluate every expression."""
+    for graph in iter_graphs(model):
+        yield from _check_graph(graph)
+    for element, id, expression in _iter_conditions(model):
+        yield from _check_expression(element, id, expression)
 
 
-def _unreadable_in(graph: FlowGraph) -> Iterator[Finding]:
+def _check_graph(graph: FlowGraph) -> Iterator[Finding]:
     for edge in graph.edges:
-        yield from _mere_texts(edge.element, edge.source, edge.guard)
+        yield from _check_expression(edge.element, edge.source, edge.guard)
     for node in graph.nodes:
-        for _, bound in node.bind:
-            yield from _mere_texts(node.element, node.id, bound)
+        for _, argument in node.bind:
+            yield from _check_expression(node.element, node.id, argument)
         if node.kind != "loop":
-            yield from _mere_texts(node.element, node.id, node.expression)
+            yield from _check_expression(node.element, node.id, node.expression)
 
 
-def _mere_texts(element: str, id: str, expression: Expr | None) -> Iterator[Finding]:
-    for text in () if expression is None else unreadable(expression):
+def _check_expression(element: str, id: str, expression: Expr | None) -> Iterator[Finding]:
+    for text in () if expression is None else iter_opaque_texts(expression):
         yield Finding(UNREADABLE, element, {"text": text, "element": id})
 
 
-def _conditions(model: Model) -> Iterator[tuple[str, str, Expr | None]]:
-    """Conditions of tasks and services: element, id of what they belong to, expression."""
-    conditioned: tuple[Task | Service, ...] = (*model.recipe.tasks, *model.services)
-    for one in conditioned:
-        yield one.element, one.id, one.pre
-        yield one.element, one.id, one.post
+def _iter_conditions(model: Model) -> Iterator[tuple[str, str, Expr | None]]:
+    """Iterate over the conditions of tasks and services: element, id of the owner, expression."""
+    owners: tuple[Task | Service, ...] = (*model.recipe.tasks, *model.services)
+    for owner in owners:
+        yield owner.element, owner.id, owner.pre
+        yield owner.element, owner.id, owner.post

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from sysmlc.diagnostics import Severity, rule
 from sysmlc.recipe.checks import Finding
 from sysmlc.recipe.derive import Tables, providers_of
-from sysmlc.recipe.flow import cycles
+from sysmlc.recipe.flow import find_cycles
 from sysmlc.recipe.model import Model, Task
 
 BROKEN_REFERENCE = rule(
@@ -41,68 +41,68 @@ PROVIDER_OUTSIDE = rule(
 )
 
 
-def references(model: Model, tables: Tables) -> Iterator[Finding]:
-    """REC001: every id resolves."""
-    machines = {one.id for one in model.machines}
-    for user, element, names in _users(model):
+def check_references(model: Model, tables: Tables) -> Iterator[Finding]:
+    """REC001: every machine that is named exists, and ids are unique."""
+    machines = {machine.id for machine in model.machines}
+    for user, element, names in _iter_uses(model):
         for name in names:
             if name not in machines:
                 facts = {"user": user, "missing": name, "level": "machine"}
                 yield Finding(BROKEN_REFERENCE, element, facts)
-    yield from _duplicates(model)
+    yield from _check_unique_ids(model)
 
 
-def _users(model: Model) -> Iterator[tuple[str, str, tuple[str, ...]]]:
+def _iter_uses(model: Model) -> Iterator[tuple[str, str, tuple[str, ...]]]:
     for task in model.recipe.tasks:
         for mode in task.equipment:
             yield task.id, task.element, mode.machines
     for service in model.services:
-        yield service.id, service.element, tuple(one.machine for one in service.providers)
+        yield service.id, service.element, tuple(provider.machine for provider in service.providers)
 
 
-def _duplicates(model: Model) -> Iterator[Finding]:
+def _check_unique_ids(model: Model) -> Iterator[Finding]:
     seen: set[str] = set()
     tables = (model.machines, model.materials, model.services, model.functions)
-    for one in (item for table in tables for item in table):
-        if one.id in seen:
-            facts = {"user": one.id, "missing": one.id, "level": "only element of its name"}
-            yield Finding(BROKEN_REFERENCE, one.element, facts)
-        seen.add(one.id)
+    for item in (item for table in tables for item in table):
+        if item.id in seen:
+            facts = {"user": item.id, "missing": item.id, "level": "only element of its name"}
+            yield Finding(BROKEN_REFERENCE, item.element, facts)
+        seen.add(item.id)
 
 
-def order(model: Model, tables: Tables) -> Iterator[Finding]:
-    """REC002: precedence is acyclic, so that every task can be reached from a first one."""
+def check_precedence(model: Model, tables: Tables) -> Iterator[Finding]:
+    """REC002: the precedence of tasks is acyclic."""
     recipe = model.recipe
-    for part in cycles([task.id for task in recipe.tasks], recipe.precedence):
-        names = ", ".join(f"'{id.rpartition('::')[2]}'" for id in part)
+    for cycle in find_cycles([task.id for task in recipe.tasks], recipe.precedence):
+        names = ", ".join(f"'{id.rpartition('::')[2]}'" for id in cycle)
         yield Finding(CYCLIC_TASKS, recipe.element, {"tasks": names, "recipe": recipe.id})
 
 
-def machines(model: Model, tables: Tables) -> Iterator[Finding]:
-    """REC007: each mode can do the task, each machine service can run in some mode."""
+def check_machines(model: Model, tables: Tables) -> Iterator[Finding]:
+    """REC007: the machines of a task offer its services."""
     for task in model.recipe.tasks:
-        yield from _task_machines(task, tables)
+        yield from _check_machines_of_task(task, tables)
 
 
-def _task_machines(task: Task, tables: Tables) -> Iterator[Finding]:
+def _check_machines_of_task(task: Task, tables: Tables) -> Iterator[Finding]:
     if not task.equipment:
-        yield _cannot(task, "no machine is related to it")
+        yield _make_finding(task, "no machine is related to it")
         return
     equipment = {machine for mode in task.equipment for machine in mode.machines}
     offers = {
-        service: {one.machine for one in providers}
+        service: {provider.machine for provider in providers}
         for service, providers in providers_of(task, tables).items()
     }
     for service, offering in sorted(offers.items()):
         if not offering & equipment:
-            yield _cannot(task, f"none of its machines offers the service '{service}'")
+            yield _make_finding(task, f"none of its machines offers the service '{service}'")
         for machine in sorted(offering - equipment) if offering & equipment else ():
             facts = {"service": service, "machine": machine, "task": task.id}
             yield Finding(PROVIDER_OUTSIDE, tables.services[service].element, facts)
     offered = {machine for offering in offers.values() for machine in offering}
     for machine in sorted(equipment - offered) if offers else ():
-        yield _cannot(task, f"its machine '{machine}' offers none of its services")
+        yield _make_finding(task, f"its machine '{machine}' offers none of its services")
 
 
-def _cannot(task: Task, problem: str) -> Finding:
+def _make_finding(task: Task, problem: str) -> Finding:
     return Finding(NO_MACHINE, task.element, {"task": task.id, "problem": problem})

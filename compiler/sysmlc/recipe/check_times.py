@@ -3,16 +3,16 @@
 from collections.abc import Iterator
 
 from sysmlc.diagnostics import Severity, rule
-from sysmlc.recipe.checks import Finding
+from sysmlc.recipe.checks import Finding, iter_graphs
 from sysmlc.recipe.derive import (
     Tables,
+    find_modes,
     functions_of,
     mode_range,
-    modes,
     refined_range,
     same_machine,
 )
-from sysmlc.recipe.flow import reachable
+from sysmlc.recipe.flow import find_reachable
 from sysmlc.recipe.model import FlowGraph, Model, Provider, Range, Service, Task
 
 TASK_TIME = rule(
@@ -54,55 +54,57 @@ UNBOUNDED = rule(
 )
 
 
-def task_times(model: Model, tables: Tables) -> Iterator[Finding]:
-    """REC008: the longest path fits the bound and, on each mode's machines, the mode's time."""
+def check_task_times(model: Model, tables: Tables) -> Iterator[Finding]:
+    """REC008: a task takes no longer than its bound, nor than the duration of each mode."""
     for task in model.recipe.tasks:
-        found = None if task.derived is None else task.derived.duration
-        if found is not None and _exceeds(found, task.max_duration):
-            yield _too_long(task, found, f"at most {task.max_duration} ms are allowed")
+        derived = None if task.derived is None else task.derived.duration
+        if derived is not None and _exceeds(derived, task.max_duration):
+            yield _too_long(task, derived, f"at most {task.max_duration} ms are allowed")
         for mode in task.equipment:
-            found = mode_range(task, mode, tables)
-            if found is not None and _exceeds(found, mode.duration):
-                where = " and ".join(f"'{one}'" for one in mode.machines)
-                yield _too_long(task, found, f"{mode.duration} ms on {where}")
+            derived = mode_range(task, mode, tables)
+            if derived is not None and _exceeds(derived, mode.duration):
+                machines = " and ".join(f"'{machine}'" for machine in mode.machines)
+                yield _too_long(task, derived, f"{mode.duration} ms on {machines}")
 
 
-def _exceeds(found: Range, limit: int | None) -> bool:
-    """Whether the longest time is above the limit; without a longest time, the shortest."""
-    return limit is not None and (found.min if found.max is None else found.max) > limit
+def _exceeds(duration: Range, limit: int | None) -> bool:
+    """Return whether the maximum, or without a maximum the minimum, is above the limit."""
+    return limit is not None and (duration.min if duration.max is None else duration.max) > limit
 
 
-def _too_long(task: Task, found: Range, declared: str) -> Finding:
-    facts = {"task": task.id, "derived": _shown(found), "declared": declared}
+def _too_long(task: Task, derived: Range, declared: str) -> Finding:
+    facts = {"task": task.id, "derived": _format_range(derived), "declared": declared}
     return Finding(TASK_TIME, task.element, facts)
 
 
-def _shown(found: Range) -> str:
-    if found.max == found.min:
-        return str(found.min)
-    return f"{found.min} to {'any number of' if found.max is None else found.max}"
+def _format_range(duration: Range) -> str:
+    if duration.max == duration.min:
+        return str(duration.min)
+    return f"{duration.min} to {'any number of' if duration.max is None else duration.max}"
 
 
-def service_times(model: Model, tables: Tables, tolerance: float) -> Iterator[Finding]:
-    """REC009: functions and providers agree within the tolerance."""
+def check_service_times(model: Model, tables: Tables, tolerance: float) -> Iterator[Finding]:
+    """REC009: the durations of functions and of providers agree within the tolerance."""
     for service in model.services:
-        found = refined_range(service, tables)
-        for provider in service.providers if found is not None else ():
-            if found is not None and _differs(found, provider.duration, tolerance):
-                yield _disagreement(service, provider, found)
+        derived = refined_range(service, tables)
+        if derived is None:
+            continue
+        for provider in service.providers:
+            if _differs(derived, provider.duration, tolerance):
+                yield _make_time_finding(service, provider, derived)
 
 
-def _differs(found: Range, duration: int | None, tolerance: float) -> bool:
+def _differs(derived: Range, duration: int | None, tolerance: float) -> bool:
     if duration is None:
         return False
-    too_short = duration < found.min * (1 - tolerance)
-    return too_short or (found.max is not None and duration > found.max * (1 + tolerance))
+    too_short = duration < derived.min * (1 - tolerance)
+    return too_short or (derived.max is not None and duration > derived.max * (1 + tolerance))
 
 
-def _disagreement(service: Service, provider: Provider, found: Range) -> Finding:
+def _make_time_finding(service: Service, provider: Provider, derived: Range) -> Finding:
     facts = {
         "service": service.id,
-        "derived": _shown(found),
+        "derived": _format_range(derived),
         "declared": provider.duration,
         "machine": provider.machine,
     }
@@ -112,23 +114,23 @@ def _disagreement(service: Service, provider: Provider, found: Range) -> Finding
 # -- resources ---------------------------------------------------------------------------------
 
 
-def groups(model: Model, tables: Tables) -> Iterator[Finding]:
-    """REC010: groups are as derived again, and one machine can do each of them."""
+def check_groups(model: Model, tables: Tables) -> Iterator[Finding]:
+    """REC010: same-machine groups are up to date; one machine offers all services of a group."""
     for task in model.recipe.tasks:
         graph = tables.service_graphs.get(task.implementation)
-        again = None if graph is None else same_machine(graph, tables)
-        if again != (task.derived and task.derived.same_machine):
+        groups = None if graph is None else same_machine(graph, tables)
+        if groups != (task.derived and task.derived.same_machine):
             problem = "its same-machine groups are not those that follow from its functions"
             yield Finding(STALE_GROUPS, task.element, {"task": task.id, "problem": problem})
-        elif again is not None:
-            for group in again:
-                yield from _without_machine(task, group.nodes, tables)
+        elif groups is not None:
+            for group in groups:
+                yield from _check_group(task, group.nodes, tables)
 
 
-def _without_machine(task: Task, group: tuple[str, ...], tables: Tables) -> Iterator[Finding]:
+def _check_group(task: Task, group: tuple[str, ...], tables: Tables) -> Iterator[Finding]:
     nodes = {node.id: node for node in tables.service_graphs[task.implementation].nodes}
     services = [tables.service(nodes[id]) for id in group]
-    offers = [{p.machine for p in one.providers} for one in services if one is not None]
+    offers = [{p.machine for p in service.providers} for service in services if service]
     equipment = {machine for mode in task.equipment for machine in mode.machines}
     if offers and not set.intersection(*offers, *([equipment] if equipment else [])):
         names = ", ".join(f"'{id.rpartition('::')[2]}'" for id in group)
@@ -136,30 +138,30 @@ def _without_machine(task: Task, group: tuple[str, ...], tables: Tables) -> Iter
         yield Finding(STALE_GROUPS, task.element, {"task": task.id, "problem": problem})
 
 
-def releases(model: Model, tables: Tables) -> Iterator[Finding]:
-    """Resources that some way to the end leaves taken."""
+def check_releases(model: Model, tables: Tables) -> Iterator[Finding]:
+    """Each resource that a task acquires is released on every path to the end."""
     for task in model.recipe.tasks:
         graph = tables.service_graphs.get(task.implementation)
-        for resource, node, element in () if graph is None else _kept(graph, tables):
+        for resource, node, element in () if graph is None else _iter_unreleased(graph, tables):
             facts = {"task": task.id, "resource": resource, "node": node}
             yield Finding(UNRELEASED, element, facts)
 
 
-def _kept(graph: FlowGraph, tables: Tables) -> Iterator[tuple[str, str, str]]:
+def _iter_unreleased(graph: FlowGraph, tables: Tables) -> Iterator[tuple[str, str, str]]:
     ends = {node.id for node in graph.nodes if node.kind == "final"}
     for node in graph.nodes:
-        found = {r.id for one in functions_of(node, tables) for r in one.resources}
-        for resource in sorted(found):
-            does = {one.id: modes(one, resource, tables) for one in graph.nodes}
-            gives = {id for id, what in does.items() if "release" in what}
-            open_ = [(e.source, e.target) for e in graph.edges if e.source not in gives]
-            if "acquire" in does[node.id] and reachable([node.id], open_) & ends:
+        resources = {r.id for f in functions_of(node, tables) for r in f.resources}
+        for resource in sorted(resources):
+            modes_by_node = {n.id: find_modes(n, resource, tables) for n in graph.nodes}
+            releasing = {id for id, modes in modes_by_node.items() if "release" in modes}
+            edges = [(e.source, e.target) for e in graph.edges if e.source not in releasing]
+            if "acquire" in modes_by_node[node.id] and find_reachable([node.id], edges) & ends:
                 yield resource, node.id, node.element
 
 
-def bounds(model: Model, tables: Tables) -> Iterator[Finding]:
-    """Loops without a bound."""
-    for graph in (*model.service_graphs, *model.function_graphs):
+def check_bounds(model: Model, tables: Tables) -> Iterator[Finding]:
+    """Each loop has a bound."""
+    for graph in iter_graphs(model):
         for node in graph.nodes:
             if node.kind == "loop" and node.max_iterations is None:
                 yield Finding(UNBOUNDED, node.element, {"loop": node.id})

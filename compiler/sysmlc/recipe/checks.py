@@ -1,4 +1,4 @@
-"""What the checks of recipe models share: findings, and how they are told."""
+"""Findings of the checks of recipe models, and what the checks share."""
 
 from collections.abc import Callable, Iterator, Mapping
 
@@ -12,7 +12,7 @@ Locate = Callable[[str], Subject]
 
 
 class Finding(Struct, frozen=True):
-    """A rule that is broken: element of the graph, facts for the phrase."""
+    """A violation of a rule: the id of an element, and the facts for the message."""
 
     rule: Rule
     element: str
@@ -22,18 +22,19 @@ class Finding(Struct, frozen=True):
 Check = Callable[[Model, Tables], Iterator[Finding]]
 
 
-def tell(found: Iterator[Finding], sink: Sink, locate: Locate) -> None:
-    """Report findings."""
-    for one in found:
-        sink.report(one.rule, locate(one.element), **one.facts)  # type: ignore[arg-type]
+def report_findings(findings: Iterator[Finding], sink: Sink, locate: Locate) -> None:
+    """Report findings; *locate* turns ids of elements into subjects."""
+    for finding in findings:
+        sink.report(finding.rule, locate(finding.element), **finding.facts)  # type: ignore[arg-type]
 
 
-def graphs(model: Model) -> Iterator[FlowGraph]:
-    """All graphs of a model."""
+def iter_graphs(model: Model) -> Iterator[FlowGraph]:
+    """Iterate over the graphs of services and functions."""
     yield from model.service_graphs
     yield from model.function_graphs
 
 
-def declared(graph: FlowGraph) -> dict[str, Parameter]:
-    """Everything that expressions of a graph may name."""
-    return {one.name: one for one in (*graph.inputs, *graph.outputs, *graph.variables)}
+def declared_parameters(graph: FlowGraph) -> dict[str, Parameter]:
+    """Return the inputs, outputs and variables that expressions of a graph may name, by name."""
+    parameters = (*graph.inputs, *graph.outputs, *graph.variables)
+    return {parameter.name: parameter for parameter in parameters}

@@ -1,4 +1,4 @@
-"""What follows from a recipe model: sub-tasks, same-machine groups, durations (thesis 6.5)."""
+"""Data derived from a recipe model: sub-tasks, same-machine groups, durations (thesis 6.5)."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import partial
@@ -7,7 +7,7 @@ from msgspec import Struct, field
 from msgspec.structs import replace
 
 from sysmlc.recipe.expression import Lit
-from sysmlc.recipe.flow import duration, forward_edges, reachable
+from sysmlc.recipe.flow import compute_duration, find_reachable, forward_edges
 from sysmlc.recipe.model import (
     Derived,
     FlowGraph,
@@ -27,7 +27,7 @@ _NO_TIME = Range(0, 0)
 
 
 class Tables(Struct, frozen=True):
-    """The parts of a model by id."""
+    """The services, functions and graphs of a model by id, and memoised durations."""
 
     services: Mapping[str, Service]
     functions: Mapping[str, Function]
@@ -36,189 +36,197 @@ class Tables(Struct, frozen=True):
     _times: dict[tuple[str, ...], Range | None] = field(default_factory=dict)
 
     @classmethod
-    def of(cls, model: Model) -> "Tables":
-        """Tables of the model."""
+    def from_model(cls, model: Model) -> "Tables":
+        """Return the tables of a model."""
         return cls(
-            {one.id: one for one in model.services},
-            {one.id: one for one in model.functions},
-            {one.id: one for one in model.service_graphs},
-            {one.id: one for one in model.function_graphs},
+            {service.id: service for service in model.services},
+            {function.id: function for function in model.functions},
+            {graph.id: graph for graph in model.service_graphs},
+            {graph.id: graph for graph in model.function_graphs},
         )
 
     def service(self, node: Node) -> Service | None:
-        """The service that a node calls."""
+        """Return the service that a node calls, or None."""
         return self.services.get(node.ref) if node.kind == "service" else None
 
-    def time(self, key: tuple[str, ...], find: Callable[[], Range | None]) -> Range | None:
-        """How long something takes, found out once."""
+    def memoise_time(
+        self, key: tuple[str, ...], compute: Callable[[], Range | None]
+    ) -> Range | None:
+        """Return the duration stored under *key*; compute it at the first call."""
         if key not in self._times:
-            self._times[key] = find()
+            self._times[key] = compute()
         return self._times[key]
 
     def without(self, graph: str) -> "Tables":
-        """The same without one of the graphs of functions."""
-        left = {id: one for id, one in self.function_graphs.items() if id != graph}
-        return Tables(self.services, self.functions, self.service_graphs, left)
+        """Return tables without one graph of functions, to stop a recursion of calls."""
+        rest = {id: other for id, other in self.function_graphs.items() if id != graph}
+        return Tables(self.services, self.functions, self.service_graphs, rest)
 
 
 def derive(model: Model) -> Model:
-    """The model with ``derived`` filled for every task, whatever was there before."""
-    tables = Tables.of(model)
-    tasks = tuple(replace(task, derived=derived(task, tables)) for task in model.recipe.tasks)
+    """Return the model with new derived data for every task."""
+    tables = Tables.from_model(model)
+    tasks = tuple(replace(task, derived=_derive_task(task, tables)) for task in model.recipe.tasks)
     return replace(model, recipe=replace(model.recipe, tasks=tasks))
 
 
-def derived(task: Task, tables: Tables) -> Derived | None:
-    """What follows for one task; None when it is not refined."""
+def _derive_task(task: Task, tables: Tables) -> Derived | None:
+    """Return the derived data of a task; None for a task without a service graph."""
     graph = tables.service_graphs.get(task.implementation)
     if graph is None:
         return None
     return Derived(
-        sub_tasks(task, graph, tables),
+        _list_sub_tasks(task, graph, tables),
         same_machine(graph, tables),
-        duration(graph, lambda node: node_range(node, tables)),
+        compute_duration(graph, lambda node: node_range(node, tables)),
     )
 
 
 # -- sub-tasks ---------------------------------------------------------------------------------
 
 
-def sub_tasks(task: Task, graph: FlowGraph, tables: Tables) -> tuple[SubTask, ...]:
-    """Service nodes with their alternatives and the service nodes right before them."""
+def _list_sub_tasks(task: Task, graph: FlowGraph, tables: Tables) -> tuple[SubTask, ...]:
+    """Return the service nodes with their alternatives and the nearest service nodes before."""
     allowed = {machine for mode in task.equipment for machine in mode.machines}
     edges = forward_edges(graph)
     nodes = [node for node in graph.nodes if tables.service(node) is not None]
     steps = {node.id for node in nodes}
     return tuple(
-        SubTask(node.id, _alternatives(node, allowed, tables), _before(node.id, steps, edges))
+        SubTask(
+            node.id,
+            _list_alternatives(node, allowed, tables),
+            _find_predecessors(node.id, steps, edges),
+        )
         for node in nodes
     )
 
 
-def _alternatives(node: Node, allowed: set[str], tables: Tables) -> tuple[Mode, ...]:
+def _list_alternatives(node: Node, allowed: set[str], tables: Tables) -> tuple[Mode, ...]:
     service = tables.service(node)
     providers = () if service is None else service.providers
     return tuple(
-        Mode((one.machine,), one.duration, one.power, one.tools)
-        for one in providers
-        if not allowed or one.machine in allowed
+        Mode((provider.machine,), provider.duration, provider.power, provider.tools)
+        for provider in providers
+        if not allowed or provider.machine in allowed
     )
 
 
-def _before(node: str, steps: set[str], edges: Iterable[tuple[str, str]]) -> tuple[str, ...]:
-    """The nearest steps from which the edges lead here."""
+def _find_predecessors(
+    node: str, steps: set[str], edges: Iterable[tuple[str, str]]
+) -> tuple[str, ...]:
+    """Return the nearest steps with a path to *node*."""
     backwards = [(b, a) for a, b in edges if b == node or b not in steps]
-    return tuple(sorted((reachable([node], backwards) & steps) - {node}))
+    return tuple(sorted((find_reachable([node], backwards) & steps) - {node}))
 
 
 # -- same machine ------------------------------------------------------------------------------
 
 
 def same_machine(graph: FlowGraph, tables: Tables) -> tuple[SameMachine, ...]:
-    """Services of a task between the acquiring and the releasing of one resource.
+    """Return the groups of services that must run on one machine because they share a resource.
 
-    A service belongs to the group when it takes, holds, uses or gives back the resource and can
-    run after it was taken and before it was given back. Groups that share a service are one.
+    A service belongs to the group of a resource if it acquires, holds, uses or releases it and can
+    run after its acquisition and before its release. Groups that share a service are merged.
     """
     groups = [
         group
-        for resource in _resources(graph, tables)
-        for group in _groups(graph, tables, resource)
+        for resource in _list_resources(graph, tables)
+        for group in _iter_groups(graph, tables, resource)
         if len(group[0]) > 1
     ]
     order = {node.id: number for number, node in enumerate(graph.nodes)}
-    found = [
+    merged = [
         SameMachine(tuple(sorted(nodes, key=order.__getitem__)), tuple(because))
-        for nodes, because in _merged(groups)
+        for nodes, because in _merge_groups(groups)
     ]
-    return tuple(sorted(found, key=lambda group: order[group.nodes[0]]))
+    return tuple(sorted(merged, key=lambda group: order[group.nodes[0]]))
 
 
-def _resources(graph: FlowGraph, tables: Tables) -> list[str]:
-    found = {
-        r.id for node in graph.nodes for one in functions_of(node, tables) for r in one.resources
-    }
-    return sorted(found)
+def _list_resources(graph: FlowGraph, tables: Tables) -> list[str]:
+    functions = [f for node in graph.nodes for f in functions_of(node, tables)]
+    return sorted({resource.id for f in functions for resource in f.resources})
 
 
 def functions_of(node: Node, tables: Tables) -> list[Function]:
-    """Machine functions of the service that a node calls, in the order of its graph."""
+    """Return the machine functions of the service that a node calls, in the order of its graph."""
     service = tables.service(node)
-    return [] if service is None else _called(service.implementation, tables, {node.id})
+    return [] if service is None else _collect_functions(service.implementation, tables, {node.id})
 
 
-def _called(graph: str, tables: Tables, seen: set[str]) -> list[Function]:
-    """Functions that a graph calls, those of the helpers that it calls included."""
-    found = tables.function_graphs.get(graph)
-    called: list[Function] = []
-    seen.add(graph)
-    for node in () if found is None else found.nodes:
-        if node.kind == "call" and node.ref not in seen:
-            called += _called(node.ref, tables, seen)
+def _collect_functions(graph_id: str, tables: Tables, visited: set[str]) -> list[Function]:
+    """Return the functions that a graph calls, directly or by the helpers that it calls."""
+    graph = tables.function_graphs.get(graph_id)
+    functions: list[Function] = []
+    visited.add(graph_id)
+    for node in () if graph is None else graph.nodes:
+        if node.kind == "call" and node.ref not in visited:
+            functions += _collect_functions(node.ref, tables, visited)
         elif node.ref in tables.functions:
-            called.append(tables.functions[node.ref])
-    return called
+            functions.append(tables.functions[node.ref])
+    return functions
 
 
-def modes(node: Node, resource: str, tables: Tables) -> set[str]:
-    """What the service of a node does with a resource, as seen from outside the service.
+def find_modes(node: Node, resource: str, tables: Tables) -> set[str]:
+    """Return how the service of a node uses a resource, as seen from outside the service.
 
-    A service that takes a resource and gives it back itself only uses it.
+    A service that acquires and releases a resource only uses it.
     """
-    used = (r for one in functions_of(node, tables) for r in one.resources)
-    found = {r.mode for r in used if r.id == resource}
-    return {"use"} if {"acquire", "release"} <= found else found
+    uses = (use for function in functions_of(node, tables) for use in function.resources)
+    modes = {use.mode for use in uses if use.id == resource}
+    return {"use"} if {"acquire", "release"} <= modes else modes
 
 
-def _groups(
+def _iter_groups(
     graph: FlowGraph, tables: Tables, resource: str
 ) -> Iterator[tuple[list[str], list[str]]]:
-    """One group for each node that takes the resource: nodes, and what they do with it."""
-    does = {node.id: modes(node, resource, tables) for node in graph.nodes}
-    pairs = [(edge.source, edge.target) for edge in graph.edges]
-    gives = {id for id, found in does.items() if "release" in found}
-    for start in (id for id, found in does.items() if "acquire" in found):
-        taken = reachable([start], [(a, b) for a, b in pairs if a not in gives])
-        given = reachable(gives & taken, [(b, a) for a, b in pairs if b != start])
-        members = {id for id in taken & given if does[id]}
+    """Iterate over the groups, one for each node that acquires the resource: nodes and reasons."""
+    modes_by_node = {node.id: find_modes(node, resource, tables) for node in graph.nodes}
+    edges = [(edge.source, edge.target) for edge in graph.edges]
+    releasing = {id for id, modes in modes_by_node.items() if "release" in modes}
+    for start in (id for id, modes in modes_by_node.items() if "acquire" in modes):
+        held = find_reachable([start], [(a, b) for a, b in edges if a not in releasing])
+        to_release = find_reachable(releasing & held, [(b, a) for a, b in edges if b != start])
+        members = {id for id in held & to_release if modes_by_node[id]}
         nodes = [node for node in graph.nodes if node.id in members]
-        yield [node.id for node in nodes], _because(nodes, resource, tables)
+        yield [node.id for node in nodes], _list_reasons(nodes, resource, tables)
 
 
-def _because(nodes: list[Node], resource: str, tables: Tables) -> list[str]:
-    found = (
-        f"{one.id} {use.mode}s {resource}"
+def _list_reasons(nodes: list[Node], resource: str, tables: Tables) -> list[str]:
+    reasons = (
+        f"{function.id} {use.mode}s {resource}"
         for node in nodes
-        for one in functions_of(node, tables)
-        for use in one.resources
+        for function in functions_of(node, tables)
+        for use in function.resources
         if use.id == resource
     )
-    return list(dict.fromkeys(found))
+    return list(dict.fromkeys(reasons))
 
 
-def _merged(groups: list[tuple[list[str], list[str]]]) -> list[tuple[list[str], list[str]]]:
+def _merge_groups(groups: list[tuple[list[str], list[str]]]) -> list[tuple[list[str], list[str]]]:
     result: list[tuple[list[str], list[str]]] = []
-    for nodes, because in groups:
-        same = [group for group in result if set(group[0]) & set(nodes)]
-        result = [group for group in result if group not in same]
-        whole = [*same, (nodes, because)]
-        result.append(([n for ns, _ in whole for n in ns], [b for _, bs in whole for b in bs]))
-    return [(list(dict.fromkeys(ns)), list(dict.fromkeys(bs))) for ns, bs in result]
+    for nodes, reasons in groups:
+        overlapping = [group for group in result if set(group[0]) & set(nodes)]
+        result = [group for group in result if group not in overlapping]
+        merged = [*overlapping, (nodes, reasons)]
+        all_nodes = [node for group_nodes, _ in merged for node in group_nodes]
+        all_reasons = [reason for _, group_reasons in merged for reason in group_reasons]
+        result.append((all_nodes, all_reasons))
+    return [(list(dict.fromkeys(ns)), list(dict.fromkeys(rs))) for ns, rs in result]
 
 
 # -- durations ---------------------------------------------------------------------------------
 
 
 def node_range(node: Node, tables: Tables, machines: tuple[str, ...] = ()) -> Range | None:
-    """How long a node takes, in milliseconds; on one of ``machines`` when any is given."""
-    return _COSTS.get(node.kind, _free)(node, tables, machines)
+    """Return the duration of a node in milliseconds, on one of *machines* if any are named."""
+    return _COSTS.get(node.kind, _no_time)(node, tables, machines)
 
 
 def service_range(service: Service, tables: Tables, machines: tuple[str, ...] = ()) -> Range | None:
-    """How long a service takes: by its providers, else its own duration, else its functions."""
-    providers = [one for one in service.providers if one.machine in machines]
+    """Return the duration of a service: by its providers, else its own, else by its functions."""
+    providers = [provider for provider in service.providers if provider.machine in machines]
     providers = providers or list(service.providers)
-    known = [one.duration for one in providers if one.duration is not None]
+    known = [provider.duration for provider in providers if provider.duration is not None]
     if known and len(known) == len(providers):
         return Range(min(known), max(known))
     if service.duration is not None:
@@ -227,54 +235,55 @@ def service_range(service: Service, tables: Tables, machines: tuple[str, ...] = 
 
 
 def refined_range(service: Service, tables: Tables) -> Range | None:
-    """How long the functions of a service take together; None when they do not say it."""
+    """Return the duration of the functions of a service; None if it is unknown."""
     graph = tables.function_graphs.get(service.implementation)
     if graph is None:
         return None
-    find = partial(duration, graph, lambda node: node_range(node, tables))
-    return tables.time(("service", service.implementation), find)
+    compute = partial(compute_duration, graph, lambda node: node_range(node, tables))
+    return tables.memoise_time(("service", service.implementation), compute)
 
 
 def mode_range(task: Task, mode: Mode, tables: Tables) -> Range | None:
-    """How long a task takes in one mode, from its services."""
+    """Return the duration of a task in one mode, by its services."""
     graph = tables.service_graphs.get(task.implementation)
     if graph is None:
         return None
-    return duration(graph, lambda node: node_range(node, tables, mode.machines))
+    return compute_duration(graph, lambda node: node_range(node, tables, mode.machines))
 
 
-def _free(node: Node, tables: Tables, machines: tuple[str, ...]) -> Range | None:
+def _no_time(node: Node, tables: Tables, machines: tuple[str, ...]) -> Range | None:
     return _NO_TIME
 
 
-def _service(node: Node, tables: Tables, machines: tuple[str, ...]) -> Range | None:
+def _service_time(node: Node, tables: Tables, machines: tuple[str, ...]) -> Range | None:
     service = tables.service(node)
     return None if service is None else service_range(service, tables, machines)
 
 
-def _function(node: Node, tables: Tables, machines: tuple[str, ...]) -> Range | None:
+def _function_time(node: Node, tables: Tables, machines: tuple[str, ...]) -> Range | None:
     function = tables.functions.get(node.ref)
     return None if function is None else function.duration
 
 
-def _call(node: Node, tables: Tables, machines: tuple[str, ...]) -> Range | None:
-    """A helper takes as long as its graph; one that has none is no matter of time."""
+def _call_time(node: Node, tables: Tables, machines: tuple[str, ...]) -> Range | None:
+    """Return the duration of the graph of a helper; a helper without a graph takes no time."""
     graph = tables.function_graphs.get(node.ref)
     if graph is None:
         return _NO_TIME
-    return tables.time(("call", node.ref, *machines), partial(_of_helper, graph, tables, machines))
+    compute = partial(_helper_time, graph, tables, machines)
+    return tables.memoise_time(("call", node.ref, *machines), compute)
 
 
-def _of_helper(graph: FlowGraph, tables: Tables, machines: tuple[str, ...]) -> Range | None:
+def _helper_time(graph: FlowGraph, tables: Tables, machines: tuple[str, ...]) -> Range | None:
     rest = tables.without(graph.id)
-    return duration(graph, lambda one: node_range(one, rest, machines))
+    return compute_duration(graph, lambda node: node_range(node, rest, machines))
 
 
-def _wait(node: Node, tables: Tables, machines: tuple[str, ...]) -> Range | None:
+def _wait_time(node: Node, tables: Tables, machines: tuple[str, ...]) -> Range | None:
     return Range(0, None)
 
 
-def _delay(node: Node, tables: Tables, machines: tuple[str, ...]) -> Range | None:
+def _delay_time(node: Node, tables: Tables, machines: tuple[str, ...]) -> Range | None:
     match node.expression:
         case Lit(int(value)):
             return Range(value, value)
@@ -284,18 +293,18 @@ def _delay(node: Node, tables: Tables, machines: tuple[str, ...]) -> Range | Non
 
 _Cost = Callable[[Node, Tables, tuple[str, ...]], Range | None]
 _COSTS: dict[str, _Cost] = {
-    "service": _service,
-    "function": _function,
-    "call": _call,
-    "wait": _wait,
-    "delay": _delay,
+    "service": _service_time,
+    "function": _function_time,
+    "call": _call_time,
+    "wait": _wait_time,
+    "delay": _delay_time,
 }
 
 
 def providers_of(task: Task, tables: Tables) -> dict[str, tuple[Provider, ...]]:
-    """Providers of the machine services of a task, by service id."""
+    """Return the providers of the machine services of a task, by the id of the service."""
     graph = tables.service_graphs.get(task.implementation)
     nodes = () if graph is None else graph.nodes
     services = [tables.service(node) for node in nodes]
-    found = [one for one in services if one is not None and one.kind == "machine"]
-    return {one.id: one.providers for one in found}
+    machine_services = [s for s in services if s is not None and s.kind == "machine"]
+    return {service.id: service.providers for service in machine_services}

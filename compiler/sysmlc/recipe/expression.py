@@ -1,4 +1,4 @@
-"""Conditions and arithmetic of recipes as typed trees."""
+"""Conditions and arithmetic of recipes as typed trees, the form of the JSON schema."""
 
 from collections.abc import Iterator
 
@@ -12,7 +12,7 @@ class Lit(Struct, frozen=True):
 
 
 class Var(Struct, frozen=True):
-    """A parameter or variable, with dots for what belongs to it."""
+    """A parameter or variable, or a feature of one by a dotted path."""
 
     name: str
 
@@ -32,14 +32,14 @@ class Index(Struct, frozen=True):
 
 
 class Call(Struct, frozen=True):
-    """A function known to the executor by name, applied to arguments."""
+    """A function that the executor knows by name, applied to arguments."""
 
     function: str
     args: tuple["Expr", ...]
 
 
 class Opaque(Struct, frozen=True):
-    """Text that the expression grammar does not cover; people read it, executors cannot."""
+    """Text outside the expression grammar, for people; executors cannot evaluate it."""
 
     text: str
 
@@ -47,48 +47,49 @@ class Opaque(Struct, frozen=True):
 Expr = Lit | Var | Apply | Index | Call | Opaque
 
 
-def negated(expression: Expr) -> Expr:
-    """The opposite condition."""
+def negation(expression: Expr) -> Expr:
+    """Return the negation of a condition."""
     match expression:
-        case Apply("not", (inner,)):
-            return inner
+        case Apply("not", (operand,)):
+            return operand
         case Lit(bool(value)):
             return Lit(not value)
         case _:
             return Apply("not", (expression,))
 
 
-def either(expressions: tuple[Expr, ...]) -> Expr:
-    """Disjunction; false of nothing."""
+def disjunction(expressions: tuple[Expr, ...]) -> Expr:
+    """Return the disjunction of conditions; false for none."""
     if not expressions:
         return Lit(False)
     result = expressions[0]
-    for one in expressions[1:]:
-        result = Apply("or", (result, one))
+    for expression in expressions[1:]:
+        result = Apply("or", (result, expression))
     return result
 
 
-def variables(expression: Expr) -> Iterator[str]:
-    """Names of the variables, with repetitions, from left to right."""
+def operands(expression: Expr) -> tuple[Expr, ...]:
+    """Return the operands of an operator, an index or a call; none for other expressions."""
     match expression:
-        case Var(name):
-            yield name
         case Apply(_, args) | Call(_, args):
-            for arg in args:
-                yield from variables(arg)
+            return args
         case Index(base, index):
-            yield from variables(base)
-            yield from variables(index)
+            return (base, index)
+        case _:
+            return ()
 
 
-def unreadable(expression: Expr) -> Iterator[str]:
-    """Parts that are mere text."""
-    match expression:
-        case Opaque(text):
-            yield text
-        case Apply(_, args) | Call(_, args):
-            for arg in args:
-                yield from unreadable(arg)
-        case Index(base, index):
-            yield from unreadable(base)
-            yield from unreadable(index)
+def iter_variables(expression: Expr) -> Iterator[str]:
+    """Iterate over the names of the variables, with repetitions, from left to right."""
+    if isinstance(expression, Var):
+        yield expression.name
+    for operand in operands(expression):
+        yield from iter_variables(operand)
+
+
+def iter_opaque_texts(expression: Expr) -> Iterator[str]:
+    """Iterate over the texts in an expression that the grammar does not cover."""
+    if isinstance(expression, Opaque):
+        yield expression.text
+    for operand in operands(expression):
+        yield from iter_opaque_texts(operand)

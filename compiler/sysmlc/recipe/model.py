@@ -55,7 +55,7 @@ class Parameter(Struct, frozen=True):
 
 
 class OpcUa(Struct, frozen=True):
-    """Where on an OPC UA server a service or function is found; node ids as written."""
+    """The nodes of a service or function on an OPC UA server, with ids as the model writes them."""
 
     kind: str
     object: str
@@ -68,7 +68,7 @@ class OpcUa(Struct, frozen=True):
 
 
 class MachineVariable(Struct, frozen=True):
-    """What a machine shows or is told, with dots for what belongs to it.
+    """A value that a machine provides or accepts, with a dotted path for nested values.
 
     ``node`` is its OPC UA node as written; a variable with ``elements`` is the list of these.
     """
@@ -93,7 +93,7 @@ class Machine(Struct, frozen=True):
 
 
 class Material(Struct, frozen=True):
-    """A kind of material: what there is of it, where, and how much may wait between tasks."""
+    """A kind of material: stock, position, and the capacity of the buffer between tasks."""
 
     id: str
     available: Number | None = None
@@ -106,7 +106,7 @@ class Material(Struct, frozen=True):
 
 
 class MaterialUse(Struct, frozen=True):
-    """How much of a material a task uses, and whether it is consumed, produced or carried."""
+    """The quantity of a material that a task uses; ``use`` is consumed, produced or carried."""
 
     material: str
     quantity: Number
@@ -114,7 +114,7 @@ class MaterialUse(Struct, frozen=True):
 
 
 class Mode(Struct, frozen=True):
-    """One way to equip a task or a service: machines needed at once, with what it costs there."""
+    """One choice of machines for a task or service, needed at the same time, with its costs."""
 
     machines: tuple[str, ...]
     duration: int | None = None
@@ -132,14 +132,14 @@ class SubTask(Struct, frozen=True):
 
 
 class SameMachine(Struct, frozen=True):
-    """Service nodes that must run on one machine, and the functions and resources that say so."""
+    """Service nodes that must run on one machine, with the functions and resources as reasons."""
 
     nodes: tuple[str, ...]
     because: tuple[str, ...]
 
 
 class Derived(Struct, frozen=True):
-    """What can be computed again from the rest of the model."""
+    """Data of a task that is computed from the rest of the model."""
 
     sub_tasks: tuple[SubTask, ...] = ()
     same_machine: tuple[SameMachine, ...] = ()
@@ -166,7 +166,7 @@ class Task(Struct, frozen=True):
 
 
 class Performance(Struct, frozen=True):
-    """A block that performs a recipe: which of its parts, or operations of parts, do what.
+    """A block that performs a recipe, and the parts or operations that perform its steps.
 
     ``arguments`` are the parameters of the recipe and ``steps`` the nodes of its graphs, each
     with the dotted path of a feature from the block on.
@@ -225,7 +225,7 @@ class Service(Struct, frozen=True):
 
 
 class Resource(Struct, frozen=True):
-    """What a function does with something that only one may have: acquire, hold, release, use."""
+    """The use of an exclusive resource by a function; ``mode`` is acquire, hold, release or use."""
 
     id: str
     mode: str
@@ -245,7 +245,7 @@ class Function(Struct, frozen=True):
 
 
 class Node(Struct, frozen=True):
-    """A node of a service or function graph; which fields count depends on ``kind``.
+    """A node of a service or function graph; the fields in use depend on ``kind``.
 
     Kinds: initial final flowFinal decision merge fork join service function call action assign
     wait delay loop forEach. A for-each node takes the elements of ``expression`` one after the
@@ -265,7 +265,7 @@ class Node(Struct, frozen=True):
 
 
 class FlowEdge(Struct, frozen=True):
-    """An edge of a graph. ``role`` is body or exit on what leaves a loop or for-each node."""
+    """An edge of a graph. ``role`` is body or exit for the edges from a loop or for-each node."""
 
     source: str
     target: str

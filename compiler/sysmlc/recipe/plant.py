@@ -1,4 +1,4 @@
-"""The elements of a plant that AutomationML describes (docs/automationml.md)."""
+"""The InternalElements of a plant, by the elements of the graph (docs/automationml.md)."""
 
 from collections.abc import Iterator
 from functools import cached_property
@@ -10,14 +10,14 @@ from sysmlc.ir import Edge, Element, Graph, Kind, query
 HIERARCHY = "instance-hierarchy"
 LIBRARIES = frozenset({"system-unit-class-lib", "role-class-lib", "interface-class-lib"})
 _VALUES = "#values"
-"""End of the id of the instance that holds the values of a part (front end ``caex``)."""
+"""Suffix of the id of an instance that holds the values of a part (front end ``caex``)."""
 
 
 class PlantElement(Struct, frozen=True):
-    """An InternalElement: its id in the plant, and what stands for it in the graph.
+    """An InternalElement: its id in the plant, and the elements of the graph that represent it.
 
-    ``part`` is the property of the block around it, None for a top element; ``instance`` has its
-    values, None when nothing is said of them.
+    ``part`` is a property of the surrounding block, None for a top element; ``instance`` holds the
+    values, None if there are none.
     """
 
     id: str
@@ -29,36 +29,36 @@ class PlantElement(Struct, frozen=True):
 
 
 def is_of_plant(graph: Graph, element: Element) -> bool:
-    """Whether it is in an instance hierarchy, or in a library of classes of AutomationML."""
+    """Return whether *element* is in an instance hierarchy or class library of AutomationML."""
     root = [element, *graph.ancestors(element)][-1]
     return root.subkind == HIERARCHY or root.subkind in LIBRARIES
 
 
 class Plant:
-    """The plant of a unit; without instance hierarchies it is empty."""
+    """The plant of a compile unit; it is empty without instance hierarchies."""
 
     def __init__(self, graph: Graph) -> None:
         self.graph = graph
-        tops = [one for one in graph.roots() if one.kind is Kind.PACKAGE]
-        self._hierarchies = [one for one in tops if one.subkind == HIERARCHY]
-        self._families: dict[str, frozenset[str]] = {}
-        self._kin: dict[str, list[Element]] = {}
+        packages = [root for root in graph.roots() if root.kind is Kind.PACKAGE]
+        self._hierarchies = [package for package in packages if package.subkind == HIERARCHY]
+        self._class_ids: dict[str, frozenset[str]] = {}
+        self._classes: dict[str, list[Element]] = {}
 
     def __bool__(self) -> bool:
         return bool(self._hierarchies)
 
     @cached_property
     def elements(self) -> dict[str, PlantElement]:
-        """InternalElements by their ids, owners before owned."""
-        found: dict[str, PlantElement] = {}
+        """The InternalElements by their ids, owners before owned elements."""
+        elements: dict[str, PlantElement] = {}
         for hierarchy in self._hierarchies:
             for element in self.graph.subtree(hierarchy):
-                one = self._plant_element(element)
-                if one is not None and (one.id not in found or one.instance is not None):
-                    found[one.id] = one
-        return found
+                item = self._make_plant_element(element)
+                if item is not None and (item.id not in elements or item.instance is not None):
+                    elements[item.id] = item
+        return elements
 
-    def _plant_element(self, element: Element) -> PlantElement | None:
+    def _make_plant_element(self, element: Element) -> PlantElement | None:
         graph = self.graph
         if element.kind is Kind.INSTANCE:
             part = graph.target(element, Edge.REPRESENTS)
@@ -66,97 +66,99 @@ class Plant:
             id = part.id if part is not None and is_shadow else element.id
             block = graph.target(element, Edge.INSTANCE_OF)
             return PlantElement(id, element, part, element, block, element.owner or "")
-        if element.kind is Kind.PROPERTY and element.role == "part" and not self._valued(element):
+        if (
+            element.kind is Kind.PROPERTY
+            and element.role == "part"
+            and not self._has_instance(element)
+        ):
             block = query.type_of(graph, element)
             return PlantElement(element.id, element, element, None, block, element.owner or "")
         return None
 
-    def _valued(self, part: Element) -> bool:
-        """Whether an instance stands for the part, or for what it redefines there."""
+    def _has_instance(self, part: Element) -> bool:
+        """Return whether an instance represents the part or a feature that it redefines."""
         parts = [part, *query.redefined_features(self.graph, part)]
-        users = (one for p in parts for one in self.graph.sources(p, Edge.REPRESENTS))
-        return any(one.kind is Kind.INSTANCE for one in users)
+        sources = (source for p in parts for source in self.graph.sources(p, Edge.REPRESENTS))
+        return any(source.kind is Kind.INSTANCE for source in sources)
 
     @cached_property
     def _by_graph_id(self) -> dict[str, list[PlantElement]]:
-        found: dict[str, list[PlantElement]] = {}
-        for one in self.elements.values():
-            found.setdefault(one.element.id, []).append(one)
-            if one.part is not None and one.part is not one.element:
-                found.setdefault(one.part.id, []).append(one)
-        return found
+        index: dict[str, list[PlantElement]] = {}
+        for item in self.elements.values():
+            index.setdefault(item.element.id, []).append(item)
+            if item.part is not None and item.part is not item.element:
+                index.setdefault(item.part.id, []).append(item)
+        return index
 
     @cached_property
     def _by_block(self) -> dict[str, list[PlantElement]]:
-        found: dict[str, list[PlantElement]] = {}
-        for one in self.elements.values():
-            for id in () if one.block is None else self.family(one.block):
-                found.setdefault(id, []).append(one)
-        return found
+        index: dict[str, list[PlantElement]] = {}
+        for item in self.elements.values():
+            for id in () if item.block is None else self.class_ids(item.block):
+                index.setdefault(id, []).append(item)
+        return index
 
-    def meant_by(self, element: Element) -> list[PlantElement]:
-        """What an element of the graph stands for in the plant.
+    def find_represented(self, element: Element) -> list[PlantElement]:
+        """Return the InternalElements that an element of the graph represents.
 
-        A part of a class may stand for several InternalElements, a class for all of its kind.
+        A part of a class can represent several of them, and a class all of its kind.
         """
         exact = self.elements.get(element.id)
         if exact is not None:
             return [exact]
         return self._by_graph_id.get(element.id) or self._by_block.get(element.id, [])
 
-    def with_id(self, text: str) -> PlantElement | None:
-        """The InternalElement with an id; braces and case count only when two differ in them."""
-        return self.elements.get(text) or self._by_plain_id.get(_plain(text))
+    def find_by_id(self, text: str) -> PlantElement | None:
+        """Return the InternalElement with an id, if necessary ignoring braces and case."""
+        return self.elements.get(text) or self._by_normalised_id.get(_normalise_id(text))
 
     @cached_property
-    def _by_plain_id(self) -> dict[str, PlantElement]:
-        return {_plain(id): one for id, one in self.elements.items()}
+    def _by_normalised_id(self) -> dict[str, PlantElement]:
+        return {_normalise_id(id): item for id, item in self.elements.items()}
 
-    def family(self, block: Element) -> frozenset[str]:
-        """Ids of a block, of all that it specialises, and of the role classes that it realises."""
-        known = self._families.get(block.id)
-        if known is None:
-            known = self._families[block.id] = frozenset(one.id for one in self.kin(block))
-        return known
+    def class_ids(self, block: Element) -> frozenset[str]:
+        """Return the ids of ``classes`` of a block."""
+        if block.id not in self._class_ids:
+            self._class_ids[block.id] = frozenset(item.id for item in self.classes(block))
+        return self._class_ids[block.id]
 
-    def kin(self, block: Element) -> list[Element]:
-        """The block, what it specialises, the role classes that these realise; nearest first."""
-        known = self._kin.get(block.id)
-        if known is None:
+    def classes(self, block: Element) -> list[Element]:
+        """Return a block, its generals, and the role classes that these realise, nearest first."""
+        if block.id not in self._classes:
             classes = [block, *query.generals(self.graph, block)]
-            roles = [role for one in classes for role in self.graph.targets(one, Edge.REALIZES)]
-            above = [up for role in roles for up in (role, *query.generals(self.graph, role))]
-            known = self._kin[block.id] = list(dict.fromkeys([*classes, *above]))
-        return known
+            roles = [role for item in classes for role in self.graph.targets(item, Edge.REALIZES)]
+            for role in roles:
+                classes += [role, *query.generals(self.graph, role)]
+            self._classes[block.id] = list(dict.fromkeys(classes))
+        return self._classes[block.id]
 
-    def name_of(self, one: PlantElement) -> str:
-        """Qualified name in the hierarchy, in the words of the plant."""
-        return self.graph.qualified_name(one.element)
+    def name_of(self, item: PlantElement) -> str:
+        """Return the qualified name of an InternalElement in its hierarchy."""
+        return self.graph.qualified_name(item.element)
 
-    def around(self, one: PlantElement) -> Iterator[PlantElement]:
-        """The InternalElements around one, nearest first."""
-        above = self.graph.owner(one.element)
-        seen = {one.id}
-        while above is not None:
-            found = self._holder(above)
-            if found is not None and found.id not in seen:
-                seen.add(found.id)
-                yield found
-                above = self.graph.owner(found.element)
-            else:
-                above = self.graph.owner(above)
+    def iter_owners(self, item: PlantElement) -> Iterator[PlantElement]:
+        """Iterate over the InternalElements that contain an InternalElement, nearest first."""
+        element = self.graph.owner(item.element)
+        visited = {item.id}
+        while element is not None:
+            owner = self._find_owner(element)
+            if owner is not None and owner.id not in visited:
+                visited.add(owner.id)
+                yield owner
+                element = owner.element
+            element = self.graph.owner(element)
 
-    def _holder(self, element: Element) -> PlantElement | None:
-        """The InternalElement that an owner is, or whose own class it is."""
-        found = self._by_graph_id.get(element.id, [])
-        if not found and element.subkind == "internal-element":
-            found = [
-                one
-                for one in self._by_block.get(element.id, [])
-                if one.block is element or one.block is None
+    def _find_owner(self, element: Element) -> PlantElement | None:
+        """Return the InternalElement that *element* represents, or whose own class it is."""
+        candidates = self._by_graph_id.get(element.id, [])
+        if not candidates and element.subkind == "internal-element":
+            candidates = [
+                item
+                for item in self._by_block.get(element.id, [])
+                if item.block is element or item.block is None
             ]
-        return found[0] if found else None
+        return candidates[0] if candidates else None
 
 
-def _plain(id: str) -> str:
+def _normalise_id(id: str) -> str:
     return id.strip("{} ").casefold()

@@ -1,4 +1,4 @@
-"""Which element of the plant is which machine of a recipe, and offers what (thesis 3.2).
+"""The mapping of recipes to a plant: machines, and offers of services (thesis 3.2).
 
 The JSON form is described by metamodels/sysmlc-platform.schema.json.
 """
@@ -7,10 +7,10 @@ from msgspec import Struct
 
 
 class Binding(Struct, frozen=True):
-    """A machine stands for an element of the plant.
+    """A machine of a recipe is an element of the plant.
 
-    ``how`` is ``itself``, ``id``, ``tag``, ``allocation`` or ``overlay``; ``by`` is the id of
-    what says so in the graph.
+    ``how`` is ``itself``, ``id``, ``tag``, ``allocation`` or ``overlay``; ``by`` is the id of the
+    element of the graph that states it.
     """
 
     machine: str
@@ -23,7 +23,7 @@ class Offer(Struct, frozen=True):
     """An element of the plant offers a service by an operation.
 
     ``machine`` is empty when the service needs none. ``how`` is ``name``, ``method``, ``call``,
-    ``allocation`` or ``overlay``; ``by`` is the id of what says so.
+    ``allocation`` or ``overlay``; ``by`` is the id of the element that states it.
     """
 
     service: str
@@ -44,7 +44,7 @@ class Used(Struct, frozen=True):
 
 
 class Unused(Struct, frozen=True):
-    """An element of the plant that no recipe uses, with so many below it."""
+    """An element of the plant that no recipe uses; ``contents`` counts the elements below it."""
 
     id: str
     name: str

@@ -1,35 +1,35 @@
-"""The rules that a schema cannot say, REC001 to REC012 (SM601 to SM612) and their neighbours."""
+"""Validation of recipe models beyond their schema: REC001 to REC012 (SM601 to SM612) and more."""
 
 from sysmlc.diagnostics import Sink
 from sysmlc.recipe import check_bindings, check_data, check_graphs, check_tasks, check_times
-from sysmlc.recipe.checks import Check, Locate, tell
+from sysmlc.recipe.checks import Check, Locate, report_findings
 from sysmlc.recipe.derive import Tables
 from sysmlc.recipe.model import Model
 
 CHECKS: tuple[Check, ...] = (
-    check_tasks.references,
-    check_tasks.order,
-    check_graphs.ways,
-    check_graphs.nesting,
-    check_data.guards,
-    check_data.names,
-    check_data.readable,
-    check_tasks.machines,
-    check_times.task_times,
-    check_times.groups,
-    check_times.releases,
-    check_times.bounds,
-    check_bindings.materials,
-    check_bindings.calls,
+    check_tasks.check_references,
+    check_tasks.check_precedence,
+    check_graphs.check_paths,
+    check_graphs.check_nesting,
+    check_data.check_guards,
+    check_data.check_names,
+    check_data.check_expressions,
+    check_tasks.check_machines,
+    check_times.check_task_times,
+    check_times.check_groups,
+    check_times.check_releases,
+    check_times.check_bounds,
+    check_bindings.check_materials,
+    check_bindings.check_opc_ua_calls,
 )
 
 
 def validate(model: Model, sink: Sink, locate: Locate, tolerance: float = 0.1) -> None:
-    """Report what is wrong with a recipe model; ``locate`` turns element ids into subjects.
+    """Report the violations of a recipe model; *locate* turns element ids into subjects.
 
-    ``tolerance`` is the share by which function times may differ from service times.
+    *tolerance* is the share by which function times may differ from service times.
     """
-    tables = Tables.of(model)
+    tables = Tables.from_model(model)
     for check in CHECKS:
-        tell(check(model, tables), sink, locate)
-    tell(check_times.service_times(model, tables, tolerance), sink, locate)
+        report_findings(check(model, tables), sink, locate)
+    report_findings(check_times.check_service_times(model, tables, tolerance), sink, locate)

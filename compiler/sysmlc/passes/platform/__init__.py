@@ -63,11 +63,11 @@ def _unused(context: Context, used: Iterable[PlantElement]) -> list[Unused]:
     """The topmost elements that are not used, hold nothing used, and are in nothing used."""
     plant = context.plant
     inside = {one.id for one in used}
-    holding = inside | {up.id for one in used for up in plant.around(one)}
+    holding = inside | {up.id for one in used for up in plant.iter_owners(one)}
     tops: dict[str, int] = {}
     top_of: dict[str, str | None] = {}
     for one in plant.elements.values():
-        above = next(plant.around(one), None)
+        above = next(plant.iter_owners(one), None)
         if one.id in holding:
             top_of[one.id] = None
         elif above is None or above.id in holding - inside:

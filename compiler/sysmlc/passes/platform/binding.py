@@ -38,8 +38,8 @@ def _statements(context: Context, machine: Machine) -> Iterator[tuple[PlantEleme
     graph = context.graph
     element = graph[machine.element]
     if context.plant and is_of_plant(graph, element):
-        yield from ((one, "itself", element.id) for one in context.plant.meant_by(element))
-    by_id = context.plant.with_id(machine.aml_id) if machine.aml_id else None
+        yield from ((one, "itself", element.id) for one in context.plant.find_represented(element))
+    by_id = context.plant.find_by_id(machine.aml_id) if machine.aml_id else None
     if by_id is not None:
         yield by_id, "id", element.id
     for target, how, by in of_machine(graph, machine):

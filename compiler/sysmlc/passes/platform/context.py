@@ -125,7 +125,7 @@ class Context:
     def meant(self, element: Element) -> list[PlantElement]:
         """Elements of the plant that an element of the graph stands for."""
         if self.plant:
-            return self.plant.meant_by(element)
+            return self.plant.find_represented(element)
         if not is_structure(element) or self.is_machine(element):
             return []
         is_class = element.kind in (Kind.CLASS, Kind.COMPONENT)

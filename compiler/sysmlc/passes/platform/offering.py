@@ -94,7 +94,7 @@ _Answer = tuple[_Found | None, tuple[Element, str] | None]
 
 def _operation(context: Context, service: Service, block: Element, said: list[_Found]) -> _Answer:
     """The operation of a block that offers the service, or why the one of its name does not."""
-    kin = context.plant.family(block)
+    kin = context.plant.class_ids(block)
     for one in said:
         if one.operation.owner in kin:
             return one, None
@@ -110,7 +110,7 @@ def _operation(context: Context, service: Service, block: Element, said: list[_F
 
 
 def _operations(context: Context, block: Element) -> Iterator[Element]:
-    for one in context.plant.kin(block):
+    for one in context.plant.classes(block):
         yield from (own for own in context.graph.owned(one) if own.kind is Kind.OPERATION)
 
 

@@ -18,7 +18,7 @@ from sysmlc.passes.recipe.nodes import (
 )
 from sysmlc.passes.recipe.regions import entries, exits, is_for_each, is_inlined, steps_in
 from sysmlc.recipe.expression import Apply, Expr, Lit
-from sysmlc.recipe.flow import in_order, reachable
+from sysmlc.recipe.flow import find_reachable, sort_nodes
 from sysmlc.recipe.loops import with_loops
 from sysmlc.recipe.model import FlowEdge, FlowGraph, Node
 
@@ -194,7 +194,7 @@ def _sorted(graph: FlowGraph) -> FlowGraph:
     """Nodes in the order of execution, edges in that of their ends, whatever the model's order."""
     by_id = {node.id: node for node in sorted(graph.nodes, key=lambda node: node.id)}
     graph = replace(graph, nodes=tuple(by_id.values()))
-    rank = {id: number for number, id in enumerate(in_order(graph))}
+    rank = {id: number for number, id in enumerate(sort_nodes(graph))}
     edges = sorted(graph.edges, key=lambda e: (rank[e.source], rank[e.target], e.text, e.item))
     nodes = sorted(graph.nodes, key=lambda node: rank[node.id])
     return replace(graph, nodes=tuple(nodes), edges=tuple(edges))
@@ -239,7 +239,7 @@ def _object_edges(
             continue
         for target in _behind(context, flow, draft):
             edge = _edge(context, flow, source, target, data, draft)
-            if edge.target not in reachable([edge.source], ordered):
+            if edge.target not in find_reachable([edge.source], ordered):
                 yield edge
 
 

@@ -9,8 +9,8 @@ from sysmlc.ir import Element, Kind, query
 from sysmlc.passes.recipe.context import Context
 from sysmlc.passes.recipe.features import member, value, value_type
 from sysmlc.passes.recipe.machines import opcua_node
-from sysmlc.recipe.checks import graphs
-from sysmlc.recipe.expression import Expr, variables
+from sysmlc.recipe.checks import iter_graphs
+from sysmlc.recipe.expression import Expr, iter_variables
 from sysmlc.recipe.model import (
     MachineVariable,
     Model,
@@ -27,7 +27,7 @@ def with_variables(context: Context, model: Model) -> Model:
     spoken: dict[str, set[str]] = {}
     for parameters, expressions in _scopes(model):
         machines = dict(_machines(parameters))
-        for name in (name for one in expressions for name in variables(one)):
+        for name in (name for one in expressions for name in iter_variables(one)):
             head, _, rest = name.partition(".")
             if rest and head in machines:
                 spoken.setdefault(machines[head], set()).add(rest)
@@ -50,7 +50,7 @@ def _scopes(model: Model) -> Iterator[tuple[tuple[Parameter, ...], list[Expr]]]:
     recipe: Recipe = model.recipe
     bound = [value for task in recipe.tasks for _, value in task.bind]
     yield (*recipe.inputs, *recipe.variables), bound
-    for graph in graphs(model):
+    for graph in iter_graphs(model):
         found = [value for node in graph.nodes for _, value in node.bind]
         found += [node.expression for node in graph.nodes if node.expression is not None]
         found += [edge.guard for edge in graph.edges if edge.guard is not None]
