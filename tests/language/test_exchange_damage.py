@@ -8,7 +8,7 @@ from test_exchange_projects import archive
 from v2_trees import interchange, owning, relating
 
 from sysmlc.diagnostics import Sink
-from sysmlc.language.formatter import layout
+from sysmlc.language.formatter import format_text
 from sysmlc.language.interchange import link, open_archive, read, write
 from sysmlc.language.text import parse
 from sysmlc.sources import Source, SourceError
@@ -92,8 +92,8 @@ def test_damaged_texts_are_laid_out_or_left_alone():
         text, sink = damaged(TEXT, seed), Sink()
         parse(text, "m.sysml", "sysml", sink)
         if not sink.has_errors():
-            made = layout(text, "sysml")
-            assert layout(made, "sysml") == made
+            made = format_text(text, "sysml")
+            assert format_text(made, "sysml") == made
             done += 1
     assert done > 5
 

@@ -3,7 +3,7 @@
 import pytest
 
 from sysmlc.diagnostics import Sink
-from sysmlc.language.formatter import layout
+from sysmlc.language.formatter import format_text
 from sysmlc.language.text import parse
 
 CASES = {
@@ -162,8 +162,8 @@ package P {
 
 @pytest.mark.parametrize(("given", "expected"), CASES.values(), ids=CASES)
 def test_layout(given, expected):
-    assert layout(given, "sysml") == expected
-    assert layout(expected, "sysml") == expected
+    assert format_text(given, "sysml") == expected
+    assert format_text(expected, "sysml") == expected
 
 
 def test_kerml_has_its_own_words():
@@ -176,7 +176,7 @@ class A specializes B {
     }
 }
 """
-    assert layout(given, "kerml") == expected
+    assert format_text(given, "kerml") == expected
 
 
 def test_long_members_are_broken_at_clauses():
@@ -184,7 +184,7 @@ def test_long_members_are_broken_at_clauses():
         "part theWholeProductionLine : ProductionLineOfTheSecondHall[1..*] ordered :> "
         "everyProductionLine, everythingThatMoves redefines formerProductionLine;"
     )
-    assert layout(given, "sysml") == (
+    assert format_text(given, "sysml") == (
         "part theWholeProductionLine : ProductionLineOfTheSecondHall[1..*] ordered\n"
         "        :> everyProductionLine, everythingThatMoves redefines formerProductionLine;\n"
     )
@@ -192,7 +192,7 @@ def test_long_members_are_broken_at_clauses():
 
 def test_long_expressions_are_broken_outside_of_parentheses():
     given = f"attribute total = {' + '.join(f'part{i}.weightOf({i}, mass)' for i in range(8))};"
-    lines = layout(given, "sysml").splitlines()
+    lines = format_text(given, "sysml").splitlines()
     assert all(len(line) <= 100 for line in lines)
     assert [line.strip()[0] for line in lines[1:]] == ["+"] * (len(lines) - 1)
 
@@ -202,7 +202,7 @@ def test_long_body_expressions_get_lines():
         "attribute total = collection->select {in item : SomethingThatHasAWeight; "
         "item.weight > theLowestWeight}->size();"
     )
-    assert layout(given, "sysml") == (
+    assert format_text(given, "sysml") == (
         "attribute total = collection->select {\n"
         "    in item : SomethingThatHasAWeight;\n"
         "    item.weight > theLowestWeight\n"
@@ -211,18 +211,18 @@ def test_long_body_expressions_get_lines():
 
 
 def test_line_ends_are_kept():
-    assert layout("package P {\r\n}\r\n", "sysml") == "package P {}\r\n"
-    assert layout("part a;\r\npart b;\r\npart c;\n", "sysml").count("\r\n") == 3
+    assert format_text("package P {\r\n}\r\n", "sysml") == "package P {}\r\n"
+    assert format_text("part a;\r\npart b;\r\npart c;\n", "sysml").count("\r\n") == 3
 
 
 @pytest.mark.parametrize("text", ["", "\n\n", "// note", "/* comment */"])
 def test_small_texts(text):
-    assert layout(text, "sysml") == text.strip() + ("\n" if text.strip() else "")
+    assert format_text(text, "sysml") == text.strip() + ("\n" if text.strip() else "")
 
 
 def test_texts_and_names_keep_what_is_in_them():
     text = "attribute 'a  b' = \"x  {;}  // no note\";\n"
-    assert layout(text, "sysml") == text
+    assert format_text(text, "sysml") == text
 
 
 # -- the corpus ----------------------------------------------------------------------------------
@@ -269,8 +269,8 @@ def test_files_of_the_corpus_stay_what_they_are(corpus):
     assert len(paths) == 312
     for path in paths:
         text, language, sink = path.read_bytes().decode(), path.suffix[1:], Sink()
-        made = layout(text, language)
-        assert layout(made, language) == made, path
+        made = format_text(text, language)
+        assert format_text(made, language) == made, path
         before, after = (shape(parse(one, "m", language, sink)) for one in (text, made))
         assert (before == after, len(sink)) == (True, 0), path
 
@@ -283,8 +283,8 @@ def test_models_of_the_pilot_stay_what_they_are(corpus):
         language = "kerml" if ".kerml" in path.name else "sysml"
         before = parse(text, "m", language, sink)
         if not sink.has_errors():
-            made = layout(text, language)
-            assert layout(made, language) == made, path
+            made = format_text(text, language)
+            assert format_text(made, language) == made, path
             assert shape(parse(made, "m", language, sink)) == shape(before), path
             done += 1
     assert done > 400
@@ -298,7 +298,7 @@ def test_lines_of_the_corpus_fit(corpus):
     lines = [
         line
         for path in paths
-        for line in layout(path.read_text(encoding="utf-8"), "sysml").splitlines()
+        for line in format_text(path.read_text(encoding="utf-8"), "sysml").splitlines()
     ]
     long = [line for line in lines if len(line) > 100 and not line.strip().startswith(("*", "/"))]
     assert [line for line in long if '"' not in line and "//" not in line] == []

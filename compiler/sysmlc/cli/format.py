@@ -144,7 +144,7 @@ def _formatted(name: str, path: Path | None, data: bytes, language: str) -> _Tex
     """The text laid out, or the findings of the parser."""
     from sysmlc.diagnostics import Sink
     from sysmlc.diagnostics.render import make_report
-    from sysmlc.language.formatter import layout
+    from sysmlc.language.formatter import format_text
     from sysmlc.language.text import parse
     from sysmlc.sources import Source
 
@@ -153,7 +153,7 @@ def _formatted(name: str, path: Path | None, data: bytes, language: str) -> _Tex
     parse(before, name, language, sink, source)
     if sink.has_errors():
         return _Text(name, path, before, None, tuple(make_report(sink, [source]).findings))
-    return _Text(name, path, before, layout(before, language))
+    return _Text(name, path, before, format_text(before, language))
 
 
 def _show(findings: "list[Finding]") -> None:

@@ -1,30 +1,31 @@
-"""The canonical layout of a text in KerML or SysML v2."""
+"""The formatter of KerML and SysML v2: text in canonical layout."""
 
 from sysmlc.language.formatter.printer import Printer
-from sysmlc.language.formatter.statements import statements, tokens, words
+from sysmlc.language.formatter.statements import group_statements, iter_meaning, read_tokens
+from sysmlc.language.text.lalr import load_tables
 
 
-def layout(text: str, language: str) -> str:
-    """The text in canonical layout; ``language`` is ``kerml`` or ``sysml``.
+def format_text(text: str, language: str) -> str:
+    """Return the text in canonical layout; ``language`` is ``kerml`` or ``sysml``.
 
-    Four spaces for each body, one member a line, one blank line at most where there were some,
-    lines of 100 characters where tokens allow, comments and notes moved with what they belong
-    to. Tokens, comments and notes stay what they are; line ends are those of most lines. The
-    text must have no syntax errors. Raises ValueError when a token would become another one,
-    which is a fault of ours.
+    The layout has four spaces for each body, one member a line, at most one blank line in a row,
+    and lines of 100 characters where tokens allow. Comments and notes move with what they belong
+    to. Tokens, comments and notes do not change, and the line ends are those of most lines.
+
+    The text must have no syntax errors. Raises ValueError if a token would change, which is a fault
+    of the formatter.
     """
-    from sysmlc.language.text import lalr
 
-    types = lalr.load_tables(language).types
-    ends = "\r\n" if 2 * text.count("\r\n") > text.count("\n") else "\n"
+    types = load_tables(language).types
+    line_end = "\r\n" if 2 * text.count("\r\n") > text.count("\n") else "\n"
     plain = text.replace("\r\n", "\n").replace("\r", "\n")
-    found = tokens(plain, types)
+    source_tokens = read_tokens(plain, types)
     printer = Printer()
-    printer.body(*statements(found), "")
-    made = "".join(f"{line}\n" for line in printer.lines)
-    if list(words(tokens(made, types))) != list(words(found)):
+    printer.print_body(*group_statements(source_tokens), "")
+    formatted = "".join(f"{line}\n" for line in printer.lines)
+    if list(iter_meaning(read_tokens(formatted, types))) != list(iter_meaning(source_tokens)):
         raise ValueError("the layout would change the text")
-    return made.replace("\n", ends)
+    return formatted.replace("\n", line_end)
 
 
-__all__ = ["layout"]
+__all__ = ["format_text"]

@@ -1,95 +1,101 @@
-"""Statements as lines: indentation, wrapping, comments and notes."""
+"""Printer of statements: indentation, wrapping, comments and notes.
+
+The text of a comment excludes the white space at the start of its lines and the asterisk there
+(KerML 8.2.3.3.2), so both may be moved without changing the comment.
+"""
 
 from collections.abc import Iterator, Sequence
 
 from sysmlc.language.formatter.spacing import Piece, Spacing
 from sysmlc.language.formatter.statements import Block, Note, Sort, Statement, Token
 
-_BLANK = " \t\f\v"
-_TAB = 4
+_WHITE_SPACE = " \t\f\v"
+_TAB_WIDTH = 4
 
 
-def lines(text: str, column: int, indent: str) -> list[str]:
-    """The lines of a comment that started in ``column`` and now starts after ``indent``."""
+def reindent_comment(text: str, column: int, indent: str) -> list[str]:
+    """Return the lines of a comment that is moved from ``column`` to after ``indent``."""
     first, *rest = text.split("\n")
     if not rest:
         return [indent + text]
-    opening = first if first.strip("/*" + _BLANK) else first.rstrip(_BLANK)
+    opening = first if first.strip("/*" + _WHITE_SPACE) else first.rstrip(_WHITE_SPACE)
     *middle, last = rest
-    if all(_is_starred(line) for line in middle) and _is_starred(last.removesuffix("*/")):
-        moved = [_starred(line, indent) for line in middle]
-        closing = _starred(last, indent)
+    if all(_has_asterisk(line) for line in middle) and _has_asterisk(last.removesuffix("*/")):
+        moved_lines = [_indent_starred(line, indent) for line in middle]
+        closing = _indent_starred(last, indent)
     else:
-        is_bare = not last.removesuffix("*/").strip(_BLANK)
-        filled = filter(str.strip, middle if is_bare else rest)
-        shift = len(indent) - min([column, *map(_before, filled)])
-        moved = [_shifted(line, shift) for line in middle]
-        closing = f"{indent} */" if is_bare else _shifted(last, shift)
-    return [indent + opening, *moved, closing]
+        is_closing_bare = not last.removesuffix("*/").strip(_WHITE_SPACE)
+        filled_lines = filter(str.strip, middle if is_closing_bare else rest)
+        shift = len(indent) - min([column, *map(_count_indent, filled_lines)])
+        moved_lines = [_shift_line(line, shift) for line in middle]
+        closing = f"{indent} */" if is_closing_bare else _shift_line(last, shift)
+    return [indent + opening, *moved_lines, closing]
 
 
-def _is_starred(line: str) -> bool:
-    bare = line.lstrip(_BLANK)
-    return not bare or bare.startswith("*")
+def _has_asterisk(line: str) -> bool:
+    stripped = line.lstrip(_WHITE_SPACE)
+    return not stripped or stripped.startswith("*")
 
 
-def _starred(line: str, indent: str) -> str:
-    bare = line.lstrip(_BLANK)
-    if not bare:
+def _indent_starred(line: str, indent: str) -> str:
+    stripped = line.lstrip(_WHITE_SPACE)
+    if not stripped:
         return ""
-    if bare in ("*", "* "):
+    if stripped in ("*", "* "):
         return f"{indent} *"
-    return f"{indent} {bare}"
+    return f"{indent} {stripped}"
 
 
-def _shifted(line: str, shift: int) -> str:
-    bare = line.lstrip(_BLANK)
-    return " " * max(0, _before(line) + shift) + bare if bare else ""
+def _shift_line(line: str, shift: int) -> str:
+    stripped = line.lstrip(_WHITE_SPACE)
+    return " " * max(0, _count_indent(line) + shift) + stripped if stripped else ""
 
 
-def _before(line: str) -> int:
-    """Columns before the first character of a line."""
-    return len(line[: len(line) - len(line.lstrip(_BLANK))].expandtabs(_TAB))
+def _count_indent(line: str) -> int:
+    """Return the number of columns before the first character of a line."""
+    return len(line[: len(line) - len(line.lstrip(_WHITE_SPACE))].expandtabs(_TAB_WIDTH))
 
 
 WIDTH = 100
-"""Characters of a line, its indentation included."""
+"""Maximal length of a line, including its indentation."""
 
 
-def wrapped(pieces: Sequence[Piece], first: str, rest: str) -> list[str]:
-    """The pieces in lines: the first starts with ``first``, what goes on with ``rest``."""
-    found: list[str] = []
-    indent = first
+def wrap_pieces(pieces: Sequence[Piece], first_indent: str, next_indent: str) -> list[str]:
+    """Return the pieces as lines: the first with ``first_indent``, others with ``next_indent``."""
+    lines: list[str] = []
+    indent = first_indent
     start = 0
     while start < len(pieces):
-        end = _end(pieces, start, len(indent))
-        found.append(indent + flat(pieces[start:end]))
-        indent, start = rest, end
-    return found
+        end = _find_line_end(pieces, start, len(indent))
+        lines.append(indent + join_pieces(pieces[start:end]))
+        indent, start = next_indent, end
+    return lines
 
 
-def flat(pieces: Sequence[Piece]) -> str:
-    """The pieces in one line."""
-    return "".join(p.space + p.text if i else p.text for i, p in enumerate(pieces))
+def join_pieces(pieces: Sequence[Piece]) -> str:
+    """Return the pieces in one line."""
+    return "".join(
+        piece.space + piece.text if index else piece.text for index, piece in enumerate(pieces)
+    )
 
 
-def _end(pieces: Sequence[Piece], start: int, used: int) -> int:
-    """Where the line that begins with piece ``start`` ends."""
-    best, rank = 0, 0
+def _find_line_end(pieces: Sequence[Piece], start: int, width: int) -> int:
+    """Return the end of the line that begins with piece ``start``."""
+    best_end, best_rank = 0, 0
     for index in range(start, len(pieces)):
         piece = pieces[index]
         space = piece.space if index > start else ""
         if (
             index > start
             and piece.rank is not None
-            and _fits(used)
-            and (not best or piece.rank <= rank)
+            and _fits(width)
+            and (not best_end or piece.rank <= best_rank)
         ):
-            best, rank = index, piece.rank
-        used += len(space) + _width(piece.text)
-        if used > WIDTH and best:
-            return best
-        if used > WIDTH and index > start and piece.rank is not None:
+            best_end, best_rank = index, piece.rank
+        width += len(space) + _last_line_width(piece.text)
+        if width > WIDTH and best_end:
+            return best_end
+        if width > WIDTH and index > start and piece.rank is not None:
             return index
     return len(pieces)
 
@@ -98,7 +104,7 @@ def _fits(used: int) -> bool:
     return used <= WIDTH
 
 
-def _width(text: str) -> int:
+def _last_line_width(text: str) -> int:
     return len(text) - text.rfind("\n") - 1
 
 
@@ -111,144 +117,144 @@ class Printer:
     def __init__(self) -> None:
         self.lines: list[str] = []
 
-    def body(self, found: Sequence[Statement], end: Token, indent: str) -> None:
-        """The statements of a body, and the notes before its end."""
+    def print_body(self, statements: Sequence[Statement], end: Token, indent: str) -> None:
+        """Print the statements of a body, and the notes before its end."""
         is_first = True
-        for statement in found:
-            self._before(_opening(statement), indent, is_first=is_first)
-            _Statement(self, statement, indent).print()
+        for statement in statements:
+            self._print_before(_find_first_token(statement), indent, is_first=is_first)
+            _StatementPrinter(self, statement, indent).print()
             is_first = False
-        self._notes(end.notes, indent, is_first=is_first)
+        self._print_notes(end.notes, indent, is_first=is_first)
 
-    def _before(self, token: Token, indent: str, *, is_first: bool) -> None:
-        """Notes and the blank line before a statement."""
-        self._notes(token.notes, indent, is_first=is_first)
-        own = any(not note.is_trailing for note in token.notes)
-        if token.after_blank and (own or not is_first):
+    def _print_before(self, token: Token, indent: str, *, is_first: bool) -> None:
+        """Print the notes and the blank line before a statement."""
+        self._print_notes(token.notes, indent, is_first=is_first)
+        has_own_line = any(not note.is_trailing for note in token.notes)
+        if token.after_blank and (has_own_line or not is_first):
             self.lines.append("")
 
-    def _notes(self, notes: Sequence[Note], indent: str, *, is_first: bool) -> None:
+    def _print_notes(self, notes: Sequence[Note], indent: str, *, is_first: bool) -> None:
         for note in notes:
             if note.is_trailing:
-                self.trail(note)
+                self.append_note(note)
                 continue
             if note.after_blank and not is_first:
                 self.lines.append("")
-            self.own_line(note, indent)
+            self.print_note(note, indent)
             is_first = False
 
-    def trail(self, note: Note) -> None:
-        """Put a note at the end of the last line."""
+    def append_note(self, note: Note) -> None:
+        """Append a note to the last line."""
         self.lines[-1] += f" {note.text}"
 
-    def own_line(self, note: Note, indent: str) -> None:
-        """Put a note on lines of its own."""
-        self.lines += lines(note.text, note.column, indent)
+    def print_note(self, note: Note, indent: str) -> None:
+        """Print a note on lines of its own."""
+        self.lines += reindent_comment(note.text, note.column, indent)
 
 
-class _Statement:
+class _StatementPrinter:
     """Prints one statement."""
 
     def __init__(self, printer: Printer, statement: Statement, indent: str) -> None:
         self._printer = printer
         self._items = statement
         self._indent = indent
-        self._first = indent
-        self._rest = indent + 2 * _STEP
+        self._first_indent = indent
+        self._next_indent = indent + 2 * _STEP
         self._pieces: list[Piece] = []
         self._spacing = Spacing()
-        self._is_flat = _is_flat(statement, indent)
+        self._keeps_expressions_on_line = _fits_on_line(statement, indent)
 
     def print(self) -> None:
         for index, item in enumerate(self._items):
             if isinstance(item, Token):
-                self._token(item, is_first=index == 0)
-            elif item.is_expression and self._is_flat:
-                for token in _flattened(item):
-                    self._pieces.append(self._spacing.piece(token))
+                self._add_token(item, is_first=index == 0)
+            elif item.is_expression and self._keeps_expressions_on_line:
+                for token in _iter_tokens(item):
+                    self._pieces.append(self._spacing.add_token(token))
             else:
-                self._block(item, is_first=index == 0)
+                self._print_block(item, is_first=index == 0)
         self._flush()
 
-    def _token(self, token: Token, *, is_first: bool) -> None:
+    def _add_token(self, token: Token, *, is_first: bool) -> None:
         if not is_first:
-            self._between(token.notes)
+            self._print_notes_between(token.notes)
         if token.sort is Sort.COMMENT and "\n" in token.text:
             self._flush()
-            self._printer.lines += lines(token.text, token.column, self._indent)
+            self._printer.lines += reindent_comment(token.text, token.column, self._indent)
         else:
-            self._pieces.append(self._spacing.piece(token))
+            self._pieces.append(self._spacing.add_token(token))
 
-    def _between(self, notes: Sequence[Note]) -> None:
-        """Notes within a statement end the line."""
+    def _print_notes_between(self, notes: Sequence[Note]) -> None:
+        """Print notes within a statement, which end the line."""
         for note in notes:
             self._flush()
             if note.is_trailing:
-                self._printer.trail(note)
+                self._printer.append_note(note)
             else:
-                self._printer.own_line(note, self._rest)
-            self._first = self._rest
+                self._printer.print_note(note, self._next_indent)
+            self._first_indent = self._next_indent
 
-    def _block(self, block: Block, *, is_first: bool) -> None:
-        self._token(block.opening, is_first=is_first)
+    def _print_block(self, block: Block, *, is_first: bool) -> None:
+        self._add_token(block.opening, is_first=is_first)
         if not block.statements and not block.closing.notes:
             self._pieces.append(Piece("}", "", None))
             self._spacing = Spacing()
-            self._spacing.piece(block.closing)
+            self._spacing.add_token(block.closing)
             return
         self._flush()
-        self._printer.body(block.statements, block.closing, self._indent + _STEP)
-        self._first = self._indent
+        self._printer.print_body(block.statements, block.closing, self._indent + _STEP)
+        self._first_indent = self._indent
         self._spacing = Spacing()
-        self._pieces.append(self._spacing.piece(block.closing))
+        self._pieces.append(self._spacing.add_token(block.closing))
 
     def _flush(self) -> None:
-        """Print the pieces so far; what follows goes on in another line."""
+        """Print the pieces so far; the next pieces begin a new line."""
         if self._pieces:
-            self._printer.lines += wrapped(self._pieces, self._first, self._rest)
-            self._first = self._rest
+            self._printer.lines += wrap_pieces(self._pieces, self._first_indent, self._next_indent)
+            self._first_indent = self._next_indent
             self._pieces = []
 
 
-def _opening(statement: Statement) -> Token:
+def _find_first_token(statement: Statement) -> Token:
     first = statement[0]
     return first.opening if isinstance(first, Block) else first
 
 
-def _is_flat(statement: Statement, indent: str) -> bool:
-    """Whether the body expressions of a statement stand on one line with the rest of it."""
+def _fits_on_line(statement: Statement, indent: str) -> bool:
+    """Whether the body expressions of a statement fit on one line with its head."""
     blocks = [item for item in statement if isinstance(item, Block) and item.is_expression]
-    if not blocks or not all(_has_no_lines(block) for block in blocks):
+    if not blocks or not all(_needs_no_line(block) for block in blocks):
         return False
-    return len(indent) + len(flat(list(_header(statement)))) <= WIDTH
+    return len(indent) + len(join_pieces(list(_iter_header(statement)))) <= WIDTH
 
 
-def _header(statement: Statement) -> Iterator[Piece]:
-    """A statement in one line, up to its first body."""
+def _iter_header(statement: Statement) -> Iterator[Piece]:
+    """Yield the pieces of a statement in one line, up to its first body."""
     spacing = Spacing()
     for item in statement:
         if isinstance(item, Token):
-            yield spacing.piece(item)
+            yield spacing.add_token(item)
         elif item.is_expression:
-            yield from map(spacing.piece, _flattened(item))
+            yield from map(spacing.add_token, _iter_tokens(item))
         else:
-            yield spacing.piece(item.opening)
+            yield spacing.add_token(item.opening)
             return
 
 
-def _has_no_lines(block: Block) -> bool:
+def _needs_no_line(block: Block) -> bool:
     """Whether nothing in a body expression needs a line of its own."""
-    tokens = list(_flattened(block))
+    tokens = list(_iter_tokens(block))
     has_comment = any(token.sort is Sort.COMMENT for token in tokens)
     return not has_comment and not any(token.notes for token in tokens)
 
 
-def _flattened(block: Block) -> Iterator[Token]:
+def _iter_tokens(block: Block) -> Iterator[Token]:
     yield block.opening
     for statement in block.statements:
         for item in statement:
             if isinstance(item, Token):
                 yield item
             else:
-                yield from _flattened(item)
+                yield from _iter_tokens(item)
     yield block.closing

@@ -1,4 +1,4 @@
-"""Where a space stands between two tokens of a statement, and where a long one may be broken."""
+"""Spaces between the tokens of a statement, and ranks of the places where a long one may break."""
 
 from msgspec import Struct
 
@@ -6,12 +6,24 @@ from sysmlc.language.formatter.statements import Sort, Token
 
 _NO_SPACE_BEFORE = {";", ",", ")", "]", ".", "::", "..", ".?", "->"}
 _NO_SPACE_AFTER = {"(", "[", ".", "::", "..", ".?", "->", "$", "~"}
-_TIGHT = {"^", "**"}
+_TIGHT_OPERATORS = {"^", "**"}
 _ARITHMETIC = {"+", "-", "*", "/", "%"}
 _SIGNS = {"+", "-"}
 _PREFIXES = {"@", "#", "~", "-", "+"}
-_VALUES = {"=", ":=", "default", "if", "while", "until", "when", "at", "after", "filter", "assign"}
-"""Tokens after which a declaration has an expression."""
+_BEFORE_VALUE = {
+    "=",
+    ":=",
+    "default",
+    "if",
+    "while",
+    "until",
+    "when",
+    "at",
+    "after",
+    "filter",
+    "assign",
+}
+"""Tokens that an expression follows."""
 _OPERATORS = (
     {"and", "or", "xor", "implies", "??", "==", "!=", "===", "!==", "<", ">", "<=", ">="}
     | {"|", "&", "?", "else"}
@@ -24,13 +36,13 @@ _CLAUSE_WORDS = (
 )
 _CLAUSES = _CLAUSE_WORDS.split()
 _FREE, _COMMA, _OPERATION, _ARROW, _PARENTHESIS, _SPACE = range(6)
-_DEEPER = 10
+_RANKS_PER_LEVEL = 10
 
 
 class Piece(Struct, frozen=True):
-    """A token of a line: what is between it and the one before, how well a line breaks there.
+    """A token of a line: its text, the space before it, and the rank of a line break there.
 
-    ``rank`` is lower where a break is better; None where none may be.
+    A lower ``rank`` is better. It is None where no break is allowed.
     """
 
     text: str
@@ -39,39 +51,39 @@ class Piece(Struct, frozen=True):
 
 
 class Spacing:
-    """Spaces within one statement, token after token."""
+    """The spaces within one statement, token by token."""
 
     def __init__(self) -> None:
         self._before: Token | None = None
         self._is_sign = False
-        self._open: list[str] = []
+        self._open_brackets: list[str] = []
         self._has_value = False
-        self._short_name = 0
+        self._short_name_tokens = 0
 
-    def piece(self, token: Token) -> Piece:
-        """The next token of the statement."""
+    def add_token(self, token: Token) -> Piece:
+        """Return the piece of the next token of the statement."""
         before = self._before
         space = " " if before is not None and self._is_spaced(before, token) else ""
-        rank = self._rank(before, token, space) if before is not None else None
-        self._enter(token)
+        rank = self._rank_break(before, token, space) if before is not None else None
+        self._update_state(token)
         return Piece(token.text, space, rank)
 
-    def _enter(self, token: Token) -> None:
+    def _update_state(self, token: Token) -> None:
         before = self._before
         self._is_sign = token.text in _PREFIXES and not (before is not None and before.is_operand)
         self._is_sign = self._is_sign or (token.text == "#" and self._is_prefix(before))
         if token.text in ("(", "[", "{"):
-            self._open.append(token.text)
-        elif token.text in (")", "]", "}") and self._open:
-            self._open.pop()
-        if token.text in _VALUES:
+            self._open_brackets.append(token.text)
+        elif token.text in (")", "]", "}") and self._open_brackets:
+            self._open_brackets.pop()
+        if token.text in _BEFORE_VALUE:
             self._has_value = True
         elif token.text in (";", "{"):
             self._has_value = False
-        if self._short_name:
-            self._short_name -= 1
+        if self._short_name_tokens:
+            self._short_name_tokens -= 1
         elif token.text == "<" and self._begins_short_name(before):
-            self._short_name = 2
+            self._short_name_tokens = 2
         self._before = token
 
     def _is_prefix(self, before: Token | None) -> bool:
@@ -87,17 +99,17 @@ class Spacing:
             return token.text in ("->", "..") and before.text == ","
         if before.text in _NO_SPACE_AFTER:
             return before.text == "~" and before.sort is Sort.KEYWORD
-        return self._is_spaced_here(before, token)
+        return self._is_spaced_by_context(before, token)
 
     def _in_short_name(self, before: Token, token: Token) -> bool:
-        """Within ``<name>``: two tokens follow the opening bracket without a space."""
-        return self._short_name > 0
+        """Whether the token is in ``<name>``: two tokens follow the bracket without a space."""
+        return self._short_name_tokens > 0
 
-    def _is_spaced_here(self, before: Token, token: Token) -> bool:
+    def _is_spaced_by_context(self, before: Token, token: Token) -> bool:
         if token.text == "(":
             return before.sort is not Sort.NAME and before.text not in (")", "]", "#")
         if token.text == "[":
-            return self._is_quantity(before)
+            return self._is_unit_bracket(before)
         if token.text == "#" and before.is_operand and self._has_operand_index(before):
             return False
         if before.text == "{" or token.text == "}":
@@ -105,41 +117,41 @@ class Spacing:
         if before.text == "*" and token.text == "*":
             return True
         is_tight = self._is_tight(token) or self._is_tight(before)
-        return not is_tight or (before.sort in _WORDS and token.sort in _WORDS)
+        return not is_tight or (before.sort in _WORD_SORTS and token.sort in _WORD_SORTS)
 
     def _has_operand_index(self, before: Token) -> bool:
         return before.sort is Sort.NAME or before.text in (")", "]")
 
-    def _is_quantity(self, before: Token) -> bool:
-        """A unit has a space before its bracket, a multiplicity after a name has none."""
+    def _is_unit_bracket(self, before: Token) -> bool:
+        """Whether a bracket has a unit: it has a space before it, a multiplicity has none."""
         if before.sort is Sort.NAME:
             return self._has_value
         return before.text not in ("]", "*", "**") or self._has_value
 
     def _is_tight(self, token: Token) -> bool:
-        if token.text in _TIGHT:
+        if token.text in _TIGHT_OPERATORS:
             return True
-        in_brackets = bool(self._open) and self._open[-1] == "["
-        return in_brackets and token.text in _ARITHMETIC
+        is_in_brackets = bool(self._open_brackets) and self._open_brackets[-1] == "["
+        return is_in_brackets and token.text in _ARITHMETIC
 
-    def _rank(self, before: Token, token: Token, space: str) -> int | None:
-        """How well a line may be broken before the token; None where it may not."""
-        depth = len(self._open) * _DEEPER
+    def _rank_break(self, before: Token, token: Token, space: str) -> int | None:
+        """Return the rank of a line break before the token; None if it is not allowed."""
+        depth = len(self._open_brackets) * _RANKS_PER_LEVEL
         if token.text == "->":
             return depth + _ARROW
         if before.text == "(" and token.text != ")":
             return depth + _PARENTHESIS
         if not space or token.text == "{":
             return None
-        return depth + (_COMMA if before.text == "," else self._goodness(token))
+        return depth + (_COMMA if before.text == "," else self._rank_by_token(token))
 
-    def _goodness(self, token: Token) -> int:
-        """How well a line may be broken before a token that has a space before it."""
+    def _rank_by_token(self, token: Token) -> int:
+        """Return the rank of a break before a token that has a space before it."""
         if token.text in ("=", ":="):
             return _PARENTHESIS
         if token.text in _CLAUSES:
-            return _OPERATION if self._has_value and self._open else _FREE
+            return _OPERATION if self._has_value and self._open_brackets else _FREE
         return _OPERATION if token.text in _OPERATORS else _SPACE
 
 
-_WORDS = (Sort.KEYWORD, Sort.NAME, Sort.LITERAL)
+_WORD_SORTS = (Sort.KEYWORD, Sort.NAME, Sort.LITERAL)

@@ -1,4 +1,4 @@
-"""Tokens with the notes before them, grouped into statements and bodies."""
+"""Tokens with the notes before them, which the parser skips, grouped into statements and bodies."""
 
 import re
 from collections.abc import Iterator, Sequence
@@ -9,12 +9,12 @@ from msgspec import Struct
 
 from sysmlc.language.text.lexer import TokenTypes, tokenize
 
-_TAB = 4
-_THING = re.compile(r"//\*(?s:.)*?\*/|//[^\n]*|\n")
+_TAB_WIDTH = 4
+_NOTE_OR_LINE_END = re.compile(r"//\*(?s:.)*?\*/|//[^\n]*|\n")
 
 
 class Sort(Enum):
-    """What a token is, as far as the layout cares."""
+    """Sorts of tokens, as far as the layout depends on them."""
 
     KEYWORD = "keyword"
     NAME = "name"
@@ -25,17 +25,17 @@ class Sort(Enum):
 
 
 class Note(Struct, frozen=True):
-    """A note (KerML 8.2.2.2): its text, the column it starts in, and what is before it."""
+    """A note (KerML 8.2.2.2): its text, its column, and its distance to the text before it."""
 
     text: str
     column: int
     is_trailing: bool
-    """Whether it stands on the line of what is before it."""
+    """Whether it is on the line of the token before it."""
     after_blank: bool
 
 
 class Token(Struct, frozen=True):
-    """A token: its text and sort, its column in the original, what stands before it."""
+    """A token: its text and sort, its column in the original, and the notes before it."""
 
     text: str
     sort: Sort
@@ -45,30 +45,30 @@ class Token(Struct, frozen=True):
 
     @property
     def is_operand(self) -> bool:
-        """Whether an expression can end with it."""
+        """Whether an expression can end with the token."""
         return self.sort in (Sort.NAME, Sort.LITERAL) or self.text in _OPERANDS
 
 
 _OPERANDS = {")", "]", "}", "true", "false", "null", "*"}
 
 
-def tokens(text: str, types: TokenTypes) -> list[Token]:
-    """The tokens of a text whose lines end with line feeds; the last one is its end."""
+def read_tokens(text: str, types: TokenTypes) -> list[Token]:
+    """Return the tokens of a text whose lines end with line feeds; the last one is its end."""
     scanned = tokenize(text, types)
-    found = []
-    before = 0
+    tokens = []
+    end_before = 0
     for index, kind in enumerate(scanned.types):
         start, end = scanned.starts[index], scanned.ends[index]
-        notes, blank = _gap(text, before, start)
+        notes, blank = _read_gap(text, end_before, start)
         written = text[start:end]
-        found.append(
-            Token(written, _sort(written, kind, types), _column(text, start), notes, blank)
+        tokens.append(
+            Token(written, _classify(written, kind, types), _find_column(text, start), notes, blank)
         )
-        before = end
-    return found
+        end_before = end
+    return tokens
 
 
-def _sort(written: str, kind: int, types: TokenTypes) -> Sort:
+def _classify(written: str, kind: int, types: TokenTypes) -> Sort:
     by_kind = {
         types.end: Sort.END,
         types.name: Sort.NAME,
@@ -81,29 +81,29 @@ def _sort(written: str, kind: int, types: TokenTypes) -> Sort:
     return Sort.KEYWORD if written.isidentifier() else Sort.SYMBOL
 
 
-def _gap(text: str, start: int, end: int) -> tuple[tuple[Note, ...], bool]:
-    """The notes between two tokens, and whether a blank line is before the second."""
+def _read_gap(text: str, start: int, end: int) -> tuple[tuple[Note, ...], bool]:
+    """Return the notes between two tokens, and whether a blank line is before the second."""
     notes: list[Note] = []
-    lines = 0
-    for found in _THING.finditer(text, start, end):
-        if found[0] == "\n":
-            lines += 1
+    line_ends = 0
+    for match in _NOTE_OR_LINE_END.finditer(text, start, end):
+        if match[0] == "\n":
+            line_ends += 1
         else:
-            is_trailing = lines == 0 and start > 0 and "\n" not in found[0]
-            column = _column(text, found.start())
-            notes.append(Note(found[0].rstrip(), column, is_trailing, lines > 1))
-            lines = 0
-    return tuple(notes), lines > 1
+            is_trailing = line_ends == 0 and start > 0 and "\n" not in match[0]
+            column = _find_column(text, match.start())
+            notes.append(Note(match[0].rstrip(), column, is_trailing, line_ends > 1))
+            line_ends = 0
+    return tuple(notes), line_ends > 1
 
 
-def _column(text: str, offset: int) -> int:
-    """Columns to the left of the place, tabs counting to the next multiple of four."""
-    return len(text[text.rfind("\n", 0, offset) + 1 : offset].expandtabs(_TAB))
+def _find_column(text: str, offset: int) -> int:
+    """Return the number of columns before an offset; a tab extends to a multiple of four."""
+    return len(text[text.rfind("\n", 0, offset) + 1 : offset].expandtabs(_TAB_WIDTH))
 
 
-def words(found: list[Token]) -> Iterator[str]:
-    """The texts of the tokens, comments without what indentation changes: the meaning."""
-    for token in found:
+def iter_meaning(tokens: list[Token]) -> Iterator[str]:
+    """Yield the texts of tokens and notes without what indentation changes."""
+    for token in tokens:
         if token.sort is Sort.COMMENT:
             yield "\n".join(line.strip(" \t") for line in token.text.split("\n"))
         else:
@@ -114,13 +114,13 @@ def words(found: list[Token]) -> Iterator[str]:
 _BEFORE_EXPRESSION = (
     ". .? = := ( , ? ?? == != === !== < > <= >= + - * / % ^ ** & | default and or xor implies not"
 )
-"""Tokens after which a brace begins an expression, not a body."""
-_AFTER_BODY = {"else", "until"}
+"""Tokens after which a brace begins an expression instead of a body."""
+_CONTINUATIONS = {"else", "until"}
 
 
 @dataclass(slots=True)
 class Block:
-    """What stands between braces, with them; ``is_expression`` for a body expression."""
+    """Everything between braces, with the braces; ``is_expression`` marks a body expression."""
 
     opening: Token
     is_expression: bool
@@ -129,75 +129,79 @@ class Block:
 
 
 Statement = list[Token | Block]
-"""A member, a result expression, or what begins and ends with an entry of a body."""
+"""A member, a result expression, or another entry of a body."""
 
 
-def statements(found: Sequence[Token]) -> tuple[list[Statement], Token]:
-    """The statements of a text, and its end with the notes before it."""
-    reader = _Reader(found)
-    made = reader.body()
-    return made, found[reader.at]
+def group_statements(tokens: Sequence[Token]) -> tuple[list[Statement], Token]:
+    """Return the statements of a text, and its last token with the notes before it."""
+    reader = _StatementReader(tokens)
+    statements = reader.read_body()
+    return statements, tokens[reader.position]
 
 
-class _Reader:
-    def __init__(self, found: Sequence[Token]) -> None:
-        self._found = found
-        self.at = 0
+class _StatementReader:
+    """A recursive-descent reader of statements."""
 
-    def body(self) -> list[Statement]:
-        """Statements up to a closing brace or the end."""
-        made: list[Statement] = []
-        while not self._is_closed():
-            made.append(self._statement())
-        return made
+    def __init__(self, tokens: Sequence[Token]) -> None:
+        self._tokens = tokens
+        self.position = 0
 
-    def _is_closed(self) -> bool:
-        token = self._found[self.at]
+    def read_body(self) -> list[Statement]:
+        """Read statements up to a closing brace or the end."""
+        statements: list[Statement] = []
+        while not self._is_at_end():
+            statements.append(self._read_statement())
+        return statements
+
+    def _is_at_end(self) -> bool:
+        token = self._tokens[self.position]
         return token.sort is Sort.END or token.text == "}"
 
-    def _statement(self) -> Statement:
-        made: Statement = []
-        while not self._is_closed():
-            token = self._found[self.at]
+    def _read_statement(self) -> Statement:
+        statement: Statement = []
+        while not self._is_at_end():
+            token = self._tokens[self.position]
             if token.text == "{":
-                block = self._block(made)
-                made.append(block)
-                if not (block.is_expression or self._goes_on(made)):
+                block = self._read_block(statement)
+                statement.append(block)
+                if not (block.is_expression or self._continues(statement)):
                     break
                 continue
-            made.append(token)
-            self.at += 1
+            statement.append(token)
+            self.position += 1
             if token.text == ";" or token.sort is Sort.COMMENT:
                 break
-        return made
+        return statement
 
-    def _block(self, before: Statement) -> Block:
-        opening = self._found[self.at]
-        self.at += 1
-        made = Block(opening, _begins_expression(before), self.body())
-        made.closing = self._found[self.at]
-        if made.closing.sort is not Sort.END:
-            self.at += 1
-        return made
+    def _read_block(self, statement: Statement) -> Block:
+        opening = self._tokens[self.position]
+        self.position += 1
+        block = Block(opening, _begins_body_expression(statement), self.read_body())
+        block.closing = self._tokens[self.position]
+        if block.closing.sort is not Sort.END:
+            self.position += 1
+        return block
 
-    def _goes_on(self, made: Statement) -> bool:
-        """Whether a statement goes on after a body: else, until, the target of a transition."""
-        following = self._found[self.at].text
-        words = [item.text for item in made[1:] if isinstance(item, Token)]
-        starts = isinstance(made[0], Token) and made[0].text == "transition"
-        return following in _AFTER_BODY or (following == "then" and (starts or "do" in words))
+    def _continues(self, statement: Statement) -> bool:
+        """Whether a statement continues after a body: else, until, the target of a transition."""
+        following = self._tokens[self.position].text
+        words = [item.text for item in statement[1:] if isinstance(item, Token)]
+        is_transition = isinstance(statement[0], Token) and statement[0].text == "transition"
+        return following in _CONTINUATIONS or (
+            following == "then" and (is_transition or "do" in words)
+        )
 
 
-def _begins_expression(before: Statement) -> bool:
+def _begins_body_expression(statement: Statement) -> bool:
     """Whether a brace after these tokens begins a body expression (KerML 8.2.5.8.3)."""
-    if not before or isinstance(before[-1], Block):
+    if not statement or isinstance(statement[-1], Block):
         return False
-    if before[-1].text in _BEFORE_EXPRESSION.split():
+    if statement[-1].text in _BEFORE_EXPRESSION.split():
         return True
-    texts = [item.text if isinstance(item, Token) else "{}" for item in before]
+    texts = [item.text if isinstance(item, Token) else "{}" for item in statement]
     if texts[-1] == "else":
         return "?" in texts
-    at = len(texts) - 1
-    while at > 1 and texts[at - 1] == "::":
-        at -= 2
-    return at > 0 and texts[at - 1] == "->"
+    position = len(texts) - 1
+    while position > 1 and texts[position - 1] == "::":
+        position -= 2
+    return position > 0 and texts[position - 1] == "->"

@@ -1,4 +1,4 @@
-"""The functions that build the tree, by the names that the grammars give them."""
+"""Build actions by the names that the grammars give them: they build the tree during the parse."""
 
 from collections.abc import Mapping
 from types import ModuleType

@@ -12,7 +12,7 @@ PARAMETER = "ParameterMembership"
 
 
 def make_parameter(value: Node | None, start: int) -> Node:
-    """A parameter of an action node, bound to a value or empty."""
+    """Return a parameter of an action node, bound to a value or empty."""
     end = start if value is None else value.end
     node = Node("ReferenceUsage", membership=PARAMETER, start=start, end=end)
     if value is not None:
@@ -42,7 +42,7 @@ def _build_accept(
 
 
 def _take_payload_name(payload: Node) -> None:
-    """Before a trigger, a name alone is that of the payload, not its type (8.2.2.17.4)."""
+    """Take the only name before a trigger as name of the payload, not as type (8.2.2.17.4)."""
     for relation in payload.relations[:1]:
         chain, start = relation.reference.chain, relation.reference.start
         if payload.name is None and start == payload.start and len(chain[0]) == len(chain) == 1:
@@ -74,11 +74,11 @@ def _build_send(
     via: Node | None,
     to: Node | None,
 ) -> Tail:
-    given = [item, via, to]
-    while given and given[-1] is None:
-        given.pop()
+    arguments = [item, via, to]
+    while arguments and arguments[-1] is None:
+        arguments.pop()
     start = tokens.ends[begin]
-    return Tail("SendActionUsage", "step", [make_parameter(value, start) for value in given])
+    return Tail("SendActionUsage", "step", [make_parameter(value, start) for value in arguments])
 
 
 def _build_assign(tokens: Tokens, _stop: int, begin: int, target: Node, value: Node) -> Tail:
@@ -129,21 +129,21 @@ def _build_if(
     members = [_mark_condition(condition)]
     for branch in branches:
         if isinstance(branch, Tail):
-            nested = make_node("IfActionUsage", PARAMETER, tokens, begin, stop)
-            nested.kind = branch.kind
+            nested_if = make_node("IfActionUsage", PARAMETER, tokens, begin, stop)
+            nested_if.kind = branch.kind
             for member in branch.members:
-                nested.add_member(member)
-            nested.start = nested.name_start = branch.members[0].start
-            members.append(nested)
+                nested_if.add_member(member)
+            nested_if.start = nested_if.name_start = branch.members[0].start
+            members.append(nested_if)
         else:
             members.append(branch)
     return Tail("IfActionUsage", "step", members)
 
 
-def _build_while(_tokens: Tokens, _stop: int, _begin: int, *given: Node) -> Tail:
-    for expression in (given[0], *given[2:]):
+def _build_while(_tokens: Tokens, _stop: int, _begin: int, *parts: Node) -> Tail:
+    for expression in (parts[0], *parts[2:]):
         _mark_condition(expression)
-    return Tail("WhileLoopActionUsage", "step", list(given))
+    return Tail("WhileLoopActionUsage", "step", list(parts))
 
 
 def _build_loop(

@@ -20,7 +20,7 @@ _END = "EndFeatureMembership"
 
 
 class End(NamedTuple):
-    """One end as written: its multiplicity, its name, what it refers to, its tokens."""
+    """An end as it is written: its multiplicity, its name, the referenced feature, its tokens."""
 
     bounds: Node | None
     name: str | None
@@ -30,7 +30,7 @@ class End(NamedTuple):
 
 
 def make_connector_end(end: End, tokens: Tokens) -> Node:
-    """The end of a connector (8.2.2.13.1)."""
+    """Return the end feature of a connector (8.2.2.13.1)."""
     return _make_end("ReferenceUsage", end, tokens)
 
 
@@ -49,9 +49,9 @@ def _make_end(kind: str, end: End, tokens: Tokens) -> Node:
 
 
 def _make_flow_end(end: End, tokens: Tokens) -> Node:
-    """The end of a flow: what has the feature, and the feature (8.2.2.16)."""
+    """Return the end feature of a flow: it references all of the chain but the last feature (8.2.2.16)."""
     node = make_node("FlowEnd", _END, tokens, end.begin, end.stop)
-    chain, start, stop = end.reference.chain, end.reference.start, end.reference.end
+    chain, start, end_offset = end.reference.chain, end.reference.start, end.reference.end
     if len(chain) > 1:
         node.relations.append(
             Relation(
@@ -60,7 +60,7 @@ def _make_flow_end(end: End, tokens: Tokens) -> Node:
         )
         start = tokens.starts[end.stop - 1]
     feature = node.add_member(make_node("ReferenceUsage", FEATURE, tokens, end.begin, end.stop))
-    feature.relations.append(Relation("Redefinition", Reference(chain[-1:], start, stop)))
+    feature.relations.append(Relation("Redefinition", Reference(chain[-1:], start, end_offset)))
     return node
 
 
@@ -93,7 +93,7 @@ _END_MAKERS: dict[str, Callable[[End, Tokens], Node]] = {
 
 
 def find_end_maker(node: Node) -> Callable[[End, Tokens], Node]:
-    """What makes the ends of a usage of this kind; a message is an abstract flow so far."""
+    """Return the function that makes the ends of a usage; a message is an abstract flow."""
     make = _END_MAKERS.get(node.kind, make_connector_end)
     return _make_message_end if make is _make_flow_end and "isAbstract" in node.attributes else make
 
@@ -119,14 +119,15 @@ def _build_ends(_tokens: Tokens, _stop: int, _begin: int, first: End, rest: list
 
 
 ConnectorPart = End | list[End] | list[Node]
-"""What follows the keyword of a connector: ends, one by one or as a list, and its body."""
+"""A part of a connector after its keyword: an end, a list of ends, or its body."""
 
 
 @dataclass(slots=True)
 class Tail:
-    """What follows the declaration of a usage and decides what it is.
+    """The part of a usage after its declaration that decides what the usage is.
 
-    ``kind`` is empty where the keyword says it; ``ends`` become features as that kind has them.
+    ``kind`` is empty if the keyword decides it. ``word`` is the word that begins the tail. ``ends``
+    become features when the kind is known.
     """
 
     kind: str = ""
@@ -137,7 +138,7 @@ class Tail:
 
 
 def apply_tail(node: Node, tail: Tail, tokens: Tokens) -> Node:
-    """Make the usage what its tail says."""
+    """Make the usage what its tail states, and return it."""
     if tail.word and node.kind != tail.kind and node.kind not in _KINDS_BY_WORD[tail.word]:
         _report_misplaced_tail(node, tail, tokens)
     node.kind = tail.kind or node.kind
@@ -160,7 +161,7 @@ _KINDS_BY_WORD = {
     "then": ("Succession",),
     "step": ("ActionUsage", "PerformActionUsage"),
 }
-"""Words of tails, and the kinds of usages that they go with."""
+"""Words that begin a tail, and the kinds of usages that may have it."""
 _DECLARATIONS_BY_WORD = {
     "connect": "connections and interfaces",
     "allocate": "allocations",
@@ -174,8 +175,8 @@ _DECLARATIONS_BY_WORD = {
 
 
 def _report_misplaced_tail(node: Node, tail: Tail, tokens: Tokens) -> None:
-    words = "what an action does" if tail.word == "step" else f"'{tail.word}'"
-    text = f"{words} goes with {_DECLARATIONS_BY_WORD[tail.word]}, not with this declaration"
+    subject = "what an action does" if tail.word == "step" else f"'{tail.word}'"
+    text = f"{subject} goes with {_DECLARATIONS_BY_WORD[tail.word]}, not with this declaration"
     keyword = _DECLARATIONS_BY_WORD[tail.word].split(" and ")[0].removesuffix("s")
     advice = f"declare it as {keyword}, or make two declarations of it"
     tokens.build_faults.append(BuildFault("combination", node.start, text, advice))
@@ -227,7 +228,7 @@ def build_payload(
     parts: list[SpecializationPart] | None,
     value: Node | None,
 ) -> Node:
-    """What a flow carries or an action accepts: a name with its type, or only the type."""
+    """Build the payload of a flow or accept action: a name with its type, or only the type."""
     node = make_node("ReferenceUsage", "ParameterMembership", tokens, begin, stop)
     is_name = len(reference.chain) == 1 and len(reference.chain[0]) == 1
     is_typed = any(isinstance(part, Relation) for part in parts or ())
@@ -280,7 +281,7 @@ _KINDS_WITHOUT_DECLARATION = {"of": "FlowUsage", "from": "FlowUsage"}
 def build_tail_usage(
     tokens: Tokens, stop: int, begin: int, tail: Tail, body: list[Node] | None = None
 ) -> Node:
-    """A usage without a declaration of its own."""
+    """Build a usage without a declaration."""
     kind = tail.kind or _KINDS_WITHOUT_DECLARATION.get(tail.word, "ConnectionUsage")
     membership = "" if kind == "Membership" else FEATURE
     node = apply_tail(make_node(kind, membership, tokens, begin, stop), tail, tokens)
@@ -302,11 +303,11 @@ def _build_usage_ends(
 
 
 def split_ends_and_body(rest: tuple[ConnectorPart, ...]) -> tuple[list[End], list[Node]]:
-    """The ends, one by one or as lists, and the body, if there is one."""
+    """Return the ends, given one by one or as lists, and the members of the body."""
     ends: list[End] = []
     body: list[Node] = []
-    for one in rest:
-        for part in [one] if isinstance(one, End) else one:
+    for item in rest:
+        for part in [item] if isinstance(item, End) else item:
             if isinstance(part, End):
                 ends.append(part)
             else:
@@ -317,7 +318,7 @@ def split_ends_and_body(rest: tuple[ConnectorPart, ...]) -> tuple[list[End], lis
 def _build_usage_named_end(
     tokens: Tokens, stop: int, begin: int, node: Node, end: End, body: list[Node]
 ) -> Node:
-    """``interface a ::> x to y``: what was read as declaration is the first end."""
+    """Build ``interface a ::> x to y``: the parsed declaration is the first end."""
     if not node.relations:
         return _build_usage_tail(tokens, stop, begin, node, Tail(ends=[end]), body)
     first = End(None, node.name, node.relations.pop().reference, begin + 1, end.begin - 1)

@@ -52,7 +52,7 @@ USAGE_KINDS = {keyword: (f"{stem}Usage", FEATURE) for keyword, stem in _STEMS.it
     "stakeholder": ("PartUsage", "StakeholderMembership"),
     "objective": ("RequirementUsage", "ObjectiveMembership"),
 }
-"""Keyword of a usage: its metaclass, the membership by which it is owned."""
+"""The metaclass and the membership of a usage by its keyword."""
 _CONTROL_NODES = {"merge", "decide", "join", "fork"}
 Keyword = int | str
 
@@ -156,7 +156,7 @@ def _build_declaration_with_metadata(
 
 
 def prepend_members(node: Node, members: list[Node]) -> Node:
-    """Give the node members before its others."""
+    """Insert ``members`` before the other members of ``node``, and return it."""
     for member in members:
         member.owner = node
     node.members[:0] = members
@@ -164,7 +164,7 @@ def prepend_members(node: Node, members: list[Node]) -> Node:
 
 
 def finish_usage(node: Node, tokens: Tokens, stop: int, body: list[Node]) -> Node:
-    """The node with its body, after which it ends."""
+    """Set the end of a usage and add the members of its body."""
     node.end = tokens.ends[stop - 1]
     if isinstance(body, ParallelBody):
         _mark_parallel(node, tokens)
@@ -184,7 +184,7 @@ def build_keywordless_usage(
     value: Node | None,
     body: list[Node],
 ) -> Node:
-    """A usage without keyword (SysML 8.2.2.6.3)."""
+    """Build a usage without keyword (SysML 8.2.2.6.3)."""
     node = apply_names(make_node("ReferenceUsage", FEATURE, tokens, begin, stop), names, tokens)
     apply_specializations(node, parts, tokens)
     return add_members(apply_value(node, value), body)

@@ -68,11 +68,11 @@ def _build_constructor(
     return node
 
 
-def _mark_arguments(given: Sequence[Node]) -> Sequence[Node]:
-    for node in given:
+def _mark_arguments(arguments: Sequence[Node]) -> Sequence[Node]:
+    for node in arguments:
         if node.membership != FEATURE:
             node.membership = ARGUMENT
-    return given
+    return arguments
 
 
 def _build_named_argument(
@@ -90,14 +90,14 @@ def _build_sequence_of_one(_tokens: Tokens, _stop: int, _begin: int, only: Node)
 
 
 def _build_sequence(tokens: Tokens, _stop: int, _begin: int, first: Node, rest: list[Node]) -> Node:
-    nodes = [first, *rest]
-    result = nodes.pop()
-    while nodes:
-        left = nodes.pop()
-        outer = Node("OperatorExpression", start=left.start, end=result.end)
+    remaining = [first, *rest]
+    result = remaining.pop()
+    while remaining:
+        element = remaining.pop()
+        outer = Node("OperatorExpression", start=element.start, end=result.end)
         outer.attributes["operator"] = ","
-        left.membership = result.membership = ARGUMENT
-        outer.add_member(left)
+        element.membership = result.membership = ARGUMENT
+        outer.add_member(element)
         outer.add_member(result)
         result = outer
     return result
@@ -132,7 +132,7 @@ def _build_chained(tokens: Tokens, stop: int, begin: int, primary: Node, name: R
 
 
 def _has_no_parentheses(tokens: Tokens, primary: Node, begin: int) -> bool:
-    """Whether no parentheses stand around it."""
+    """Whether an operand is not in parentheses, so that a chain may continue it."""
     return primary.start == tokens.starts[begin]
 
 
@@ -161,14 +161,14 @@ def _build_selected(tokens: Tokens, stop: int, begin: int, primary: Node, body: 
 
 
 def _make_body_argument(
-    tokens: Tokens, stop: int, before: Node | Reference, body: list[Node]
+    tokens: Tokens, stop: int, operand: Node | Reference, body: list[Node]
 ) -> Node:
-    start = tokens.text.find("{", before.end)
+    start = tokens.text.find("{", operand.end)
     return make_body_expression(body, start, tokens.ends[stop - 1])
 
 
 def make_body_expression(body: list[Node], start: int, end: int) -> Node:
-    """An expression of a body between braces (KerML 8.2.5.8.3)."""
+    """Return an expression with a body between braces (KerML 8.2.5.8.3)."""
     node = Node("FeatureReferenceExpression", start=start, end=end)
     add_members(node.add_member(Node("Expression", membership=FEATURE, start=start, end=end)), body)
     return node
@@ -179,11 +179,11 @@ def _build_body_expression(tokens: Tokens, stop: int, begin: int, body: list[Nod
 
 
 def _make_invocation(
-    tokens: Tokens, begin: int, stop: int, name: Reference, given: Sequence[Node]
+    tokens: Tokens, begin: int, stop: int, name: Reference, arguments: Sequence[Node]
 ) -> Node:
     node = make_node("InvocationExpression", "", tokens, begin, stop)
     node.relations.append(Relation("Membership", name))
-    return add_members(node, _mark_arguments(given))
+    return add_members(node, _mark_arguments(arguments))
 
 
 def _build_operation(
@@ -228,16 +228,16 @@ def _build_invocation(
 
 
 def find_chain(node: Node) -> Reference | None:
-    """The name or feature chain that an expression is, if it is nothing more."""
+    """Return the name or feature chain that an expression consists of, or None."""
     if node.kind == "FeatureReferenceExpression" and node.relations:
         return node.relations[0].reference
     if node.kind != "FeatureChainExpression":
         return None
-    before = find_chain(node.members[0])
-    if before is None:
+    operand_chain = find_chain(node.members[0])
+    if operand_chain is None:
         return None
     last = node.relations[0].reference
-    return Reference(before.chain + last.chain, before.start, last.end)
+    return Reference(operand_chain.chain + last.chain, operand_chain.start, last.end)
 
 
 ACTIONS = {

@@ -5,13 +5,13 @@ from sysmlc.language.text.lexer import Tokens
 from sysmlc.language.tree import Node, Reference, Relation
 
 SpecializationPart = Relation | Node | int
-"""Of a specialisation: a relationship, a multiplicity, or the token `ordered` or `nonunique`."""
+"""A relationship, a multiplicity, or the token `ordered` or `nonunique`."""
 
 
 def apply_specializations(
     node: Node, parts: list[SpecializationPart] | None, tokens: Tokens
 ) -> Node:
-    """Apply what stands between the name of a feature and its value."""
+    """Apply everything between the name of a feature and its value, and return the feature."""
     for part in parts or ():
         if isinstance(part, Relation):
             node.relations.append(part)
@@ -25,7 +25,7 @@ def apply_specializations(
 
 
 def apply_value(node: Node, value: Node | None) -> Node:
-    """Give a feature its value."""
+    """Let a feature own its value, if it has one, and return the feature."""
     if value is not None:
         node.add_member(value)
     return node
@@ -66,7 +66,7 @@ def _build_crosses(_tokens: Tokens, _stop: int, _begin: int, name: Reference) ->
 
 
 def make_multiplicity(bounds: Node, tokens: Tokens, begin: int, stop: int) -> Node:
-    """The multiplicity that an expression between brackets gives."""
+    """Return the multiplicity of an expression between brackets."""
     node = make_node("MultiplicityRange", OWNING, tokens, begin, stop)
     is_range = bounds.attributes.get("operator") == ".." and bounds.kind == "OperatorExpression"
     for bound in bounds.members if is_range else [bounds]:

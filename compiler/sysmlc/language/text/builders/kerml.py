@@ -97,11 +97,11 @@ def _build_declaration(
     parts: list[SpecializationPart] | None,
     value: Node | None,
 ) -> Node:
-    words = read_keyword(tokens, keyword).removesuffix(" true")
-    negated = words.endswith(" false")
-    kind = _FEATURE_KINDS[words.removesuffix(" false")]
+    keywords = read_keyword(tokens, keyword).removesuffix(" true")
+    is_negated = keywords.endswith(" false")
+    kind = _FEATURE_KINDS[keywords.removesuffix(" false")]
     node = apply_names(make_node(kind, FEATURE, tokens, begin, stop), names, tokens)
-    if negated:
+    if is_negated:
         node.attributes["isNegated"] = True
     if sufficient is not None:
         node.attributes["isSufficient"] = True
@@ -141,9 +141,9 @@ def _build_nameless_binding(
     _stop: int,
     _begin: int,
     parts: list[SpecializationPart],
-    more: list[SpecializationPart] | None = None,
+    further_parts: list[SpecializationPart] | None = None,
 ) -> tuple[None, list[SpecializationPart]]:
-    return None, [*parts, *(more or ())]
+    return None, [*parts, *(further_parts or ())]
 
 
 def _build_binding_name(
@@ -221,7 +221,7 @@ _FACTS: dict[str, tuple[tuple[str, AttributeValue], ...]] = {
 
 
 def apply_prefixes(tokens: Tokens, begin: int, prefixes: list[Prefix], node: Node) -> Node:
-    """Apply what stands before a member."""
+    """Apply the prefixes of a member, and return it."""
     node.start = tokens.starts[begin]
     check_prefixes(tokens, prefixes, node)
     for given in prefixes:
@@ -265,7 +265,7 @@ _Parameters = ParamSpec("_Parameters")
 def _adapt(
     change: Callable[[Node], Node], build: Callable[_Parameters, Node]
 ) -> Callable[_Parameters, Node]:
-    """The builder of an element of SysML, changed to that of KerML which is written alike."""
+    """Return the builder of an element of SysML, adapted to the element of KerML with the same notation."""
 
     def built(*said: _Parameters.args, **named: _Parameters.kwargs) -> Node:
         return change(build(*said, **named))
@@ -323,10 +323,10 @@ def _build_with_cross_feature(
     cross: usages.CrossFeature,
     *rest: Node | list[Prefix],
 ) -> Node:
-    node, more = rest[-1], rest[0]
-    given = [*prefixes, *more] if isinstance(more, list) else prefixes
+    node, next_item = rest[-1], rest[0]
+    all_prefixes = [*prefixes, *next_item] if isinstance(next_item, list) else prefixes
     assert isinstance(node, Node)
-    return prepend_members(apply_prefixes(tokens, begin, given, node), [cross.node])
+    return prepend_members(apply_prefixes(tokens, begin, all_prefixes, node), [cross.node])
 
 
 def _turn_into_metadata_feature(node: Node) -> Node:

@@ -7,7 +7,7 @@ from sysmlc.language.tree import Node, Reference
 
 
 class Names(NamedTuple):
-    """What an element is called, and the token that says it."""
+    """The names of an element, and the token that has the name."""
 
     short_name: str | None
     name: str | None
@@ -15,7 +15,7 @@ class Names(NamedTuple):
 
 
 def apply_names(node: Node, names: Names | None, tokens: Tokens) -> Node:
-    """Give the node its names."""
+    """Set the names of ``node``, and return it."""
     if names is not None:
         node.short_name, node.name = names.short_name, names.name
         node.name_start = tokens.starts[names.token]
@@ -47,19 +47,19 @@ def _build_global_name(tokens: Tokens, _stop: int, begin: int, name: int) -> Ref
 
 
 def _extend_name(
-    tokens: Tokens, _stop: int, _begin: int, before: Reference, name: int
+    tokens: Tokens, _stop: int, _begin: int, reference: Reference, name: int
 ) -> Reference:
-    before.chain = ((*before.chain[0], tokens.read_name(name)),)
-    before.end = tokens.ends[name]
-    return before
+    reference.chain = ((*reference.chain[0], tokens.read_name(name)),)
+    reference.end = tokens.ends[name]
+    return reference
 
 
 def _extend_chain(
-    _tokens: Tokens, _stop: int, _begin: int, before: Reference, link: Reference
+    _tokens: Tokens, _stop: int, _begin: int, reference: Reference, link: Reference
 ) -> Reference:
-    before.chain += link.chain
-    before.end = link.end
-    return before
+    reference.chain += link.chain
+    reference.end = link.end
+    return reference
 
 
 ACTIONS = {

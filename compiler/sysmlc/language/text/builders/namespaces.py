@@ -8,7 +8,7 @@ from sysmlc.language.tree import Node, Reference, Relation
 
 
 def build_root(tokens: Tokens, members: list[Node]) -> Node:
-    """The root namespace of a text."""
+    """Return the root namespace of a text."""
     node = Node("Namespace", start=0, end=len(tokens.text))
     add_members(node, members)
     if tokens.ref_usages:
@@ -17,7 +17,7 @@ def build_root(tokens: Tokens, members: list[Node]) -> Node:
 
 
 def _drop_redundant_ref(nodes: list[Node]) -> None:
-    """The word `ref` says nothing about what is referential anyway (SysML 8.2.2.6.2, note 1)."""
+    """Drop `ref` from usages that are referential anyway (SysML 8.2.2.6.2, note 1)."""
     for node in nodes:
         node.attributes.pop("isReference", None)
         if is_composite(node):
@@ -108,14 +108,14 @@ def build_metadata(
     about: list[Reference] | None,
     body: list[Node],
 ) -> Node:
-    """A metadata usage that stands for itself (SysML 8.2.2.27)."""
+    """Build a metadata usage that is a member of its own (SysML 8.2.2.27)."""
     node = apply_names(make_node("MetadataUsage", OWNING, tokens, begin, stop), names, tokens)
     node.relations.append(typing)
     return add_members(_add_annotated_elements(node, about), body)
 
 
 def build_prefix_metadata(tokens: Tokens, stop: int, begin: int, reference: Reference) -> Node:
-    """Metadata before a member: ``#name``."""
+    """Build metadata before a member: ``#name``."""
     node = make_node("MetadataUsage", OWNING, tokens, begin, stop)
     node.relations.append(Relation("FeatureTyping", reference))
     node.attributes["isPrefix"] = True
@@ -197,11 +197,11 @@ def _build_filtered_import(
         imported.members[0].add_member(condition)
         return imported
     imported.visibility = "public"
-    outer = make_node("NamespaceImport", "", tokens, begin, stop)
-    package = outer.add_member(make_node("Package", "", tokens, begin, stop))
+    outer_import = make_node("NamespaceImport", "", tokens, begin, stop)
+    package = outer_import.add_member(make_node("Package", "", tokens, begin, stop))
     package.add_member(imported)
     package.add_member(condition)
-    return outer
+    return outer_import
 
 
 def _build_import(tokens: Tokens, stop: int, begin: int, imported: Node, body: list[Node]) -> Node:
@@ -231,7 +231,7 @@ def _build_filter(tokens: Tokens, _stop: int, _begin: int, condition: Node) -> N
 def apply_visibility(
     tokens: Tokens, _stop: int, begin: int, visibility: int, item: Node | list[Node]
 ) -> Node | list[Node]:
-    """Give the visibility to all of an item."""
+    """Set the visibility of all nodes of an item."""
     nodes = item if isinstance(item, list) else [item]
     for node in nodes:
         node.visibility = tokens[visibility]

@@ -1,4 +1,7 @@
-"""Nodes, lists and bodies, and how members adapt to the owner of their body."""
+"""Nodes, lists and bodies, and how members adapt to the owner of their body.
+
+Some members depend on an owner that is built after them. ``add_members`` corrects them then.
+"""
 
 from collections.abc import Callable, Sequence
 from typing import TypeVar
@@ -19,14 +22,14 @@ _STATES = ("StateDefinition", "StateUsage", "ExhibitStateUsage")
 
 
 def make_node(kind: str, membership: str, tokens: Tokens, begin: int, stop: int) -> Node:
-    """An element of the tokens from ``begin`` to before ``at``."""
+    """Return a node for the tokens from ``begin`` to before ``stop``."""
     node = Node(kind, membership=membership, start=tokens.starts[begin])
     node.end = tokens.ends[stop - 1]
     return node
 
 
 def add_members(node: Node, members: Sequence[Node]) -> Node:
-    """Give the node the members of its body, as bodies of its kind have them."""
+    """Append the members of a body, adapted to the kind of ``node``, and return ``node``."""
     adapt = _ADAPTERS.get(node.kind)
     if adapt is not None:
         adapt(node, members)
@@ -57,7 +60,7 @@ def _adapt_to_enumeration(_owner: Node, members: Sequence[Node]) -> None:
 
 
 def _adapt_to_interface(_owner: Node, members: Sequence[Node]) -> None:
-    """An end without keyword is a port; the word `ref` makes it a reference (8.2.2.14.1)."""
+    """Make ends without keyword ports; the word `ref` makes them references (8.2.2.14.1)."""
     for member in members:
         is_end = member.kind == "ReferenceUsage" and "isEnd" in member.attributes
         if is_end and "isReference" not in member.attributes:
@@ -65,7 +68,7 @@ def _adapt_to_interface(_owner: Node, members: Sequence[Node]) -> None:
 
 
 def _adapt_to_metadata(_owner: Node, members: Sequence[Node]) -> None:
-    """What looks like a declaration redefines an attribute of the metadata (8.2.2.27)."""
+    """Let declarations in metadata redefine the attributes of its definition (8.2.2.27)."""
     for member in members:
         if member.kind in ("ReferenceUsage", "Feature") and member.name is not None:
             start = member.name_start
@@ -75,19 +78,19 @@ def _adapt_to_metadata(_owner: Node, members: Sequence[Node]) -> None:
 
 
 def _adapt_to_state(_owner: Node, members: Sequence[Node]) -> None:
-    """After a state, `then` and guards begin transitions that have it as source (8.2.2.18.1)."""
-    after_entry = False
+    """Make `then` and guards after a state transitions from that state (8.2.2.18.1)."""
+    is_after_entry = False
     for member in members:
         if member.role == "entry":
-            after_entry = True
+            is_after_entry = True
         elif member.kind == "SuccessionAsUsage" and _has_only_target(member):
-            if not after_entry:
+            if not is_after_entry:
                 _turn_into_transition(member)
         elif member.kind == "TransitionUsage" and not _has_source(member):
-            if not after_entry and not _begins_with_parameter(member):
+            if not is_after_entry and not _begins_with_parameter(member):
                 prepend_members(member, [_make_empty_parameter(member)])
         else:
-            after_entry = False
+            is_after_entry = False
 
 
 def _has_only_target(member: Node) -> bool:
@@ -108,10 +111,10 @@ def _make_empty_parameter(member: Node) -> Node:
     )
 
 
-def prepend_members(member: Node, first: list[Node]) -> None:
-    for node in first:
+def prepend_members(member: Node, members_before: list[Node]) -> None:
+    for node in members_before:
         node.owner = member
-    member.members[:0] = first
+    member.members[:0] = members_before
 
 
 def _turn_into_transition(member: Node) -> None:

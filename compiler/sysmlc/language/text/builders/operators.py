@@ -1,4 +1,4 @@
-"""Binary operators by how tightly they bind (KerML 8.2.5.8.1, Table 6)."""
+"""Operator precedence: flat lists of operands and operators become trees (KerML 8.2.5.8.1)."""
 
 from sysmlc.language.text.builders.nodes import make_node
 from sysmlc.language.text.lexer import Tokens
@@ -18,17 +18,17 @@ PRECEDENCE_LEVELS = (
     ("*", "/", "%"),
     ("^", "**"),
 )
-"""Those that bind less first; only ``if`` binds less than all of them."""
+"""Loosest first. Only ``if`` binds more loosely than all of them."""
 PRECEDENCE = {
     operator: level for level, group in enumerate(PRECEDENCE_LEVELS) for operator in group
 }
-"""The number of each operator's row."""
+"""The precedence of each operator: the index of its row."""
 
 
 ARGUMENT = "ParameterMembership"
 Operand = Node | Reference
 ExpressionPart = Operand | int
-"""Of an expression with operators: an operand, a type, or the token of an operator."""
+"""An operand, a type, or the token of an operator."""
 
 _POWER = PRECEDENCE["^"]
 _LAZY_OPERATORS = {"??", "or", "and", "implies"}
@@ -37,29 +37,30 @@ _METACLASS_OPERATORS = {"@@", "meta"}
 
 
 def group_operands(tokens: Tokens, parts: list[ExpressionPart]) -> Node:
-    """The expression of operands and operators in turn, operators as numbers of tokens.
+    """Return the tree of alternating operands and operators, given as numbers of tokens.
 
-    A type ends what its operator makes: what follows takes the whole as its left side.
+    This is operator-precedence parsing with two stacks. A type completes its operation at once: the
+    next operator takes the whole as its left operand.
     """
     operands = [part for part in parts[1:] if not isinstance(part, int)]
     operators = [tokens[part] for part in parts if isinstance(part, int)]
-    done: list[Node] = [part for part in parts[:1] if isinstance(part, Node)]
-    pending: list[str] = []
+    output: list[Node] = [part for part in parts[:1] if isinstance(part, Node)]
+    operator_stack: list[str] = []
     for operator, operand in zip(operators, operands, strict=True):
-        while pending and _binds_first(PRECEDENCE[pending[-1]], PRECEDENCE[operator]):
-            _reduce_operation(done, pending.pop())
+        while operator_stack and _binds_first(PRECEDENCE[operator_stack[-1]], PRECEDENCE[operator]):
+            _reduce_operation(output, operator_stack.pop())
         if isinstance(operand, Reference):
-            done.append(make_operation(operator, done.pop(), operand))
+            output.append(make_operation(operator, output.pop(), operand))
         else:
-            pending.append(operator)
-            done.append(operand)
-    while pending:
-        _reduce_operation(done, pending.pop())
-    return done[0]
+            operator_stack.append(operator)
+            output.append(operand)
+    while operator_stack:
+        _reduce_operation(output, operator_stack.pop())
+    return output[0]
 
 
 def find_precedence(operator: str) -> int:
-    """How tightly a binary operator binds, those that bind least first; -1 for others."""
+    """Return the precedence of a binary operator, higher for tighter binding; -1 for others."""
     return PRECEDENCE.get(operator, -1)
 
 
@@ -73,7 +74,7 @@ def _reduce_operation(operands: list[Node], operator: str) -> None:
 
 
 def make_operation(operator: str, left: Node, right: Node | Reference) -> Node:
-    """A binary operation; the right side of a classification is the name of a type."""
+    """Return a binary operation; the right operand of a classification is the name of a type."""
     node = Node("OperatorExpression", start=left.start, end=right.end)
     node.attributes["operator"] = operator
     node.add_member(make_argument(left))
@@ -89,13 +90,13 @@ def make_operation(operator: str, left: Node, right: Node | Reference) -> Node:
 
 
 def make_argument(node: Node) -> Node:
-    """Make an expression an argument."""
+    """Make an expression an argument, and return it."""
     node.membership = ARGUMENT
     return node
 
 
 def make_type_argument(operator: str, name: Reference) -> Node:
-    """The type that an operator takes as argument, or gives as result."""
+    """Return the feature for a type that is an argument or the result of an operator."""
     membership = "ReturnParameterMembership" if operator in _CASTS else ARGUMENT
     feature = Node("Feature", membership=membership, start=name.start, end=name.end)
     feature.relations.append(Relation("FeatureTyping", name))
@@ -125,13 +126,13 @@ def _append_operand(
 
 
 def _build_conditional(
-    tokens: Tokens, stop: int, begin: int, condition: Node, then: Node, other: Node
+    tokens: Tokens, stop: int, begin: int, condition: Node, then: Node, otherwise: Node
 ) -> Node:
     node = make_node("OperatorExpression", "", tokens, begin, stop)
     node.attributes["operator"] = "if"
-    for member in (condition, then, other):
+    for member in (condition, then, otherwise):
         node.add_member(make_argument(member))
-    then.role = other.role = "expression"
+    then.role = otherwise.role = "expression"
     return node
 
 

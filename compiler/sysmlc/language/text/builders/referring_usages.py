@@ -1,4 +1,4 @@
-"""Usages that refer to another one or declare it: perform, satisfy, entry ... (SysML 8.2.2)."""
+"""Usages that reference or declare another one: perform, satisfy, entry ... (SysML 8.2.2)."""
 
 from sysmlc.language.text.builders.actions import make_parameter
 from sysmlc.language.text.builders.connections import Tail, apply_tail
@@ -35,14 +35,14 @@ _REFERRING_KINDS = {
 def _build_assertion_keyword(
     tokens: Tokens, stop: int, _begin: int, *words: int
 ) -> tuple[str, bool]:
-    written = [tokens[word] for word in words]
-    return ("satisfy" if "satisfy" in written else "assert", "not" in written)
+    texts = [tokens[word] for word in words]
+    return ("satisfy" if "satisfy" in texts else "assert", "not" in texts)
 
 
 def _make_usage(
     tokens: Tokens, stop: int, begin: int, referrer: int | tuple[str, bool], node: Node | None
 ) -> Node:
-    word, negated = (tokens[referrer], False) if isinstance(referrer, int) else referrer
+    word, is_negated = (tokens[referrer], False) if isinstance(referrer, int) else referrer
     kind, membership, role = _REFERRING_KINDS[word]
     if node is None:
         node = make_node(kind, membership, tokens, begin, stop)
@@ -50,7 +50,7 @@ def _make_usage(
     node.start = tokens.starts[begin]
     if membership != FEATURE:
         tokens.restricted_nodes.append(node)
-    if negated:
+    if is_negated:
         node.attributes["isNegated"] = True
     return node
 
@@ -72,13 +72,13 @@ def _build_reference(
     name: Reference,
     parts: list[SpecializationPart] | None,
     value: Node | None,
-    by: Reference | None,
+    subject: Reference | None,
     body: list[Node],
 ) -> Node:
     node = _make_usage(tokens, stop, begin, referrer, None)
     node.relations.append(Relation("ReferenceSubsetting", name))
     apply_value(apply_specializations(node, parts, tokens), value)
-    return finish_usage(_add_subject(node, by), tokens, stop, body)
+    return finish_usage(_add_subject(node, subject), tokens, stop, body)
 
 
 def _build_declaration(
@@ -87,11 +87,11 @@ def _build_declaration(
     begin: int,
     referrer: int | tuple[str, bool],
     node: Node,
-    by: Reference | None,
+    subject: Reference | None,
     body: list[Node],
 ) -> Node:
     return finish_usage(
-        _add_subject(_make_usage(tokens, stop, begin, referrer, node), by), tokens, stop, body
+        _add_subject(_make_usage(tokens, stop, begin, referrer, node), subject), tokens, stop, body
     )
 
 
@@ -102,11 +102,11 @@ def _build_prefixed(
     referrer: int | tuple[str, bool],
     prefixes: list[Prefix],
     node: Node,
-    by: Reference | None,
+    subject: Reference | None,
     body: list[Node],
 ) -> Node:
     apply_prefixes(tokens, begin, prefixes, node)
-    return _build_declaration(tokens, stop, begin, referrer, node, by, body)
+    return _build_declaration(tokens, stop, begin, referrer, node, subject, body)
 
 
 def _build_keywordless(
@@ -125,11 +125,11 @@ def _build_step(
     stop: int,
     begin: int,
     referrer: int | tuple[str, bool],
-    *given: Node | Tail | list[Node],
+    *parts: Node | Tail | list[Node],
 ) -> Node:
-    declared = given[0] if isinstance(given[0], Node) else None
+    declared = parts[0] if isinstance(parts[0], Node) else None
     node = _make_usage(tokens, stop, begin, referrer, declared)
-    tail, body = given[-2:]
+    tail, body = parts[-2:]
     if isinstance(tail, Tail):
         apply_tail(node, tail, tokens)
     return finish_usage(node, tokens, stop, body if isinstance(body, list) else [])

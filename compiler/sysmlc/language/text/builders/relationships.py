@@ -1,4 +1,4 @@
-"""Relationships of KerML: owned ones, and those that stand for themselves (8.2.4)."""
+"""Relationships of KerML: owned ones, and those that are elements of their own (8.2.4)."""
 
 from collections.abc import Callable
 
@@ -13,19 +13,19 @@ def _pass_on_name(_tokens: Tokens, _stop: int, _begin: int, names: Names | None)
 
 
 def _make_relations_builder(kind: str) -> Callable[..., list[Relation]]:
-    """Of names after a word: a relationship to each."""
+    """Return a builder of one relation to each of the names after a keyword."""
 
     def relations(
         _tokens: Tokens, _stop: int, _begin: int, names: Reference | list[Reference]
     ) -> list[Relation]:
-        given = names if isinstance(names, list) else [names]
-        return [Relation(kind, name) for name in given]
+        references = names if isinstance(names, list) else [names]
+        return [Relation(kind, name) for name in references]
 
     return relations
 
 
 def _make_relationship_builder(kind: str, source: str, target: str) -> Callable[..., Node]:
-    """An element that is a relationship, with the names of its ends."""
+    """Return a builder of an element that is a relationship with two ends."""
 
     def relationship(
         tokens: Tokens,
@@ -33,11 +33,11 @@ def _make_relationship_builder(kind: str, source: str, target: str) -> Callable[
         begin: int,
         names: Names | None,
         first: Reference,
-        *rest: Reference | list[Node],
+        *remaining: Reference | list[Node],
     ) -> Node:
         node = apply_names(make_node(kind, OWNING, tokens, begin, stop), names, tokens)
         node.relations.append(Relation(source, first))
-        *_, second, body = rest
+        *_, second, body = remaining
         assert isinstance(second, Reference)
         assert isinstance(body, list)
         node.relations.append(Relation(target, second))
@@ -58,7 +58,7 @@ def _build_featuring(
 
 
 def _build_chaining(_tokens: Tokens, _stop: int, _begin: int, chain: Reference) -> list[Relation]:
-    """A feature is a chain itself: a relationship to each link."""
+    """Build a feature chain: a relation to each of its links."""
     return [
         Relation("FeatureChaining", Reference((link,), chain.start, chain.end))
         for link in chain.chain

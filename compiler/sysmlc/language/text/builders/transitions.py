@@ -73,7 +73,7 @@ def _build_effect_declared_step(
 
 
 def make_succession(target: End, tokens: Tokens) -> Node:
-    """The succession that a transition owns; its source end is empty."""
+    """Return the succession that a transition owns; its source end is empty."""
     node = make_node("SuccessionAsUsage", OWNING, tokens, target.begin, target.stop)
     node.add_member(
         make_node("ReferenceUsage", "EndFeatureMembership", tokens, target.begin, target.stop)
@@ -142,7 +142,7 @@ def _add_parts(
 def _build_target_transition(
     tokens: Tokens, stop: int, begin: int, parts: list[Node] | None, target: End, body: list[Node]
 ) -> Node:
-    """A transition from what stands before it."""
+    """Build a transition whose source is the member before it."""
     node = _make_transition(tokens, begin, stop)
     if parts and len(parts) == 1 and parts[0].role == "guard" and tokens[begin] == "if":
         node.add_member(parts[0])

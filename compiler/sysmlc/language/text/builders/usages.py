@@ -1,4 +1,4 @@
-"""The words before a member: their order, and which declarations they are for."""
+"""Prefixes and their order, cross features, `variant`, `return`, `then` (SysML 8.2.2.6, 9.3)."""
 
 from typing import NamedTuple
 
@@ -74,9 +74,9 @@ _TYPES = {
 
 
 def check_prefixes(tokens: Tokens, prefixes: list[int | Node], node: Node) -> None:
-    """Remark words that are out of order, or not for this declaration."""
-    given = [(one, tokens[one]) for one in prefixes if isinstance(one, int)]
-    for token, word in given:
+    """Record a fault for prefixes that are out of order, or invalid for this declaration."""
+    words = [(one, tokens[one]) for one in prefixes if isinstance(one, int)]
+    for token, word in words:
         if word and not _is_allowed(word, node):
             text = f"'{word}' cannot stand before {_describe(node)}"
             _report_prefix(tokens, token, text, f"take '{word}' away")
@@ -86,26 +86,28 @@ def check_prefixes(tokens: Tokens, prefixes: list[int | Node], node: Node) -> No
 
 
 def _check_order(tokens: Tokens, prefixes: list[int | Node]) -> None:
-    last, before = -1, ""
-    for one in prefixes:
-        word = "metadata" if isinstance(one, Node) else tokens[one]
-        rank = _METADATA if isinstance(one, Node) else _RANKS.get(word, last + 1)
-        if (before, word) == ("const", "end"):
-            rank = last + 1
-        if rank < last or (rank == last != _METADATA):
-            start = one.start if isinstance(one, Node) else tokens.starts[one]
-            _report_order(tokens, start, word, before, rank == last)
+    last_rank, last_word = -1, ""
+    for prefix in prefixes:
+        word = "metadata" if isinstance(prefix, Node) else tokens[prefix]
+        rank = _METADATA if isinstance(prefix, Node) else _RANKS.get(word, last_rank + 1)
+        if (last_word, word) == ("const", "end"):
+            rank = last_rank + 1
+        if rank < last_rank or (rank == last_rank != _METADATA):
+            start = prefix.start if isinstance(prefix, Node) else tokens.starts[prefix]
+            _report_order(tokens, start, word, last_word, rank == last_rank)
             return
-        last, before = rank, word
+        last_rank, last_word = rank, word
 
 
-def _report_order(tokens: Tokens, start: int, word: str, before: str, same: bool) -> None:
-    if same:
-        text = f"'{word}' and '{before}' exclude one another"
+def _report_order(
+    tokens: Tokens, start: int, word: str, last_word: str, is_same_rank: bool
+) -> None:
+    if is_same_rank:
+        text = f"'{word}' and '{last_word}' exclude one another"
         advice = "say only one of both"
     else:
-        text = f"'{word}' stands after '{before}'"
-        advice = f"write '{word}' before '{before}'"
+        text = f"'{word}' stands after '{last_word}'"
+        advice = f"write '{word}' before '{last_word}'"
     tokens.build_faults.append(BuildFault("prefix", start, text, advice))
 
 
@@ -154,7 +156,7 @@ _OCCURRENCE = ("individual", "snapshot", "timeslice")
 
 
 def apply_prefixes(tokens: Tokens, begin: int, prefixes: list[Prefix], node: Node) -> Node:
-    """Apply what stands before a member."""
+    """Apply the prefixes of a member, and return it."""
     node.start = tokens.starts[begin]
     metadata = [given for given in prefixes if isinstance(given, Node)]
     words = [tokens[given] for given in prefixes if isinstance(given, int)]
@@ -189,7 +191,7 @@ def _build_prefixed(
 def _build_prefixed_keywordless(
     tokens: Tokens, _stop: int, begin: int, prefixes: list[Prefix], node: Node
 ) -> Node:
-    """Without keyword, the prefixes decide what it is."""
+    """Build a usage without keyword, whose kind depends on its prefixes."""
     if any(isinstance(given, int) and tokens[given] in _OCCURRENCE for given in prefixes):
         node.kind = "OccurrenceUsage"
     elif any(isinstance(given, Node) for given in prefixes):
@@ -205,7 +207,7 @@ def _build_prefixed_nothing(
 
 
 class CrossFeature(NamedTuple):
-    """What stands between `end` and the keyword of a usage (SysML 8.2.2.6.2)."""
+    """The declaration between `end` and the keyword of a usage (SysML 8.2.2.6.2)."""
 
     node: Node
 
@@ -239,10 +241,12 @@ def _build_prefixed_with_cross_feature(
     begin: int,
     prefixes: list[Prefix],
     cross: CrossFeature,
-    more: list[Prefix],
+    further_prefixes: list[Prefix],
     node: Node,
 ) -> Node:
-    return prepend_members(apply_prefixes(tokens, begin, [*prefixes, *more], node), [cross.node])
+    return prepend_members(
+        apply_prefixes(tokens, begin, [*prefixes, *further_prefixes], node), [cross.node]
+    )
 
 
 def _build_keywordless_with_cross_feature(
@@ -251,11 +255,12 @@ def _build_keywordless_with_cross_feature(
     begin: int,
     prefixes: list[Prefix],
     cross: CrossFeature,
-    more: list[Prefix],
+    further_prefixes: list[Prefix],
     node: Node,
 ) -> Node:
     return prepend_members(
-        _build_prefixed_keywordless(tokens, stop, begin, [*prefixes, *more], node), [cross.node]
+        _build_prefixed_keywordless(tokens, stop, begin, [*prefixes, *further_prefixes], node),
+        [cross.node],
     )
 
 
@@ -300,7 +305,7 @@ def _build_visible_return(
 
 
 def _make_source_succession(tokens: Tokens, begin: int, bounds: Node | None) -> Node:
-    """The succession that begins at what stands before (SysML 8.2.2.9.3)."""
+    """Return the succession whose source is the member before it (SysML 8.2.2.9.3)."""
     node = make_node("SuccessionAsUsage", FEATURE, tokens, begin, begin + 1)
     end = node.add_member(
         make_node("ReferenceUsage", "EndFeatureMembership", tokens, begin, begin + 1)
