@@ -43,7 +43,7 @@ def check_annotated(model: Model, node: Node) -> Iterator[Finding]:
     """Report metadata that annotates elements which its definition is not for."""
     allowed = _list_allowed_kinds(model, node)
     for element in _list_annotated(node):
-        if allowed and not any(is_a(element.kind, one) for one in allowed):
+        if allowed and not any(is_a(element.kind, kind) for kind in allowed):
             name = name_of(model, next(iter(model.lookup.generals(node)), node))
             facts = {
                 "name": name,
@@ -62,7 +62,7 @@ def _list_annotated(node: Node) -> list[Node]:
         relation.reference.target for relation in node.relations if relation.kind == "Annotation"
     ]
     if about:
-        return [one for one in about if one is not None]
+        return [element for element in about if element is not None]
     return [node.owner] if node.owner is not None else []
 
 
@@ -116,7 +116,9 @@ def _is_foreign(model: Model, owner: Node, member: Node) -> bool:
     generals = model.all_supertypes(owner)
     if redefined:
         return not any(feature is None or feature.owner in generals for feature in redefined)
-    return not any(one.name == member.name for g in generals[1:] for one in g.members)
+    return not any(
+        feature.name == member.name for general in generals[1:] for feature in general.members
+    )
 
 
 CHECKS = (

@@ -42,7 +42,9 @@ def check_arguments(model: Model, node: Node) -> Iterator[Finding]:
     called = find_named_element(node, model.lookup)
     if called is None or called.kind not in _CALLABLE:
         return
-    parameters = [one for role in _ROLES for one in model.lookup.features_of_role(called, role)]
+    parameters = [
+        parameter for role in _ROLES for parameter in model.lookup.features_of_role(called, role)
+    ]
     inputs = [
         parameter for parameter in parameters if _direction_of(parameter) in _INPUT_DIRECTIONS
     ]
@@ -63,7 +65,9 @@ def check_parameters(model: Model, node: Node) -> Iterator[Finding]:
         is_redefinition_stated = any(
             relation.kind == "Redefinition" for relation in parameter.relations
         )
-        namesakes = [other for other in expected if model.name(other) == model.name(parameter)]
+        namesakes = [
+            candidate for candidate in expected if model.name(candidate) == model.name(parameter)
+        ]
         candidates = [*expected[position : position + 1], *namesakes]
         if expected and not (
             is_redefinition_stated

@@ -196,16 +196,16 @@ _IMPORTS = frozenset({"MembershipImport", "NamespaceImport"})
 
 def check_result(model: Model, node: Node) -> Iterator[Finding]:
     """Report a result expression beside another one, owned or inherited."""
-    own = _list_results(node)
-    if not own and not model.lookup.generals(node):
+    own_results = _list_results(node)
+    if not own_results and not model.lookup.generals(node):
         return
     inherited = [
         result for general in model.all_supertypes(node)[1:] for result in _list_results(general)
     ]
-    count = len(own) + len(inherited)
+    count = len(own_results) + len(inherited)
     if count > 1:
-        start = own[-1].start if own else node.start
-        owners = "inherited ones" if not own else "its own and inherited ones"
+        start = own_results[-1].start if own_results else node.start
+        owners = "inherited ones" if not own_results else "its own and inherited ones"
         facts = {"name": name_of(model, node), "count": str(count)}
         yield Finding(SECOND_RESULT, start, {**facts, "whose": owners if inherited else "its own"})
 

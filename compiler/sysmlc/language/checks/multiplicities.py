@@ -129,7 +129,7 @@ def _find_stated_bounds(model: Model, feature: Node) -> Bounds | None:
     """Return the bounds that a feature states, if they are constant."""
     for member in feature.members:
         if member.kind == "MultiplicityRange":
-            values = [_evaluate_bound(model, one) for one in member.members]
+            values = [_evaluate_bound(model, bound) for bound in member.members]
             numbers = [value for value in values if value is not None]
             if not numbers or len(numbers) < len(values):
                 return None

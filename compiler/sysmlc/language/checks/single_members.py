@@ -69,7 +69,7 @@ def check_objective(model: Model, node: Node) -> Iterator[Finding]:
     objectives = [
         member for member in model.members(node) if member.membership == "ObjectiveMembership"
     ]
-    own_objectives = [one for one in objectives if one.owner is node]
+    own_objectives = [objective for objective in objectives if objective.owner is node]
     if len(objectives) > max(len(own_objectives), 1):
         start = own_objectives[0].start if own_objectives else node.start
         yield Finding(ONLY_ONE, start, {"owner": name_of(model, node), "role": "objective"})
@@ -84,7 +84,7 @@ def check_subject(model: Model, node: Node) -> Iterator[Finding]:
 
 
 def _has_late_subject(general: Node) -> bool:
-    roles = [one for one in map(find_role, general.members) if one in _PARAMETERS]
+    roles = [role for role in map(find_role, general.members) if role in _PARAMETERS]
     return "subject" in roles[1:] and roles[0] != "subject"
 
 

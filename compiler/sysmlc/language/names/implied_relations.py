@@ -30,16 +30,16 @@ def find_typed_generals(model: Model, node: Node) -> tuple[Node, ...]:
     inherited_bases = model.typed_generals_above.get(generals)
     if inherited_bases is None:
         inherited_bases = {
-            one
+            base
             for general in _collect_supertypes(model, generals)
-            for one in _find_type_bases(model, general)
+            for base in _find_type_bases(model, general)
         }
         model.typed_generals_above[generals] = inherited_bases
-    return tuple([one for one in bases if one not in inherited_bases])
+    return tuple([base for base in bases if base not in inherited_bases])
 
 
 def _collect_supertypes(model: Model, generals: tuple[Node, ...]) -> set[Node]:
-    return {one for general in generals for one in model.supertype_set(general)}
+    return {supertype for general in generals for supertype in model.supertype_set(general)}
 
 
 def _find_type_bases(model: Model, node: Node) -> tuple[Node, ...]:

@@ -149,8 +149,8 @@ class MemberLookup(GeneralLookup):
         if key not in self._names_of:
             names_of_generals = [self._collect_names(general, {}) for general in key]
             complete = [names for names in names_of_generals if names is not None]
-            whole = len(complete) == len(names_of_generals)
-            self._names_of[key] = frozenset().union(*complete) if whole else None
+            is_complete = len(complete) == len(names_of_generals)
+            self._names_of[key] = frozenset().union(*complete) if is_complete else None
         return self._names_of[key]
 
     def _collect_names(self, general: Node, pending: dict[Node, None]) -> frozenset[str] | None:
@@ -178,7 +178,9 @@ class MemberLookup(GeneralLookup):
         hits: list[Node] = []
         if scope in self._cyclic:
             members = (
-                member for g in self.known_ancestors(scope) for member in self.own_members(g, name)
+                member
+                for ancestor in self.known_ancestors(scope)
+                for member in self.own_members(ancestor, name)
             )
             return tuple(
                 dict.fromkeys(member for member in members if member.visibility != "private")
@@ -203,10 +205,7 @@ class MemberLookup(GeneralLookup):
 
     def _find_heritable(self, general: Node, name: str) -> Hits:
         """Return the members by name that ``general`` passes on to its specialisations."""
-        index = self._owned.get(general)
-        if index is None:
-            index = self.symbol_table(general)
-        if name in index:
+        if name in self.symbol_table(general):
             hits = [
                 member
                 for member in self.own_members(general, name)
@@ -214,13 +213,7 @@ class MemberLookup(GeneralLookup):
             ]
             if hits:
                 return tuple(hits)
-        memo = self._inherited.get(general)
-        inherited = memo.get(name) if memo is not None else None
-        if inherited is None:
-            inherited = self.inherited(general, name)
-        return inherited or (
-            self.imported_members(general, name, inside=False) if self.imports(general) else NO_HITS
-        )
+        return self.inherited(general, name) or self.imported_members(general, name, inside=False)
 
     def _drop_general(self, hits: list[Node]) -> Hits:
         """Return the members that no other one of ``hits`` redefines."""

@@ -63,7 +63,7 @@ class Model:
 
     def packages(self) -> list[str]:
         """Return the names of the root members of the documents and of the library."""
-        own_names = [str(one.name) for one in self.own_packages() if one.name]
+        own_names = [str(package.name) for package in self.own_packages() if package.name]
         return [*own_names, *self.library.names()]
 
     def own_packages(self) -> list[Node]:
@@ -168,7 +168,7 @@ class Model:
         """Return everything that ``node`` may implicitly specialise, needed or not."""
         alike = self._find_alike(node)
         if node in alike.targets or self._has_own_candidates(node):
-            return tuple(dict.fromkeys([one for _, one in self._list_candidates(node)]))
+            return tuple(dict.fromkeys([target for _, target in self._list_candidates(node)]))
         return alike.targets
 
     def _has_own_candidates(self, node: Node) -> bool:
@@ -231,16 +231,17 @@ class Model:
         return cached
 
     def _drop_redundant(self, possible: tuple[Node, ...], stated: tuple[Node, ...]) -> list[Node]:
+        """Return the generals of ``possible`` that no other general specialises."""
         stated_supertypes = [self.supertype_set(general) for general in stated]
         possible_supertypes = [(general, self.supertype_set(general)) for general in possible]
-        return [
-            general
-            for general in possible
-            if not any(general in those for those in stated_supertypes)
-            and not any(
-                other is not general and general in those for other, those in possible_supertypes
+
+        def is_redundant(general: Node) -> bool:
+            return any(general in supertypes for supertypes in stated_supertypes) or any(
+                special is not general and general in supertypes
+                for special, supertypes in possible_supertypes
             )
-        ]
+
+        return [general for general in possible if not is_redundant(general)]
 
     def supertype_set(self, node: Node) -> dict[Node, None]:
         """Return ``all_supertypes`` as a dictionary, for membership tests."""

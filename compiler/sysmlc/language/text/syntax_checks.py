@@ -97,8 +97,8 @@ def _check_owner(node: Node, owner: Node, errors: Errors) -> None:
 def _report(node: Node, what: str, where: str, errors: Errors) -> None:
     owner = node.owner
     is_at_top = owner is None or owner.owner is None
-    here = "outside of any body" if owner is None or is_at_top else _describe_body(owner)
-    errors.report(rules.PLACE, node.start, what=what, here=here, where=where)
+    body = "outside of any body" if owner is None or is_at_top else _describe_body(owner)
+    errors.report(rules.PLACE, node.start, what=what, here=body, where=where)
 
 
 def _describe_body(owner: Node) -> str:

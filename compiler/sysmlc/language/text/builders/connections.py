@@ -49,7 +49,7 @@ def _make_end(kind: str, end: End, tokens: Tokens) -> Node:
 
 
 def _make_flow_end(end: End, tokens: Tokens) -> Node:
-    """Return the end feature of a flow: it references all of the chain but the last feature (8.2.2.16)."""
+    """Return the end of a flow: it references the chain without its last feature (8.2.2.16)."""
     node = make_node("FlowEnd", _END, tokens, end.begin, end.stop)
     chain, start, end_offset = end.reference.chain, end.reference.start, end.reference.end
     if len(chain) > 1:

@@ -224,17 +224,17 @@ def apply_prefixes(tokens: Tokens, begin: int, prefixes: list[Prefix], node: Nod
     """Apply the prefixes of a member, and return it."""
     node.start = tokens.starts[begin]
     check_prefixes(tokens, prefixes, node)
-    for given in prefixes:
-        if isinstance(given, Node):
+    for prefix in prefixes:
+        if isinstance(prefix, Node):
             continue
-        word = tokens[given]
+        word = tokens[prefix]
         if word == "library":
             node.kind = "LibraryPackage"
         elif word == "member":
             node.membership = OWNING
         else:
             node.attributes.update(_FACTS.get(word, ()))
-    return prepend_members(node, [given for given in prefixes if isinstance(given, Node)])
+    return prepend_members(node, [prefix for prefix in prefixes if isinstance(prefix, Node)])
 
 
 def _build_prefixed(
@@ -265,7 +265,7 @@ _Parameters = ParamSpec("_Parameters")
 def _adapt(
     change: Callable[[Node], Node], build: Callable[_Parameters, Node]
 ) -> Callable[_Parameters, Node]:
-    """Return the builder of an element of SysML, adapted to the element of KerML with the same notation."""
+    """Return a builder of SysML, adapted to the element of KerML with the same notation."""
 
     def built(*said: _Parameters.args, **named: _Parameters.kwargs) -> Node:
         return change(build(*said, **named))

@@ -75,7 +75,7 @@ _TYPES = {
 
 def check_prefixes(tokens: Tokens, prefixes: list[int | Node], node: Node) -> None:
     """Record a fault for prefixes that are out of order, or invalid for this declaration."""
-    words = [(one, tokens[one]) for one in prefixes if isinstance(one, int)]
+    words = [(prefix, tokens[prefix]) for prefix in prefixes if isinstance(prefix, int)]
     for token, word in words:
         if word and not _is_allowed(word, node):
             text = f"'{word}' cannot stand before {_describe(node)}"
@@ -158,8 +158,8 @@ _OCCURRENCE = ("individual", "snapshot", "timeslice")
 def apply_prefixes(tokens: Tokens, begin: int, prefixes: list[Prefix], node: Node) -> Node:
     """Apply the prefixes of a member, and return it."""
     node.start = tokens.starts[begin]
-    metadata = [given for given in prefixes if isinstance(given, Node)]
-    words = [tokens[given] for given in prefixes if isinstance(given, int)]
+    metadata = [prefix for prefix in prefixes if isinstance(prefix, Node)]
+    words = [tokens[prefix] for prefix in prefixes if isinstance(prefix, int)]
     if words:
         check_prefixes(tokens, prefixes, node)
     for word in words:
@@ -192,9 +192,9 @@ def _build_prefixed_keywordless(
     tokens: Tokens, _stop: int, begin: int, prefixes: list[Prefix], node: Node
 ) -> Node:
     """Build a usage without keyword, whose kind depends on its prefixes."""
-    if any(isinstance(given, int) and tokens[given] in _OCCURRENCE for given in prefixes):
+    if any(isinstance(prefix, int) and tokens[prefix] in _OCCURRENCE for prefix in prefixes):
         node.kind = "OccurrenceUsage"
-    elif any(isinstance(given, Node) for given in prefixes):
+    elif any(isinstance(prefix, Node) for prefix in prefixes):
         node.kind = "Usage"
     return apply_prefixes(tokens, begin, prefixes, node)
 
