@@ -113,6 +113,7 @@ class Library:
 
     def _paths_mentioning(self, name: str) -> list[str]:
         """Return the files whose text has the name; all files for a name that texts escape."""
+        # Texts may write such a name with escapes, so its bytes are not in them.
         if not name.isprintable() or "'" in name or "\\" in name:
             return self.paths()
         return [path for path in self.paths() if name.encode() in self._sources[path].data]

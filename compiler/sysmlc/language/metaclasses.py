@@ -172,6 +172,7 @@ def is_composite(node: Node) -> bool:
         return False
     if node.membership not in _FEATURE_MEMBERSHIPS or node.membership in _PARAMETERS:
         return False
+    # A feature with a direction is passed, not contained.
     if "direction" in node.attributes:
         return False
     owner = node.owner.kind if node.owner else ""

@@ -93,6 +93,7 @@ def _write_operator(node: Node) -> tuple[str, int]:
 def _write_binary(operator: str, left: Node, right: Node) -> tuple[str, int]:
     if operator == ",":
         rest = _write(right)[0]
+        # A sequence a, b, c is nested to the right; only the outer one has parentheses.
         is_list = right.attributes.get("operator") == ","
         return (
             f"({_write_operand(left, _CONDITIONAL)}, {rest[1:-1] if is_list else rest})",
@@ -103,6 +104,7 @@ def _write_binary(operator: str, left: Node, right: Node) -> tuple[str, int]:
     level = PRECEDENCE.get(operator)
     if level is None:
         raise _NoNotationError(operator)
+    # Powers group to the right: a^b^c is a^(b^c).
     first, second = (level + 1, level) if operator in ("^", "**") else (level, level + 1)
     sign = operator if operator in ("^", "**", "..") else f" {operator} "
     return f"{_write_operand(left, first)}{sign}{_write_operand(right, second)}", level

@@ -33,6 +33,7 @@ def check_accessibility(model: Model, document: Document, node: Node, sink: Sink
     if not uses:
         return
     scopes = [node, *_list_owners(node)]
+    # The common case, decided without supertypes.
     if len({id(feature.owner) for *_, feature in uses}) == 1 and uses[0][2].owner in scopes:
         return
     if any(all(_has_feature(model, scope, feature) for *_, feature in uses) for scope in scopes):

@@ -70,6 +70,7 @@ def _list_allowed_kinds(model: Model, node: Node) -> list[str]:
     """Return the metaclasses that ``annotatedElement`` is restricted to; empty for any."""
     cache = model.annotated_kinds
     definitions = tuple(model.lookup.all_generals(node))
+    # Metadata is used thousands of times with few definitions.
     if definitions not in cache:
         cache[definitions] = _list_allowed_kinds_in(model, model.all_supertypes(node)[1:])
     return list(dict.fromkeys([*_list_allowed_kinds_in(model, [node]), *cache[definitions]]))

@@ -46,6 +46,7 @@ def check_inherited(model: Model, node: Node) -> Iterator[Finding]:
     ``behaviors``).
     """
     inherited_members = model.lookup.inherited
+    # Metadata bodies redefine attributes by name.
     if node.owner is not None and (node.owner.kind in _METADATA or node.kind in _METADATA):
         return
     for member in node.members:

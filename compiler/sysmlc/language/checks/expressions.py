@@ -67,6 +67,7 @@ def evaluate_constant(model: Model, expression: Node, depth: int = 0) -> Value |
     """Return the constant value of an expression, also through bound features, or None."""
     if "value" in expression.attributes:
         return expression.attributes["value"]
+    # Bound features may form a cycle: a = b, b = a.
     if depth > _MAX_DEPTH:
         return None
     if expression.kind == "FeatureReferenceExpression":

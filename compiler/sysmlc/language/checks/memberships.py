@@ -99,6 +99,7 @@ def check_member(model: Model, document: Document, node: Node, sink: Sink) -> No
     if owner is None:
         return
     broken = _find_broken_membership(node, owner)
+    # One finding for each usage: its type may be right once it has its place.
     if broken is None and node.kind in _WITH_TYPE_CHECKS:
         broken = _find_broken_type(model, node)
     if broken is not None:

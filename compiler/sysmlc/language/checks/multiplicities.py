@@ -52,6 +52,7 @@ def check_notation(model: Model, node: Node) -> Iterator[Finding]:
     for bound in node.members:
         if bound.kind in _INSTANTIATIONS:
             document = model.document(node)
+            # Interchange files have no notation that could be violated.
             if document is not None and document.text:
                 yield Finding(BOUND_EXPRESSION, bound.start, {"name": name_of(model, node.owner)})
 

@@ -65,6 +65,7 @@ def check_references(model: Model, document: Document, node: Node, sink: Sink) -
             owner = model.name(target.owner) if target.owner else ""
             name = str(relation.reference)
             broken.append((OTHER_DIRECTION, {"name": name, "owner": owner}))
+        # Usages; `specializations` checks definitions.
         if is_variation and target.attributes.get("isVariation"):
             facts_of_node = {"name": model.name(node) or node.kind, "owner": ""}
             broken.append((memberships.VARIATION_OF_VARIATION, facts_of_node))

@@ -84,6 +84,7 @@ def _find_requirements() -> dict[str, Requirement]:
             if general in ALL_GENERALS[kind]:
                 requirements[kind] = requirement
                 break
+    # Bindings and successions are connectors too, and their types are not restricted.
     connectors = kinds_of("ConnectionUsage") | kinds_of("FlowUsage")
     for kind in connectors:
         requirements[kind] = next(w for g, w in _REQUIREMENTS if g in ALL_GENERALS[kind])

@@ -23,6 +23,7 @@ def format_text(text: str, language: str) -> str:
     printer = Printer()
     printer.print_body(*group_statements(source_tokens), "")
     formatted = "".join(f"{line}\n" for line in printer.lines)
+    # A wrong space would change the model without notice, so the result is checked every time.
     if list(iter_meaning(read_tokens(formatted, types))) != list(iter_meaning(source_tokens)):
         raise ValueError("the layout would change the text")
     return formatted.replace("\n", line_end)

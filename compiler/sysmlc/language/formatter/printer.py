@@ -197,6 +197,7 @@ class _StatementPrinter:
 
     def _print_block(self, block: Block, *, is_first: bool) -> None:
         self._add_token(block.opening, is_first=is_first)
+        # An empty body stays on the line of its statement.
         if not block.statements and not block.closing.notes:
             self._pieces.append(Piece("}", "", None))
             self._spacing = Spacing()

@@ -108,12 +108,14 @@ class Spacing:
     def _is_spaced_by_context(self, before: Token, token: Token) -> bool:
         if token.text == "(":
             return before.sort is not Sort.NAME and before.text not in (")", "]", "#")
+        # `x[4]` is a multiplicity or an index, `5 [kg]` a quantity.
         if token.text == "[":
             return self._is_unit_bracket(before)
         if token.text == "#" and before.is_operand and self._has_operand_index(before):
             return False
         if before.text == "{" or token.text == "}":
             return False
+        # `**` would be another token.
         if before.text == "*" and token.text == "*":
             return True
         is_tight = self._is_tight(token) or self._is_tight(before)

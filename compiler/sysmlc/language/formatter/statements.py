@@ -202,6 +202,7 @@ def _begins_body_expression(statement: Statement) -> bool:
     if texts[-1] == "else":
         return "?" in texts
     position = len(texts) - 1
+    # Skip back over a qualified name: `a->Pkg::select {`.
     while position > 1 and texts[position - 1] == "::":
         position -= 2
     return position > 0 and texts[position - 1] == "->"

@@ -52,6 +52,7 @@ def assign_ids(
         name = package.name or ""
         base, path = uuid5(NAMESPACE_URL, _STANDARD[document.language] + name), f"{name}/owner"
     else:
+        # Not the content: ids must survive edits of the model.
         stem = document.path.rpartition(".")[0] or document.path
         base, path = uuid5(NAMESPACE_URL, f"urn:sysmlc:{stem}"), ""
     _IdAssigner(base, document.root, redefined).assign(root, path)
@@ -80,6 +81,7 @@ class _IdAssigner:
     def assign(self, root: Element, path: str) -> None:
         """Assign ids to the root namespace and all below it."""
         self._worklist.append((root, path, ""))
+        # No recursion: expressions nest deeper than Python recurses.
         while self._worklist:
             self._assign_to_element(*self._worklist.pop())
 

@@ -262,6 +262,7 @@ def _drop_derived_attributes(node: Node) -> None:
     if node.kind == "EnumerationDefinition":
         attributes.pop("isVariation", None)
     if node.kind in USAGES:
+        # Files state isComposite, texts state `ref` where a usage would be composite otherwise.
         was_composite = attributes.pop("isComposite", False)
         if attributes.get("isEnd"):
             attributes.pop("isConstant", None)

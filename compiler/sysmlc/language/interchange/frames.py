@@ -89,6 +89,7 @@ def _set_value(node: Node, feature: str, value: str, action: str) -> str:
     parsed = _parse(node.kind, value, action)
     if parsed is None:
         return "number" if action == "number" else "truth value"
+    # Files state defaults too; the tree has only values that differ from them.
     if action != "boolean" or feature == "value" or parsed != (feature in _TRUE_BY_DEFAULT):
         node.attributes[feature] = parsed
     return ""

@@ -34,6 +34,7 @@ def compute_checksum(source: Source, algorithm: str) -> str | None:
     if canonical_name == "SHA256":
         return source.sha256
     if canonical_name in _ALGORITHMS:
+        # Without `usedforsecurity` a FIPS build of Python refuses MD5 and SHA-1.
         return hashlib.new(
             _ALGORITHMS[canonical_name], source.data, usedforsecurity=False
         ).hexdigest()
@@ -266,6 +267,7 @@ def _stem(resource: str) -> str:
 
 
 def _split_words(name: str) -> list[str]:
+    # Names of archives often end with the version: `Robots-1.0.2`.
     bare = re.sub(r"[-_ ]v?\d+(\.\d+)+$", "", name)
     return [word.lower() for word in re.split(r"[-_ .]+", bare) if word]
 

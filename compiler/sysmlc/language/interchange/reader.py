@@ -38,6 +38,7 @@ def read(source: Source, sink: Sink) -> ExchangeDocument:
     except SourceError as problem:
         if problem.fault is Fault.LIMIT:
             raise
+        # Half a model gives wrong outputs, so nothing of a damaged file is used.
         reader = _Reader(source, sink)
         subject = Subject(source.name, place=Place(source.name, offset=problem.offset))
         sink.report(rules.MALFORMED, subject, file=source.name, problem=problem.message)
@@ -98,6 +99,7 @@ class _Reader:
 
     def _canonical_attributes(self, attributes: dict[str, str]) -> dict[str, str]:
         names = self._names
+        # The attribute names of a file are few, and memoised.
         try:
             return {names[name]: value for name, value in attributes.items()}
         except KeyError:
@@ -122,6 +124,7 @@ class _Reader:
             self._skipped = 1
 
     def _open_element(self, local: str, kind: str, values: dict[str, str]) -> None:
+        # Implied relationships follow from the others, and name resolution computes them.
         if values.get("isImplied") == "true":
             self._skipped = 1
         elif not is_concrete(kind):

@@ -114,6 +114,7 @@ class _IdIndex:
 
     def _load_ids(self, file: str) -> Mapping[str, Node]:
         if file not in self._ids and self._library is not None:
+            # Hrefs name .kermlx files, the library has .kerml files of the same stem.
             stem = basename(splitext(file)[0])
             self._ids[file] = map_ids(self._library.document(self._stems[stem]))
         return self._ids[file]
@@ -162,5 +163,6 @@ def _id_of(link: str) -> str:
 
 def _file_of(path: str, link: str) -> str:
     """Return the path, in the unit, of the file that a link leads to."""
+    # Tools write spaces in hrefs as %20.
     file = unquote(link.rpartition("#")[0])
     return normpath(join(dirname(path), file)) if file else normpath(path)

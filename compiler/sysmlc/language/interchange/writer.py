@@ -151,6 +151,8 @@ def _write_hrefs(targets: Targets, indent: str) -> Iterable[str]:
     for name, references in targets.items():
         for href, kind in references:
             if kind:
+                # A reader cannot create a proxy of the abstract metaclass Element, so the href has
+                # a type.
                 type = f' xsi:type="sysml:{kind}"' if name in _UNTYPED_FEATURES else ""
                 yield f'{indent}<{name}{type} href="{href.translate(_ESCAPES)}"/>'
 
@@ -255,6 +257,7 @@ class _Writer:
             lost = {owned: next(_find_lost(owned), None) for owned in element.owned}
             for name in filter(None, lost.values()):
                 self._report(rules.UNWRITTEN_REFERENCE, node, name)
+            # A relationship without its target would not be valid against the metamodel.
             element.owned[:] = [owned for owned in element.owned if lost[owned] is None]
 
     def _report(self, rule: Rule, node: Node, what: str) -> None:

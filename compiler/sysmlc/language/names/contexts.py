@@ -102,6 +102,7 @@ def _make_context(node: Node, relation: Relation) -> LookupContext:
     kind = relation.kind
     if kind == "Membership":
         return _make_membership_context(node)
+    # The ends of a connector are features of its owner, not of the connector.
     if kind == "ReferenceSubsetting" and (_is_connector_end(node) or _is_event_of_message(node)):
         return LookupContext(_find_end_scope(node.owner), without=node)
     if kind == "Redefinition":
@@ -115,6 +116,7 @@ def _make_context(node: Node, relation: Relation) -> LookupContext:
         return _make_import_context(
             node, everything=kind in _MEMBER and bool(node.attributes.get("isImportAll"))
         )
+    # Each FeatureChaining after the first is looked up in the target of the one before.
     before = _find_previous_link(node, relation) if kind == "FeatureChaining" else None
     return LookupContext(find_namespace(node), without=node, before=before)
 

@@ -46,6 +46,7 @@ class GeneralLookup(ABC):
 
     def abandon(self) -> None:
         """Reset the state of the queries that a RecursionError interrupted."""
+        # The interrupted references count as unresolved: their lookup would only fail again.
         for reference in self._active:
             reference.set_targets([])
         self.abandoned_references |= self._active
@@ -80,8 +81,10 @@ class GeneralLookup(ABC):
                         generals = [general for general in generals if general not in links]
                         links.append(target)
                     generals.append(target)
+        # A cycle was hit otherwise: the value is incomplete, and another query may complete it.
         if self.cycle_hits == hits_before:
             self._generals[node] = generals
+            # A node in a cycle is the general of another one, so others need no search for cycles.
             self._general_targets.update(generals)
             if node in self._general_targets:
                 self._record_cycle(node)

@@ -127,6 +127,7 @@ def _list_relations(model: Model, node: Node) -> list[tuple[str, Node]]:
         return relations
     by_type = find_typed_generals(model, node)
     needed = dict.fromkeys(model.needed_generals(node, by_type))
+    # A redefined feature is no implied general too.
     for _, target in relations:
         needed.pop(target, None)
     for kind, target in [*(("Subsetting", target) for target in by_type), *model.candidates(node)]:

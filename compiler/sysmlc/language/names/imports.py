@@ -61,6 +61,7 @@ class ImportLookup(MemberLookup):
         self._seen[scope, inside, name] = hits
         if self.cycle_hits == hits_before:
             cached[name] = hits
+        # Results in progress are valid only within one outermost query.
         if is_outermost:
             self._seen.clear()
         return hits
@@ -116,6 +117,7 @@ class ImportLookup(MemberLookup):
             if everything
             else self.visible_outside(scope, name)
         )
+        # A recursive import searches nested namespaces only for names that the first one lacks.
         if hits or not node.attributes.get("isRecursive"):
             return hits
         for nested in self._list_nested_namespaces(scope, everything):

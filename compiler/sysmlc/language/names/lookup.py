@@ -52,7 +52,9 @@ class Lookup(ImportLookup):
         self._active.discard(reference)
         is_whole, new_hits = len(targets) == len(reference.chain), self.cycle_hits - hits_before
         if not is_whole and new_hits > _MAX_CYCLES:
+            # Memoise the failure, because each further try would take as long.
             self.circular_references.add(reference)
+        # A lookup that failed because of a cycle may succeed later, unless it is the outermost one.
         if is_whole or not self._active or not 0 < new_hits <= _MAX_CYCLES:
             reference.set_targets(targets)
         return targets[-1] if is_whole else None
@@ -114,6 +116,8 @@ class Lookup(ImportLookup):
                     member = self.find_among(hits, names, 0, kinds, context.everything)
                     if member is not None:
                         return member
+                    # The nearest namespace with the first name decides, even if it lacks the next
+                    # name (KerML 8.2.3.5).
                     if len(names) > 1 and any(map(self._is_namespace, hits)):
                         return None
             scope = contexts.find_outer_scope(scope)

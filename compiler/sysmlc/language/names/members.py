@@ -135,6 +135,7 @@ class MemberLookup(GeneralLookup):
         self._inheriting.discard(scope)
         if self.cycle_hits == hits_before:
             cached[name] = hits
+            # Most lookups fail in most scopes; from the second failure on a set of names decides.
             if not hits and scope not in self._inheritable:
                 self._inheritable[scope] = self._collect_inheritable_names(scope)
         return hits
@@ -176,6 +177,7 @@ class MemberLookup(GeneralLookup):
 
     def _find_in_generals(self, scope: Node, name: str) -> Hits:
         hits: list[Node] = []
+        # In a cycle every element inherits from all others, in no order of generality.
         if scope in self._cyclic:
             members = (
                 member
@@ -191,6 +193,7 @@ class MemberLookup(GeneralLookup):
                 hits += [hit for hit in inherited if hit not in hits]
         if not hits and not self._may_inherit(scope, name):
             return NO_HITS
+        # A member of the model is final, but an implied general may redefine one of the library.
         if not hits or any(map(is_in_library, hits)):
             for general in self._find_implied_generals(scope):
                 inherited = self._find_heritable(general, name)
@@ -230,6 +233,7 @@ class MemberLookup(GeneralLookup):
             for relation in member.relations:
                 if relation.kind == "Redefinition":
                     name = relation.reference.chain[-1][-1]
+                    # Comparing the last name first avoids resolving all other redefinitions.
                     if name in (hit.name, hit.short_name) or hit.name is None:
                         target = self.target(member, relation)
                         if target is hit or (target and hit in self.redefined_features(target)):

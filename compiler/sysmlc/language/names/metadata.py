@@ -29,6 +29,7 @@ class UndecidedError(Exception):
 def passes_filter(condition: Node, hit: Node, lookup: LookupQueries) -> bool:
     """Whether a member may be imported; an undecided condition lets it pass."""
     element = lookup.resolve_alias(hit)
+    # An unresolved alias is reported elsewhere.
     if element is None:
         return True
     try:
@@ -147,6 +148,7 @@ def _read_metaclass_attribute(feature: Node, element: Node) -> Value:
     name, metaclass = feature.name or "", feature.owner and feature.owner.name
     if not is_a(element.kind, metaclass or ""):
         return None
+    # `name` is the effective name, which is known here only if it is declared.
     if name == "declaredName" or (name == "name" and element.name is not None):
         return element.name
     if name in ("shortName", "declaredShortName"):

@@ -85,6 +85,7 @@ class Model:
         hits = self._find_roots(names[0])
         hit = self.lookup.find_among(hits, names, 0, None)
         element = self.lookup.resolve_alias(hit) if hit else None
+        # A name that was not found in a cycle may be found later.
         if self.lookup.cycle_hits == hits_before:
             self._elements_by_name[qualified_name] = element
         return element
@@ -158,6 +159,7 @@ class Model:
     def document(self, node: Node) -> Document | None:
         """Return the document, of the model or of the library, that contains ``node``."""
         root = find_root(node)
+        # The library loads documents on demand, so new ones may have been added.
         if root not in self._documents_by_root:
             self._documents_by_root.update((d.root, d) for d in self.library.loaded())
         return self._documents_by_root.get(root)

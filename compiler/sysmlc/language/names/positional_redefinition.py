@@ -53,6 +53,7 @@ def find_redefined(feature: Node, lookup: GeneralizationQueries) -> list[Node]:
     owner, role = feature.owner, find_role(feature)
     if not role or owner is None or owner.kind in _WITHOUT_POSITIONS:
         return []
+    # A second subject redefines the same feature as the first one, and is reported as superfluous.
     index = 0 if role in _SINGLE else lookup.own_features_of_role(owner, role).index(feature)
     redefined: list[Node] = []
     for general in lookup.all_generals(owner):

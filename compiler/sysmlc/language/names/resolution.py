@@ -25,7 +25,9 @@ def resolve(documents: Sequence[Document], library: Library, sink: Sink) -> Mode
 def resolve_all(model: Model, sink: Sink) -> None:
     """Resolve every reference that is not yet resolved, and report unresolved names."""
     is_collecting, recursion_limit = gc.isenabled(), sys.getrecursionlimit()
+    # Resolution creates no garbage but many objects, which would trigger collections.
     gc.disable()
+    # Names resolve by recursion, and a chain of aliases may be as long as a program writes it.
     sys.setrecursionlimit(max(recursion_limit, _RECURSION_LIMIT))
     try:
         for document in model.documents:
@@ -59,6 +61,7 @@ def _resolve_one(
     try:
         if model.lookup.target(node, relation) is None:
             report_unresolved(model, document, node, relation, sink)
+    # Thousands of aliases in a row, which no modeller writes.
     except RecursionError:
         model.lookup.abandon()
         place = make_subject(document, node, relation.reference.start)

@@ -208,11 +208,14 @@ def report_unresolved(
     index = len(reference.targets or ())
     context = contexts.find_context(node, relation)
     container = _find_containing(node, lookup, reference, context)
+    # The element before the dot is unknown or reported, so this name cannot be judged.
     if container is None and (index or context.operand is not None or context.before is not None):
         return
+    # A general that cannot be resolved may have the name; it is reported itself.
     if _is_incomplete(container or (context.scope if context.inherited else None), lookup):
         return
     name = "::".join(reference.chain[index])
+    # The name may exist, so "unknown name" would be wrong.
     if reference in lookup.circular_references:
         sink.report(
             TOO_CIRCULAR,

@@ -68,6 +68,7 @@ class Errors:
     def report_depth(self, start: int) -> None:
         """Report that the text is nested too deep, and suppress the errors that follow from it."""
         self.report(rules.DEEP, start, limit=MAX_DEPTH)
+        # Everything after the limit is unread, and would give errors about closing brackets.
         self._remaining = 0
 
     def report_faults(self, too_deep: int) -> None:
@@ -147,6 +148,8 @@ class Errors:
             elif symbol == "}" and open_braces:
                 open_braces.pop()
         if open_braces:
+            # The innermost open brace is the best guess, as the outer ones may be closed by its
+            # `}`.
             start = self._tokens.starts[open_braces[-1]]
             advice = "put '}' after the last member of this body"
             self.report(rules.UNCLOSED, start, what="this '{'", advice=advice)

@@ -88,6 +88,7 @@ def _read_shipped(language: str) -> bytes | None:
 def _generate(language: str) -> bytes:
     """Generate the tables, and store them in the package unless its folder is read-only."""
     data = generate_tables(read_grammar(language))
+    # A package in a read-only folder works all the same, only slower.
     with suppress(OSError):
         _store(language, SHIPPED, data)
     return data
@@ -146,11 +147,13 @@ def run(tables: Tables, rules: Rules, tokens: Tokens, stack: Stack, index: int) 
     state, token_type = stack[-1], types[index]
     while True:
         step = rows[state].get(token_type)
+        # A state with one possible reduction has it as default, without looking at the token.
         if step is None:
             step = defaults[state]
             if step is None:
                 return index
         if step >= 0:
+            # The inner loop of the parser: one list holds all three entries of a symbol.
             stack += (index, index, step)
             state = step
             index += 1

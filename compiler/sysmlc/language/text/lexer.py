@@ -7,9 +7,12 @@ from msgspec import Struct
 
 from sysmlc.language.tree import Node
 
+# The possessive `*+` keeps long runs of notes from backtracking.
 _SKIPPED = r"(?:[ \t\r\n\f\v\ufeff]+|//\*(?s:.)*?\*/|//(?!\*)[^\r\n]*)*+"
 _COMMENT = r"/\*(?s:.)*?\*/"
 _WORD = r"[^\W\d]\w*"
+# Longer symbols come first, because an alternation takes the first match. `.5` is a number, and
+# `/*` begins a comment.
 _SYMBOLS = (
     r"===|!==|:>>|::>|\*\*|::|:>|:=|==|!=|<=|>=|=>|->|\.\.|\.\?|\?\?|@@"
     r"|/(?!\*)|\.(?!\d)|[~}|{^\]\[@?>=<;:,+*)(&%$#-]"
@@ -111,11 +114,14 @@ def tokenize(text: str, types: TokenTypes) -> Tokens:
     """Return all tokens of ``text``; never fails. A text that is not UTF-8 has no tokens."""
     tokens = Tokens(text, bytearray(), [], [], [], [], [], [])
     position = 0
+    # Decoded as UTF-8, such a file would give thousands of faults instead of one.
     if "\0" in text[:_PROBE_LENGTH]:
         tokens.faults.append(LexicalFault("encoding", 0, ""))
         position = len(text)
     while position >= 0:
         position = _tokenize_valid(tokens, types, position)
+    # The word pattern accepts all letters, so that a name such as Größe is one token with one
+    # fault.
     if not text.isascii():
         _check_name_characters(tokens, types)
     return tokens
@@ -143,6 +149,7 @@ def _skip_invalid(tokens: Tokens, types: TokenTypes, start: int) -> int:
     """Record a part of the text that is no token; return where to go on."""
     text = tokens.text
     char = text[start]
+    # The rest of the text is the comment, so nothing of it is read.
     if text.startswith("/*", start) or text.startswith("//*", start):
         tokens.faults.append(LexicalFault("comment", start, char))
         return len(text)
@@ -154,6 +161,7 @@ def _skip_invalid(tokens: Tokens, types: TokenTypes, start: int) -> int:
         tokens.starts.append(start)
         tokens.ends.append(end)
         return end
+    # Each character is reported once: a text in another script would give an error per letter.
     if all(char != fault.text for fault in tokens.faults):
         tokens.faults.append(LexicalFault("character", start, char))
     return start + 1

@@ -39,8 +39,11 @@ class Recovery:
         """Mend the stack or the tokens; return where to parse on, or -1 to give the text up."""
         states = stack[2::3]
         self._count += 1
+        # Each recovery simulates the parser for all token types; hostile texts must not take
+        # minutes.
         if self._count > _MAX_RECOVERIES:
             return -1
+        # An error at the very next token follows from the mend, not from the text.
         is_quiet = index <= self._last_error + 1
         self._last_error = index
         for mend in _MENDS:
@@ -105,6 +108,7 @@ class Recovery:
         return "\n" in gap or "\r" in gap
 
     def _insert_closing_bracket(self, states: list[int], index: int, is_quiet: bool) -> int:
+        # Only closing brackets are inserted: an opening one could stand anywhere before.
         for symbol in ")]":
             token_type = self._words[symbol]
             if self._accepts_all(states, (token_type, self._tokens.types[index])):
@@ -149,6 +153,7 @@ class Recovery:
                 if required != symbol:
                     tokens.insert(stop, self._words[required])
                 return stop
+            # The head of the member is lost, but its members are still worth reading.
             if symbol == "{":
                 tokens.insert(stop, self._words[_PREFIX_WITH_BODY])
                 self._last_error = stop + 1
@@ -184,6 +189,7 @@ class Recovery:
 
     def _accepts_all(self, states: list[int], token_types: tuple[int, ...]) -> bool:
         """Whether tokens of these types can come next."""
+        # The stack itself must stay as it is until a mend is chosen.
         simulated = list(states)
         return all(self._shift(simulated, token_type) for token_type in token_types)
 
@@ -204,6 +210,7 @@ class Recovery:
             states.append(rows[states[-1]][symbol])
 
 
+# The first mend that applies wins, so those that change the least come first.
 _MENDS = (
     Recovery._drop_comment,
     Recovery._substitute,

@@ -14,6 +14,8 @@ _CALCULATION = ("Function", "Expression")
 _ACTION = ("ActionDefinition", "ActionUsage", "ConstraintDefinition", "ConstraintUsage", "Behavior")
 _STATE = ("StateDefinition", "StateUsage", "ExhibitStateUsage")
 _VIEW = ("ViewDefinition", "ViewUsage")
+# The grammars have one rule for members of all bodies: a rule for each kind of body would multiply
+# their states, and the message would only name a token.
 _ALLOWED_OWNERS: dict[str, tuple[str, tuple[str, ...], str]] = {
     "SubjectMembership": ("a subject", _REQUIREMENT + _CASE, "requirements and cases"),
     "ActorMembership": ("an actor", _REQUIREMENT + _CASE, "requirements and cases"),

@@ -30,9 +30,11 @@ def generate_tables(grammar: str) -> bytes:
 
     Raises ``lark.exceptions.GrammarError`` if the grammar is not LALR(1).
     """
+    # Lark takes 50 ms to import, and is needed only where tables are generated.
     from lark import Lark
     from lark.lexer import Lexer, Token
 
+    # Lark asks for a lexer that knows the terminals; tokens come from our own.
     class NoLexer(Lexer):
         def __init__(self, _conf: object) -> None: ...
 
@@ -135,6 +137,7 @@ def _find_argument_positions(rule: "Rule") -> tuple[int, ...]:
     length = len(rule.expansion)
     gaps = [False] * length if not rule.options.empty_indices else rule.options.empty_indices
     positions, index = [], 0
+    # Lark removes absent optional symbols from the expansion and marks them in empty_indices.
     for absent in gaps:
         if absent:
             positions.append(0)

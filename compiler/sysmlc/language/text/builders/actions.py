@@ -56,6 +56,7 @@ def _build_trigger(tokens: Tokens, stop: int, begin: int, keyword: int, value: N
     node.role = "="
     node.attributes["kind"] = tokens[keyword]
     value.membership = PARAMETER
+    # A change condition is evaluated again and again, so it is passed as an expression.
     if tokens[keyword] == "when":
         value.role = "expression"
     node.add_member(value)
@@ -75,6 +76,7 @@ def _build_send(
     to: Node | None,
 ) -> Tail:
     arguments = [item, via, to]
+    # Parameters are positional, so only absent ones at the end may be omitted.
     while arguments and arguments[-1] is None:
         arguments.pop()
     start = tokens.ends[begin]

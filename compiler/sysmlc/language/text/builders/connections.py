@@ -230,6 +230,7 @@ def build_payload(
 ) -> Node:
     """Build the payload of a flow or accept action: a name with its type, or only the type."""
     node = make_node("ReferenceUsage", "ParameterMembership", tokens, begin, stop)
+    # `accept x : T` and `accept T` begin alike; one token of lookahead does not tell.
     is_name = len(reference.chain) == 1 and len(reference.chain[0]) == 1
     is_typed = any(isinstance(part, Relation) for part in parts or ())
     if is_name and (is_typed or value is not None):
@@ -319,6 +320,7 @@ def _build_usage_named_end(
     tokens: Tokens, stop: int, begin: int, node: Node, end: End, body: list[Node]
 ) -> Node:
     """Build ``interface a ::> x to y``: the parsed declaration is the first end."""
+    # Without `::>` the declaration is a name, and the interface has this one end only.
     if not node.relations:
         return _build_usage_tail(tokens, stop, begin, node, Tail(ends=[end]), body)
     first = End(None, node.name, node.relations.pop().reference, begin + 1, end.begin - 1)

@@ -132,6 +132,7 @@ def _build_declaration(
     word = read_keyword(tokens, keyword)
     kind, membership = USAGE_KINDS[word]
     node = apply_names(make_node(kind, membership, tokens, begin, stop), names, tokens)
+    # A message is an abstract flow (SysML 8.2.2.16.2).
     if word == "message":
         node.attributes["isAbstract"] = True
     if membership != FEATURE or word in _CONTROL_NODES:

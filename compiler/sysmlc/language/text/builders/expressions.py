@@ -22,6 +22,7 @@ def _build_number(tokens: Tokens, stop: int, begin: int, token: int) -> Node:
     if written.isdigit() and len(written) <= MAX_INTEGER_DIGITS:
         return _make_literal("LiteralInteger", int(written), tokens, begin, stop)
     value = float(written)
+    # An infinite number would break arithmetic and JSON far away from here.
     if math.isinf(value):
         tokens.faults.append(LexicalFault("number", tokens.starts[token], written))
         value = 0.0
@@ -121,6 +122,7 @@ def _build_indexed(tokens: Tokens, stop: int, begin: int, primary: Node, inner: 
 
 
 def _build_chained(tokens: Tokens, stop: int, begin: int, primary: Node, name: Reference) -> Node:
+    # `a.b.c` is one chain of two links after `a`, but `(a.b).c` are two chains.
     if primary.kind == "FeatureChainExpression" and _has_no_parentheses(tokens, primary, begin):
         reference = primary.relations[0].reference
         reference.chain += name.chain
@@ -163,6 +165,7 @@ def _build_selected(tokens: Tokens, stop: int, begin: int, primary: Node, body: 
 def _make_body_argument(
     tokens: Tokens, stop: int, operand: Node | Reference, body: list[Node]
 ) -> Node:
+    # The brace has no token number here, because the body was reduced without it.
     start = tokens.text.find("{", operand.end)
     return make_body_expression(body, start, tokens.ends[stop - 1])
 

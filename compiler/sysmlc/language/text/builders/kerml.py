@@ -80,6 +80,7 @@ def _build_type(
     if sufficient is not None:
         node.attributes["isSufficient"] = True
     apply_specializations(node, parts, tokens)
+    # A specialisation between classifiers is a subclassification.
     if kind != "Type":
         for relation in node.relations:
             if relation.kind == "Specialization":

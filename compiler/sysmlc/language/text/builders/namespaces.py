@@ -19,6 +19,7 @@ def build_root(tokens: Tokens, members: list[Node]) -> Node:
 def _drop_redundant_ref(nodes: list[Node]) -> None:
     """Drop `ref` from usages that are referential anyway (SysML 8.2.2.6.2, note 1)."""
     for node in nodes:
+        # `is_composite` looks at the attribute, so it answers for the usage without `ref`.
         node.attributes.pop("isReference", None)
         if is_composite(node):
             node.attributes["isReference"] = True
@@ -193,6 +194,7 @@ def _build_filtered_import(
     tokens: Tokens, stop: int, begin: int, imported: Node, condition: Node
 ) -> Node:
     condition.membership = "ElementFilterMembership"
+    # A second filter belongs to the same filter package.
     if imported.members:
         imported.members[0].add_member(condition)
         return imported

@@ -73,6 +73,7 @@ def _adapt_to_metadata(_owner: Node, members: Sequence[Node]) -> None:
         if member.kind in ("ReferenceUsage", "Feature") and member.name is not None:
             start = member.name_start
             reference = Reference(((member.name,),), start, start + len(member.name))
+            # The redefinition goes first: the name precedes the other specialisations in the text.
             member.relations.insert(0, Relation("Redefinition", reference))
             member.name, member.name_start = None, start
 
@@ -81,6 +82,7 @@ def _adapt_to_state(_owner: Node, members: Sequence[Node]) -> None:
     """Make `then` and guards after a state transitions from that state (8.2.2.18.1)."""
     is_after_entry = False
     for member in members:
+        # `entry; then off;` names the initial state: a succession from the entry action.
         if member.role == "entry":
             is_after_entry = True
         elif member.kind == "SuccessionAsUsage" and _has_only_target(member):

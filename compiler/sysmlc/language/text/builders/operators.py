@@ -47,6 +47,7 @@ def group_operands(tokens: Tokens, parts: list[ExpressionPart]) -> Node:
     output: list[Node] = [part for part in parts[:1] if isinstance(part, Node)]
     operator_stack: list[str] = []
     for operator, operand in zip(operators, operands, strict=True):
+        # A looser operator completes the operations before it; `^` alone groups to the right.
         while operator_stack and _binds_first(PRECEDENCE[operator_stack[-1]], PRECEDENCE[operator]):
             _reduce_operation(output, operator_stack.pop())
         if isinstance(operand, Reference):

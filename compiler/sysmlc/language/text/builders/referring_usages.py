@@ -139,6 +139,7 @@ def _build_without_action(
     tokens: Tokens, stop: int, begin: int, referrer: int | tuple[str, bool]
 ) -> Node:
     node = _make_usage(tokens, stop, begin, referrer, None)
+    # `entry;` owns an empty action and performs nothing.
     if node.membership == _SUBACTION:
         node.kind = "ActionUsage"
     return node

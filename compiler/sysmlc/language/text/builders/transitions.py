@@ -131,6 +131,7 @@ def _add_parts(
     node: Node, tokens: Tokens, parts: list[Node], target: End, body: list[Node]
 ) -> Node:
     node.add_member(make_parameter(None, node.start))
+    # The first parameter is the source, the second one the payload of the trigger (8.2.2.18.3).
     if any(part.role == "trigger" for part in parts):
         node.add_member(make_parameter(None, node.start))
     for part in parts:
@@ -144,6 +145,7 @@ def _build_target_transition(
 ) -> Node:
     """Build a transition whose source is the member before it."""
     node = _make_transition(tokens, begin, stop)
+    # `if g then s` is a guarded succession, which has no transition parameters.
     if parts and len(parts) == 1 and parts[0].role == "guard" and tokens[begin] == "if":
         node.add_member(parts[0])
         node.add_member(make_succession(target, tokens))

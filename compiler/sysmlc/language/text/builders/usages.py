@@ -90,6 +90,7 @@ def _check_order(tokens: Tokens, prefixes: list[int | Node]) -> None:
     for prefix in prefixes:
         word = "metadata" if isinstance(prefix, Node) else tokens[prefix]
         rank = _METADATA if isinstance(prefix, Node) else _RANKS.get(word, last_rank + 1)
+        # KerML puts `const` before `end` (8.2.4.3.1), all others after it.
         if (last_word, word) == ("const", "end"):
             rank = last_rank + 1
         if rank < last_rank or (rank == last_rank != _METADATA):
@@ -174,8 +175,10 @@ def apply_prefixes(tokens: Tokens, begin: int, prefixes: list[Prefix], node: Nod
         node.attributes[name] = value
         if name == "portionKind":
             node.attributes["isPortion"] = True
+    # `individual def` is an occurrence definition without a kind of its own (SysML 8.2.2.9).
     if node.kind == "Definition" and "individual" in words:
         node.kind = "OccurrenceDefinition"
+    # Members of a relationship annotate it.
     if node.kind == "Dependency":
         for member in metadata:
             member.membership = "Annotation"

@@ -4,7 +4,7 @@ import random
 import re
 
 import pytest
-from test_exchange_projects import archive
+from test_interchange_projects import archive
 from v2_trees import interchange, owning, relating
 
 from sysmlc.diagnostics import Sink
