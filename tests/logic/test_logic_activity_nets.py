@@ -28,7 +28,7 @@ KINDS = ("opaque", "fork", "join", "merge", "decision", "flow-final", "final", "
 def drawn(canvas: Canvas) -> TokenGraph:
     """The token graph as drawn, safe or not."""
     graph, sink = canvas.graph, Sink()
-    drawing = activity_drawing.read(graph, graph["a"], sink)
+    drawing = activity_drawing.read_drawing(graph, graph["a"], sink)
     inputs = Inputs(graph, Scope(graph, graph["a"], sink), sink)
     return activity_tokens.build(graph, drawing, inputs, find_raising(graph), sink)
 

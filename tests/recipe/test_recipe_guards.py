@@ -3,7 +3,7 @@
 import pytest
 
 from sysmlc.diagnostics import Sink, Subject
-from sysmlc.passes.recipe.expressions import read
+from sysmlc.passes.recipe.expressions import read_expression
 from sysmlc.recipe.model import EnumType, FlowEdge, FlowGraph, Model, Node, Parameter, Recipe
 from sysmlc.recipe.validate import validate
 
@@ -24,7 +24,7 @@ def findings(*guards: str) -> list[str]:
     for number, text in enumerate(guards):
         nodes.append(Node(f"s{number}", "action"))
         is_else = text == "else"
-        guard = None if is_else or not text else read(text)
+        guard = None if is_else or not text else read_expression(text)
         edges.append(FlowEdge("d", f"s{number}", guard, text, is_else))
         edges.append(FlowEdge(f"s{number}", "f"))
     graph = FlowGraph("g", variables=VARIABLES, nodes=tuple(nodes), edges=tuple(edges))

@@ -1,8 +1,8 @@
-"""The pass ``activities``: every activity becomes a token graph, or a rule says why not.
+"""Pass ``activities``: derive the token graph of every activity, or report why there is none.
 
-It assumes that names are resolved and roles found; it then guarantees that each stored token
-graph is 1-safe and that every node and flow that is left out has been reported. The graph itself
-stays as it is. An activity of a library is played by each operation that it is the method of.
+The pass assumes resolved names and roles. It guarantees that each stored token graph is 1-safe and
+that every node and flow that is left out has been reported. The graph itself stays unchanged. An
+activity of a library is played by each operation whose method it is.
 """
 
 from collections.abc import Iterator
@@ -22,31 +22,33 @@ from sysmlc.passes.activities import drawing as activity_drawing
 from sysmlc.passes.activities import rules
 from sysmlc.passes.activities import safety as activity_search
 from sysmlc.passes.activities.assignments import (
-    report_faults,
-    report_stops,
-    report_unknown,
-    written_by,
+    read_assignments,
+    report_saturation,
+    report_unassignable,
+    report_unknown_targets,
 )
 from sysmlc.passes.activities.exception_analysis import Raising, find_raising
 from sysmlc.passes.activities.inputs import Inputs
-from sysmlc.passes.activities.refusals import report_unfollowed
+from sysmlc.passes.activities.refusals import report_untracked
 from sysmlc.passes.activities.scope import Scope
-from sysmlc.passes.activities.stores import follow
+from sysmlc.passes.activities.stores import track_stores
 
 
-class _Others(Struct, frozen=True):
-    """What other behaviours do that matters to an activity: raise exceptions, write features."""
+class _OtherBehaviours(Struct, frozen=True):
+    """Facts about other behaviours that an activity depends on: exceptions raised, features
+    written.
+    """
 
     raising: Raising
     writers: Writers
 
 
 class Activities(Struct, frozen=True):
-    """Makes token graphs.
+    """Derive token graphs.
 
-    ``max_markings`` bounds the search for a second token on a flow; activities with more than
-    ``collapse_over`` edges lose the control nodes that only pass tokens on. Structured nodes that
-    are nested deeper than ``max_depth`` are not followed.
+    ``max_markings`` bounds the search for a second token on a flow. In activities with more than
+    ``collapse_over`` edges, control nodes that only pass tokens on are removed. An activity whose
+    structured nodes are nested deeper than ``max_depth`` gets no token graph.
     """
 
     max_markings: int = 20_000
@@ -58,98 +60,109 @@ class Activities(Struct, frozen=True):
 
     def run(self, graph: Graph, sink: Sink) -> None:
         """Store a TokenGraph for each activity that can be played."""
-        graph.store(TokenGraph, self._token_graphs(graph, sink))
+        graph.store(TokenGraph, self._derive_all(graph, sink))
 
-    def _token_graphs(self, graph: Graph, sink: Sink) -> Iterator[TokenGraph]:
-        others = _others(graph)
+    def _derive_all(self, graph: Graph, sink: Sink) -> Iterator[TokenGraph]:
+        context = _analyse_behaviours(graph)
         for activity in graph.of_kind(Kind.ACTIVITY):
-            for one in _played(graph, activity):
-                found = self._found(graph, one, others, sink)
-                if found is not None:
-                    yield found
+            for usage in _list_usages(graph, activity):
+                tokens = self._derive(graph, usage, context, sink)
+                if tokens is not None:
+                    yield tokens
 
-    def _found(
-        self, graph: Graph, activity: Element, others: _Others, sink: Sink
+    def _derive(
+        self, graph: Graph, activity: Element, context: _OtherBehaviours, sink: Sink
     ) -> TokenGraph | None:
-        drawn = drawn_of(graph, activity)
+        """Return the token graph of an activity or of an operation that performs one, or None."""
+        drawn = find_drawn(graph, activity)
         try:
             if drawn is activity:
-                return self._token_graph(graph, activity, others, sink)
+                return self._build(graph, activity, context, sink)
             # What is odd in a drawing is told where it is drawn.
-            tokens = self._token_graph(graph, drawn, others, Sink())
+            tokens = self._build(graph, drawn, context, Sink())
         except activity_drawing.CannotPlayError:
             return None
         component = component_of(graph, activity)
         label = f"action '{activity.name}'"
         return replace(tokens, activity=activity.id, component=component, label=label)
 
-    def _token_graph(
-        self, graph: Graph, activity: Element, others: _Others, sink: Sink
+    def _build(
+        self, graph: Graph, activity: Element, context: _OtherBehaviours, sink: Sink
     ) -> TokenGraph:
         self._check_depth(graph, activity, sink)
-        drawing = activity_drawing.read(graph, activity, sink)
+        drawing = activity_drawing.read_drawing(graph, activity, sink)
         if not drawing.nodes:
             sink.report(rules.EMPTY, graph.subject(activity), activity=activity.name)
             raise activity_drawing.CannotPlayError
         scope = Scope(graph, activity, sink)
         inputs = Inputs(graph, scope, sink)
-        tokens = activity_tokens.build(graph, drawing, inputs, others.raising, sink)
-        actions, writers = _played_actions(drawing, tokens), others.writers
-        written = written_by(graph, actions, scope, writers)
-        tokens, unfollowed = follow(graph, activity, written, tokens, scope, writers)
-        tokens = activity_checks.check(graph, tokens, self.max_markings, sink)
-        report_unfollowed(graph, activity, unfollowed, sink)
-        report_unknown(graph, activity, written, writers, sink)
-        report_faults(graph, activity, written, scope, sink)
-        report_stops(graph, tokens, sink)
+        tokens = activity_tokens.build(graph, drawing, inputs, context.raising, sink)
+        actions, writers = _list_played_actions(drawing, tokens), context.writers
+        written = read_assignments(graph, actions, scope, writers)
+        tokens, unfollowed = track_stores(graph, activity, written, tokens, scope, writers)
+        tokens = activity_checks.check_tokens(graph, tokens, self.max_markings, sink)
+        report_untracked(graph, activity, unfollowed, sink)
+        report_unknown_targets(graph, activity, written, writers, sink)
+        report_unassignable(graph, activity, written, scope, sink)
+        report_saturation(graph, tokens, sink)
         if len(tokens.edges) > self.collapse_over:
-            tokens = activity_search.collapsed(tokens, self.max_markings)
-        return activity_search.named(tokens, inputs.names)
+            tokens = activity_search.collapse_if_safe(tokens, self.max_markings)
+        return activity_search.name_conditions(tokens, inputs.names)
 
     def _check_depth(self, graph: Graph, activity: Element, sink: Sink) -> None:
         for element in graph.subtree(activity):
             if (
                 element.kind is Kind.STRUCTURED
-                and _depth(graph, activity, element) > self.max_depth
+                and _find_depth(graph, activity, element) > self.max_depth
             ):
                 subject, limit = graph.subject(element), self.max_depth
                 sink.report(rules.TOO_DEEP, subject, activity=activity.name, limit=limit)
                 raise activity_drawing.CannotPlayError
 
 
-def _others(graph: Graph) -> _Others:
-    return _Others(find_raising(graph), Writers(graph))
+def _analyse_behaviours(graph: Graph) -> _OtherBehaviours:
+    return _OtherBehaviours(find_raising(graph), Writers(graph))
 
 
-def _depth(graph: Graph, activity: Element, inside: Element) -> int:
-    """How deep an element is in the activity: 1 for what the activity owns."""
-    around = enumerate(graph.ancestors(inside), 1)
-    return next(number for number, one in around if one is activity)
+def _find_depth(graph: Graph, activity: Element, inside: Element) -> int:
+    """Return the nesting depth of an element in the activity: 1 if the activity owns it."""
+    ancestors = enumerate(graph.ancestors(inside), 1)
+    return next(number for number, ancestor in ancestors if ancestor is activity)
 
 
-def _played_actions(drawing: activity_drawing.Drawing, tokens: TokenGraph) -> Iterator[Element]:
-    """The actions that have a token of their own."""
+def _list_played_actions(
+    drawing: activity_drawing.Drawing, tokens: TokenGraph
+) -> Iterator[Element]:
+    """Return the actions that have a token node of their own."""
     played = {node.id for node in tokens.workers()}
-    return (one for one in drawing.inside if one.kind is Kind.ACTION and one.id in played)
+    return (
+        element
+        for element in drawing.inside
+        if element.kind is Kind.ACTION and element.id in played
+    )
 
 
-def _played(graph: Graph, activity: Element) -> list[Element]:
-    """The activity, or the operations that are performed as an activity of a library says.
+def _list_usages(graph: Graph, activity: Element) -> list[Element]:
+    """Return the activity, or the operations that perform it if it belongs to a library.
 
-    An abstract activity that operations perform is one of those, too: nothing else is it.
+    An abstract activity that operations perform counts as one of a library, because nothing else
+    performs it.
     """
     is_elsewhere, is_abstract = _is_drawn_elsewhere(activity), activity.attrs.get("abstract")
     if not (is_elsewhere or is_abstract):
         return [activity]
     performed = graph.sources(activity, Edge.METHOD)
-    own = [one for one in performed if not one.attrs.get("external")]
-    if own and has_steps(graph, activity):
-        return own
+    operations = [operation for operation in performed if not operation.attrs.get("external")]
+    if operations and has_steps(graph, activity):
+        return operations
     return [] if is_elsewhere else [activity]
 
 
 def _is_drawn_elsewhere(activity: Element) -> bool:
-    """An opaque behaviour has a body instead of a drawing; a stub stands for another file."""
+    """Whether the element has no drawing of its own.
+
+    An opaque behaviour has a text body instead, and an external stub stands for another file.
+    """
     return activity.subkind in ("opaque", "function") or activity.attrs.get("external") is True
 
 
@@ -157,16 +170,18 @@ _STEPS = (Kind.ACTION, Kind.CONTROL, Kind.STRUCTURED)
 
 
 def has_steps(graph: Graph, activity: Element) -> bool:
-    """Whether something is drawn in the activity itself."""
-    return any(one.kind in _STEPS for one in graph.owned(activity))
+    """Whether the activity itself has nodes."""
+    return any(element.kind in _STEPS for element in graph.owned(activity))
 
 
-def drawn_of(graph: Graph, usage: Element) -> Element:
-    """The activity whose steps a usage performs: its method's, or those of the nearest that it
-    specialises when it draws none; the usage itself when there is no other.
+def find_drawn(graph: Graph, usage: Element) -> Element:
+    """Return the activity whose nodes a usage performs.
+
+    For an operation this is its method, for an activity without nodes the nearest general one with
+    nodes. Without such an activity the usage itself is returned.
     """
     method = graph.target(usage, Edge.METHOD) if usage.kind is Kind.OPERATION else usage
     if method is None or has_steps(graph, method):
         return method or usage
-    drawn = (one for one in query.generals(graph, method) if has_steps(graph, one))
+    drawn = (general for general in query.generals(graph, method) if has_steps(graph, general))
     return next(drawn, usage)

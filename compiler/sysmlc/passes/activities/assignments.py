@@ -1,4 +1,4 @@
-"""What the actions of an activity assign, and which feature each name means there."""
+"""Assignments of an activity: which features they set, and assignments that are reported."""
 
 from collections.abc import Iterable, Iterator
 
@@ -16,57 +16,66 @@ from sysmlc.logic.machines.actions import NOT_ASSIGNABLE, RULE_OF_FAULT, check_a
 from sysmlc.logic.machines.moves import SATURATES
 from sysmlc.logic.writers import Writers, called
 from sysmlc.logic.written import Assigned, assigned
-from sysmlc.passes.activities.refusals import ELSEWHERE, Unfollowed, report_unfollowed
+from sysmlc.passes.activities.refusals import ELSEWHERE, UntrackedFeature, report_untracked
 from sysmlc.passes.activities.scope import Scope
 from sysmlc.support.suggestions import did_you_mean
 
 
-class Written(Struct, frozen=True):
-    """What an action assigns; the feature is None where the activity knows none of the name."""
+class ResolvedAssignment(Struct, frozen=True):
+    """An assignment of an action. ``feature`` is None if the name means nothing in the activity."""
 
-    said: Assigned
+    assignment: Assigned
     feature: Feature | None
 
 
-def written_by(
+def read_assignments(
     graph: Graph, actions: Iterable[Element], scope: Scope, writers: Writers
-) -> list[list[Written]]:
-    """What each action assigns, one after the other; only those that assign something."""
-    each = (assigned(graph, one) for one in actions)
-    found = ([Written(one, _feature(one, scope, writers)) for one in said] for said in each)
-    return [some for some in found if some]
+) -> list[list[ResolvedAssignment]]:
+    """Return the assignments of each action that has any, in the order of execution."""
+    assignments = (assigned(graph, action) for action in actions)
+    resolved = (
+        [
+            ResolvedAssignment(action, _resolve_target(action, scope, writers))
+            for action in assigned_by_action
+        ]
+        for assigned_by_action in assignments
+    )
+    return [row for row in resolved if row]
 
 
-def _feature(one: Assigned, scope: Scope, writers: Writers) -> Feature | None:
-    """The feature that an activity knows by the name that is assigned to, or by its own name."""
-    found = scope.named(one.name)
-    if found is None:
-        target = writers.target(one.action, one.name)
-        near = None if target is None else scope.named(target.name)
-        found = near if near is not None and near.element is target else None
-    return found
+def _resolve_target(assignment: Assigned, scope: Scope, writers: Writers) -> Feature | None:
+    """Return the feature that the activity knows under the assigned name, or under its own name."""
+    feature = scope.find_feature(assignment.name)
+    if feature is None:
+        target = writers.target(assignment.action, assignment.name)
+        same_feature = None if target is None else scope.find_feature(target.name)
+        feature = (
+            same_feature if same_feature is not None and same_feature.element is target else None
+        )
+    return feature
 
 
-def report_faults(
+def report_unassignable(
     graph: Graph,
     activity: Element,
-    written: Iterable[list[Written]],
+    written: Iterable[list[ResolvedAssignment]],
     scope: Scope,
     sink: Sink,
 ) -> None:
-    """Report assignments to constants (SM415), and of values that what they assign to never has:
-    of another type (SM413), or always out of range (SM414). ``written`` is what each action
-    assigns.
+    """Report assignments that break the rules of state machines for assignments.
+
+    These are assignments to constants (SM415), of values of another type (SM413), and of values
+    that are always out of range (SM414).
     """
-    for each in (one for statements in written for one in statements):
-        one, feature = each.said, each.feature
-        if feature is None or one.value is None:
+    for resolved in (assignment for statements in written for assignment in statements):
+        assignment, feature = resolved.assignment, resolved.feature
+        if feature is None or assignment.value is None:
             continue
-        subject, text = graph.subject(one.action), f"{one.name} := {one.text}"
+        subject, text = graph.subject(assignment.action), f"{assignment.name} := {assignment.text}"
         if feature.constant:
             context = _owner_name(graph, activity, feature)
-            sink.report(NOT_ASSIGNABLE, subject, text=text, name=one.name, context=context)
-        elif fault := _find_fault(one.value, feature, scope):
+            sink.report(NOT_ASSIGNABLE, subject, text=text, name=assignment.name, context=context)
+        elif fault := _find_fault(assignment.value, feature, scope):
             reason = str(fault)
             sink.report(
                 RULE_OF_FAULT[fault.fault], subject, what="assignment", text=text, reason=reason
@@ -82,15 +91,15 @@ def _find_fault(value: Expression, feature: Feature, scope: Scope) -> Elaboratio
     if feature.domain is None or feature.is_assumed:
         return None
     try:
-        check_assignable(scope.value(value, feature.domain).domain, feature.domain, value)
+        check_assignable(scope.evaluate(value, feature.domain).domain, feature.domain, value)
     except ElaborationError as error:
         return error if error.fault in (Fault.TYPE, Fault.OUTSIDE) else None
     return None
 
 
-def report_stops(graph: Graph, tokens: TokenGraph, sink: Sink) -> None:
-    """Report each write that can leave the range of its variable, or may for all we know."""
-    if not any(one.stops for store in tokens.stores for one in store.writes):
+def report_saturation(graph: Graph, tokens: TokenGraph, sink: Sink) -> None:
+    """Report each assignment that leaves, or may leave, the range of its variable (SM428)."""
+    if not any(write.stops for store in tokens.stores for write in store.writes):
         return
 
     for store, write, can in leaving(tokens):
@@ -110,41 +119,47 @@ UNKNOWN_TARGET = rule(
 )
 
 
-def report_unknown(
+def report_unknown_targets(
     graph: Graph,
     activity: Element,
-    written: Iterable[list[Written]],
+    written: Iterable[list[ResolvedAssignment]],
     writers: Writers,
     sink: Sink,
 ) -> None:
-    """Report each name that one of the actions assigns to and that the activity does not know."""
+    """Report assigned names that the activity does not know (SM545) or another object owns
+    (SM544).
+    """
     # What a write action writes is a reference, no name.
-    lost = (one.said for found in written for one in found if one.feature is None)
-    for one in lost:
-        if one.is_bound or one.action.subkind == "write":
+    unresolved = (
+        resolved.assignment for row in written for resolved in row if resolved.feature is None
+    )
+    for assignment in unresolved:
+        if assignment.is_bound or assignment.action.subkind == "write":
             continue
-        target = writers.target(one.action, one.name)
+        target = writers.target(assignment.action, assignment.name)
         if target is not None:
             if activity in graph.ancestors(target):
                 continue
-            label = called(graph, one.action)
-            unfollowed = Unfollowed(target, ELSEWHERE, (f"action '{label}'",))
-            report_unfollowed(graph, activity, [unfollowed], sink)
-        elif one.name.partition(".")[0] not in (known := set(_known(graph, activity))):
+            label = called(graph, assignment.action)
+            unfollowed = UntrackedFeature(target, ELSEWHERE, (f"action '{label}'",))
+            report_untracked(graph, activity, [unfollowed], sink)
+        elif assignment.name.partition(".")[0] not in (
+            known := set(_list_known_names(graph, activity))
+        ):
             sink.report(
                 UNKNOWN_TARGET,
-                graph.subject(one.action),
-                action=one.action.name,
+                graph.subject(assignment.action),
+                action=assignment.action.name,
                 activity=activity.name,
-                name=one.name,
-                suggestion=did_you_mean(one.name, known),
+                name=assignment.name,
+                suggestion=did_you_mean(assignment.name, known),
             )
 
 
-def _known(graph: Graph, activity: Element) -> Iterator[str]:
-    """Names of what the activity has, and of features of the classifiers that it is in."""
-    around = (activity, *graph.ancestors(activity))
-    owners = [one for one in around if one.kind in query.CLASSIFIERS]
+def _list_known_names(graph: Graph, activity: Element) -> Iterator[str]:
+    """Yield the names of elements in the activity and of features of the classifiers around it."""
+    scopes = (activity, *graph.ancestors(activity))
+    owners = [element for element in scopes if element.kind in query.CLASSIFIERS]
     features = (name for owner in owners for name in named_values(graph, owner))
     yield from (name for name in features if name)
-    yield from (one.name for one in graph.subtree(activity) if one.name)
+    yield from (element.name for element in graph.subtree(activity) if element.name)

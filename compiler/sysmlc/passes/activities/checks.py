@@ -1,4 +1,4 @@
-"""Checks of a token graph: starts, reachability, guards, and one token a flow."""
+"""Checks of a token graph: starts, reachability, guards, and at most one token on a flow."""
 
 from collections.abc import Iterable, Iterator
 
@@ -25,16 +25,16 @@ _MOST_VALUATIONS = 20_000
 """Guards over more valuations than this are taken as neither exclusive nor exhaustive."""
 
 
-def check(graph: Graph, tokens: TokenGraph, limit: int, sink: Sink) -> TokenGraph:
-    """The token graph with what the checks found out; reports what is wrong with it.
+def check_tokens(graph: Graph, tokens: TokenGraph, limit: int, sink: Sink) -> TokenGraph:
+    """Return the token graph with the results of the checks, and report its faults.
 
-    Raises CannotPlayError when it can't start or is not shown to be 1-safe.
+    Raises CannotPlayError if the graph cannot start or is not shown to be 1-safe.
     """
     checker = _Checker(graph, tokens, sink)
     checker.check_start()
     checker.check_guards()
-    reached = checker.check_reached()
-    return checker.check_tokens(limit, reached)
+    reachable = checker.check_reachability()
+    return checker.check_safety(limit, reachable)
 
 
 class _Checker:
@@ -65,35 +65,38 @@ class _Checker:
     # -- guards --------------------------------------------------------------------------------
 
     def check_guards(self) -> None:
-        nodes = tuple(self._checked(node) for node in self.tokens.nodes)
+        nodes = tuple(self._check_choice(node) for node in self.tokens.nodes)
         self.tokens = replace(self.tokens, nodes=nodes)
 
-    def _checked(self, node: TokenNode) -> TokenNode:
+    def _check_choice(self, node: TokenNode) -> TokenNode:
+        """Return the node, marked with whether its guards are exclusive and exhaustive."""
         branches = self.tokens.outgoing(node) if node.firing is Firing.CHOICE else []
         if not branches:
             return node
-        stated = [branch for branch in branches if not branch.is_else]
-        has_else = len(stated) < len(branches)
+        guarded = [branch for branch in branches if not branch.is_else]
+        has_else = len(guarded) < len(branches)
         # One guard beside an else is neither too few nor too many: most decisions are such.
-        is_plain = has_else and len(stated) == 1
-        open_sets = None if is_plain else self._open_sets(stated)
+        is_trivial = has_else and len(guarded) == 1
+        open_sets = None if is_trivial else self._list_open_branches(guarded)
         is_exhaustive = has_else or (open_sets is not None and all(open_sets))
         if not is_exhaustive:
-            self._report_missing(node, stated)
-        overlap = _first_overlap(open_sets, stated) or _two_elses(branches)
+            self._report_missing_branch(node, guarded)
+        overlap = _find_overlap(open_sets, guarded) or _find_repeated_else(branches)
         if overlap:
-            names = " and ".join(self._branch(edge) for edge in overlap)
+            names = " and ".join(self._describe_branch(edge) for edge in overlap)
             subject = self.graph.subject(self.graph[node.origin])
             self.sink.report(rules.OVERLAP, subject, node=node.label, branches=names)
         return replace(node, exclusive=not overlap, exhaustive=is_exhaustive)
 
-    def _open_sets(self, stated: list[TokenEdge]) -> list[list[TokenEdge]] | None:
-        """For each valuation of the inputs the branches that are open; None: too many."""
-        conditions = [(edge, _condition(edge)) for edge in stated]
+    def _list_open_branches(self, guarded: list[TokenEdge]) -> list[list[TokenEdge]] | None:
+        """Return the open branches for each valuation of the inputs, or None if there are too
+        many.
+        """
+        conditions = [(edge, _guard_condition(edge)) for edge in guarded]
         names = {v.name for _, c in conditions for v in variables(c)}
         opens = [(edge, evaluate.evaluation(c)) for edge, c in conditions]
-        known = (*self.tokens.inputs, *(one.variable for one in self.tokens.stores))
-        read = {v.name: v.domain for v in known if v.name in names}
+        declared = (*self.tokens.inputs, *(store.variable for store in self.tokens.stores))
+        read = {v.name: v.domain for v in declared if v.name in names}
         if domains.count(read) > _MOST_VALUATIONS:
             return None
         return [
@@ -101,98 +104,106 @@ class _Checker:
             for valuation in domains.valuations(read)
         ]
 
-    def _report_missing(self, node: TokenNode, stated: list[TokenEdge]) -> None:
+    def _report_missing_branch(self, node: TokenNode, guarded: list[TokenEdge]) -> None:
         origin = self.graph[node.origin]
         if origin.kind in (Kind.CONTROL_FLOW, Kind.OBJECT_FLOW):
             return
-        guards = ", ".join(edge.guard.text for edge in stated if edge.guard)
+        guards = ", ".join(edge.guard.text for edge in guarded if edge.guard)
         subject = self.graph.subject(origin)
         self.sink.report(rules.MISSING_BRANCH, subject, node=node.label, guards=guards)
 
-    def _branch(self, edge: TokenEdge) -> str:
+    def _describe_branch(self, edge: TokenEdge) -> str:
         target = self.tokens.node(edge.target).label
         return f"[{edge.guard.text}] to {target}" if edge.guard else f"to {target}"
 
     # -- reachability --------------------------------------------------------------------------
 
-    def check_reached(self) -> set[str]:
-        reached = self._closure(e.target for e in self.tokens.edges if self._starts(e))
-        lost = [n for n in self.tokens.nodes if n.id not in reached and self._is_drawn(n)]
-        told: set[str] = set()
-        for node in sorted(lost, key=lambda n: self._has_lost_source(n, reached)):
-            if node.id not in told:
+    def check_reachability(self) -> set[str]:
+        """Report unreachable nodes, without those that only follow a reported node. Return
+        reachable ids.
+        """
+        reachable = self._find_reachable(e.target for e in self.tokens.edges if self._is_start(e))
+        unreachable = [n for n in self.tokens.nodes if n.id not in reachable and self._is_drawn(n)]
+        covered: set[str] = set()
+        for node in sorted(unreachable, key=lambda n: self._has_unreachable_source(n, reachable)):
+            if node.id not in covered:
                 subject = self.graph.subject(self.graph[node.origin])
                 self.sink.report(rules.UNREACHABLE, subject, node=node.label)
-                told |= self._closure([node.id])
-        return reached
+                covered |= self._find_reachable([node.id])
+        return reachable
 
-    def _starts(self, edge: TokenEdge) -> bool:
+    def _is_start(self, edge: TokenEdge) -> bool:
         return edge.marked and edge.region == ACTIVITY_REGION
 
     def _is_drawn(self, node: TokenNode) -> bool:
         return node.id == node.origin and node.kind is not NodeKind.INITIAL
 
-    def _has_lost_source(self, node: TokenNode, reached: set[str]) -> bool:
-        return any(edge.source not in reached for edge in self.tokens.incoming(node))
+    def _has_unreachable_source(self, node: TokenNode, reachable: set[str]) -> bool:
+        return any(edge.source not in reachable for edge in self.tokens.incoming(node))
 
-    def _closure(self, first: Iterable[str]) -> set[str]:
-        found: set[str] = set()
-        waiting = list(first)
-        while waiting:
-            id = waiting.pop()
-            if id in found:
+    def _find_reachable(self, first: Iterable[str]) -> set[str]:
+        reachable: set[str] = set()
+        worklist = list(first)
+        while worklist:
+            id = worklist.pop()
+            if id in reachable:
                 continue
-            found.add(id)
+            reachable.add(id)
             node = self.tokens.node(id)
-            waiting += [edge.target for edge in self.tokens.outgoing(node)]
-            waiting += self._listeners(id)
+            worklist += [edge.target for edge in self.tokens.outgoing(node)]
+            worklist += self._find_listeners(id)
             if node.kind is NodeKind.STRUCTURED:
                 edges, _ = self.tokens.inside(id)
-                waiting += [edge.target for edge in edges if edge.marked]
-        return found
+                worklist += [edge.target for edge in edges if edge.marked]
+        return reachable
 
-    def _listeners(self, id: str) -> list[str]:
-        """What listens once a token is at a node of its interruptible region."""
-        around = {one.id for one in self.tokens.interruptibles if id in one.nodes}
-        if not around:
+    def _find_listeners(self, id: str) -> list[str]:
+        """Return the nodes that listen once a token is at a node of their interruptible region."""
+        regions = {region.id for region in self.tokens.interruptibles if id in region.nodes}
+        if not regions:
             return []
-        return [edge.target for edge in self.tokens.edges if edge.listens in around]
+        return [edge.target for edge in self.tokens.edges if edge.listens in regions]
 
     # -- tokens --------------------------------------------------------------------------------
 
-    def check_tokens(self, limit: int, reached: set[str]) -> TokenGraph:
-        """The graph with what a search found. Raises CannotPlayError unless it is 1-safe."""
-        found = activity_search.search(self.tokens, limit)
-        self._require_safe(found, limit)
-        for node in self._stuck(found.dead, reached):
+    def check_safety(self, limit: int, reachable: set[str]) -> TokenGraph:
+        """Return the token graph with the result of the search. Raises CannotPlayError unless it is
+        1-safe.
+        """
+        result = activity_search.search(self.tokens, limit)
+        self._require_safe(result, limit)
+        for node in self._find_stuck(result.dead, reachable):
             subject = self.graph.subject(self.graph[node.origin])
             self.sink.report(rules.NEVER_FIRES, subject, node=node.label)
-        if not found.finishes:
+        if not result.finishes:
             subject = self.graph.subject(self.activity)
             self.sink.report(rules.ENDLESS, subject, activity=self.activity.name)
-        return activity_search.noted(self.tokens, found)
+        return activity_search.apply_result(self.tokens, result)
 
-    def _require_safe(self, found: activity_search.Found, limit: int) -> None:
-        if found.unsafe:
-            label, origin = self._place(found.unsafe)
+    def _require_safe(self, result: activity_search.SafetyResult, limit: int) -> None:
+        if result.unsafe:
+            label, origin = self._locate(result.unsafe)
             self.sink.report(rules.UNSAFE, self.graph.subject(self.graph[origin]), flow=label)
             raise CannotPlayError
-        if not found.is_complete:
+        if not result.is_complete:
             subject = self.graph.subject(self.activity)
             name = self.activity.name
             self.sink.report(rules.TOO_LARGE, subject, activity=name, limit=limit)
             raise CannotPlayError
 
-    def _place(self, id: str) -> tuple[str, str]:
+    def _locate(self, id: str) -> tuple[str, str]:
+        """Return the label and the origin of an edge or node."""
         for edge in self.tokens.edges:
             if edge.id == id:
                 return edge.label, edge.origin
         node = self.tokens.node(id)
         return node.label, node.origin
 
-    def _stuck(self, dead: frozenset[str], reached: set[str]) -> Iterator[TokenNode]:
-        """Dead nodes that are to blame: tokens reach them, but not all of their edges."""
-        for id in sorted(dead & reached, key=[n.id for n in self.tokens.nodes].index):
+    def _find_stuck(self, dead: frozenset[str], reachable: set[str]) -> Iterator[TokenNode]:
+        """Yield the dead nodes to report: tokens reach some of their edges, but never all of
+        them.
+        """
+        for id in sorted(dead & reachable, key=[n.id for n in self.tokens.nodes].index):
             node = self.tokens.node(id)
             sources = [edge.source for edge in self.tokens.incoming(node)]
             is_joined = len(sources) > 1 and node.firing not in (Firing.ANY, Firing.END)
@@ -200,19 +211,19 @@ class _Checker:
                 yield node
 
 
-def _condition(edge: TokenEdge) -> Formula:
+def _guard_condition(edge: TokenEdge) -> Formula:
     condition = edge.guard.condition if edge.guard else None
     return f.TRUE if condition is None else condition
 
 
-def _first_overlap(
-    open_sets: list[list[TokenEdge]] | None, stated: list[TokenEdge]
+def _find_overlap(
+    open_sets: list[list[TokenEdge]] | None, guarded: list[TokenEdge]
 ) -> list[TokenEdge]:
     if open_sets is None:
-        return stated if len(stated) > 1 else []
+        return guarded if len(guarded) > 1 else []
     return max(open_sets, key=len, default=[]) if any(len(s) > 1 for s in open_sets) else []
 
 
-def _two_elses(branches: list[TokenEdge]) -> list[TokenEdge]:
-    others = [branch for branch in branches if branch.is_else]
-    return others if len(others) > 1 else []
+def _find_repeated_else(branches: list[TokenEdge]) -> list[TokenEdge]:
+    else_branches = [branch for branch in branches if branch.is_else]
+    return else_branches if len(else_branches) > 1 else []

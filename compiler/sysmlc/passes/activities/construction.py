@@ -1,8 +1,8 @@
-"""From a drawing to a token graph: one node a node, one edge a flow, and what UML implies.
+"""Construction of the token graph of a drawing: drawn nodes and flows, and what UML implies.
 
-Implied are: the start of actions without incoming flows (an accept action listens again after
-each event), the fork after an action, the join before it, the merge at a pin that several flows
-reach, the choice at an object node that several flows leave, and the order of a sequence node.
+Implied are: the start of actions without incoming flows (an accept action listens again after each
+event), the fork after an action, the join before it, the merge at a pin that several flows reach,
+the choice at an object node that several flows leave, and the order of a sequence node.
 """
 
 from collections.abc import Iterator
@@ -17,15 +17,15 @@ from sysmlc.passes.activities import rules
 from sysmlc.passes.activities.draft import Draft
 from sysmlc.passes.activities.drawing import Drawing
 from sysmlc.passes.activities.exception_analysis import Raising
-from sysmlc.passes.activities.exceptions import add_exceptions, keep_handlers
-from sysmlc.passes.activities.flows import add_flow, add_rest
-from sysmlc.passes.activities.implied_control import ACCEPTS, add_order, add_start
+from sysmlc.passes.activities.exceptions import add_exceptions, chain_handler_bodies
+from sysmlc.passes.activities.flows import add_default_branch, add_flow
+from sysmlc.passes.activities.implied_control import ACCEPTS, add_implied_start, chain_sequence_node
 from sysmlc.passes.activities.inputs import Inputs
 from sysmlc.passes.activities.nodes import add_node
 from sysmlc.passes.activities.regions import (
     FLOWS,
     Regions,
-    interruptible_regions,
+    find_interruptible_regions,
     is_entered_later,
 )
 
@@ -33,23 +33,23 @@ from sysmlc.passes.activities.regions import (
 def build(
     graph: Graph, drawing: Drawing, inputs: Inputs, raising: Raising, sink: Sink
 ) -> TokenGraph:
-    """The token graph of a drawing; reports shapes that UML asks to be drawn otherwise."""
+    """Return the token graph of a drawing. Reports shapes that UML asks to be drawn otherwise."""
     draft = Draft(graph, drawing, inputs, raising, sink)
-    keep_handlers(draft)
+    chain_handler_bodies(draft)
     for node in drawing.nodes:
         add_node(draft, node)
     add_exceptions(draft)
     for node in drawing.nodes:
-        add_order(draft, node)
+        chain_sequence_node(draft, node)
     for flow in drawing.flows:
         add_flow(draft, flow)
-    regions = interruptible_regions(graph, drawing.inside, drawing.nodes)
-    _find_listening(draft, regions)
+    regions = find_interruptible_regions(graph, drawing.inside, drawing.nodes)
+    _find_listening_actions(draft, regions)
     for node in drawing.nodes:
-        add_rest(draft, node)
-        add_start(draft, node)
+        add_default_branch(draft, node)
+        add_implied_start(draft, node)
     _check_events(draft)
-    return _result(draft, regions)
+    return _finish(draft, regions)
 
 
 def _check_events(draft: Draft) -> None:
@@ -60,20 +60,20 @@ def _check_events(draft: Draft) -> None:
             draft.sink.report(rules.SHARED_EVENT, subject, nodes=names, event=event)
 
 
-def _find_listening(draft: Draft, regions: Regions) -> None:
-    """Accept actions without flows listen when a token enters their interruptible region."""
+def _find_listening_actions(draft: Draft, regions: Regions) -> None:
+    """Let accept actions without flows listen when a token enters their interruptible region."""
     for region, members in regions:
-        open_ = [e for e in members if e.subkind in ACCEPTS and not draft.incoming[e.id]]
-        for node in open_ if is_entered_later(draft.graph, members) else ():
+        idle_actions = [e for e in members if e.subkind in ACCEPTS and not draft.incoming[e.id]]
+        for node in idle_actions if is_entered_later(draft.graph, members) else ():
             draft.listening[node.id] = region.id
 
 
-def _result(draft: Draft, regions: Regions) -> TokenGraph:
+def _finish(draft: Draft, regions: Regions) -> TokenGraph:
     activity = draft.drawing.activity
-    rounds = list(_rounds(draft))
-    again = {edge: round.id for edges, round in rounds for edge in edges}
+    rounds = list(_list_rounds(draft))
+    round_of_edge = {edge: round.id for edges, round in rounds for edge in edges}
     edges = (
-        replace(edge, interrupts=again[edge.id]) if edge.id in again else edge
+        replace(edge, interrupts=round_of_edge[edge.id]) if edge.id in round_of_edge else edge
         for edge in draft.edges
     )
     return TokenGraph(
@@ -85,20 +85,20 @@ def _result(draft: Draft, regions: Regions) -> TokenGraph:
         inputs=tuple(draft.inputs.variables.values()),
         pulses=tuple(draft.inputs.pulses),
         interruptibles=(
-            *_regions(draft, regions),
-            *_exceptions(draft),
+            *_describe_regions(draft, regions),
+            *_list_exception_regions(draft),
             *(round for _, round in rounds),
         ),
     )
 
 
-def _regions(draft: Draft, regions: Regions) -> Iterator[Interruptible]:
+def _describe_regions(draft: Draft, regions: Regions) -> Iterator[Interruptible]:
     for region, members in regions:
-        yield Interruptible(region.id, region.name, _members(draft, members))
+        yield Interruptible(region.id, region.name, _list_members(draft, members))
 
 
-def _members(draft: Draft, elements: list[Element]) -> tuple[str, ...]:
-    """The region's nodes with what was added for them and their pins."""
+def _list_members(draft: Draft, elements: list[Element]) -> tuple[str, ...]:
+    """Return the nodes of the region and the nodes added for them and their pins."""
     owners = {element.id for element in elements}
     return tuple(
         node.id
@@ -107,22 +107,22 @@ def _members(draft: Draft, elements: list[Element]) -> tuple[str, ...]:
     )
 
 
-def _exceptions(draft: Draft) -> Iterator[Interruptible]:
-    """What loses its tokens when an exception ends a structured node."""
+def _list_exception_regions(draft: Draft) -> Iterator[Interruptible]:
+    """Yield for each exception the nodes that lose their tokens when it ends a structured node."""
     for id, catcher in draft.ended.items():
         members = (
             node.id
             for node in draft.nodes.values()
-            if node.id == catcher.id or catcher.id in draft.drawing.around(node.region)
+            if node.id == catcher.id or catcher.id in draft.drawing.enclosing_regions(node.region)
         )
         yield Interruptible(id, catcher.name, tuple(members))
 
 
-def _rounds(draft: Draft) -> Iterator[tuple[list[str], Interruptible]]:
-    """What is left over between the parts of a loop when it begins another round."""
-    for id, back in draft.rounds.items():
-        drawn = [e for e in draft.edges if e.region == id and draft.graph[e.origin].kind in FLOWS]
-        members = dict.fromkeys(end for edge in drawn for end in (edge.source, edge.target))
+def _list_rounds(draft: Draft) -> Iterator[tuple[list[str], Interruptible]]:
+    """Yield for each loop the nodes that lose their remaining tokens when a new round begins."""
+    for id, back_edges in draft.rounds.items():
+        edges = [e for e in draft.edges if e.region == id and draft.graph[e.origin].kind in FLOWS]
+        members = dict.fromkeys(end for edge in edges for end in (edge.source, edge.target))
         if members:
             name = draft.drawing.labels[id]
-            yield back, Interruptible(derived_id(id, "rounds"), name, tuple(members))
+            yield back_edges, Interruptible(derived_id(id, "rounds"), name, tuple(members))

@@ -1,4 +1,4 @@
-"""A token graph while it grows: nodes, edges, and names for their variables."""
+"""A token graph under construction: nodes, edges, and names for their variables."""
 
 from itertools import pairwise
 
@@ -13,14 +13,16 @@ from sysmlc.passes.activities.inputs import Answer, Inputs
 
 
 class Draft:
-    """Nodes and edges so far; ``short`` has the name of each node inside variables.
+    """Nodes and edges so far, and the tables that the builders of nodes, flows and exceptions
+    share.
 
-    ``chained`` holds nodes that do not start by themselves, ``takers`` the accept actions by
-    event, ``answers`` the inputs of decisions. ``exits`` leads from a node to the one that its
-    drawn flows leave when they wait for handlers of exceptions, ``rounds`` from a loop to the
-    edges that begin another round. ``ended`` holds the structured nodes that exceptions end,
-    ``failing`` the calls that may end with an exception. ``listening`` leads from an accept action
-    to the interruptible region whose tokens make it listen.
+    ``short`` maps a node to its name inside variables. ``chained`` holds nodes that do not start by
+    themselves, ``takers`` the accept actions by event, ``answers`` the inputs of decisions.
+    ``exits`` maps a protected node to the node that its drawn flows leave, because they wait for
+    exception handlers. ``rounds`` maps a loop to the edges that begin another round. ``ended``
+    holds the structured nodes that exceptions end, ``failing`` the calls that may end with an
+    exception. ``listening`` maps an accept action to the interruptible region whose tokens make it
+    listen.
     """
 
     def __init__(
@@ -52,21 +54,23 @@ class Draft:
             if not flow.leaves:
                 self.incoming[flow.target.id].append(flow)
 
-    def put(self, node: TokenNode, short: str) -> TokenNode:
+    def put_node(self, node: TokenNode, short: str) -> TokenNode:
         """Add or replace a node."""
         self.nodes[node.id] = node
         self.short[node.id] = short
         return node
 
-    def extra(self, base: Element, role: str, kind: NodeKind, label: str, region: str) -> TokenNode:
-        """The node that plays a role for what is drawn, added when it is asked for first."""
-        id = derived_id(base.id, role)
+    def ensure_node(
+        self, origin: Element, role: str, kind: NodeKind, label: str, region: str
+    ) -> TokenNode:
+        """Return the node that plays a role for a drawn element, added at the first request."""
+        id = derived_id(origin.id, role)
         if id in self.nodes:
             return self.nodes[id]
-        short = f"{role}_{self.short.get(base.id, identifier(base.name, 'node'))}"
-        return self.put(TokenNode(id, kind, label, base.id, region), identifier(short))
+        short = f"{role}_{self.short.get(origin.id, identifier(origin.name, 'node'))}"
+        return self.put_node(TokenNode(id, kind, label, origin.id, region), identifier(short))
 
-    def link(
+    def add_edge(
         self,
         source: str,
         target: str,
@@ -79,10 +83,10 @@ class Draft:
         keeps: bool = False,
         listens: str = "",
     ) -> TokenEdge:
-        """Add an edge; the first one of a flow has the flow's id."""
+        """Add an edge. The first edge of a flow has the id of the flow."""
         label = flow_label(origin, self.nodes[source].label, self.nodes[target].label)
         variable = self.inputs.names.new(f"at_{self.short[source]}_to_{self.short[target]}")
-        id = origin.id if self._is_free(origin) else derived_id(origin.id, variable)
+        id = origin.id if self._has_free_id(origin) else derived_id(origin.id, variable)
         self._used.add(id)
         edge = TokenEdge(
             id,
@@ -102,40 +106,40 @@ class Draft:
         self._reaching.setdefault(target, []).append(edge)
         return edge
 
-    def path(
-        self, node: Element, *path: str, marked: bool = False, guard: Guard | None = None
+    def add_path(
+        self, node: Element, *nodes: str, marked: bool = False, guard: Guard | None = None
     ) -> list[TokenEdge]:
-        """Edges along the nodes; mark and guard belong to the first one."""
-        made = []
-        for source, target in pairwise(path):
-            made.append(self.link(source, target, node, node.id, marked=marked, guard=guard))
+        """Add edges along the nodes; mark and guard belong to the first edge."""
+        edges = []
+        for source, target in pairwise(nodes):
+            edges.append(self.add_edge(source, target, node, node.id, marked=marked, guard=guard))
             marked, guard = False, None
-        return made
+        return edges
 
-    def exit(self, node: Element) -> str:
-        """The node that the drawn flows of ``node`` leave."""
+    def exit_of(self, node: Element) -> str:
+        """Return the node that the drawn flows of *node* leave."""
         return self.exits.get(node.id, node.id)
 
-    def reaching(self, id: str) -> list[TokenEdge]:
-        """Edges so far that reach a node."""
+    def edges_into(self, id: str) -> list[TokenEdge]:
+        """Return the edges so far that reach a node."""
         return self._reaching.get(id, [])
 
-    def primary(self, node: Element) -> list[Flow]:
-        """Incoming flows without the flow that only brings a decision's input."""
-        side = node.attrs.get("decision_input_flow")
-        return [flow for flow in self.incoming[node.id] if flow.element.id != side]
+    def primary_flows(self, node: Element) -> list[Flow]:
+        """Return the incoming flows without the flow that only brings the input of a decision."""
+        input_flow = node.attrs.get("decision_input_flow")
+        return [flow for flow in self.incoming[node.id] if flow.element.id != input_flow]
 
-    def role(self, word: str, node: Element, region: str) -> str:
-        """The word, and the part of the node that the region is."""
+    def qualify_role(self, word: str, node: Element, region: str) -> str:
+        """Return the role, followed by the part of the node if the region is one."""
         parts = self.drawing.parts.get(node.id, ())
         return " ".join([word, *(part.word for part in parts if part.id == region)])
 
-    def _is_free(self, origin: Element) -> bool:
+    def _has_free_id(self, origin: Element) -> bool:
         is_flow = origin.kind in (Kind.CONTROL_FLOW, Kind.OBJECT_FLOW)
         return is_flow and origin.id not in self._used
 
 
-def least(pin: Element) -> int:
-    """The lower bound of the pin's multiplicity; 1 when it is no number."""
+def lower_bound(pin: Element) -> int:
+    """Return the lower bound of the multiplicity of a pin; 1 if it is no number."""
     bounds = query.bounds(pin.attrs.get("multiplicity"))
     return 1 if bounds is None else bounds[0]

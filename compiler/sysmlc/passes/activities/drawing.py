@@ -1,4 +1,4 @@
-"""What is drawn of an activity: its nodes with their regions, and its flows with both ends.
+"""The drawing of an activity: nodes with their regions, and flows with both ends.
 
 A structured node is a region of its own. The tests, bodies and set-ups of loops and conditionals
 become structured nodes too (``Part``), so that each of them starts and ends as a whole.
@@ -19,8 +19,8 @@ from sysmlc.passes.activities.regions import (
     Handler,
     Part,
     count_handlers,
-    expansion_nodes,
-    groups_of,
+    find_expansion_nodes,
+    find_groups,
     handlers_of,
     is_entered_again,
     parts_of,
@@ -41,10 +41,10 @@ class CannotPlayError(Exception):
 
 
 class Flow(Struct, frozen=True):
-    """One drawn flow; pins are None where it is attached to the node itself.
+    """A drawn flow. A pin is None if the flow is attached to the node itself.
 
-    ``region`` is the innermost region that holds both ends. ``enters`` and ``leaves`` say that
-    it starts or ends at the border of that region, at a structured node or one of its pins.
+    ``region`` is the innermost region that holds both ends. ``enters`` and ``leaves`` mean that the
+    flow starts or ends at the border of that region, at a structured node or one of its pins.
     """
 
     element: Element
@@ -59,7 +59,7 @@ class Flow(Struct, frozen=True):
 
 @dataclass(slots=True)
 class Drawing:
-    """One activity; ``region`` maps each node's id to the id of its region."""
+    """The drawing of one activity. ``region`` maps the id of a node to the id of its region."""
 
     activity: Element
     inside: list[Element]
@@ -72,35 +72,41 @@ class Drawing:
     handlers: dict[str, list[Handler]] = field(default_factory=dict)
 
     def incoming(self, node: Element) -> list[Flow]:
-        """Flows that reach the node or one of its pins from outside."""
+        """Return the flows that reach the node or one of its pins from outside."""
         return [flow for flow in self.flows if flow.target is node and not flow.leaves]
 
     def outgoing(self, node: Element) -> list[Flow]:
-        """Flows that leave the node or one of its pins to the outside."""
+        """Return the flows that leave the node or one of its pins to the outside."""
         return [flow for flow in self.flows if flow.source is node and not flow.enters]
 
-    def around(self, region: str) -> Iterator[str]:
-        """The region and those around it, innermost first; the activity's is the last."""
+    def enclosing_regions(self, region: str) -> Iterator[str]:
+        """Yield the region and the regions around it, innermost first; the last is the
+        activity's.
+        """
         owners = {part.id: part.owner.id for parts in self.parts.values() for part in parts}
         while region != ACTIVITY_REGION:
             yield region
             region = owners[region] if region in owners else self.region[region]
         yield ACTIVITY_REGION
 
-    def around_both(self, one: Element, other: Element) -> str:
-        """The innermost region that both nodes are in."""
-        before, after = (list(self.around(self.region[node.id])) for node in (one, other))
-        return next(region for region in before if region in after)
+    def common_region(self, left: Element, right: Element) -> str:
+        """Return the innermost region that contains both nodes."""
+        left_regions, right_regions = (
+            list(self.enclosing_regions(self.region[node.id])) for node in (left, right)
+        )
+        return next(region for region in left_regions if region in right_regions)
 
 
-def read(graph: Graph, activity: Element, sink: Sink) -> Drawing:
-    """The drawing of an activity. Raises CannotPlayError after it has reported why."""
+def read_drawing(graph: Graph, activity: Element, sink: Sink) -> Drawing:
+    """Return the drawing of an activity. Raises CannotPlayError after it has reported the
+    reason.
+    """
     drawing = Drawing(activity, list(graph.subtree(activity)))
-    groups = groups_of(graph, drawing.inside)
-    borders = expansion_nodes(graph, drawing.inside)
-    _collect(graph, drawing, activity, ACTIVITY_REGION, frozenset([*groups, *borders]))
+    groups = find_groups(graph, drawing.inside)
+    borders = find_expansion_nodes(graph, drawing.inside)
+    _collect_nodes(graph, drawing, activity, ACTIVITY_REGION, frozenset([*groups, *borders]))
     _name_nodes(drawing)
-    for group in filter(lambda one: is_entered_again(graph, one), groups.values()):
+    for group in filter(lambda node: is_entered_again(graph, node), groups.values()):
         label = f"structured node '{group.name}'" if group.name else "a structured node"
         sink.report(rules.GROUPING, graph.subject(group), node=label)
     reader = _Reader(graph, drawing, sink, borders)
@@ -111,7 +117,7 @@ def read(graph: Graph, activity: Element, sink: Sink) -> Drawing:
     return drawing
 
 
-def _collect(
+def _collect_nodes(
     graph: Graph, drawing: Drawing, owner: Element, region: str, dissolved: frozenset[str]
 ) -> None:
     parts = parts_of(graph, owner) if owner.kind is Kind.STRUCTURED else []
@@ -121,27 +127,27 @@ def _collect(
     for element in graph.owned(owner):
         if element.kind not in NODES:
             continue
-        inside = home.get(element.id, region)
+        inner_region = home.get(element.id, region)
         if element.subkind == "interruptible" or element.id in dissolved:
-            _collect(graph, drawing, element, inside, dissolved)
+            _collect_nodes(graph, drawing, element, inner_region, dissolved)
             continue
         drawing.nodes.append(element)
-        drawing.region[element.id] = inside
+        drawing.region[element.id] = inner_region
         if element.kind is Kind.STRUCTURED:
-            _collect(graph, drawing, element, element.id, dissolved)
+            _collect_nodes(graph, drawing, element, element.id, dissolved)
 
 
 def _name_nodes(drawing: Drawing) -> None:
     numbers: dict[str, int] = {}
     for node in drawing.nodes:
-        word = _word(node)
+        word = _describe_kind(node)
         numbers[word] = numbers.get(word, 0) + 1
         drawing.labels[node.id] = (
             f"{word} '{node.name}'" if node.name else f"{word} {numbers[word]}"
         )
 
 
-def _word(node: Element) -> str:
+def _describe_kind(node: Element) -> str:
     if node.kind is Kind.CONTROL:
         return _CONTROL_WORDS.get(node.subkind, node.subkind or "control node")
     if node.kind is Kind.ACTION:
@@ -150,7 +156,7 @@ def _word(node: Element) -> str:
 
 
 class _Reader:
-    """Finds the ends of flows, and reports what has no token graph."""
+    """Finds the ends of flows, and reports elements that have no meaning in a token graph."""
 
     def __init__(
         self, graph: Graph, drawing: Drawing, sink: Sink, borders: dict[str, Element]
@@ -172,16 +178,16 @@ class _Reader:
                 self.sink.report(rules.AT_ONCE, subject, node=label, mode=mode)
             if _is_special_join(node):
                 text = str(node.attrs["join_spec"])
-                self.sink.report(rules.JOIN_SPEC, self._failed(node), node=label, text=text)
+                self.sink.report(rules.JOIN_SPEC, self._fail(node), node=label, text=text)
             self._check_parts(node, label)
 
     def _read_handlers(self, node: Element, label: str) -> None:
         if "handlers" not in node.attrs:
             return
-        found = [h for h in handlers_of(self.graph, node) if h.body.id in self.known]
-        if found:
-            self.drawing.handlers[node.id] = found
-        if len(found) < count_handlers(node):
+        handlers = [h for h in handlers_of(self.graph, node) if h.body.id in self.known]
+        if handlers:
+            self.drawing.handlers[node.id] = handlers
+        if len(handlers) < count_handlers(node):
             self.sink.report(rules.NO_HANDLER_BODY, self.graph.subject(node), node=label)
 
     def _check_parts(self, node: Element, label: str) -> None:
@@ -189,21 +195,21 @@ class _Reader:
             return
         inside = {id for part in self.drawing.parts.get(node.id, ()) for id in part.nodes}
         works = (Kind.ACTION, Kind.STRUCTURED)
-        loose = [
-            one
-            for one in self.drawing.nodes
-            if self.drawing.region[one.id] == node.id and one.kind in works
+        unlisted = [
+            member
+            for member in self.drawing.nodes
+            if self.drawing.region[member.id] == node.id and member.kind in works
         ]
-        if loose or not inside:
-            self.sink.report(rules.LOOSE_NODES, self._failed(node), node=label, kind=node.subkind)
+        if unlisted or not inside:
+            self.sink.report(rules.LOOSE_NODES, self._fail(node), node=label, kind=node.subkind)
 
     def read_flows(self) -> None:
-        for element in self._flow_elements():
-            flow = self._flow(element)
+        for element in self._list_flow_elements():
+            flow = self._read_flow(element)
             if flow is not None:
                 self.drawing.flows.append(flow)
 
-    def _flow_elements(self) -> Iterator[Element]:
+    def _list_flow_elements(self) -> Iterator[Element]:
         stack = [self.drawing.activity]
         while stack:
             owner = stack.pop()
@@ -211,8 +217,8 @@ class _Reader:
             yield from (element for element in owned if element.kind in FLOWS)
             stack.extend(reversed([e for e in owned if e.kind is Kind.STRUCTURED]))
 
-    def _flow(self, element: Element) -> Flow | None:
-        ends = [self._end(element, edge) for edge in (Edge.FLOW_SOURCE, Edge.FLOW_TARGET)]
+    def _read_flow(self, element: Element) -> Flow | None:
+        ends = [self._find_end(element, edge) for edge in (Edge.FLOW_SOURCE, Edge.FLOW_TARGET)]
         source, target = ends
         if source is None or target is None:
             return None
@@ -220,86 +226,95 @@ class _Reader:
         # Papyrus writes weight 0, which UML forbids, where nobody set one.
         if weight not in (0, 1, "0", "1"):
             self.sink.report(
-                rules.WEIGHT, self._failed(element), flow=self._flow_label(element), weight=weight
+                rules.WEIGHT, self._fail(element), flow=self._label_flow(element), weight=weight
             )
             return None
-        return self._placed(Flow(element, source[0], target[0], source[1], target[1]))
+        return self._assign_region(Flow(element, source[0], target[0], source[1], target[1]))
 
-    def _end(self, element: Element, edge: Edge) -> tuple[Element, Element | None] | None:
-        """The node at an end and its pin; None for what was reported."""
-        found = self.graph.target(element, edge)
-        node = found
+    def _find_end(self, element: Element, edge: Edge) -> tuple[Element, Element | None] | None:
+        """Return the node at an end and its pin, or None if the end was reported."""
+        attached = self.graph.target(element, edge)
+        node = attached
         while node is not None and node.id not in self.known:
             node = self.borders.get(node.id) or self.graph.owner(node)
-        known = element.attrs.get("unresolved")
-        if node is None and isinstance(known, tuple) and edge.value in known:
+        unresolved = element.attrs.get("unresolved")
+        if node is None and isinstance(unresolved, tuple) and edge.value in unresolved:
             self.has_failed = True
             return None
         if node is None:
             end = "source" if edge is Edge.FLOW_SOURCE else "target"
             self.sink.report(
-                rules.LOOSE_FLOW, self._failed(element), flow=self._flow_label(element), end=end
+                rules.LOOSE_FLOW, self._fail(element), flow=self._label_flow(element), end=end
             )
             return None
-        return node, None if found is node else found
+        return node, None if attached is node else attached
 
-    def _placed(self, flow: Flow) -> Flow:
+    def _assign_region(self, flow: Flow) -> Flow:
         source, target = flow.source, flow.target
         if source is target:
-            return self._from_pin_to_pin(flow)
+            return self._assign_region_of_own_pins(flow)
         region = self.drawing.region[source.id]
         if region == self.drawing.region[target.id]:
             return flow if region == ACTIVITY_REGION else _with_region(flow, region)
-        before = list(self.drawing.around(region))
-        after = list(self.drawing.around(self.drawing.region[target.id]))
-        if source.id in after:
-            return _with_region(flow, self._part(after, source), enters=True)
-        if target.id in before:
-            return _with_region(flow, self._part(before, target), leaves=True)
-        return _with_region(flow, next(region for region in before if region in after))
+        source_regions = list(self.drawing.enclosing_regions(region))
+        target_regions = list(self.drawing.enclosing_regions(self.drawing.region[target.id]))
+        if source.id in target_regions:
+            return _with_region(flow, self._find_part(target_regions, source), enters=True)
+        if target.id in source_regions:
+            return _with_region(flow, self._find_part(source_regions, target), leaves=True)
+        return _with_region(
+            flow, next(region for region in source_regions if region in target_regions)
+        )
 
-    def _part(self, around: list[str], node: Element) -> str:
-        """The part of the structured node that the regions go through, or the node itself."""
+    def _find_part(self, regions: list[str], node: Element) -> str:
+        """Return the part of the structured node that the regions lead through, or the node
+        itself.
+        """
         parts = {part.id for part in self.drawing.parts.get(node.id, ())}
-        return next((region for region in around if region in parts), node.id)
+        return next((region for region in regions if region in parts), node.id)
 
-    def _from_pin_to_pin(self, flow: Flow) -> Flow:
-        """From an input pin to an output pin of one structured node the value passes through."""
+    def _assign_region_of_own_pins(self, flow: Flow) -> Flow:
+        """Assign the region of a flow between pins of one node.
+
+        From an input pin to an output pin of a structured node, the value passes through the node.
+        """
         pins = (flow.source_pin, flow.target_pin)
         if flow.source.kind is Kind.STRUCTURED and None not in pins and _passes_through(*pins):
             return _with_region(flow, flow.source.id, enters=True, leaves=True)
         return _with_region(flow, self.drawing.region[flow.source.id])
 
-    def _flow_label(self, element: Element) -> str:
+    def _label_flow(self, element: Element) -> str:
         return flow_label(
             element,
-            self._name_of_end(element, Edge.FLOW_SOURCE),
-            self._name_of_end(element, Edge.FLOW_TARGET),
+            self._label_end(element, Edge.FLOW_SOURCE),
+            self._label_end(element, Edge.FLOW_TARGET),
         )
 
-    def _name_of_end(self, element: Element, edge: Edge) -> str:
+    def _label_end(self, element: Element, edge: Edge) -> str:
         node = self.graph.target(element, edge)
         while node is not None and node.id not in self.known:
             node = self.graph.owner(node)
         return "" if node is None else self.drawing.labels[node.id]
 
-    def _failed(self, element: Element) -> Subject:
-        """The element as the subject of what stops the drawing from being a token graph."""
+    def _fail(self, element: Element) -> Subject:
+        """Note that the activity has no token graph, and return the subject of the diagnostic."""
         self.has_failed = True
         return self.graph.subject(element)
 
 
 def flow_label(element: Element, source: str, target: str) -> str:
-    """What a flow is called in messages."""
+    """Return the name of a flow in messages."""
     ends = f" from {source}" * bool(source) + f" to {target}" * bool(target)
     return f"the flow{ends}" if ends else f"flow '{element.name}'"
 
 
 def _passes_through(source: Element | None, target: Element | None) -> bool:
-    return _leads(source, "region_as_input", "in") and _leads(target, "region_as_output", "out")
+    return _is_parameter_pin(source, "region_as_input", "in") and _is_parameter_pin(
+        target, "region_as_output", "out"
+    )
 
 
-def _leads(pin: Element | None, side: str, direction: str) -> bool:
+def _is_parameter_pin(pin: Element | None, side: str, direction: str) -> bool:
     return pin is not None and (side in pin.attrs or pin.attrs.get("direction") == direction)
 
 

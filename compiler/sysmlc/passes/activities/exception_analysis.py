@@ -1,4 +1,4 @@
-"""Which behaviours and operations may end with an exception."""
+"""Interprocedural analysis: which behaviours and operations may end with an exception."""
 
 from collections.abc import Iterable, Iterator
 
@@ -12,10 +12,11 @@ _BODIES = ("opaque", "function")
 
 
 class Raising(Struct, frozen=True):
-    """Ids of what raises something by its drawing, and of what may do so for all that is known.
+    """Ids of the behaviours and operations that may end with an exception.
 
-    Operations without method and behaviours of other files are not known; a body of text raises
-    nothing.
+    ``drawn`` are those with a raise action on some path of calls; ``possible`` also holds those
+    about which nothing is known: operations without method and behaviours of other files. A text
+    body raises nothing.
     """
 
     drawn: frozenset[str]
@@ -23,74 +24,88 @@ class Raising(Struct, frozen=True):
 
 
 def find_raising(graph: Graph) -> Raising:
-    """Follow raise actions from callee to caller, up to where a handler catches them."""
-    actions = [one for one in graph.of_kind(Kind.ACTION) if one.subkind in (*CALLS, "raise")]
-    loose = [(one, home) for one in actions if (home := _home(graph, one)) is not None]
-    raised = {home.id for one, home in loose if one.subkind == "raise"}
-    unknown = {home.id for one, home in loose if _is_unknown(graph, one)}
+    """Propagate raise actions from callee to caller, up to the handler that catches them."""
+    actions = [
+        action for action in graph.of_kind(Kind.ACTION) if action.subkind in (*CALLS, "raise")
+    ]
+    unprotected = [
+        (action, home) for action in actions if (home := _find_raiser(graph, action)) is not None
+    ]
+    raised = {home.id for action, home in unprotected if action.subkind == "raise"}
+    unknown = {home.id for action, home in unprotected if _calls_unknown(graph, action)}
     unknown |= {
         called.id
-        for one in actions
-        for called in _called(graph, one)
-        if _is_far(called) or _is_abstract(graph, called)
+        for action in actions
+        for called in _called_by(graph, action)
+        if _is_external(called) or _is_abstract(graph, called)
     }
-    callers = _callers(graph, loose)
-    return Raising(_closed(raised, callers), _closed(raised | unknown, callers))
+    callers = _index_callers(graph, unprotected)
+    return Raising(
+        _close_over_callers(raised, callers), _close_over_callers(raised | unknown, callers)
+    )
 
 
-def _home(graph: Graph, action: Element) -> Element | None:
-    """The behaviour that the action is in, unless a handler there catches what it raises."""
-    above: Element | None = action
-    while above is not None and above.kind is not Kind.ACTIVITY:
-        if "handlers" in above.attrs:
+def _find_raiser(graph: Graph, action: Element) -> Element | None:
+    """Return the behaviour that contains the action, or None if a handler in it catches the
+    exception.
+    """
+    element: Element | None = action
+    while element is not None and element.kind is not Kind.ACTIVITY:
+        if "handlers" in element.attrs:
             return None
-        above = graph.owner(above)
-    return above
+        element = graph.owner(element)
+    return element
 
 
-def _called(graph: Graph, action: Element) -> list[Element]:
+def _called_by(graph: Graph, action: Element) -> list[Element]:
     return graph.targets(action, Edge.CALLS)
 
 
-def _is_unknown(graph: Graph, action: Element) -> bool:
-    return action.subkind != "raise" and not _called(graph, action)
+def _calls_unknown(graph: Graph, action: Element) -> bool:
+    return action.subkind != "raise" and not _called_by(graph, action)
 
 
-def _is_far(called: Element) -> bool:
+def _is_external(called: Element) -> bool:
     return called.attrs.get("external") is True and called.subkind not in _BODIES
 
 
-def _callers(graph: Graph, loose: Iterable[tuple[Element, Element]]) -> dict[str, list[str]]:
-    """What ends with an exception when the key does: callers, and operations of methods."""
-    found: dict[str, list[str]] = {}
-    for action, home in loose:
-        for called in _called(graph, action):
-            found.setdefault(called.id, []).append(home.id)
+def _index_callers(
+    graph: Graph, unprotected: Iterable[tuple[Element, Element]]
+) -> dict[str, list[str]]:
+    """Map each behaviour to the behaviours that also raise when it does: callers, and
+    operations.
+    """
+    callers: dict[str, list[str]] = {}
+    for action, home in unprotected:
+        for called in _called_by(graph, action):
+            callers.setdefault(called.id, []).append(home.id)
     for operation in graph.of_kind(Kind.OPERATION):
         for method in graph.targets(operation, Edge.METHOD):
-            found.setdefault(method.id, []).append(operation.id)
-    return found
+            callers.setdefault(method.id, []).append(operation.id)
+    return callers
 
 
-def _closed(first: Iterable[str], callers: dict[str, list[str]]) -> frozenset[str]:
-    return frozenset(_reached(first, callers))
+def _close_over_callers(first: Iterable[str], callers: dict[str, list[str]]) -> frozenset[str]:
+    return frozenset(_walk_callers(first, callers))
 
 
-def _reached(first: Iterable[str], callers: dict[str, list[str]]) -> Iterator[str]:
+def _walk_callers(first: Iterable[str], callers: dict[str, list[str]]) -> Iterator[str]:
     seen: set[str] = set()
-    waiting = sorted(first)
-    while waiting:
-        id = waiting.pop()
+    worklist = sorted(first)
+    while worklist:
+        id = worklist.pop()
         if id not in seen:
             seen.add(id)
-            waiting += callers.get(id, ())
+            worklist += callers.get(id, ())
             yield id
 
 
-def may_raise(graph: Graph, action: Element, among: frozenset[str], unknown: bool) -> bool:
-    """Whether what an action calls is among these; ``unknown`` answers for calls of nothing."""
-    called = _called(graph, action)
-    return any(one.id in among for one in called) if called else unknown
+def may_raise(graph: Graph, action: Element, raising: frozenset[str], unknown: bool) -> bool:
+    """Whether the action calls a behaviour in *raising*; *unknown* is the answer if it calls
+    nothing.
+    """
+    called = _called_by(graph, action)
+    return any(behaviour.id in raising for behaviour in called) if called else unknown
 
 
 def _is_abstract(graph: Graph, called: Element) -> bool:

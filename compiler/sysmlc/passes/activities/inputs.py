@@ -16,7 +16,7 @@ OTHER = "other"
 
 
 class Inputs:
-    """Collects the environment's variables of one activity."""
+    """The variables of the environment that one activity reads."""
 
     def __init__(self, graph: Graph, scope: Scope, sink: Sink) -> None:
         self.graph = graph
@@ -27,34 +27,34 @@ class Inputs:
         self._sink = sink
         self._by_text: dict[str, str] = {}
 
-    def pulse(self, wanted: str, origin: Element) -> Formula:
-        """An event of its own."""
-        name = self._declare(wanted, BooleanDomain(), origin)
+    def declare_pulse(self, prefix: str, origin: Element) -> Formula:
+        """Declare an event that nothing else waits for."""
+        name = self._declare(prefix, BooleanDomain(), origin)
         self.pulses.append(name)
         return f.var(name)
 
-    def event(self, wanted: str, origin: Element) -> Formula:
-        """An event that others may wait for, too."""
+    def share_event(self, wanted: str, origin: Element) -> Formula:
+        """Return an event that several actions may wait for, declared at the first request."""
         if wanted not in self.variables:
-            return self.pulse(wanted, origin)
+            return self.declare_pulse(wanted, origin)
         return f.var(wanted)
 
-    def condition(self, text: str, origin: Element, what: str) -> Formula:
-        """What the text says; what is not known in it becomes a Boolean input."""
+    def read_condition(self, text: str, origin: Element, what: str) -> Formula:
+        """Return the formula of a text. A part that cannot be read becomes a Boolean input."""
         while True:
             try:
                 formula, variables = self._scope.read(text)
             except UnreadableError as error:
                 if not error.unknown or not self._scope.is_condition(text, error.unknown):
-                    return self._in_plain_words(text, origin, what, str(error))
-                known = self._in_plain_words(error.unknown, origin, what, str(error))
-                self._scope.declare(error.unknown, known)
+                    return self._declare_unreadable(text, origin, what, str(error))
+                replacement = self._declare_unreadable(error.unknown, origin, what, str(error))
+                self._scope.declare(error.unknown, replacement)
                 continue
             for variable in variables:
                 self.variables.setdefault(variable.name, variable)
             return formula
 
-    def _in_plain_words(self, text: str, origin: Element, what: str, reason: str) -> Formula:
+    def _declare_unreadable(self, text: str, origin: Element, what: str, reason: str) -> Formula:
         name = self._by_text.get(text)
         if name is None:
             name = self._declare(identifier(text, "condition"), BooleanDomain(), origin)
@@ -65,26 +65,26 @@ class Inputs:
         )
         return f.var(name)
 
-    def answer(self, wanted: str, literals: Iterable[str], origin: Element) -> "Answer":
+    def declare_answer(self, prefix: str, literals: Iterable[str], origin: Element) -> "Answer":
         """Declare the input that a decision compares with the literals on its branches.
 
-        A literal can be any text, such as ``0``. Formulas know it by an identifier.
+        A literal can be any text, such as ``0``. Formulas refer to it by an identifier.
         """
         texts = list(dict.fromkeys(literals))
         if set(texts) <= {"true", "false"}:
-            return Answer(f.var(self._declare(wanted, BooleanDomain(), origin)), None)
+            return Answer(f.var(self._declare(prefix, BooleanDomain(), origin)), None)
         other, *values = unique([OTHER, *texts], "value")
-        variable = f.var(self._declare(wanted, EnumerationDomain((*values, other)), origin))
+        variable = f.var(self._declare(prefix, EnumerationDomain((*values, other)), origin))
         return Answer(variable, dict(zip(texts, values, strict=True)))
 
-    def _declare(self, wanted: str, domain: Domain, origin: Element) -> str:
-        name = self.names.new(wanted)
+    def _declare(self, prefix: str, domain: Domain, origin: Element) -> str:
+        name = self.names.new(prefix)
         self.variables[name] = Variable(name, Owner.ENVIRONMENT, domain, origin.id)
         return name
 
 
 class Answer:
-    """The input of a decision; without names of its values it is Boolean."""
+    """The input of a decision. It is Boolean if its values have no names."""
 
     def __init__(self, variable: Formula, value_names: Mapping[str, str] | None) -> None:
         self._variable = variable
@@ -97,37 +97,37 @@ class Answer:
         return f.eq(self._variable, f.const(self._value_names[literal]))
 
     def is_covered(self, literals: list[str]) -> bool:
-        """Tell whether the input always equals one of the literals."""
+        """Whether the input always equals one of the literals."""
         return self._value_names is None and {"true", "false"} <= set(literals)
 
 
-def events(inputs: Inputs, action: Element) -> tuple[Formula, list[str]]:
-    """What ends an accept action, and the names of the events."""
+def read_events(inputs: Inputs, action: Element) -> tuple[Formula, list[str]]:
+    """Return the condition that ends an accept action, and the names of its events."""
     graph = inputs.graph
     triggers = dict.fromkeys(
         [*graph.targets(action, Edge.TRIGGER), *_owned_triggers(graph, action)]
     )
     if not triggers:
         name = f"receive_{identifier(action.name, 'event')}"
-        return inputs.pulse(name, action), [name]
-    found = [_event(inputs, trigger, action) for trigger in triggers]
-    return f.either(*(formula for formula, _ in found)), [name for _, name in found if name]
+        return inputs.declare_pulse(name, action), [name]
+    events = [_read_event(inputs, trigger, action) for trigger in triggers]
+    return f.either(*(formula for formula, _ in events)), [name for _, name in events if name]
 
 
 def _owned_triggers(graph: Graph, action: Element) -> list[Element]:
     return [element for element in graph.owned(action) if element.kind == "Trigger"]
 
 
-def _event(inputs: Inputs, trigger: Element, action: Element) -> tuple[Formula, str]:
+def _read_event(inputs: Inputs, trigger: Element, action: Element) -> tuple[Formula, str]:
     if trigger.subkind == "change" and trigger.attrs.get("condition"):
         text = str(trigger.attrs["condition"])
-        return inputs.condition(text, action, "the change condition"), ""
-    name = _event_name(inputs.graph, trigger)
-    return inputs.event(name, trigger), name
+        return inputs.read_condition(text, action, "the change condition"), ""
+    name = _name_event(inputs.graph, trigger)
+    return inputs.share_event(name, trigger), name
 
 
-def _event_name(graph: Graph, trigger: Element) -> str:
+def _name_event(graph: Graph, trigger: Element) -> str:
     type_ = graph.target(trigger, Edge.TYPED_BY)
     prefix = {"call": "call", "time": "time", "change": "change"}.get(trigger.subkind, "receive")
-    what = (type_.name if type_ else "") or trigger.name or str(trigger.attrs.get("when", ""))
-    return f"{prefix}_{identifier(what, 'event')}"
+    subject = (type_.name if type_ else "") or trigger.name or str(trigger.attrs.get("when", ""))
+    return f"{prefix}_{identifier(subject, 'event')}"

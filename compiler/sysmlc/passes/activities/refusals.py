@@ -1,4 +1,4 @@
-"""What an activity writes and its contract does not follow, with the reason (SM544)."""
+"""Features that an activity assigns but its contract does not track, with the reason (SM544)."""
 
 from collections.abc import Iterable
 
@@ -18,7 +18,7 @@ WRITTEN = rule(
 
 
 class Refusal(Struct, frozen=True):
-    """Why a contract cannot follow a feature, and what can be done about it."""
+    """The reason why a contract cannot track a feature, and the advice for the author."""
 
     reason: str
     advice: str
@@ -33,31 +33,33 @@ UNKNOWN = Refusal(
 )
 
 
-def shared(writer: str) -> Refusal:
-    """Another behaviour writes it."""
+def refuse_shared(writer: str) -> Refusal:
+    """Return the refusal of a feature that another behaviour writes."""
     return Refusal(f"'{writer}' writes it too", "let one behaviour alone write it")
 
 
-class Unfollowed(Struct, frozen=True):
-    """A feature that the activity writes, and why its contract does not follow it."""
+class UntrackedFeature(Struct, frozen=True):
+    """A feature that the activity assigns, the reason why it is not tracked, and the assigning
+    actions.
+    """
 
     feature: Element
     why: Refusal
     writers: tuple[str, ...]
 
 
-def report_unfollowed(
-    graph: Graph, activity: Element, unfollowed: Iterable[Unfollowed], sink: Sink
+def report_untracked(
+    graph: Graph, activity: Element, untracked: Iterable[UntrackedFeature], sink: Sink
 ) -> None:
-    """Report each feature whose values are left to the environment although actions write it."""
-    for one in unfollowed:
+    """Report each feature whose values are left to the environment although actions assign it."""
+    for feature in untracked:
         sink.report(
             WRITTEN,
-            graph.subject(one.feature),
+            graph.subject(feature.feature),
             activity=activity.name,
-            name=one.feature.name,
-            writers=" and ".join(one.writers),
-            verb="writes" if len(one.writers) == 1 else "write",
-            reason=one.why.reason,
-            advice=one.why.advice.format(name=one.feature.name),
+            name=feature.feature.name,
+            writers=" and ".join(feature.writers),
+            verb="writes" if len(feature.writers) == 1 else "write",
+            reason=feature.why.reason,
+            advice=feature.why.advice.format(name=feature.feature.name),
         )

@@ -1,4 +1,9 @@
-"""Regions of activities: mere groups, interruptible regions, expansion nodes, handlers."""
+"""Regions of activities: parts of loops and conditionals, groups, interruptible and expansion
+regions.
+
+UML lists only the executable nodes of a part. A fork, decision or buffer between them belongs to
+the part that its tokens come from, or, if they come from outside, to the part they go to.
+"""
 
 from collections.abc import Callable, Iterator
 
@@ -19,7 +24,7 @@ NODES = (
 
 
 class Part(Struct, frozen=True):
-    """A part of the structured node ``owner``; ``nodes`` are ids of its direct members."""
+    """A part of the structured node ``owner``; ``nodes`` are the ids of its direct members."""
 
     id: str
     owner: Element
@@ -28,19 +33,19 @@ class Part(Struct, frozen=True):
 
 
 def parts_of(graph: Graph, node: Element) -> list[Part]:
-    """Parts in the order in which they run first."""
-    listed = [(word, tuple(query.ids_in(ids))) for word, ids in _listed(graph, node)]
-    parts = [Part(derived_id(node.id, word), node, word, ids) for word, ids in listed if ids]
-    return _completed(graph, node, parts) if parts else []
+    """Return the parts of a structured node in the order in which they run first."""
+    members = [(word, tuple(query.ids_in(ids))) for word, ids in _list_members(graph, node)]
+    parts = [Part(derived_id(node.id, word), node, word, ids) for word, ids in members if ids]
+    return _assign_unlisted(graph, node, parts) if parts else []
 
 
-def _listed(graph: Graph, node: Element) -> list[tuple[str, object]]:
+def _list_members(graph: Graph, node: Element) -> list[tuple[str, object]]:
     if node.subkind == "loop":
         words = ("setup_part", "test", "body_part")
         return [(word.removesuffix("_part"), node.attrs.get(word)) for word in words]
     if node.subkind == "expansion":
-        inside = tuple(one.id for one in graph.owned(node) if one.kind in NODES)
-        return [("element", inside)]
+        members = tuple(inner.id for inner in graph.owned(node) if inner.kind in NODES)
+        return [("element", members)]
     if node.subkind != "conditional":
         return []
     clauses = node.attrs.get("clauses") or ()
@@ -55,54 +60,60 @@ def _listed(graph: Graph, node: Element) -> list[tuple[str, object]]:
 # -- nodes that no part lists ------------------------------------------------------------------
 
 
-def _completed(graph: Graph, node: Element, parts: list[Part]) -> list[Part]:
+def _assign_unlisted(graph: Graph, node: Element, parts: list[Part]) -> list[Part]:
     home = {id: part.id for part in parts for id in part.nodes}
-    loose = [one for one in graph.owned(node) if one.kind in NODES and one.id not in home]
-    for beside in (_sources, _targets):
-        while any(_assign(graph, node, one, home, beside) for one in loose):
-            loose = [one for one in loose if one.id not in home]
-    found = {part.id: [id for id, place in home.items() if place == part.id] for part in parts}
-    return [replace(part, nodes=tuple(found[part.id])) for part in parts]
+    unlisted = [
+        member for member in graph.owned(node) if member.kind in NODES and member.id not in home
+    ]
+    for neighbours in (_sources, _targets):
+        while any(_assign_to_part(graph, node, member, home, neighbours) for member in unlisted):
+            unlisted = [member for member in unlisted if member.id not in home]
+    members = {part.id: [id for id, place in home.items() if place == part.id] for part in parts}
+    return [replace(part, nodes=tuple(members[part.id])) for part in parts]
 
 
-def _assign(
+def _assign_to_part(
     graph: Graph,
     owner: Element,
     node: Element,
     home: dict[str, str],
-    beside: Callable[[Graph, Element], Iterator[Element]],
+    neighbours: Callable[[Graph, Element], Iterator[Element]],
 ) -> bool:
-    """Note the only part that the nodes beside it are in, if there is one."""
+    """Assign the node to the part of its neighbours if all of them are in the same part."""
     if node.id in home:
         return False
-    members = [_member(graph, owner, one) for one in beside(graph, node)]
-    places = {home[one.id] for one in members if one is not None and one.id in home}
-    if len(places) != 1:
+    members = [_find_member(graph, owner, neighbour) for neighbour in neighbours(graph, node)]
+    parts = {
+        home[neighbour.id]
+        for neighbour in members
+        if neighbour is not None and neighbour.id in home
+    }
+    if len(parts) != 1:
         return False
-    home[node.id] = places.pop()
+    home[node.id] = parts.pop()
     return True
 
 
-def _member(graph: Graph, owner: Element, element: Element) -> Element | None:
-    """The direct member of the owner that the element is, or is in."""
-    found: Element | None = element
-    while found is not None and found.owner != owner.id:
-        found = graph.owner(found)
-    return found
+def _find_member(graph: Graph, owner: Element, element: Element) -> Element | None:
+    """Return the direct member of the owner that the element is, or is in."""
+    member: Element | None = element
+    while member is not None and member.owner != owner.id:
+        member = graph.owner(member)
+    return member
 
 
-def _own(graph: Graph, node: Element) -> list[Element]:
-    return [node, *(one for one in graph.owned(node) if one.kind is Kind.PIN)]
+def _with_pins(graph: Graph, node: Element) -> list[Element]:
+    return [node, *(pin for pin in graph.owned(node) if pin.kind is Kind.PIN)]
 
 
 def _sources(graph: Graph, node: Element) -> Iterator[Element]:
-    for end in _own(graph, node):
+    for end in _with_pins(graph, node):
         for flow in query.incoming(graph, end):
             yield from graph.targets(flow, Edge.FLOW_SOURCE)
 
 
 def _targets(graph: Graph, node: Element) -> Iterator[Element]:
-    for end in _own(graph, node):
+    for end in _with_pins(graph, node):
         for flow in query.outgoing(graph, end):
             yield from graph.targets(flow, Edge.FLOW_TARGET)
 
@@ -120,77 +131,78 @@ class Handler(Struct, frozen=True):
 
 
 def handlers_of(graph: Graph, node: Element) -> list[Handler]:
-    """Handlers of a protected node, in order, as far as they have a body in the graph."""
+    """Return the handlers of a protected node, in order, that have a body in the graph."""
     value = node.attrs.get("handlers")
-    found = []
-    for bodies, _, types in _triples(value):
+    handlers = []
+    for bodies, _, types in _list_handler_parts(value):
         body = graph.get(next(query.ids_in(bodies), None))
         if body is not None:
-            found.append(Handler(body, tuple(query.ids_in(types))))
-    return found
+            handlers.append(Handler(body, tuple(query.ids_in(types))))
+    return handlers
 
 
 def count_handlers(node: Element) -> int:
-    """How many handlers the node was given, with a body or without."""
+    """Count the handlers of a node, with a body or without."""
     value = node.attrs.get("handlers")
     return len(value) if isinstance(value, tuple) else int(value is not None)
 
 
-def _triples(value: object) -> Iterator[tuple[object, object, object]]:
+def _list_handler_parts(value: object) -> Iterator[tuple[object, object, object]]:
     for handler in value if isinstance(value, tuple) else (value,) if value else ():
         parts = handler if isinstance(handler, tuple) else (handler,)
         body, inputs, types, *_ = (*parts, (), (), ())
         yield body, inputs, types
 
 
-def expansion_nodes(graph: Graph, within: list[Element]) -> dict[str, Element]:
-    """Expansion nodes of an activity, by id, with the expansion region on whose border they are."""
-    found: dict[str, Element] = {}
-    for element in within:
+def find_expansion_nodes(graph: Graph, elements: list[Element]) -> dict[str, Element]:
+    """Map the id of each expansion node to the expansion region on whose border it is."""
+    regions_by_node: dict[str, Element] = {}
+    for element in elements:
         if element.subkind != "expansion":
             continue
         if element.kind is Kind.STRUCTURED:
             ends = (element.attrs.get("input_element"), element.attrs.get("output_element"))
-            found |= dict.fromkeys(query.ids_in(ends), element)
+            regions_by_node |= dict.fromkeys(query.ids_in(ends), element)
         else:
             names = ("region_as_input", "region_as_output")
             regions = (
                 graph.get(id) for name in names for id in query.ids_in(element.attrs.get(name))
             )
             region = next(filter(None, regions), None)
-            found |= {} if region is None else {element.id: region}
-    return found
+            regions_by_node |= {} if region is None else {element.id: region}
+    return regions_by_node
 
 
 # -- groups ------------------------------------------------------------------------------------
 
 
-def groups_of(graph: Graph, within: list[Element]) -> dict[str, Element]:
-    """Plain structured nodes that no flow starts or ends at, but whose border flows cross.
+def find_groups(graph: Graph, elements: list[Element]) -> dict[str, Element]:
+    """Return the plain structured nodes that no flow starts or ends at, but whose border flows
+    cross.
 
-    They start with what is around them and nothing follows them, so that only their nodes count.
+    They start with the region around them and nothing follows them, so that only their nodes count.
     """
-    structured = [node for node in within if node.kind is Kind.STRUCTURED]
+    structured = [node for node in elements if node.kind is Kind.STRUCTURED]
     if not structured:
         return {}
-    guarded = (one for one in within if "handlers" in one.attrs)
-    bodies = {handler.body.id for one in guarded for handler in handlers_of(graph, one)}
-    found: dict[str, Element] = {}
+    guarded = (element for element in elements if "handlers" in element.attrs)
+    bodies = {handler.body.id for element in guarded for handler in handlers_of(graph, element)}
+    groups: dict[str, Element] = {}
     for node in structured:
         if node.subkind not in ("structured", ""):
             continue
-        if node.id in bodies or "handlers" in node.attrs or _ends_itself(graph, node):
+        if node.id in bodies or "handlers" in node.attrs or _has_final_node(graph, node):
             continue
-        own = [node, *(pin for pin in graph.owned(node) if pin.kind is Kind.PIN)]
-        if any(query.incoming(graph, e) or query.outgoing(graph, e) for e in own):
+        ends = [node, *(pin for pin in graph.owned(node) if pin.kind is Kind.PIN)]
+        if any(query.incoming(graph, e) or query.outgoing(graph, e) for e in ends):
             continue
         inside = {element.id for element in graph.subtree(node)}
-        if any(_crosses(graph, e, inside) for e in within if e.kind in FLOWS):
-            found[node.id] = node
-    return found
+        if any(_crosses(graph, e, inside) for e in elements if e.kind in FLOWS):
+            groups[node.id] = node
+    return groups
 
 
-def _ends_itself(graph: Graph, node: Element) -> bool:
+def _has_final_node(graph: Graph, node: Element) -> bool:
     return any(e.kind is Kind.CONTROL and e.subkind == "final" for e in graph.owned(node))
 
 
@@ -203,49 +215,55 @@ def is_entered_again(graph: Graph, group: Element) -> bool:
     """Whether flows lead out of the group and back into it."""
     inside = {element.id for element in graph.subtree(group)}
     outside: dict[str, Element] = {}
-    waiting = list(graph.subtree(group))
-    while waiting:
-        for after in _after(graph, waiting.pop()):
-            if after.id not in inside and after.id not in outside:
-                outside[after.id] = after
-                waiting.append(after)
-    return any(after.id in inside for one in outside.values() for after in _after(graph, one))
+    worklist = list(graph.subtree(group))
+    while worklist:
+        for successor in _find_successors(graph, worklist.pop()):
+            if successor.id not in inside and successor.id not in outside:
+                outside[successor.id] = successor
+                worklist.append(successor)
+    return any(
+        successor.id in inside
+        for element in outside.values()
+        for successor in _find_successors(graph, element)
+    )
 
 
-def _after(graph: Graph, element: Element) -> Iterator[Element]:
-    """What the flows lead to from a node, whichever of its pins they reach and leave."""
+def _find_successors(graph: Graph, element: Element) -> Iterator[Element]:
+    """Yield the targets of the flows that leave a node, whichever pin they reach and leave."""
     owner = graph.owner(element) if element.kind is Kind.PIN else element
-    own = [] if owner is None else [e for e in graph.owned(owner) if e.kind is Kind.PIN]
-    for end in (element, *own, *([owner] if owner is not None else ())):
+    pins = [] if owner is None else [e for e in graph.owned(owner) if e.kind is Kind.PIN]
+    for end in (element, *pins, *([owner] if owner is not None else ())):
         for flow in query.outgoing(graph, end):
             yield from graph.targets(flow, Edge.FLOW_TARGET)
 
 
-def interruptible_regions(graph: Graph, within: list[Element], nodes: list[Element]) -> Regions:
-    """Interruptible regions of an activity with their nodes."""
+def find_interruptible_regions(
+    graph: Graph, elements: list[Element], nodes: list[Element]
+) -> Regions:
+    """Return the interruptible regions of an activity with their nodes."""
     return [
         (
             region,
             [
-                n
-                for n in nodes
-                if region in graph.targets(n, Edge.IN_PARTITION) or graph.owner(n) is region
+                node
+                for node in nodes
+                if region in graph.targets(node, Edge.IN_PARTITION) or graph.owner(node) is region
             ],
         )
-        for region in within
+        for region in elements
         if region.subkind == "interruptible"
     ]
 
 
 def is_entered_later(graph: Graph, members: list[Element]) -> bool:
     """Whether a token enters an interruptible region later than its activity starts, or again."""
-    pins = (pin for one in members for pin in graph.owned(one) if pin.kind is Kind.PIN)
-    around = dict.fromkeys(one.id for one in (*members, *pins))
+    pins = (pin for member in members for pin in graph.owned(member) if pin.kind is Kind.PIN)
+    inside = dict.fromkeys(member.id for member in (*members, *pins))
     sources = (
         source
-        for id in around
+        for id in inside
         for flow in graph.sources(graph[id], Edge.FLOW_TARGET)
         if flow.kind in FLOWS
         for source in graph.targets(flow, Edge.FLOW_SOURCE)
     )
-    return any(one.id not in around and one.subkind != "initial" for one in sources)
+    return any(member.id not in inside and member.subkind != "initial" for member in sources)

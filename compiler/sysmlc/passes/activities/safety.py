@@ -1,8 +1,8 @@
-"""The search for a second token: in any order of moves where that is enough, else step by step.
+"""Search of a token graph for a second token on a flow, and reduction of large token graphs.
 
-Most activities are 1-safe in whatever order their nodes move, which is found fast (``token_net``).
-The others are played in all ways (``token_search``): the game moves everything at once, so that a
-flow may be empty again before the next token comes.
+Most activities are 1-safe in whatever order their nodes move, which is found fast (``net_safety``).
+The others are played in all ways (``reachability``): a step moves everything at once, so that a
+flow may be empty again before the next token arrives.
 """
 
 from collections.abc import Callable
@@ -29,8 +29,8 @@ _REMEMBERED = 256
 """Answers that are kept: a process that compiles again finds those of what was not edited."""
 
 
-class Found(Struct, frozen=True):
-    """What is known of a token graph; ``unsafe`` is the id of an edge or a node."""
+class SafetyResult(Struct, frozen=True):
+    """Result of the search. ``unsafe`` is the id of an edge or node with two tokens, or empty."""
 
     unsafe: str = ""
     is_complete: bool = True
@@ -41,61 +41,64 @@ class Found(Struct, frozen=True):
 
 
 @lru_cache(_REMEMBERED)
-def search(tokens: TokenGraph, limit: int) -> Found:
-    """Look for a second token in at most ``limit`` states."""
-    quick = None if _is_coupled(tokens) else _in_any_order(tokens, limit)
-    if quick is not None and quick.is_complete and not quick.unsafe:
-        return quick
-    exact = _step_by_step(tokens, limit)
-    return exact if exact.is_complete or quick is None else quick
+def search(tokens: TokenGraph, limit: int) -> SafetyResult:
+    """Look for a second token in at most *limit* states."""
+    unordered = None if _is_coupled(tokens) else _search_regions(tokens, limit)
+    if unordered is not None and unordered.is_complete and not unordered.unsafe:
+        return unordered
+    exact = _search_steps(tokens, limit)
+    return exact if exact.is_complete or unordered is None else unordered
 
 
-def noted(tokens: TokenGraph, found: Found) -> TokenGraph:
-    """The graph with what was found."""
+def apply_result(tokens: TokenGraph, result: SafetyResult) -> TokenGraph:
+    """Return the token graph with the result of the search."""
     nodes = (
-        replace(node, queues=True) if node.id in found.queues else node for node in tokens.nodes
+        replace(node, queues=True) if node.id in result.queues else node for node in tokens.nodes
     )
-    return replace(tokens, nodes=tuple(nodes), rests=found.rests, finishes=found.finishes)
+    return replace(tokens, nodes=tuple(nodes), rests=result.rests, finishes=result.finishes)
 
 
 @lru_cache(_REMEMBERED)
-def collapsed(tokens: TokenGraph, limit: int) -> TokenGraph:
-    """The graph without nodes that only pass tokens on, unless it needs them to be 1-safe."""
-    small = collapse(tokens)
-    found = search(small, limit)
-    return tokens if found.unsafe or not found.is_complete else noted(small, found)
+def collapse_if_safe(tokens: TokenGraph, limit: int) -> TokenGraph:
+    """Return the graph without nodes that only pass tokens on, unless it needs them to be
+    1-safe.
+    """
+    reduced = collapse(tokens)
+    result = search(reduced, limit)
+    return tokens if result.unsafe or not result.is_complete else apply_result(reduced, result)
 
 
-def named(tokens: TokenGraph, names: Names) -> TokenGraph:
-    """The graph with names for the conditions that many formulas would repeat."""
-    quiets = (
-        (region, names.new(_quiet_name(tokens, region)))
+def name_conditions(tokens: TokenGraph, names: Names) -> TokenGraph:
+    """Return the graph with names for the conditions that many formulas would repeat."""
+    conditions = (
+        (region, names.new(_name_idle_condition(tokens, region)))
         for region in tokens.regions()
-        if tokens.can_rest(region) and _size(tokens, region) * _uses(tokens, region) >= _NAMED_FROM
+        if tokens.can_rest(region)
+        and _count_places(tokens, region) * _count_uses(tokens, region) >= _NAMED_FROM
     )
-    return replace(tokens, quiets=tuple(quiets))
+    return replace(tokens, quiets=tuple(conditions))
 
 
-def _quiet_name(tokens: TokenGraph, region: str) -> str:
+def _name_idle_condition(tokens: TokenGraph, region: str) -> str:
     if region == ACTIVITY_REGION:
         return "over"
     return f"over_{tokens.node(region).run.removeprefix('run_')}"
 
 
-def _size(tokens: TokenGraph, region: str) -> int:
+def _count_places(tokens: TokenGraph, region: str) -> int:
     edges, workers = tokens.inside(region)
     return len(edges) + len(workers)
 
 
-def _uses(tokens: TokenGraph, region: str) -> int:
-    """The edges and running nodes in the region and in those inside it."""
+def _count_uses(tokens: TokenGraph, region: str) -> int:
+    """Count the edges and running nodes of the region and of the regions inside it."""
     _, workers = tokens.inside(region)
-    inner = (node.id for node in workers if node.kind is NodeKind.STRUCTURED)
-    return _size(tokens, region) + sum(_uses(tokens, one) for one in inner)
+    nested = (node.id for node in workers if node.kind is NodeKind.STRUCTURED)
+    return _count_places(tokens, region) + sum(_count_uses(tokens, inner) for inner in nested)
 
 
 def _is_coupled(tokens: TokenGraph) -> bool:
-    """Whether regions can't be looked at one by one, or two flows interrupt one at once."""
+    """Whether regions depend on one another, so that they cannot be searched one by one."""
     return any(
         edge.keeps
         or edge.interrupts
@@ -106,28 +109,28 @@ def _is_coupled(tokens: TokenGraph) -> bool:
     )
 
 
-def _in_any_order(tokens: TokenGraph, limit: int) -> Found:
-    found = {region: token_net.check(tokens, region, limit) for region in tokens.regions()}
-    return Found(
-        next((safety.unsafe for safety in found.values() if safety.unsafe), ""),
-        all(safety.is_complete for safety in found.values()),
-        frozenset(id for safety in found.values() for id in safety.dead),
-        rests=frozenset(region for region, safety in found.items() if safety.rests),
-        finishes=found[ACTIVITY_REGION].finishes,
+def _search_regions(tokens: TokenGraph, limit: int) -> SafetyResult:
+    results = {region: token_net.check(tokens, region, limit) for region in tokens.regions()}
+    return SafetyResult(
+        next((safety.unsafe for safety in results.values() if safety.unsafe), ""),
+        all(safety.is_complete for safety in results.values()),
+        frozenset(id for safety in results.values() for id in safety.dead),
+        rests=frozenset(region for region, safety in results.items() if safety.rests),
+        finishes=results[ACTIVITY_REGION].finishes,
     )
 
 
-def _step_by_step(tokens: TokenGraph, limit: int) -> Found:
+def _search_steps(tokens: TokenGraph, limit: int) -> SafetyResult:
 
-    reached = token_search.explore(tokens, limit)
+    explored = token_search.explore(tokens, limit)
     moving = {node.id for node in tokens.nodes if node.firing is not Firing.NEVER}
-    return Found(
-        reached.unsafe,
-        reached.is_complete,
-        frozenset(moving - reached.fired),
-        frozenset(reached.queues),
-        frozenset(reached.rests),
-        reached.finishes,
+    return SafetyResult(
+        explored.unsafe,
+        explored.is_complete,
+        frozenset(moving - explored.fired),
+        frozenset(explored.queues),
+        frozenset(explored.rests),
+        explored.finishes,
     )
 
 
@@ -136,25 +139,31 @@ _ANY_IN = (Firing.ANY, Firing.END)
 
 
 def collapse(graph: TokenGraph) -> TokenGraph:
-    """The graph without nodes that only pass tokens on."""
+    """Return the graph without nodes that only pass tokens on.
+
+    Actions, decisions with guards, structured nodes and the order of all of them stay. Removed are
+    nodes with one edge in and one out, forks after and joins before nodes that fork and join by
+    themselves, and merges before merges and final nodes. A remaining edge lists in ``origins`` the
+    flows and nodes that it stands for. Tokens arrive earlier, but never in another order.
+    """
     rules: tuple[Callable[[TokenGraph, TokenNode], TokenGraph | None], ...] = (
-        _pass_through,
-        _fork_at_source,
-        _join_at_target,
-        _merge_at_target,
+        _remove_pass_through,
+        _remove_fork,
+        _remove_join,
+        _remove_merge,
     )
     has_changed = True
     while has_changed:
         has_changed = False
-        for id in [node.id for node in graph.nodes if _is_plain(graph, node)]:
-            made = next(filter(None, (rule(graph, graph.node(id)) for rule in rules)), None)
-            if made is not None:
-                graph, has_changed = made, True
+        for id in [node.id for node in graph.nodes if _is_removable(graph, node)]:
+            reduced = next(filter(None, (rule(graph, graph.node(id)) for rule in rules)), None)
+            if reduced is not None:
+                graph, has_changed = reduced, True
     return graph
 
 
-def _is_plain(graph: TokenGraph, node: TokenNode) -> bool:
-    """It only moves tokens inside its region, and no interruption depends on where they are."""
+def _is_removable(graph: TokenGraph, node: TokenNode) -> bool:
+    """Whether the node only moves tokens inside its region, and no interruption depends on them."""
     edges = [*graph.incoming(node), *graph.outgoing(node)]
     is_interruptible = any(node.id in region.nodes for region in graph.interruptibles)
     is_inside = all(
@@ -173,74 +182,79 @@ def _is_plain(graph: TokenGraph, node: TokenNode) -> bool:
     )
 
 
-def _pass_through(graph: TokenGraph, node: TokenNode) -> TokenGraph | None:
+def _remove_pass_through(graph: TokenGraph, node: TokenNode) -> TokenGraph | None:
     incoming, outgoing = graph.incoming(node), graph.outgoing(node)
     if len(incoming) != 1 or len(outgoing) != 1:
         return None
     (before,), (after,) = incoming, outgoing
-    return _without(graph, node, {before.id: _joined(before, node, after)}, after)
+    return _remove_node(graph, node, {before.id: _combine(before, node, after)}, after)
 
 
-def _fork_at_source(graph: TokenGraph, node: TokenNode) -> TokenGraph | None:
+def _remove_fork(graph: TokenGraph, node: TokenNode) -> TokenGraph | None:
     incoming, outgoing = graph.incoming(node), graph.outgoing(node)
     if node.firing is not Firing.ALL or len(incoming) != 1 or not outgoing:
         return None
     before = incoming[0]
     if graph.node(before.source).firing not in _ALL_OUT or before.marked:
         return None
-    made = {after.id: _joined(before, node, after, keep=after) for after in outgoing}
-    return _without(graph, node, made, before)
+    edges = {after.id: _combine(before, node, after, identity=after) for after in outgoing}
+    return _remove_node(graph, node, edges, before)
 
 
-def _join_at_target(graph: TokenGraph, node: TokenNode) -> TokenGraph | None:
+def _remove_join(graph: TokenGraph, node: TokenNode) -> TokenGraph | None:
     incoming, outgoing = graph.incoming(node), graph.outgoing(node)
     if node.firing is not Firing.ALL or len(outgoing) != 1 or not incoming:
         return None
     after = outgoing[0]
     if graph.node(after.target).firing not in _ALL_OUT or after.marked:
         return None
-    made = {before.id: _joined(before, node, after) for before in incoming}
-    return _without(graph, node, made, after)
+    edges = {before.id: _combine(before, node, after) for before in incoming}
+    return _remove_node(graph, node, edges, after)
 
 
-def _merge_at_target(graph: TokenGraph, node: TokenNode) -> TokenGraph | None:
+def _remove_merge(graph: TokenGraph, node: TokenNode) -> TokenGraph | None:
     incoming, outgoing = graph.incoming(node), graph.outgoing(node)
     if node.firing is not Firing.ANY or len(outgoing) != 1 or not incoming:
         return None
     after = outgoing[0]
     if graph.node(after.target).firing not in _ANY_IN or after.marked or after.target == node.id:
         return None
-    made = {before.id: _joined(before, node, after) for before in incoming}
-    return _without(graph, node, made, after)
+    edges = {before.id: _combine(before, node, after) for before in incoming}
+    return _remove_node(graph, node, edges, after)
 
 
-def _joined(
-    before: TokenEdge, node: TokenNode, after: TokenEdge, keep: TokenEdge | None = None
+def _combine(
+    before: TokenEdge, node: TokenNode, after: TokenEdge, identity: TokenEdge | None = None
 ) -> TokenEdge:
-    kept = keep or before
+    """Return one edge for two consecutive ones; it has the id of *identity*, else of *before*."""
+    base = identity or before
     return replace(
-        kept,
+        base,
         source=before.source,
         target=after.target,
         origins=tuple(dict.fromkeys([*before.origins, node.origin, *after.origins])),
         marked=before.marked or after.marked,
         guard=before.guard,
-        label=_label(before, after),
+        label=_combine_labels(before, after),
     )
 
 
-def _label(before: TokenEdge, after: TokenEdge) -> str:
+def _combine_labels(before: TokenEdge, after: TokenEdge) -> str:
     start, _, end = before.label.rpartition(" to "), "", after.label.rpartition(" to ")
     return f"{start[0]} to {end[2]}" if start[0] and end[0] else before.label
 
 
-def _without(
-    graph: TokenGraph, node: TokenNode, made: dict[str, TokenEdge], doomed: TokenEdge
+def _remove_node(
+    graph: TokenGraph, node: TokenNode, replacements: dict[str, TokenEdge], removed: TokenEdge
 ) -> TokenGraph | None:
-    """The graph with new edges and without the node; None when an edge would be lost in a loop."""
-    if doomed.id in made or any(edge.source == edge.target == node.id for edge in made.values()):
+    """Return the graph with new edges and without the node, or None if a loop would lose an
+    edge.
+    """
+    if removed.id in replacements or any(
+        edge.source == edge.target == node.id for edge in replacements.values()
+    ):
         return None
-    if any(node.id in (edge.source, edge.target) for edge in made.values()):
+    if any(node.id in (edge.source, edge.target) for edge in replacements.values()):
         return None
-    edges = tuple(made.get(edge.id, edge) for edge in graph.edges if edge is not doomed)
+    edges = tuple(replacements.get(edge.id, edge) for edge in graph.edges if edge is not removed)
     return replace(graph, nodes=tuple(n for n in graph.nodes if n is not node), edges=edges)

@@ -1,4 +1,4 @@
-"""Guards and conditions, read with the one expression grammar in the context of the activity."""
+"""Names and conditions in an activity, read with the common expression grammar."""
 
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Element, Graph, Kind
@@ -25,9 +25,9 @@ _CLASSIFIERS = (Kind.CLASS, Kind.COMPONENT, Kind.DATA_TYPE, Kind.INTERFACE, Kind
 
 
 class UnreadableError(ValueError):
-    """The text is no condition over known properties; the message says why.
+    """The text is no condition over known properties; the message gives the reason.
 
-    ``unknown`` is the name that isn't known, when the rest of the text could be read.
+    ``unknown`` is the unknown name, if the rest of the text could be read.
     """
 
     def __init__(self, message: str, unknown: str = "") -> None:
@@ -36,7 +36,7 @@ class UnreadableError(ValueError):
 
 
 class Scope:
-    """The names that an activity knows: properties of its own and of its context."""
+    """The names that an activity knows: its own properties and those of its context."""
 
     def __init__(self, graph: Graph, activity: Element, sink: Sink) -> None:
         above = (a for a in graph.ancestors(activity) if a.kind in _CLASSIFIERS)
@@ -47,90 +47,101 @@ class Scope:
         self._extra: dict[str, Formula] = {}
 
     def names(self) -> list[str]:
-        """Names that must not be given to other variables."""
+        """Return the names of variables, which no other variable may have."""
         return list(self._variables.values())
 
-    def feature(self, name: str) -> Element | None:
-        """The property or parameter of a name."""
-        found = self._feature(name) or self._feature(name.removeprefix("self."))
-        return None if found is None else found.element
+    def find_element(self, name: str) -> Element | None:
+        """Return the property or parameter of a name."""
+        feature = self._feature(name) or self._feature(name.removeprefix("self."))
+        return None if feature is None else feature.element
 
     def _feature(self, name: str) -> Feature | None:
         return self._inner.features.get(name) or self._outer.features.get(name)
 
-    def named(self, name: str) -> Feature | None:
-        """The feature of a name, with the values that it may have."""
+    def find_feature(self, name: str) -> Feature | None:
+        """Return the feature of a name, with its domain."""
         return self._feature(name)
 
-    def is_of_another(self, variable: str) -> bool:
-        """Whether the variable stands for a feature of a part or of what a reference leads to."""
-        return all("." in name for name, one in self._variables.items() if one == variable)
-
-    def domain(self, variable: str) -> Domain:
-        """The values that a variable may have; what stands for no property is Boolean."""
-        known = (self._feature(name) for name, one in self._variables.items() if one == variable)
-        found = (one.domain for one in known if one is not None and one.domain is not None)
-        return next(found, BooleanDomain())
-
-    def variable(self, name: str) -> Variable | None:
-        """The variable of a property as an input; reports the range that it is given."""
-        return self._variable(name)
-
-    def value(self, expression: Expression, domain: Domain) -> Meaning:
-        """The values that an expression has. Raises ElaborationError when it has none of the
-        domain's kind; numbers may lie outside.
+    def belongs_to_another_object(self, variable: str) -> bool:
+        """Whether the variable stands for a feature of a part, or of an object behind a
+        reference.
         """
-        found = meaning(expression, self._symbol, domain)
-        if not isinstance(found.domain, IntegerDomain) or not isinstance(domain, IntegerDomain):
-            check_assignable(found.domain, domain, expression)
-        return found
+        return all("." in name for name, known in self._variables.items() if known == variable)
+
+    def domain_of(self, variable: str) -> Domain:
+        """Return the domain of a variable; Boolean if the variable stands for no property."""
+        features = (
+            self._feature(name) for name, known in self._variables.items() if known == variable
+        )
+        domains = (
+            known.domain for known in features if known is not None and known.domain is not None
+        )
+        return next(domains, BooleanDomain())
+
+    def declare_input(self, name: str) -> Variable | None:
+        """Return the variable of a property as an input. Reports the range that was assumed for
+        it.
+        """
+        return self._make_input(name)
+
+    def evaluate(self, expression: Expression, domain: Domain) -> Meaning:
+        """Return the values of an expression. Numbers may lie outside *domain*.
+
+        Raises ElaborationError if the expression has no value of the domain's type.
+        """
+        result = meaning(expression, self._find_symbol, domain)
+        if not isinstance(result.domain, IntegerDomain) or not isinstance(domain, IntegerDomain):
+            check_assignable(result.domain, domain, expression)
+        return result
 
     def declare(self, name: str, formula: Formula) -> None:
         """Let a name stand for a Boolean input from now on."""
         self._extra[name] = formula
 
     def read(self, text: str) -> tuple[Formula, list[Variable]]:
-        """The condition and its variables. Raises UnreadableError."""
+        """Return a condition and its variables. Raises UnreadableError."""
         try:
             expression = parse_expression(text)
-            formula = condition(expression, self._symbol)
+            formula = condition(expression, self._find_symbol)
         except ExpressionError as error:
             raise UnreadableError(str(error)) from None
         except ElaborationError as error:
             unknown = error.name if error.fault is Fault.UNKNOWN else ""
             raise UnreadableError(str(error), unknown) from None
-        return formula, [v for v in map(self._variable, _names(formula)) if v is not None]
+        return formula, [
+            v for v in map(self._make_input, _variable_names(formula)) if v is not None
+        ]
 
     def is_condition(self, text: str, unknown: str) -> bool:
-        """Whether the text could be read if ``unknown`` were a Boolean."""
+        """Whether the text could be read if *unknown* were a Boolean."""
         trial = {**self._extra, unknown: var(unknown)}
         try:
-            condition(parse_expression(text), lambda name: self._symbol(name, trial))
+            condition(parse_expression(text), lambda name: self._find_symbol(name, trial))
         except ElaborationError as error:
             return error.fault is Fault.UNKNOWN and error.name != unknown
         return True
 
-    def _symbol(self, name: str, extra: dict[str, Formula] | None = None) -> Symbol | None:
-        known = self._extra if extra is None else extra
-        if name in known:
-            return Symbol(known[name], BooleanDomain())
+    def _find_symbol(self, name: str, extra: dict[str, Formula] | None = None) -> Symbol | None:
+        declared = self._extra if extra is None else extra
+        if name in declared:
+            return Symbol(declared[name], BooleanDomain())
         feature = self._feature(name)
         if feature is not None:
-            return Symbol(_value(feature), feature.domain)
-        return self._literal(name)
+            return Symbol(_feature_value(feature), feature.domain)
+        return self._find_literal(name)
 
-    def _literal(self, name: str) -> Symbol | None:
+    def _find_literal(self, name: str) -> Symbol | None:
         literals = self._outer.literals
-        found = literals.get(name)
-        if found is None:
+        entry = literals.get(name)
+        if entry is None:
             return None
-        enumeration, literal = found
+        enumeration, literal = entry
         domain = self._outer.enumerations.domains[enumeration]
         return Symbol(const(literal), domain, self._outer.number(name))
 
-    def _variable(self, name: str) -> Variable | None:
+    def _make_input(self, name: str) -> Variable | None:
         for feature in (
-            self._feature(known) for known, one in self._variables.items() if one == name
+            self._feature(known) for known, variable in self._variables.items() if variable == name
         ):
             if feature is not None and feature.domain is not None:
                 note_range(self._graph, feature, self._sink)
@@ -138,11 +149,11 @@ class Scope:
         return None
 
 
-def _names(formula: Formula) -> list[str]:
-    return list(dict.fromkeys(found.name for found in variables(formula)))
+def _variable_names(formula: Formula) -> list[str]:
+    return list(dict.fromkeys(variable.name for variable in variables(formula)))
 
 
-def _value(feature: Feature) -> Formula:
+def _feature_value(feature: Feature) -> Formula:
     if feature.constant and feature.default is not None:
         return const(feature.default)
     return var(feature.variable)

@@ -1,4 +1,7 @@
-"""The variables that an activity writes and its contract follows; the others are told (SM544)."""
+"""Tracked variables: the features whose values the contract of an activity follows.
+
+Features that are assigned but not tracked are reported (SM544).
+"""
 
 from collections.abc import Iterable, Iterator
 from itertools import product
@@ -16,7 +19,7 @@ from sysmlc.logic.machines.paths import split_by_range
 from sysmlc.logic.simplify import is_satisfiable, substitute, tidy
 from sysmlc.logic.writers import Writers, called
 from sysmlc.logic.written import Assigned
-from sysmlc.passes.activities.assignments import Written
+from sysmlc.passes.activities.assignments import ResolvedAssignment
 from sysmlc.passes.activities.refusals import (
     DECIDED,
     ELSEWHERE,
@@ -24,8 +27,8 @@ from sysmlc.passes.activities.refusals import (
     UNKNOWN,
     WIDE,
     Refusal,
-    Unfollowed,
-    shared,
+    UntrackedFeature,
+    refuse_shared,
 )
 from sysmlc.passes.activities.scope import Scope
 
@@ -35,27 +38,28 @@ _MOST_CASES = 64
 """Most cases of what an action leaves in a variable: assignments in a row multiply them."""
 
 
-def follow(
+def track_stores(
     graph: Graph,
     activity: Element,
-    written: Iterable[list[Written]],
+    assignments: Iterable[list[ResolvedAssignment]],
     tokens: TokenGraph,
     scope: Scope,
     writers: Writers,
-) -> tuple[TokenGraph, list[Unfollowed]]:
-    """The token graph with the variables that its nodes write; and what it reads but cannot
-    follow. ``written`` is what each action assigns.
+) -> tuple[TokenGraph, list[UntrackedFeature]]:
+    """Return the token graph with the variables that its nodes assign, and the untracked features.
+
+    *written* holds the assignments of each action.
     """
-    found = _Following(graph, activity, tokens, scope, writers)
-    for statements in written:
-        found.note(statements)
-    if not found.assigned:
+    tracker = _StoreTracker(graph, activity, tokens, scope, writers)
+    for statements in assignments:
+        tracker.add_assignments(statements)
+    if not tracker.assigned:
         return tokens, []
-    return found.followed(), found.unfollowed()
+    return tracker.build_graph(), tracker.list_untracked()
 
 
-class _Following:
-    """Features that actions of one activity assign, by the names of their variables."""
+class _StoreTracker:
+    """The features that the actions of one activity assign, by the names of their variables."""
 
     def __init__(
         self,
@@ -77,94 +81,114 @@ class _Following:
         self.others: dict[str, Element | None] = {}
         self.read: set[str] = set()
 
-    def note(self, statements: list[Written]) -> None:
-        """Remember what an action assigns, and the value that it leaves in each variable."""
-        left: dict[str, _Cases] = {}
+    def add_assignments(self, statements: list[ResolvedAssignment]) -> None:
+        """Record the assignments of an action, and the value that each variable has after it."""
+        cases_of: dict[str, _Cases] = {}
         stops: dict[str, list[Formula]] = {}
-        for one, feature in ((each.said, each.feature) for each in statements):
+        for assignment, feature in (
+            (resolved.assignment, resolved.feature) for resolved in statements
+        ):
             if feature is None:
                 continue
             name = feature.variable
             self.features[name] = feature
-            self.assigned.setdefault(name, []).append(one)
-            ways = self._cases(one, feature, left)
-            if ways:
-                left[name] = tuple((when, value) for when, value, _ in ways)
-                stops.setdefault(name, []).extend(when for when, _, is_bound in ways if is_bound)
+            self.assigned.setdefault(name, []).append(assignment)
+            outcomes = self._evaluate_cases(assignment, feature, cases_of)
+            if outcomes:
+                cases_of[name] = tuple((when, value) for when, value, _ in outcomes)
+                stops.setdefault(name, []).extend(
+                    when for when, _, is_bound in outcomes if is_bound
+                )
             else:
-                left.pop(name, None)
-                said = f"'{one.text}' is not known, or has too many cases"
-                why = replace(UNKNOWN, reason=said) if one.text else UNKNOWN
-                self.refused.setdefault(name, why)
-        first = statements[0].said
-        node = first.action.id
-        text = first.text if len(statements) == 1 and node not in self.outside else ""
-        for name, cases in left.items():
+                cases_of.pop(name, None)
+                reason = f"'{assignment.text}' is not known, or has too many cases"
+                refusal = replace(UNKNOWN, reason=reason) if assignment.text else UNKNOWN
+                self.refused.setdefault(name, refusal)
+        first_assignment = statements[0].assignment
+        node = first_assignment.action.id
+        text = first_assignment.text if len(statements) == 1 and node not in self.outside else ""
+        for name, cases in cases_of.items():
             self.writes.setdefault(name, []).append(Write(node, text, cases, tuple(stops[name])))
 
-    def _cases(self, one: Assigned, feature: Feature, left: dict[str, _Cases]) -> list[_Way]:
-        """The values that an assignment gives, each with its condition and whether it is a bound
-        that it would pass; none when the value is unknown.
+    def _evaluate_cases(
+        self, assignment: Assigned, feature: Feature, cases_of: dict[str, _Cases]
+    ) -> list[_Way]:
+        """Return the values that an assignment gives, each with its condition.
+
+        The flag of a case says that the value is a bound that saturates a larger or smaller one.
+        The list is empty if the value is unknown.
         """
-        if one.value is None or feature.domain is None:
+        if assignment.value is None or feature.domain is None:
             return []
         try:
-            found = self.scope.value(one.value, feature.domain)
+            result = self.scope.evaluate(assignment.value, feature.domain)
         except ElaborationError:
             return []
-        if _is_outside(feature.domain, found.domain):
-            self.outside.add(one.action.id)
-        after = (way for t in found.terms for way in _after(t.condition, t.value, left))
-        ways: list[_Way] = []
-        for case, value in after:
-            for when, given, is_bound in _within(case, value, feature.domain, found.domain):
-                possible = self._possible(when)
-                ways += [(possible, given, is_bound)] if possible != f.FALSE else []
-            if len(ways) > _MOST_CASES:
+        if _is_outside(feature.domain, result.domain):
+            self.outside.add(assignment.action.id)
+        substituted = (
+            way for t in result.terms for way in _substitute_cases(t.condition, t.value, cases_of)
+        )
+        outcomes: list[_Way] = []
+        for case, value in substituted:
+            for when, assigned, is_bound in _saturate(case, value, feature.domain, result.domain):
+                possible = self._simplify_condition(when)
+                outcomes += [(possible, assigned, is_bound)] if possible != f.FALSE else []
+            if len(outcomes) > _MOST_CASES:
                 return []
-        return ways
+        return outcomes
 
-    def _possible(self, when: Formula) -> Formula:
-        """The condition in few words; false when no values make it true."""
-        known = {one.name: self.scope.domain(one.name) for one in f.variables(when)}
-        return tidy(when, known) if is_satisfiable(when, known) else f.FALSE
+    def _simplify_condition(self, when: Formula) -> Formula:
+        """Return the condition in few words; false if no values satisfy it."""
+        domains = {
+            variable.name: self.scope.domain_of(variable.name) for variable in f.variables(when)
+        }
+        return tidy(when, domains) if is_satisfiable(when, domains) else f.FALSE
 
     # -- which of them are followed ------------------------------------------------------------
 
-    def followed(self) -> TokenGraph:
-        """The token graph with a store for each that is followed."""
-        names = self._wanted()
-        stores = tuple(self._store(name) for name in self.writes if name in names)
-        own = {one.variable.name for one in stores}
-        self.read = self._read_by_tokens() | self._read_by_values(own)
-        known = {one.name: one for one in self.tokens.inputs}
-        more = (self.scope.variable(name) for name in sorted(self.read - known.keys() - own))
-        inputs = (*known.values(), *(one for one in more if one is not None))
-        inputs = tuple(one for one in inputs if one.name not in own)
+    def build_graph(self) -> TokenGraph:
+        """Return the token graph with a store for each tracked variable."""
+        tracked = self._select_tracked()
+        stores = tuple(self._make_store(name) for name in self.writes if name in tracked)
+        stored = {variable.variable.name for variable in stores}
+        self.read = self._read_by_tokens() | self._read_by_values(stored)
+        inputs_by_name = {variable.name: variable for variable in self.tokens.inputs}
+        new_inputs = (
+            self.scope.declare_input(name)
+            for name in sorted(self.read - inputs_by_name.keys() - stored)
+        )
+        inputs = (
+            *inputs_by_name.values(),
+            *(variable for variable in new_inputs if variable is not None),
+        )
+        inputs = tuple(variable for variable in inputs if variable.name not in stored)
         return replace(self.tokens, inputs=inputs, stores=stores)
 
-    def _wanted(self) -> set[str]:
-        """What guards and other values read, and what belongs to the block: others see it."""
-        wanted = {name for name in self.writes if self._is_seen(name)} | self._read_by_tokens()
+    def _select_tracked(self) -> set[str]:
+        """Return the variables to track: other behaviours, guards or tracked values read them."""
+        wanted = {name for name in self.writes if self._is_visible(name)} | self._read_by_tokens()
         while True:
-            able = {name for name in self.writes if name in wanted and not self._refusal(name)}
-            more = self._read_by_values(able)
-            if more <= wanted:
-                return able
-            wanted |= more
+            tracked = {
+                name for name in self.writes if name in wanted and not self._find_refusal(name)
+            }
+            read_by_tracked = self._read_by_values(tracked)
+            if read_by_tracked <= wanted:
+                return tracked
+            wanted |= read_by_tracked
 
     def _read_by_values(self, names: Iterable[str]) -> set[str]:
         writes = [write for name in names for write in self.writes[name]]
         formulas = [part for write in writes for pair in write.values for part in pair]
-        return {variable.name for one in formulas for variable in f.variables(one)}
+        return {variable.name for formula in formulas for variable in f.variables(formula)}
 
     def _read_by_tokens(self) -> set[str]:
         guards = (edge.guard.condition for edge in self.tokens.edges if edge.guard is not None)
         formulas = [*guards, *(node.done for node in self.tokens.nodes)]
-        return {v.name for one in formulas if one is not None for v in f.variables(one)}
+        return {v.name for formula in formulas if formula is not None for v in f.variables(formula)}
 
-    def _is_seen(self, name: str) -> bool:
-        """Whether others than the activity see it."""
+    def _is_visible(self, name: str) -> bool:
+        """Whether the variable is visible outside the activity."""
         feature = self.features[name]
         return feature.direction == "out" or not self._is_local(feature)
 
@@ -173,19 +197,23 @@ class _Following:
         return owner is not None and owner.kind in query.BEHAVIORS
 
     def _is_shared(self, name: str) -> bool:
-        """Whether another behaviour of the block writes what the contract could follow else."""
+        """Whether another behaviour of the block writes a variable that could be tracked
+        otherwise.
+        """
         feature = self.features[name]
         is_able = feature.domain is not None and not feature.is_assumed
-        return is_able and not self._is_local(feature) and self._other_writer(feature) is not None
+        return (
+            is_able and not self._is_local(feature) and self._find_other_writer(feature) is not None
+        )
 
-    def _other_writer(self, feature: Feature) -> Element | None:
+    def _find_other_writer(self, feature: Feature) -> Element | None:
         name = feature.variable
         if name not in self.others:
             self.others[name] = self.writers.beside(feature.element, self.activity)
         return self.others[name]
 
-    def _refusal(self, name: str) -> Refusal | None:
-        """Why the contract cannot follow the variable; None when it can."""
+    def _find_refusal(self, name: str) -> Refusal | None:
+        """Return the reason why the contract cannot track the variable, or None."""
         feature = self.features[name]
         if feature.domain is None:
             return ENDLESS
@@ -193,37 +221,46 @@ class _Following:
             return WIDE
         if feature.direction in ("in", "inout") or feature.constant:
             return DECIDED
-        if self.scope.is_of_another(name):
+        if self.scope.belongs_to_another_object(name):
             return ELSEWHERE
         if name in self.refused:
             return self.refused[name]
-        other = None if self._is_local(feature) else self._other_writer(feature)
-        return None if other is None else shared(called(self.graph, other))
+        writer = None if self._is_local(feature) else self._find_other_writer(feature)
+        return None if writer is None else refuse_shared(called(self.graph, writer))
 
-    def _store(self, name: str) -> Store:
+    def _make_store(self, name: str) -> Store:
         feature = self.features[name]
         assert feature.domain is not None
         variable = Variable(name, Owner.SYSTEM, feature.domain, feature.element.id)
         local = self._is_local(feature)
         return Store(variable, tuple(self.writes[name]), feature.default, local)
 
-    def unfollowed(self) -> list[Unfollowed]:
-        """What is read and written and not followed, with the reason."""
-        found = []
+    def list_untracked(self) -> list[UntrackedFeature]:
+        """Return the assigned variables that are used and not tracked, with the reason."""
+        untracked = []
         for name, writes in self.assigned.items():
-            why = self._refusal(name) if self._matters(name) else None
-            if why is not None:
-                labels = dict.fromkeys(self.nodes[one.action.id].label for one in writes)
-                found.append(Unfollowed(self.features[name].element, why, tuple(labels)))
-        return found
+            refusal = self._find_refusal(name) if self._is_missed(name) else None
+            if refusal is not None:
+                labels = dict.fromkeys(
+                    self.nodes[assignment.action.id].label for assignment in writes
+                )
+                untracked.append(
+                    UntrackedFeature(self.features[name].element, refusal, tuple(labels))
+                )
+        return untracked
 
-    def _matters(self, name: str) -> bool:
-        """Whether someone misses it; what calls give alone is the environment's anyway."""
-        if all(one.is_bound for one in self.assigned[name]) and not self._is_shared(name):
+    def _is_missed(self, name: str) -> bool:
+        """Whether the reader of the contract would miss the variable.
+
+        A variable that only calls assign belongs to the environment anyway.
+        """
+        if all(assignment.is_bound for assignment in self.assigned[name]) and not self._is_shared(
+            name
+        ):
             return False
         # That a constant is assigned to is told by a rule of its own.
-        is_seen = self._is_seen(name) and not self.features[name].constant
-        return name in self.read or is_seen or self.scope.is_of_another(name)
+        is_seen = self._is_visible(name) and not self.features[name].constant
+        return name in self.read or is_seen or self.scope.belongs_to_another_object(name)
 
 
 def _is_outside(domain: Domain, spread: Domain) -> bool:
@@ -232,27 +269,31 @@ def _is_outside(domain: Domain, spread: Domain) -> bool:
     return spread.low > domain.high or spread.high < domain.low
 
 
-def _within(case: Formula, value: Formula, domain: Domain, spread: Domain) -> Iterator[_Way]:
+def _saturate(case: Formula, value: Formula, domain: Domain, spread: Domain) -> Iterator[_Way]:
     if isinstance(domain, IntegerDomain) and isinstance(spread, IntegerDomain):
         # What is always outside is an error of its own.
         is_outside = _is_outside(domain, spread)
-        for when, given, is_bound in split_by_range(case, value, domain, spread):
-            yield when, given, is_bound and not is_outside
+        for when, bounded, is_bound in split_by_range(case, value, domain, spread):
+            yield when, bounded, is_bound and not is_outside
     else:
         yield case, value, False
 
 
-def _after(
-    condition: Formula, value: Formula, left: dict[str, _Cases]
+def _substitute_cases(
+    condition: Formula, value: Formula, cases_of: dict[str, _Cases]
 ) -> Iterator[tuple[Formula, Formula]]:
-    """A value behind earlier assignments of the same action, over what held before them."""
+    """Yield a value after earlier assignments of the same action, in terms of the values before
+    them.
+    """
     names = [
         name
-        for name in left
-        if any(name == one.name for part in (condition, value) for one in f.variables(part))
+        for name in cases_of
+        if any(
+            name == variable.name for part in (condition, value) for variable in f.variables(part)
+        )
     ]
-    for combination in product(*(left[name] for name in names)):
-        given = {name: case[1] for name, case in zip(names, combination, strict=True)}
-        when = f.both(*(case[0] for case in combination), substitute(condition, given))
+    for combination in product(*(cases_of[name] for name in names)):
+        values = {name: case[1] for name, case in zip(names, combination, strict=True)}
+        when = f.both(*(case[0] for case in combination), substitute(condition, values))
         if when != f.FALSE:
-            yield when, substitute(value, given)
+            yield when, substitute(value, values)

@@ -1,4 +1,6 @@
-"""What the recipe pass asks of the graph: recipe levels, tagged values, ids for the JSON."""
+"""The context of the recipe pass: the graph, recipe levels, ids for the JSON, and memoised
+results.
+"""
 
 from collections.abc import Iterator, Mapping
 
@@ -6,8 +8,14 @@ from msgspec import Struct, field
 from msgspec.structs import replace
 
 from sysmlc.ir import Edge, Element, Graph, Kind, query
-from sysmlc.passes.recipe.profile import Tags, followers, said, stereotypes, subjects
-from sysmlc.passes.recipe.regions import contents
+from sysmlc.passes.recipe.profile import (
+    Tags,
+    applied_stereotypes,
+    find_followers,
+    find_stated_levels,
+    find_subjects,
+)
+from sysmlc.passes.recipe.regions import list_contents
 from sysmlc.recipe.model import FlowGraph, Parameter, ValueType
 
 SERVICES = ("machine service", "infrastructure service")
@@ -23,39 +31,42 @@ NODES = frozenset(
 )
 
 
-class Called(Struct, frozen=True):
-    """A service, machine function or helper that a node calls, both by their ids."""
+class Call(Struct, frozen=True):
+    """A node that calls a service, machine function or helper; both are given by their ids."""
 
     kind: str
     node: str
     definition: str
 
 
-class Refined(Struct, frozen=True):
-    """An activity that refines a task or a service.
+class Refinement(Struct, frozen=True):
+    """The content of an activity that refines a task or a service.
 
-    ``remarks`` are ids of nodes whose content is left out, with an empty text, and of what is
-    called by position, with the level that it is taken for.
+    ``remarks`` pairs the ids of nodes whose content is left out with an empty text, and the ids of
+    definitions whose level follows from the position of their call with that level.
     """
 
     graph: FlowGraph
-    calls: tuple[Called, ...]
+    calls: tuple[Call, ...]
     remarks: tuple[tuple[str, str], ...]
 
 
 class Context(Struct, frozen=True):
-    """The graph with what the user said about levels; it remembers what it has computed."""
+    """The graph with the levels given by options, model and stereotypes.
+
+    The fields with a leading underscore, and those from ``types`` on, memoise results.
+    """
 
     graph: Graph
     levels: Mapping[str, str] = field(default_factory=dict)
-    said: Mapping[str, str] = field(default_factory=dict)
-    """Levels by id that elements have themselves: said of them, or derived."""
-    able: frozenset[str] = frozenset()
+    stated: Mapping[str, str] = field(default_factory=dict)
+    """Levels by id that elements have themselves, derived levels included."""
+    candidates: frozenset[str] = frozenset()
     """Ids of elements that may have a level; most elements of a model have none."""
     derived: Mapping[str, str] = field(default_factory=dict)
-    """Levels by id that follow from others; what is said wins over them."""
-    subjects: frozenset[str] = frozenset()
-    """Ids of elements that stereotypes are applied to."""
+    """Levels by id that follow from others; stated levels override them."""
+    stereotyped: frozenset[str] = frozenset()
+    """Ids of elements to which a stereotype is applied."""
     _segments: dict[str, str] = field(default_factory=dict)
     _names: dict[str, str] = field(default_factory=dict)
     _levels: dict[str, str] = field(default_factory=dict)
@@ -64,52 +75,60 @@ class Context(Struct, frozen=True):
     _contents: dict[str, list[Element]] = field(default_factory=dict)
     _nodes: dict[str, list[Element]] = field(default_factory=dict)
     types: dict[str, ValueType] = field(default_factory=dict)
-    """Types of values by the id of what types them, as far as somebody asked."""
+    """Types of values by the id of the type element."""
     parameters: dict[str, Parameter] = field(default_factory=dict)
-    """Parameters of recipes by the id of what they are made of, as far as somebody asked."""
+    """Parameters of recipes by the id of the parameter, pin or property."""
     kinds: dict[tuple[str, str], str] = field(default_factory=dict)
-    """Kinds of recipe nodes by id and level of the activity, as far as somebody asked."""
+    """Kinds of recipe nodes by id and level of the activity."""
     refined: dict[str, Element | None] = field(default_factory=dict)
-    """What refines a definition, by its id, as far as somebody asked."""
-    refinements: dict[tuple[str, str], Refined] = field(default_factory=dict)
-    """What activities say, by the level of what they refine and by id, as far as somebody asked."""
+    """The refining activity by the id of the definition."""
+    refinements: dict[tuple[str, str], Refinement] = field(default_factory=dict)
+    """Refinements by the level of the refined element and the id of the activity."""
     members: dict[str, dict[str, Element]] = field(default_factory=dict)
-    """Features by name, by the id of what has them, as far as somebody asked."""
+    """Features by the id of the owner and by name."""
 
     @classmethod
-    def of(cls, graph: Graph, levels: Mapping[str, str]) -> "Context":
-        """The context of a graph; ``levels`` by ids or qualified names win over what it says."""
+    def build(cls, graph: Graph, levels: Mapping[str, str]) -> "Context":
+        """Return the context of a graph. *levels* by ids or qualified names override the model."""
         bare = cls(graph, levels)
-        own = said(graph, levels, bare._segment)
-        able = frozenset(followers(graph, own))
-        return replace(bare, said=own, able=able, subjects=frozenset(subjects(graph)))
+        stated = find_stated_levels(graph, levels, bare._segment)
+        candidates = frozenset(find_followers(graph, stated))
+        return replace(
+            bare, stated=stated, candidates=candidates, stereotyped=frozenset(find_subjects(graph))
+        )
 
     # -- levels --------------------------------------------------------------------------------
 
     def own_level(self, element: Element) -> str:
-        """Level that the options, ``classify`` or a stereotype give the element itself."""
-        return self.said.get(element.id, "")
+        """Return the level that the options, ``classify`` or a stereotype give the element
+        itself.
+        """
+        return self.stated.get(element.id, "")
 
     def level(self, element: Element | None) -> str:
-        """Level of an element: its own, or that of its type, of what it calls or specialises."""
-        if element is None or element.id not in self.able:
+        """Return the level of an element: its own, or that of its type, of what it calls or
+        specialises.
+        """
+        if element is None or element.id not in self.candidates:
             return ""
-        found = self._levels.get(element.id)
-        if found is None:
+        level = self._levels.get(element.id)
+        if level is None:
             self._levels[element.id] = ""
-            found = self._levels[element.id] = self._level(element)
-        return found
+            level = self._levels[element.id] = self._find_level(element)
+        return level
 
     def with_derived(self, derived: Mapping[str, str]) -> "Context":
-        """The same with levels (by id) that follow from others: who has theirs is asked again."""
-        changed = followers(self.graph, derived)
-        known = {id: level for id, level in self._levels.items() if id not in changed}
+        """Return a context with derived levels (by id); levels that depend on them are computed
+        anew.
+        """
+        changed = find_followers(self.graph, derived)
+        unaffected = {id: level for id, level in self._levels.items() if id not in changed}
         return replace(
             self,
-            said={**derived, **self.said},
-            able=self.able | changed,
+            stated={**derived, **self.stated},
+            candidates=self.candidates | changed,
             derived=derived,
-            _levels=known,
+            _levels=unaffected,
             _of_level={},
             types={},
             parameters={},
@@ -117,35 +136,35 @@ class Context(Struct, frozen=True):
             refinements={},
         )
 
-    def of_level(self, level: str) -> list[Element]:
-        """All elements of a level, in the order of the graph."""
-        if self.able and not self._of_level:
-            for element in (one for one in self.graph if one.id in self.able):
+    def elements_of_level(self, level: str) -> list[Element]:
+        """Return all elements of a level, in the order of the graph."""
+        if self.candidates and not self._of_level:
+            for element in (element for element in self.graph if element.id in self.candidates):
                 self._of_level.setdefault(self.level(element), []).append(element)
         return self._of_level.get(level, [])
 
-    def literal(self, name: str) -> Element | None:
-        """The enumeration literal ``Enumeration::literal``; None where two are called so."""
+    def find_literal(self, name: str) -> Element | None:
+        """Return the literal ``Enumeration::literal``, or None if several have this name."""
         if not self._literals:
             self._literals.append(_index_literals(self.graph))
         id = self._literals[0].get(_last_two(name))
         return self.graph.get(id) if id else None
 
-    def _level(self, element: Element) -> str:
-        own = self.own_level(element)
-        if own:
-            return own
+    def _find_level(self, element: Element) -> str:
+        level = self.own_level(element)
+        if level:
+            return level
         for general in query.generals(self.graph, element):
-            own = self.own_level(general)
-            if own:
-                return own
+            level = self.own_level(general)
+            if level:
+                return level
         definition = self.definition(element)
         if element.kind is Kind.OPERATION:
             definition = self.graph.target(element, Edge.METHOD)
         return "" if definition is None or definition is element else self.level(definition)
 
     def definition(self, element: Element) -> Element | None:
-        """What defines a use: the behaviour or operation that it calls, or its type."""
+        """Return the definition of a use: the behaviour or operation that it calls, or its type."""
         if element.kind is Kind.ACTION:
             return self.graph.target(element, Edge.CALLS)
         return query.type_of(self.graph, element)
@@ -153,55 +172,74 @@ class Context(Struct, frozen=True):
     # -- contents ------------------------------------------------------------------------------
 
     def contents(self, activity: Element) -> list[Element]:
-        """What an activity owns, and behind each inlined node what that owns."""
-        found = self._contents.get(activity.id)
-        if found is None:
-            found = self._contents[activity.id] = list(contents(self.graph, activity))
-        return found
+        """Return the elements that an activity owns; each inlined node is followed by its
+        content.
+        """
+        elements = self._contents.get(activity.id)
+        if elements is None:
+            elements = self._contents[activity.id] = list(list_contents(self.graph, activity))
+        return elements
 
     def nodes(self, activity: Element) -> list[Element]:
-        """Nodes of the activity, those in for-each regions and plain blocks too."""
-        found = self._nodes.get(activity.id)
-        if found is None:
-            inside = self.contents(activity)
-            found = self._nodes[activity.id] = [one for one in inside if one.kind in NODES]
-        return found
+        """Return the nodes of the activity, including those in for-each regions and plain
+        blocks.
+        """
+        nodes = self._nodes.get(activity.id)
+        if nodes is None:
+            elements = self.contents(activity)
+            nodes = self._nodes[activity.id] = [
+                element for element in elements if element.kind in NODES
+            ]
+        return nodes
 
     # -- stereotypes and tagged values ---------------------------------------------------------
 
-    def applied(self, element: Element, stereotype: str) -> Element | None:
-        """Application of a stereotype of the shipped profile, or of one that specialises it."""
+    def find_application(self, element: Element, stereotype: str) -> Element | None:
+        """Return the application of a stereotype of the shipped profile, or of one that specialises
+        it.
+        """
         if not self.may_have_stereotype(element):
             return None
-        found = query.applications(self.graph, element)
-        return next((one for one in found if stereotype in stereotypes(one)), None)
+        applications = query.applications(self.graph, element)
+        return next(
+            (
+                application
+                for application in applications
+                if stereotype in applied_stereotypes(application)
+            ),
+            None,
+        )
 
     def may_have_stereotype(self, element: Element) -> bool:
-        """Whether a stereotype may be applied to the element: most have none."""
-        return element.id in self.subjects
+        """Whether any stereotype is applied to the element; most elements have none."""
+        return element.id in self.stereotyped
 
     def tags(self, element: Element, stereotype: str) -> Tags:
-        """Tagged values of one stereotype of the profile; empty when it is not applied."""
-        application = self.applied(element, stereotype)
+        """Return the tagged values of a stereotype of the profile; empty if it is not applied."""
+        application = self.find_application(element, stereotype)
         return Tags({} if application is None else application.attrs)
 
     # -- ids -----------------------------------------------------------------------------------
 
     def name(self, element: Element) -> str:
-        """Qualified name; an unnamed part shows its kind, siblings of one name get ``#2``."""
-        found = self._names.get(element.id)
-        if found is None:
+        """Return the qualified name. An unnamed part shows its kind; siblings of one name get
+        ``#2``.
+        """
+        name = self._names.get(element.id)
+        if name is None:
             owner, segment = self.graph.owner(element), self._segment(element)
-            found = segment if owner is None else f"{self.name(owner)}::{segment}"
-            self._names[element.id] = found
-        return found
+            name = segment if owner is None else f"{self.name(owner)}::{segment}"
+            self._names[element.id] = name
+        return name
 
     def label(self, element: Element) -> str:
-        """Own name; an unnamed element shows its kind and number among its siblings."""
+        """Return the own name; an unnamed element shows its kind and its number among its
+        siblings.
+        """
         return element.name or self._segment(element)
 
     def reference(self, value: str) -> str:
-        """Id for the JSON of what a tagged value names: an element of the graph, or its text."""
+        """Return the id for the JSON of an element that a tagged value refers to, else its text."""
         element = self.graph.get(value)
         return value if element is None else self.name(element)
 
@@ -209,7 +247,7 @@ class Context(Struct, frozen=True):
         if element.id not in self._segments:
             owner = self.graph.owner(element)
             siblings = self.graph.roots() if owner is None else self.graph.owned(owner)
-            self._segments.update(_numbered(siblings))
+            self._segments.update(_number_siblings(siblings))
         return self._segments[element.id]
 
 
@@ -218,25 +256,25 @@ def _index_literals(graph: Graph) -> dict[str, str]:
 
     The id is empty if two literals share these parts.
     """
-    found: dict[str, str] = {}
-    for one in graph.of_kind(Kind.ENUMERATION_LITERAL):
-        name = _last_two(graph.qualified_name(one))
-        found[name] = "" if name in found else one.id
-    return found
+    ids: dict[str, str] = {}
+    for literal in graph.of_kind(Kind.ENUMERATION_LITERAL):
+        name = _last_two(graph.qualified_name(literal))
+        ids[name] = "" if name in ids else literal.id
+    return ids
 
 
 def _last_two(name: str) -> str:
     return "::".join(name.split("::")[-2:])
 
 
-def _numbered(siblings: list[Element]) -> Iterator[tuple[str, str]]:
+def _number_siblings(siblings: list[Element]) -> Iterator[tuple[str, str]]:
     seen: dict[str, int] = {}
     for element in siblings:
-        called = word(element)
-        number = seen[called] = seen.get(called, 0) + 1
-        yield element.id, called if number == 1 else f"{called}#{number}"
+        word = segment_word(element)
+        number = seen[word] = seen.get(word, 0) + 1
+        yield element.id, word if number == 1 else f"{word}#{number}"
 
 
-def word(element: Element) -> str:
-    """By what an element is called in qualified names: its name or what it is."""
+def segment_word(element: Element) -> str:
+    """Return the word for an element in qualified names: its name, else its subkind or kind."""
     return element.name or element.subkind or element.kind.lower()

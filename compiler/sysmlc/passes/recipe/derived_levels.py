@@ -1,6 +1,6 @@
 """Recipe levels that follow from others: machines, OPC UA bindings, pauses.
 
-What is derived is looked at only where the model and its options say nothing of that level.
+A level is derived only if neither the model nor the options state it anywhere.
 """
 
 import re
@@ -30,7 +30,7 @@ _DURATIONS = ("duration", "time")
 _CLASSES = (Kind.CLASS, Kind.COMPONENT)
 
 
-class Derived(Struct, frozen=True):
+class DerivedLevel(Struct, frozen=True):
     """An element whose level follows from the rest of the model."""
 
     element: Element
@@ -38,24 +38,24 @@ class Derived(Struct, frozen=True):
     because: str
 
 
-def with_derived(context: Context) -> tuple[Context, list[Derived]]:
-    """The context with the levels that follow from others, and these levels."""
-    found = [*_machines(context), *_bindings(context), *_pauses(context)]
-    if not found:
+def add_derived_levels(context: Context) -> tuple[Context, list[DerivedLevel]]:
+    """Return the context with the derived levels, and these levels."""
+    derived = [*_derive_machines(context), *_derive_bindings(context), *_derive_pauses(context)]
+    if not derived:
         return context, []
-    levels = {one.element.id: one.level for one in found}
-    return context.with_derived(levels), found
+    levels = {entry.element.id: entry.level for entry in derived}
+    return context.with_derived(levels), derived
 
 
-def tell(context: Context, found: list[Derived], sink: Sink) -> None:
-    """Say of each derived level what it follows from."""
-    for one in found:
+def report_derived_levels(context: Context, derived: list[DerivedLevel], sink: Sink) -> None:
+    """Report for each derived level what it follows from."""
+    for entry in derived:
         sink.report(
             DERIVED,
-            context.graph.subject(one.element),
-            element=context.name(one.element),
-            level=_ARTICLES[one.level],
-            because=one.because,
+            context.graph.subject(entry.element),
+            element=context.name(entry.element),
+            level=_ARTICLES[entry.level],
+            because=entry.because,
         )
 
 
@@ -67,46 +67,52 @@ _ARTICLES = {
 }
 
 
-def _machines(context: Context) -> Iterator[Derived]:
-    """Blocks that own machine functions."""
-    if context.of_level("machine"):
+def _derive_machines(context: Context) -> Iterator[DerivedLevel]:
+    """Yield the blocks that own machine functions."""
+    if context.elements_of_level("machine"):
         return
     seen: set[str] = set()
-    for one in context.of_level("machine function"):
-        owner = context.graph.owner(one)
+    for function in context.elements_of_level("machine function"):
+        owner = context.graph.owner(function)
         is_block = owner is not None and owner.kind in _CLASSES and not context.level(owner)
         if owner is not None and is_block and owner.id not in seen:
             seen.add(owner.id)
-            yield Derived(owner, "machine", f"it owns the machine function '{one.name}'")
+            yield DerivedLevel(owner, "machine", f"it owns the machine function '{function.name}'")
 
 
-def _bindings(context: Context) -> Iterator[Derived]:
-    """Stereotypes whose node ids are written as OPC UA writes them."""
-    said = set(context.levels.values())
+def _derive_bindings(context: Context) -> Iterator[DerivedLevel]:
+    """Yield the stereotypes whose node ids have the form of OPC UA."""
+    stated = set(context.levels.values())
     for stereotype in context.graph.of_kind(Kind.STEREOTYPE):
         applied = context.graph.sources(stereotype, Edge.INSTANCE_OF)
-        ids = (str(one.attrs.get("tag.nodeId", "")) for one in applied)
+        ids = (str(application.attrs.get("tag.nodeId", "")) for application in applied)
         id = next((text for text in ids if _NODE_ID.fullmatch(text)), "")
-        level = "opc ua call" if id and _has_behaviour(context, applied) else "opc ua variable"
-        if id and level not in said and not context.level(stereotype):
-            yield Derived(stereotype, level, f"its nodeId '{id}' is a node id of OPC UA")
+        level = (
+            "opc ua call" if id and _applies_to_behaviour(context, applied) else "opc ua variable"
+        )
+        if id and level not in stated and not context.level(stereotype):
+            yield DerivedLevel(stereotype, level, f"its nodeId '{id}' is a node id of OPC UA")
 
 
-def _has_behaviour(context: Context, applied: list[Element]) -> bool:
-    subjects = (one for each in applied for one in context.graph.targets(each, Edge.SUBJECT))
-    return any(one.kind in (*query.BEHAVIORS, Kind.OPERATION) for one in subjects)
+def _applies_to_behaviour(context: Context, applied: list[Element]) -> bool:
+    subjects = (
+        subject
+        for application in applied
+        for subject in context.graph.targets(application, Edge.SUBJECT)
+    )
+    return any(subject.kind in (*query.BEHAVIORS, Kind.OPERATION) for subject in subjects)
 
 
-def _pauses(context: Context) -> Iterator[Derived]:
-    """Behaviours that are called, are given a duration and nothing else, and do nothing."""
+def _derive_pauses(context: Context) -> Iterator[DerivedLevel]:
+    """Yield the called behaviours that have a duration and nothing else."""
     if "delay" in context.levels.values():
         return
-    for one in context.graph.of_kind(Kind.ACTIVITY):
-        if _only_waits(context, one) and context.graph.sources(one, Edge.CALLS):
-            yield Derived(one, "delay", "all that it has is a duration")
+    for activity in context.graph.of_kind(Kind.ACTIVITY):
+        if _is_pause(context, activity) and context.graph.sources(activity, Edge.CALLS):
+            yield DerivedLevel(activity, "delay", "all that it has is a duration")
 
 
-def _only_waits(context: Context, activity: Element) -> bool:
+def _is_pause(context: Context, activity: Element) -> bool:
     if activity.subkind or context.level(activity) or "body" in activity.attrs:
         return False
     parameters = query.parameters(context.graph, activity)

@@ -15,44 +15,48 @@ _PRIMITIVES: dict[str, ValueType] = {
 _HEADS = (Kind.PARAMETER, Kind.PROPERTY)
 
 
-def feature_at(context: Context, activity: Element, name: str) -> Element | None:
-    """The parameter, variable or feature that a dotted name of an activity means; None if none."""
+def find_feature(context: Context, activity: Element, name: str) -> Element | None:
+    """Return the parameter, variable or feature that a dotted name of an activity means, or
+    None.
+    """
     head, *rest = name.split(".")
-    inside = context.contents(activity)
-    found = next((one for one in inside if one.kind in _HEADS and one.name == head), None)
+    elements = context.contents(activity)
+    feature = next(
+        (element for element in elements if element.kind in _HEADS and element.name == head), None
+    )
     for part in rest:
-        type_ = None if found is None else query.type_of(context.graph, found)
-        found = None if type_ is None else member(context, type_, part)
-    return found
+        type_ = None if feature is None else query.type_of(context.graph, feature)
+        feature = None if type_ is None else find_member(context, type_, part)
+    return feature
 
 
-def member(context: Context, type_: Element, name: str) -> Element | None:
-    """The feature of a type, or of a general, that has the name."""
-    found = context.members.get(type_.id)
-    if found is None:
+def find_member(context: Context, type_: Element, name: str) -> Element | None:
+    """Return the feature with this name of a type or of one of its generals."""
+    by_name = context.members.get(type_.id)
+    if by_name is None:
         # The first of several that have one name.
         features = reversed(query.features(context.graph, type_))
-        found = context.members[type_.id] = {one.name: one for one in features}
-    return found.get(name)
+        by_name = context.members[type_.id] = {feature.name: feature for feature in features}
+    return by_name.get(name)
 
 
-def parameter(context: Context, element: Element) -> Parameter:
-    """A parameter, pin or property as a recipe's parameter."""
-    found = context.parameters.get(element.id)
-    if found is None:
-        type_, measure = value_type(context, element), unit(context, element)
-        found = Parameter(context.label(element), type_, measure, given(element))
-        context.parameters[element.id] = found
-    return found
+def build_parameter(context: Context, element: Element) -> Parameter:
+    """Return a parameter, pin or property as a recipe's parameter."""
+    parameter = context.parameters.get(element.id)
+    if parameter is None:
+        type_, measure = value_type(context, element), unit_name(context, element)
+        parameter = Parameter(context.label(element), type_, measure, default_value(element))
+        context.parameters[element.id] = parameter
+    return parameter
 
 
 def is_data(context: Context, element: Element) -> bool:
-    """Whether it holds a value, and is not a machine or a material that goes through."""
+    """Whether the element holds a value, and is no machine or material."""
     return context.level(query.type_of(context.graph, element)) not in ("machine", "material")
 
 
 def is_input(context: Context, element: Element) -> bool:
-    """Whether it holds a value, or a machine without which nothing can be done."""
+    """Whether the element holds a value, or a machine that is required."""
     if is_data(context, element):
         return True
     limits = query.bounds(element.attrs.get("multiplicity"))
@@ -61,26 +65,28 @@ def is_input(context: Context, element: Element) -> bool:
 
 
 def value_type(context: Context, element: Element) -> ValueType | None:
-    """Type of a typed element, a list when its multiplicity allows many; None when untyped."""
+    """Return the type of a typed element; a list if its multiplicity allows several, None if
+    untyped.
+    """
     type_ = query.type_of(context.graph, element)
     if type_ is None:
         return None
     single = context.types.get(type_.id)
     if single is None:
-        single = context.types[type_.id] = _single(context, type_)
+        single = context.types[type_.id] = _build_type(context, type_)
     limits = query.bounds(element.attrs.get("multiplicity"))
     many = limits is not None and (limits[1] is None or limits[1] > 1)
     return ListType(single) if many else single
 
 
-def _single(context: Context, type_: Element) -> ValueType:
+def _build_type(context: Context, type_: Element) -> ValueType:
     family = [type_, *query.generals(context.graph, type_)]
-    for one in family:
-        if one.kind is Kind.ENUMERATION:
-            return _enumeration(context, one)
-        known = _PRIMITIVES.get(_local_name(one))
-        if known is not None:
-            return known
+    for type_in_family in family:
+        if type_in_family.kind is Kind.ENUMERATION:
+            return _build_enumeration(context, type_in_family)
+        primitive = _PRIMITIVES.get(_local_name(type_in_family))
+        if primitive is not None:
+            return primitive
     if type_.attrs.get("property_specific"):
         type_ = next(iter(query.generals(context.graph, type_)), type_)
     level = context.level(type_)
@@ -89,14 +95,14 @@ def _single(context: Context, type_: Element) -> ValueType:
     return ReferenceType("material" if level == "material" else "element", context.name(type_))
 
 
-def _enumeration(context: Context, enumeration: Element) -> EnumType:
+def _build_enumeration(context: Context, enumeration: Element) -> EnumType:
     owned = context.graph.owned(enumeration)
-    literals = [one for one in owned if one.kind is Kind.ENUMERATION_LITERAL]
-    values = [one.attrs.get("value") for one in literals]
-    known = tuple(value for value in values if isinstance(value, bool | int | float | str))
-    is_whole = len(known) == len(literals)
-    names = tuple(one.name for one in literals)
-    return EnumType(context.name(enumeration), names, known if is_whole else ())
+    literals = [element for element in owned if element.kind is Kind.ENUMERATION_LITERAL]
+    values = [element.attrs.get("value") for element in literals]
+    plain = tuple(value for value in values if isinstance(value, bool | int | float | str))
+    is_whole = len(plain) == len(literals)
+    names = tuple(element.name for element in literals)
+    return EnumType(context.name(enumeration), names, plain if is_whole else ())
 
 
 def _local_name(element: Element) -> str:
@@ -104,32 +110,32 @@ def _local_name(element: Element) -> str:
     return text.replace("::", "#").rpartition("#")[2]
 
 
-def unit(context: Context, element: Element) -> str:
-    """Name of the unit of the element's value type, or the empty string."""
+def unit_name(context: Context, element: Element) -> str:
+    """Return the name of the unit of the element's value type, or the empty string."""
     type_ = query.type_of(context.graph, element)
-    found = None if type_ is None else query.tag(context.graph, type_, "unit")
-    named = context.graph.get(found) if isinstance(found, str) else None
-    return named.name if named is not None else str(found or "")
+    tagged = None if type_ is None else query.tag(context.graph, type_, "unit")
+    unit_element = context.graph.get(tagged) if isinstance(tagged, str) else None
+    return unit_element.name if unit_element is not None else str(tagged or "")
 
 
-def value(element: Element) -> Scalar | None:
-    """Default value, when it is a literal."""
-    found = given(element)
-    return found if isinstance(found, bool | int | float | str) else None
+def literal_default(element: Element) -> Scalar | None:
+    """Return the default value if it is a literal."""
+    default = default_value(element)
+    return default if isinstance(default, bool | int | float | str) else None
 
 
-def given(element: Element) -> Scalar | tuple[Scalar, ...] | None:
-    """Default value, when it is a literal or a list of literals."""
-    found = element.attrs.get("default")
+def default_value(element: Element) -> Scalar | tuple[Scalar, ...] | None:
+    """Return the default value if it is a literal or a list of literals."""
+    default = element.attrs.get("default")
     if element.attrs.get("default_language") is not None:
         return None
-    if isinstance(found, tuple):
-        listed = tuple(one for one in found if isinstance(one, bool | int | float | str))
-        return listed if len(listed) == len(found) else None
-    return found if isinstance(found, bool | int | float | str) else None
+    if isinstance(default, tuple):
+        items = tuple(item for item in default if isinstance(item, bool | int | float | str))
+        return items if len(items) == len(default) else None
+    return default if isinstance(default, bool | int | float | str) else None
 
 
 def literal_value(literal: Element) -> Scalar:
-    """The value of an enumeration literal; its name when it has none."""
+    """Return the value of an enumeration literal; its name if it has none."""
     value = literal.attrs.get("value")
     return value if isinstance(value, bool | int | float | str) else literal.name

@@ -6,25 +6,27 @@ from msgspec import Struct
 
 from sysmlc.ir import Edge, Element, Kind, query
 from sysmlc.passes.recipe.context import Context
-from sysmlc.passes.recipe.expressions import optional
-from sysmlc.passes.recipe.features import is_data, value
+from sysmlc.passes.recipe.expressions import read_optional
+from sysmlc.passes.recipe.features import is_data, literal_default
 from sysmlc.passes.recipe.profile import Tags
 from sysmlc.recipe.model import Machine, Material, Mode, OpcUa, Provider, Range
 from sysmlc.recipe.plant import is_of_plant
 
 
 class Relation(Struct, frozen=True):
-    """What relates a task or a service to machines: a dependency, object flow or partition."""
+    """An element that relates a task or a service to machines: a dependency, object flow or
+    partition.
+    """
 
     element: Element
     machines: tuple[Element, ...]
 
 
-def machine_of(context: Context, element: Element | None) -> Element | None:
-    """The machine that an element is or stands for; None when it is none.
+def find_machine(context: Context, element: Element | None) -> Element | None:
+    """Return the machine that an element is or stands for, or None.
 
-    An object node or pin stands for its type when that is a machine; a property, instance or
-    class is itself one.
+    An object node or pin stands for its type if that is a machine; a property, instance or class is
+    a machine itself.
     """
     if element is None or context.level(element) != "machine":
         return None
@@ -37,32 +39,37 @@ def machine_of(context: Context, element: Element | None) -> Element | None:
 # -- relations ---------------------------------------------------------------------------------
 
 
-def by_relation(context: Context, client: Element) -> Iterator[Relation]:
-    """Dependencies, allocations and associations from a task or service to machines."""
-    for one in context.graph.sources(client, Edge.CLIENT):
-        is_allocation = one.role == "allocate" or context.applied(one, "Capability") is not None
+def relations_by_dependency(context: Context, client: Element) -> Iterator[Relation]:
+    """Yield dependencies, allocations and associations from a task or service to machines."""
+    for dependency in context.graph.sources(client, Edge.CLIENT):
+        is_allocation = (
+            dependency.role == "allocate"
+            or context.find_application(dependency, "Capability") is not None
+        )
         suppliers = [
             supplier
-            for supplier in context.graph.targets(one, Edge.SUPPLIER)
-            if not _is_of_plant(context, supplier)
+            for supplier in context.graph.targets(dependency, Edge.SUPPLIER)
+            if not _is_plant_location(context, supplier)
         ]
         if is_allocation and suppliers:
-            yield Relation(one, tuple(suppliers))
-    yield from _by_association(context, client)
+            yield Relation(dependency, tuple(suppliers))
+    yield from _relations_by_association(context, client)
 
 
-def _is_of_plant(context: Context, supplier: Element) -> bool:
-    """Whether it says where in the plant a service runs: the pass ``platform`` reads that."""
+def _is_plant_location(context: Context, supplier: Element) -> bool:
+    """Whether the supplier says where in the plant a service runs, which the pass ``platform``
+    reads.
+    """
     if context.level(supplier) == "machine":
         return False
     return supplier.kind is Kind.OPERATION or is_of_plant(context.graph, supplier)
 
 
-def _by_association(context: Context, client: Element) -> Iterator[Relation]:
-    """Associations with «Capability» between the element and a machine."""
+def _relations_by_association(context: Context, client: Element) -> Iterator[Relation]:
+    """Yield the associations with «Capability» between the element and a machine."""
     for end in context.graph.sources(client, Edge.TYPED_BY):
         association = context.graph.source(end, Edge.END)
-        if association is None or context.applied(association, "Capability") is None:
+        if association is None or context.find_application(association, "Capability") is None:
             continue
         other = query.opposite_end(context.graph, association, end)
         machine = None if other is None else query.type_of(context.graph, other)
@@ -70,73 +77,79 @@ def _by_association(context: Context, client: Element) -> Iterator[Relation]:
             yield Relation(association, (machine,))
 
 
-def by_partition(context: Context, node: Element) -> Iterator[Relation]:
-    """Partitions that represent machines."""
+def relations_by_partition(context: Context, node: Element) -> Iterator[Relation]:
+    """Yield the partitions that represent machines."""
     for partition in context.graph.targets(node, Edge.IN_PARTITION):
         represented = context.graph.target(partition, Edge.REPRESENTS)
-        machine = machine_of(context, represented) or machine_of(context, partition)
+        machine = find_machine(context, represented) or find_machine(context, partition)
         if machine is not None:
             yield Relation(partition, (machine,))
 
 
-def by_pins(context: Context, step: Element) -> Iterator[Relation]:
-    """The machines that are given to a step as arguments: it needs all of them at once."""
-    found = _machines_in(context, (pin for pin in context.graph.owned(step) if _is_in(pin)))
-    if found:
-        yield Relation(step, found)
+def relations_by_pins(context: Context, step: Element) -> Iterator[Relation]:
+    """Yield one relation to all machines that are arguments of a step: it needs them at once."""
+    machines = _machines_of_features(
+        context, (pin for pin in context.graph.owned(step) if _is_argument(pin))
+    )
+    if machines:
+        yield Relation(step, machines)
 
 
-def by_parameters(context: Context, behavior: Element) -> Iterator[Relation]:
-    """The machines that are given to a behaviour as parameters."""
-    for machine in _machines_in(context, query.parameters(context.graph, behavior, "in")):
+def relations_by_parameters(context: Context, behavior: Element) -> Iterator[Relation]:
+    """Yield a relation to each machine that is a parameter of a behaviour."""
+    for machine in _machines_of_features(context, query.parameters(context.graph, behavior, "in")):
         yield Relation(behavior, (machine,))
 
 
-def _is_in(pin: Element) -> bool:
+def _is_argument(pin: Element) -> bool:
     return pin.kind is Kind.PIN and pin.attrs.get("direction") == "in" and "value" in pin.attrs
 
 
-def _machines_in(context: Context, features: Iterable[Element]) -> tuple[Element, ...]:
-    types = (query.type_of(context.graph, one) for one in features)
-    found = (one for one in types if one is not None and context.level(one) == "machine")
-    return tuple(dict.fromkeys(found))
+def _machines_of_features(context: Context, features: Iterable[Element]) -> tuple[Element, ...]:
+    types = (query.type_of(context.graph, feature) for feature in features)
+    machines = (
+        feature for feature in types if feature is not None and context.level(feature) == "machine"
+    )
+    return tuple(dict.fromkeys(machines))
 
 
-def by_owner(context: Context, behavior: Element) -> Iterator[Relation]:
-    """Machines whose class owns the operation or behaviour, or an operation that it implements."""
+def relations_by_owner(context: Context, behavior: Element) -> Iterator[Relation]:
+    """Yield the machines whose class owns the behaviour, or an operation that it implements."""
     operations = context.graph.sources(behavior, Edge.METHOD)
     for feature in [behavior, *operations]:
         owner = context.graph.owner(feature)
         if owner is None or owner.kind not in (Kind.CLASS, Kind.COMPONENT):
             continue
-        for machine in _machines_like(context, owner):
+        for machine in _conforming_machines(context, owner):
             yield Relation(feature, (machine,))
 
 
-def _machines_like(context: Context, owner: Element) -> Iterator[Element]:
-    for one in context.of_level("machine"):
-        is_class = one.kind in (Kind.CLASS, Kind.COMPONENT) and not one.attrs.get("abstract")
-        if is_class and query.conforms(context.graph, one, owner):
-            yield one
+def _conforming_machines(context: Context, owner: Element) -> Iterator[Element]:
+    for machine in context.elements_of_level("machine"):
+        is_class = machine.kind in (Kind.CLASS, Kind.COMPONENT) and not machine.attrs.get(
+            "abstract"
+        )
+        if is_class and query.conforms(context.graph, machine, owner):
+            yield machine
 
 
 # -- modes and providers -----------------------------------------------------------------------
 
 
-def modes(context: Context, relations: Iterator[Relation]) -> tuple[Mode, ...]:
-    """Ways to equip a task; relations with one ``mode`` are needed at the same time."""
+def build_modes(context: Context, relations: Iterator[Relation]) -> tuple[Mode, ...]:
+    """Return the ways to equip a task; relations with the same ``mode`` are needed together."""
     groups: dict[str, list[Mode]] = {}
     for relation in relations:
         tags = context.tags(relation.element, "Capability")
         key = tags.text("mode") or f"\x00{relation.element.id}"
-        groups.setdefault(key, []).append(_mode(context, relation))
-    return tuple(sorted(map(_together, groups.values()), key=lambda mode: mode.machines))
+        groups.setdefault(key, []).append(_build_mode(context, relation))
+    return tuple(sorted(map(_combine_modes, groups.values()), key=lambda mode: mode.machines))
 
 
-def _mode(context: Context, relation: Relation) -> Mode:
+def _build_mode(context: Context, relation: Relation) -> Mode:
     tags = context.tags(relation.element, "Capability")
     return Mode(
-        tuple(sorted(context.name(one) for one in relation.machines)),
+        tuple(sorted(context.name(machine) for machine in relation.machines)),
         tags.integer("duration"),
         tags.range("minPower", "maxPower"),
         tuple(sorted(map(context.reference, tags.ids("tools")))),
@@ -144,36 +157,36 @@ def _mode(context: Context, relation: Relation) -> Mode:
     )
 
 
-def _together(parts: list[Mode]) -> Mode:
+def _combine_modes(parts: list[Mode]) -> Mode:
     durations = [part.duration for part in parts if part.duration is not None]
     powers = [part.power for part in parts if part.power is not None]
-    known = [part.available for part in parts if part.available is not None]
+    availabilities = [part.available for part in parts if part.available is not None]
     return Mode(
         tuple(sorted({machine for part in parts for machine in part.machines})),
         max(durations, default=None),
-        _sum(powers),
+        _sum_powers(powers),
         tuple(sorted({tool for part in parts for tool in part.tools})),
-        all(known) if known else None,
+        all(availabilities) if availabilities else None,
     )
 
 
-def _sum(powers: list[Range]) -> Range | None:
+def _sum_powers(powers: list[Range]) -> Range | None:
     if not powers:
         return None
-    highs = [one.max for one in powers if one.max is not None]
-    return Range(sum(one.min for one in powers), sum(highs))
+    highs = [power.max for power in powers if power.max is not None]
+    return Range(sum(power.min for power in powers), sum(highs))
 
 
-def providers(context: Context, relations: Iterator[Relation]) -> tuple[Provider, ...]:
-    """Machines that offer a service, each once, sorted."""
-    found: dict[str, Provider] = {}
+def build_providers(context: Context, relations: Iterator[Relation]) -> tuple[Provider, ...]:
+    """Return the machines that offer a service, each once, sorted."""
+    by_machine: dict[str, Provider] = {}
     for relation in relations:
-        mode = _mode(context, relation)
+        mode = _build_mode(context, relation)
         for machine in mode.machines:
-            call = opcua(context, relation.element)
-            made = Provider(machine, mode.duration, mode.power, mode.tools, call)
-            found.setdefault(machine, made)
-    return tuple(found[machine] for machine in sorted(found))
+            call = build_opcua(context, relation.element)
+            provider = Provider(machine, mode.duration, mode.power, mode.tools, call)
+            by_machine.setdefault(machine, provider)
+    return tuple(by_machine[machine] for machine in sorted(by_machine))
 
 
 _OPC_UA = ("opc ua call", "opc ua variable")
@@ -181,25 +194,27 @@ _OF_SPACE = ("parentNodeId", "nodeId")
 """Tags of other stereotypes for OPC UA calls: the object and its method."""
 
 
-def _call(context: Context, element: Element) -> Element | None:
+def _find_opcua_application(context: Context, element: Element) -> Element | None:
     if not context.may_have_stereotype(element):
         return None
-    found = context.applied(element, "OpcUaCall")
-    for one in query.applications(context.graph, element):
-        stereotype = context.graph.target(one, Edge.INSTANCE_OF)
+    application = context.find_application(element, "OpcUaCall")
+    for candidate in query.applications(context.graph, element):
+        stereotype = context.graph.target(candidate, Edge.INSTANCE_OF)
         if stereotype is not None and context.own_level(stereotype) in _OPC_UA:
-            found = found or one
-    return found
+            application = application or candidate
+    return application
 
 
-def opcua(context: Context, element: Element) -> OpcUa | None:
-    """The OPC UA call on an element, or on the behaviour that implements it; or None.
+def build_opcua(context: Context, element: Element) -> OpcUa | None:
+    """Return the OPC UA call of an element or of the behaviour that implements it, or None.
 
-    A stereotype that the options give the level has the node ids as ``nodeId`` and
+    A stereotype to which the options give this level has its node ids in ``nodeId`` and
     ``parentNodeId``, the words of OPC UA's own address space.
     """
     family = [element, *context.graph.targets(element, Edge.METHOD)]
-    application = next((one for each in family if (one := _call(context, each))), None)
+    application = next(
+        (call for holder in family if (call := _find_opcua_application(context, holder))), None
+    )
     if application is None:
         return None
     tags = Tags(application.attrs)
@@ -209,29 +224,32 @@ def opcua(context: Context, element: Element) -> OpcUa | None:
         tags.text("method") or tags.text(_OF_SPACE[1]),
         tags.endpoint("endpoint") or "",
         tags.text("namespaceUri"),
-        optional(tags.text("doneWhen")),
+        read_optional(tags.text("doneWhen")),
         tags.integer("timeout"),
         element.id,
     )
 
 
-def opcua_node(context: Context, variable: Element) -> str:
-    """The OPC UA node of a variable as written, or the empty string."""
-    application = _call(context, variable)
+def find_opcua_node(context: Context, variable: Element) -> str:
+    """Return the OPC UA node of a variable as written, or the empty string."""
+    application = _find_opcua_application(context, variable)
     tags = Tags({} if application is None else application.attrs)
-    found = (tags.text(name) for name in ("node", _OF_SPACE[1], "object"))
-    return next((text for text in found if text), "")
+    texts = (tags.text(name) for name in ("node", _OF_SPACE[1], "object"))
+    return next((text for text in texts if text), "")
 
 
 # -- machines and materials --------------------------------------------------------------------
 
 
-def machine(context: Context, element: Element) -> Machine:
-    """An element at the level machine as a value; tags may stand on its class."""
+def build_machine(context: Context, element: Element) -> Machine:
+    """Return an element at the level machine as a value; the tags may be those of its class."""
     family = [element, *query.generals(context.graph, element)]
     type_ = query.type_of(context.graph, element)
     family += [] if type_ is None else [type_]
-    holder = next((one for one in family if context.applied(one, "Machine")), element)
+    holder = next(
+        (candidate for candidate in family if context.find_application(candidate, "Machine")),
+        element,
+    )
     tags = context.tags(holder, "Machine")
     plant = tags.text("plantElement")
     return Machine(
@@ -244,8 +262,8 @@ def machine(context: Context, element: Element) -> Machine:
     )
 
 
-def material(context: Context, element: Element) -> Material:
-    """An element at the level material as a value, with its attributes as properties."""
+def build_material(context: Context, element: Element) -> Material:
+    """Return an element at the level material as a value, with its attributes as properties."""
     tags = context.tags(element, "Material")
     return Material(
         context.name(element),
@@ -254,21 +272,23 @@ def material(context: Context, element: Element) -> Material:
         tags.text("position"),
         tags.integer("buffer"),
         bool(tags.flag("noWait")),
-        tuple(sorted(_properties(context, element), key=_by_name)),
+        tuple(sorted(_list_properties(context, element), key=_property_order)),
         element.id,
     )
 
 
-def _by_name(property_: tuple[str, object]) -> tuple[str, str]:
-    """Properties of one name can have values that do not compare, as 1 and ``red``."""
-    return property_[0], str(property_[1])
+def _property_order(named_value: tuple[str, object]) -> tuple[str, str]:
+    """Return the sort key of a property. Values of one name, as 1 and ``red``, need not be
+    comparable.
+    """
+    return named_value[0], str(named_value[1])
 
 
-def _properties(
+def _list_properties(
     context: Context, element: Element
 ) -> Iterator[tuple[str, bool | int | float | str]]:
-    for one in query.features(context.graph, element):
-        found = value(one)
-        if one.kind is Kind.PROPERTY and found is not None and is_data(context, one):
-            named = context.graph.get(found) if isinstance(found, str) else None
-            yield one.name, found if named is None else named.name
+    for feature in query.features(context.graph, element):
+        default = literal_default(feature)
+        if feature.kind is Kind.PROPERTY and default is not None and is_data(context, feature):
+            value_element = context.graph.get(default) if isinstance(default, str) else None
+            yield feature.name, default if value_element is None else value_element.name

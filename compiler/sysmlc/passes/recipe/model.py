@@ -1,23 +1,23 @@
-"""One recipe with the closure of what it refers to."""
+"""The model of one recipe: the recipe itself and everything that it refers to."""
 
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
 from typing import Protocol, TypeVar
 
 from sysmlc.ir import Edge, Element, Kind
-from sysmlc.passes.recipe.context import Context, word
+from sysmlc.passes.recipe.context import Context, segment_word
 from sysmlc.passes.recipe.data import Data
-from sysmlc.passes.recipe.graphs import refined
-from sysmlc.passes.recipe.machine_variables import with_variables
-from sysmlc.passes.recipe.machines import machine, material
-from sysmlc.passes.recipe.nodes import activity_flows, refinement
-from sysmlc.passes.recipe.services import function, service
+from sysmlc.passes.recipe.graphs import refine
+from sysmlc.passes.recipe.machine_variables import add_machine_variables
+from sysmlc.passes.recipe.machines import build_machine, build_material
+from sysmlc.passes.recipe.nodes import find_refinement, list_flows
+from sysmlc.passes.recipe.services import build_function, build_service
 from sysmlc.passes.recipe.tasks import (
     Step,
-    material_of,
-    precedence,
-    steps,
-    task,
+    build_task,
+    find_material,
+    find_precedence,
+    list_steps,
 )
 from sysmlc.recipe.derive import derive
 from sysmlc.recipe.model import FlowGraph, Model, Performance, Recipe
@@ -33,7 +33,7 @@ _T = TypeVar("_T", bound=_Named)
 
 @dataclass(slots=True)
 class _Closure:
-    """Definitions that a recipe needs, each with the nodes that use it, by element id."""
+    """The definitions that a recipe needs, each with the nodes that use it, by element id."""
 
     services: dict[str, tuple[Element, list[Element]]] = field(default_factory=dict)
     functions: dict[str, tuple[Element, list[Element]]] = field(default_factory=dict)
@@ -41,111 +41,123 @@ class _Closure:
     function_graphs: dict[str, FlowGraph] = field(default_factory=dict)
 
 
-def recipe_model(context: Context, activity: Element) -> Model:
-    """The recipe of an activity, with everything derived."""
-    found = steps(context, activity)
+def build_model(context: Context, activity: Element) -> Model:
+    """Return the recipe of an activity, with everything derived."""
+    steps = list_steps(context, activity)
     closure = _Closure()
-    for step in found:
+    for step in steps:
         if step.refinement is not None:
-            _refine(context, step.refinement, "task", closure)
-    recipe = _recipe(context, activity, found, closure)
-    services = [service(context, *one) for one in closure.services.values()]
-    functions = [function(context, *one) for one in closure.functions.values()]
-    named = {m for one in recipe.tasks for mode in one.equipment for m in mode.machines}
-    named |= {provider.machine for one in services for provider in one.providers}
+            _add_refinement(context, step.refinement, "task", closure)
+    recipe = _build_recipe(context, activity, steps, closure)
+    services = [build_service(context, *entry) for entry in closure.services.values()]
+    functions = [build_function(context, *entry) for entry in closure.functions.values()]
+    named = {
+        machine for entry in recipe.tasks for mode in entry.equipment for machine in mode.machines
+    }
+    named |= {provider.machine for entry in services for provider in entry.providers}
     model = Model(
         recipe,
-        _known(context, named, machine, "machine"),
-        _known(context, _materials(context, recipe, activity), material, "material"),
-        _sorted(services),
-        _sorted(functions),
-        _sorted(closure.service_graphs.values()),
-        _sorted(closure.function_graphs.values()),
+        _build_named(context, named, build_machine, "machine"),
+        _build_named(
+            context, _name_materials(context, recipe, activity), build_material, "material"
+        ),
+        _sort_by_id(services),
+        _sort_by_id(functions),
+        _sort_by_id(closure.service_graphs.values()),
+        _sort_by_id(closure.function_graphs.values()),
     )
-    return derive(with_variables(context, model))
+    return derive(add_machine_variables(context, model))
 
 
-def _recipe(context: Context, activity: Element, found: list[Step], closure: _Closure) -> Recipe:
+def _build_recipe(
+    context: Context, activity: Element, steps: list[Step], closure: _Closure
+) -> Recipe:
     tags = context.tags(activity, "Recipe")
     product = tags.text("product")
-    data = Data.of(context, activity)
-    tasks = [task(context, activity, step, data) for step in found]
+    data = Data.build(context, activity)
+    tasks = [build_task(context, activity, step, data) for step in steps]
     return Recipe(
         context.name(activity),
-        _sorted(tasks),
-        precedence(context, activity, found),
-        data.parameters("in", "inout"),
-        data.parameters("out", "inout", "return"),
-        data.variables(),
+        _sort_by_id(tasks),
+        find_precedence(context, activity, steps),
+        data.list_parameters("in", "inout"),
+        data.list_parameters("out", "inout", "return"),
+        data.list_variables(),
         tags.text("version"),
         context.reference(product) if product else "",
         tags.integer("priority"),
         bool(tags.flag("noWait")),
         activity.id,
-        performances(context, activity, [*closure.service_graphs, *closure.function_graphs]),
+        build_performances(context, activity, [*closure.service_graphs, *closure.function_graphs]),
     )
 
 
-def _refine(context: Context, activity: Element, inside: str, closure: _Closure) -> None:
-    """The graph of an activity, and what its nodes call, level by level; cycles end it."""
+def _add_refinement(context: Context, activity: Element, inside: str, closure: _Closure) -> None:
+    """Add the graph of an activity and its calls, level by level; a graph is added once."""
     graphs = closure.service_graphs if inside == "task" else closure.function_graphs
     if activity.id in graphs:
         return
-    made = refined(context, activity, inside)
-    graphs[activity.id] = made.graph
+    refinement = refine(context, activity, inside)
+    graphs[activity.id] = refinement.graph
     tables = {"service": closure.services, "function": closure.functions}
-    for called in made.calls:
-        definition = context.graph[called.definition]
-        if called.kind in tables:
-            callers = tables[called.kind].setdefault(definition.id, (definition, []))[1]
-            callers.append(context.graph[called.node])
-        inner = None if called.kind == "function" else refinement(context, definition)
+    for call in refinement.calls:
+        definition = context.graph[call.definition]
+        if call.kind in tables:
+            callers = tables[call.kind].setdefault(definition.id, (definition, []))[1]
+            callers.append(context.graph[call.node])
+        inner = None if call.kind == "function" else find_refinement(context, definition)
         if inner is not None:
-            _refine(context, inner, "service", closure)
+            _add_refinement(context, inner, "service", closure)
 
 
-def _materials(context: Context, recipe: Recipe, activity: Element) -> set[str]:
-    flows = activity_flows(context, activity)
-    found = (material_of(context, flow) for flow in flows)
-    named = {context.name(one) for one in found if one is not None}
+def _name_materials(context: Context, recipe: Recipe, activity: Element) -> set[str]:
+    flows = list_flows(context, activity)
+    carried = (find_material(context, flow) for flow in flows)
+    named = {context.name(element) for element in carried if element is not None}
     return named | ({recipe.product} if recipe.product else set())
 
 
-def _known(
+def _build_named(
     context: Context, names: set[str], make: Callable[[Context, Element], _T], level: str
 ) -> tuple[_T, ...]:
-    """Values for the names that are elements of the level, sorted by name."""
+    """Return values for the names that belong to elements of the level, sorted by name."""
     # A name has the word that an element is called by: few elements have one of these.
-    some = "\n".join(names)
-    candidates = (one for one in context.of_level(level) if word(one) in some)
-    found = {context.name(one): one for one in candidates}
-    return tuple(make(context, found[name]) for name in sorted(names) if name in found)
+    all_names = "\n".join(names)
+    candidates = (
+        element
+        for element in context.elements_of_level(level)
+        if segment_word(element) in all_names
+    )
+    by_name = {context.name(element): element for element in candidates}
+    return tuple(make(context, by_name[name]) for name in sorted(names) if name in by_name)
 
 
-def _sorted(values: Iterable[_T]) -> tuple[_T, ...]:
-    return tuple(sorted(values, key=lambda one: one.id))
+def _sort_by_id(values: Iterable[_T]) -> tuple[_T, ...]:
+    return tuple(sorted(values, key=lambda value: value.id))
 
 
-def performances(
+def build_performances(
     context: Context, recipe: Element, graphs: Iterable[str]
 ) -> tuple[Performance, ...]:
-    """What the blocks whose behaviour the recipe is say of it, sorted by the block.
+    """Return for each block that runs the recipe its machines and steps, sorted by block.
 
-    ``graphs`` are the ids of the activities whose nodes the recipe's graphs have.
+    *graphs* are the ids of the activities whose nodes the recipe's graphs have.
     """
     owners = {recipe.id, *graphs}
     blocks = context.graph.sources(recipe, Edge.CLASSIFIER_BEHAVIOR)
-    found = (_performance(context, block, recipe, owners) for block in blocks)
-    said = (one for one in found if one.arguments or one.steps)
-    return tuple(sorted(said, key=lambda one: one.block))
+    performances = (_build_performance(context, block, recipe, owners) for block in blocks)
+    stated = (
+        performance for performance in performances if performance.arguments or performance.steps
+    )
+    return tuple(sorted(stated, key=lambda performance: performance.block))
 
 
-def _performance(
+def _build_performance(
     context: Context, block: Element, recipe: Element, owners: set[str]
 ) -> Performance:
     arguments: dict[str, str] = {}
     steps: dict[str, str] = {}
-    for client, path in _allocated(context, block):
+    for client, path in _list_allocations(context, block):
         if client.kind is Kind.PARAMETER and client.owner == recipe.id:
             arguments[client.name] = path
         elif client.kind is not Kind.PARAMETER and client.owner in owners:
@@ -154,21 +166,24 @@ def _performance(
     return Performance(name, _sort_pairs(arguments), _sort_pairs(steps), block.id)
 
 
-def _allocated(context: Context, block: Element) -> Iterator[tuple[Element, str]]:
-    """What the block allocates, and the path from the block to what it is allocated to."""
+def _list_allocations(context: Context, block: Element) -> Iterator[tuple[Element, str]]:
+    """Yield the elements that the block allocates, and the path from the block to their target."""
     graph = context.graph
-    for one in graph.owned(block):
-        if one.kind is Kind.DEPENDENCY and one.role == "allocate":
-            client, supplier = graph.target(one, Edge.CLIENT), graph.target(one, Edge.SUPPLIER)
+    for allocation in graph.owned(block):
+        if allocation.kind is Kind.DEPENDENCY and allocation.role == "allocate":
+            client, supplier = (
+                graph.target(allocation, Edge.CLIENT),
+                graph.target(allocation, Edge.SUPPLIER),
+            )
             if client is not None and supplier is not None:
-                yield client, ".".join([*_path(context, one), context.label(supplier)])
+                yield client, ".".join([*_read_path(context, allocation), context.label(supplier)])
 
 
-def _path(context: Context, allocation: Element) -> Iterator[str]:
-    given = allocation.attrs.get("target_path")
-    for id in given if isinstance(given, tuple) else str(given or "").split():
-        found = context.graph.get(str(id))
-        yield str(id) if found is None else context.label(found)
+def _read_path(context: Context, allocation: Element) -> Iterator[str]:
+    target_path = allocation.attrs.get("target_path")
+    for id in target_path if isinstance(target_path, tuple) else str(target_path or "").split():
+        element = context.graph.get(str(id))
+        yield str(id) if element is None else context.label(element)
 
 
 def _sort_pairs(pairs: dict[str, str]) -> tuple[tuple[str, str], ...]:

@@ -1,4 +1,4 @@
-"""What the nodes of an activity are in a recipe graph: services, functions, control, the rest."""
+"""Nodes of recipe graphs: services, functions, control nodes and other steps of an activity."""
 
 from collections.abc import Callable, Iterator
 
@@ -7,7 +7,7 @@ from msgspec.structs import replace
 from sysmlc.ir import Edge, Element, Kind, query
 from sysmlc.passes.recipe.context import SERVICES, Context
 from sysmlc.passes.recipe.data import Data
-from sysmlc.passes.recipe.expressions import assignments, optional, read_time
+from sysmlc.passes.recipe.expressions import read_assignments, read_optional, read_time
 from sysmlc.passes.recipe.regions import is_block, is_for_each
 from sysmlc.recipe.model import Node
 
@@ -24,18 +24,18 @@ _HELPERS = ("opaque", "function")
 
 
 def step_kind(context: Context, node: Element, inside: str) -> str:
-    """Kind of the recipe node that an activity node becomes; empty for a buffer of data.
+    """Return the kind of the recipe node for an activity node; empty for a buffer of data.
 
-    ``inside`` is the level of the activity: what a task calls is a service, what a service
-    calls is a function, unless a level says otherwise.
+    *inside* is the level of the activity: a task calls services and a service calls functions,
+    unless a level states something else.
     """
-    found = context.kinds.get((node.id, inside))
-    if found is None:
-        found = context.kinds[node.id, inside] = _step_kind(context, node, inside)
-    return found
+    kind = context.kinds.get((node.id, inside))
+    if kind is None:
+        kind = context.kinds[node.id, inside] = _find_step_kind(context, node, inside)
+    return kind
 
 
-def _step_kind(context: Context, node: Element, inside: str) -> str:  # noqa: PLR0911 - a table
+def _find_step_kind(context: Context, node: Element, inside: str) -> str:  # noqa: PLR0911 - a table
     if node.kind is Kind.CONTROL:
         return CONTROL_KINDS.get(node.subkind, "action")
     if node.kind is Kind.STRUCTURED:
@@ -49,40 +49,46 @@ def _step_kind(context: Context, node: Element, inside: str) -> str:  # noqa: PL
         return "delay"
     if node.kind in (Kind.OBJECT_NODE, Kind.DATA_STORE, Kind.ACTIVITY_PARAMETER, Kind.PIN):
         return ""
-    called = context.definition(node) if node.kind is Kind.ACTION else None
-    if called is None or node.subkind not in ("call-behavior", "call-operation"):
+    definition = context.definition(node) if node.kind is Kind.ACTION else None
+    if definition is None or node.subkind not in ("call-behavior", "call-operation"):
         return _plain_kind(context, node)
-    if called.subkind in _HELPERS or (inside == "service" and is_helper(context, called)):
+    if definition.subkind in _HELPERS or (inside == "service" and is_helper(context, definition)):
         return "call"
     return "service" if inside == "task" else "function"
 
 
-def is_helper(context: Context, called: Element) -> bool:
+def is_helper(context: Context, behavior: Element) -> bool:
     """Whether a behaviour without a level that a service calls only orders other steps.
 
-    In a model that says which behaviours are machine functions, no other is one.
+    In a model that marks some behaviours as machine functions, no unmarked behaviour is one.
     """
-    return refinement(context, called) is not None or bool(context.of_level("machine function"))
+    return find_refinement(context, behavior) is not None or bool(
+        context.elements_of_level("machine function")
+    )
 
 
-def refinement(context: Context, definition: Element | None) -> Element | None:
-    """The activity that a definition is, that implements it, or that it runs; with content."""
+def find_refinement(context: Context, definition: Element | None) -> Element | None:
+    """Return the activity that a definition is, that implements it, or that it runs, if it has
+    nodes.
+    """
     if definition is None:
         return None
     if definition.id not in context.refined:
-        context.refined[definition.id] = _refinement(context, definition)
+        context.refined[definition.id] = _search_refinement(context, definition)
     return context.refined[definition.id]
 
 
-def _refinement(context: Context, definition: Element) -> Element | None:
+def _search_refinement(context: Context, definition: Element) -> Element | None:
     graph = context.graph
     candidates = [definition, graph.target(definition, Edge.METHOD)]
     candidates.append(query.classifier_behavior(graph, definition))
-    candidates += [one for one in graph.owned(definition) if one.kind is Kind.ACTIVITY]
+    candidates += [
+        candidate for candidate in graph.owned(definition) if candidate.kind is Kind.ACTIVITY
+    ]
     candidates += graph.sources(definition, Edge.REFINES)
-    for one in candidates:
-        if one is not None and one.kind is Kind.ACTIVITY and context.nodes(one):
-            return one
+    for candidate in candidates:
+        if candidate is not None and candidate.kind is Kind.ACTIVITY and context.nodes(candidate):
+            return candidate
     return None
 
 
@@ -92,122 +98,128 @@ def _region_kind(context: Context, node: Element) -> str:
     return "block" if is_block(context.graph, node) else "action"
 
 
-def by_position(context: Context, node: Element, kind: str) -> bool:
-    """Whether only its position made the node a service or a function."""
+def is_by_position(context: Context, node: Element, kind: str) -> bool:
+    """Whether only the position of the call makes the node a service or a function."""
     return kind in ("service", "function") and not context.level(node)
 
 
 def _plain_kind(context: Context, node: Element) -> str:
-    if node.subkind == "opaque" and assignments(str(node.attrs.get("body", ""))):
+    if node.subkind == "opaque" and read_assignments(str(node.attrs.get("body", ""))):
         return "assign"
-    trigger = next(_triggers(context, node), None) if node.subkind == "accept" else None
+    trigger = next(_list_triggers(context, node), None) if node.subkind == "accept" else None
     if trigger is None:
         return "wait" if node.subkind == "accept" else "action"
     return "delay" if trigger.subkind == "time" else "wait"
 
 
-def _triggers(context: Context, node: Element) -> Iterator[Element]:
-    for one in context.graph.targets(node, Edge.TRIGGER):
-        yield one
-    for one in context.graph.owned(node):
-        if one.kind is Kind.TRIGGER:
-            yield one
+def _list_triggers(context: Context, node: Element) -> Iterator[Element]:
+    for trigger in context.graph.targets(node, Edge.TRIGGER):
+        yield trigger
+    for trigger in context.graph.owned(node):
+        if trigger.kind is Kind.TRIGGER:
+            yield trigger
 
 
-def nodes_of(context: Context, node: Element, kind: str, data: Data) -> list[Node]:
-    """Nodes of the recipe graph for one node; an effect of several assignments is a chain."""
-    made = Node(context.name(node), kind, element=node.id)
-    return _MAKERS.get(kind, _bare)(context, node, made, data)
+def build_nodes(context: Context, node: Element, kind: str, data: Data) -> list[Node]:
+    """Return the nodes of the recipe graph for one node; several assignments become a chain."""
+    recipe_node = Node(context.name(node), kind, element=node.id)
+    return _MAKERS.get(kind, _build_bare)(context, node, recipe_node, data)
 
 
-def _bare(context: Context, node: Element, made: Node, data: Data) -> list[Node]:
-    return [made]
+def _build_bare(context: Context, node: Element, base: Node, data: Data) -> list[Node]:
+    return [base]
 
 
-def _called(context: Context, node: Element, made: Node, data: Data) -> list[Node]:
+def _build_call(context: Context, node: Element, base: Node, data: Data) -> list[Node]:
     definition = context.definition(node)
-    if made.kind == "call":
-        definition = refinement(context, definition) or definition
+    if base.kind == "call":
+        definition = find_refinement(context, definition) or definition
     ref = context.name(node if definition is None else definition)
-    return [_with(made, ref=ref, bind=data.bind(node), assign=data.assign(node))]
+    return [_change(base, ref=ref, bind=data.bind_inputs(node), assign=data.assign_outputs(node))]
 
 
-def _assigned(context: Context, node: Element, made: Node, data: Data) -> list[Node]:
+def _build_assignments(context: Context, node: Element, base: Node, data: Data) -> list[Node]:
     body = str(node.attrs.get("body", ""))
     return [
-        _with(made, id=f"{made.id}#{number}" if number > 1 else made.id, variable=v, expression=e)
-        for number, (v, e) in enumerate(assignments(body) or (), 1)
+        _change(base, id=f"{base.id}#{number}" if number > 1 else base.id, variable=v, expression=e)
+        for number, (v, e) in enumerate(read_assignments(body) or (), 1)
     ]
 
 
-def _action(context: Context, node: Element, made: Node, data: Data) -> list[Node]:
+def _build_action(context: Context, node: Element, base: Node, data: Data) -> list[Node]:
     text = str(node.attrs.get("body", "") or node.name or node.subkind)
-    return [_with(made, text=text, bind=data.bind(node), assign=data.assign(node))]
+    return [_change(base, text=text, bind=data.bind_inputs(node), assign=data.assign_outputs(node))]
 
 
-def _wait(context: Context, node: Element, made: Node, data: Data) -> list[Node]:
-    trigger = next(_triggers(context, node), None)
+def _build_wait(context: Context, node: Element, base: Node, data: Data) -> list[Node]:
+    trigger = next(_list_triggers(context, node), None)
     event = None if trigger is None else context.graph.target(trigger, Edge.TYPED_BY)
     condition = "" if trigger is None else str(trigger.attrs.get("condition", ""))
     text = condition or (node.name if event is None else context.name(event))
-    return [_with(made, expression=optional(condition), text=text, assign=data.assign(node))]
+    return [
+        _change(
+            base, expression=read_optional(condition), text=text, assign=data.assign_outputs(node)
+        )
+    ]
 
 
-def _block(context: Context, node: Element, made: Node, data: Data) -> list[Node]:
-    """Where a block is entered and where it is left."""
-    return [_with(made, kind="merge"), _with(made, kind="merge", id=f"{made.id}::end")]
+def _build_block(context: Context, node: Element, base: Node, data: Data) -> list[Node]:
+    """Return the node in which a block is entered and the node in which it is left."""
+    return [_change(base, kind="merge"), _change(base, kind="merge", id=f"{base.id}::end")]
 
 
-def _for_each(context: Context, node: Element, made: Node, data: Data) -> list[Node]:
-    variable = next((one for one in context.graph.owned(node) if one.subkind == "variable"), None)
+def _build_for_each(context: Context, node: Element, base: Node, data: Data) -> list[Node]:
+    variable = next(
+        (element for element in context.graph.owned(node) if element.subkind == "variable"), None
+    )
     name = "" if variable is None else context.label(variable)
     collection = data.read(str(node.attrs.get("collection", "")))
-    limit = data.size(collection)
-    return [_with(made, variable=name, expression=collection, max_iterations=limit)]
+    limit = data.max_size(collection)
+    return [_change(base, variable=name, expression=collection, max_iterations=limit)]
 
 
-def _delay(context: Context, node: Element, made: Node, data: Data) -> list[Node]:
-    given = next((value for _, value in data.bind(node)), None)
-    if given is not None:
-        return [_with(made, expression=given)]
-    trigger = next(_triggers(context, node), None)
+def _build_delay(context: Context, node: Element, base: Node, data: Data) -> list[Node]:
+    duration = next((value for _, value in data.bind_inputs(node)), None)
+    if duration is not None:
+        return [_change(base, expression=duration)]
+    trigger = next(_list_triggers(context, node), None)
     when = "" if trigger is None else str(trigger.attrs.get("when", ""))
-    return [_with(made, expression=read_time(when), text=when)]
+    return [_change(base, expression=read_time(when), text=when)]
 
 
-def _with(node: Node, **changes: object) -> Node:
+def _change(node: Node, **changes: object) -> Node:
     return replace(node, **changes)
 
 
 _Maker = Callable[[Context, Element, Node, Data], list[Node]]
 _MAKERS: dict[str, _Maker] = {
-    "service": _called,
-    "function": _called,
-    "call": _called,
-    "assign": _assigned,
-    "action": _action,
-    "wait": _wait,
-    "delay": _delay,
-    "block": _block,
-    "forEach": _for_each,
+    "service": _build_call,
+    "function": _build_call,
+    "call": _build_call,
+    "assign": _build_assignments,
+    "action": _build_action,
+    "wait": _build_wait,
+    "delay": _build_delay,
+    "block": _build_block,
+    "forEach": _build_for_each,
 }
 
 
-def activity_flows(context: Context, activity: Element) -> list[Element]:
-    """Control flows and object flows of the activity, inlined regions included."""
+def list_flows(context: Context, activity: Element) -> list[Element]:
+    """Return the control and object flows of the activity, including those of inlined regions."""
     kinds = (Kind.CONTROL_FLOW, Kind.OBJECT_FLOW)
-    return [one for one in context.contents(activity) if one.kind in kinds]
+    return [element for element in context.contents(activity) if element.kind in kinds]
 
 
-def end_node(context: Context, end: Element | None) -> Element | None:
-    """The node that an end of a flow belongs to: a pin stands for its action."""
+def node_of_end(context: Context, end: Element | None) -> Element | None:
+    """Return the node that an end of a flow belongs to: a pin stands for its action."""
     if end is None or end.kind is not Kind.PIN:
         return end
     return context.graph.owner(end)
 
 
-def flow_ends(context: Context, flow: Element) -> tuple[Element | None, Element | None]:
-    """Source and target nodes of a flow."""
+def find_flow_ends(context: Context, flow: Element) -> tuple[Element | None, Element | None]:
+    """Return the source and target nodes of a flow."""
     graph = context.graph
     ends = query.flow_source(graph, flow), query.flow_target(graph, flow)
-    return end_node(context, ends[0]), end_node(context, ends[1])
+    return node_of_end(context, ends[0]), node_of_end(context, ends[1])

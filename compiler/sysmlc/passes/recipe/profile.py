@@ -1,4 +1,4 @@
-"""Which elements may have a recipe level: what the options name, and who has that of another."""
+"""Recipe levels and tagged values of the shipped profile, metamodels/sysmlc.profile.uml."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
 
@@ -23,137 +23,143 @@ _FOLLOWED = (Edge.SPECIALIZES, Edge.TYPED_BY, Edge.REDEFINES, Edge.CALLS, Edge.M
 """Edges along which an element has the level of another one."""
 
 
-def said(
+def find_stated_levels(
     graph: Graph, levels: Mapping[str, str], segment: Callable[[Element], str]
 ) -> dict[str, str]:
-    """Levels by id that elements have themselves: by the options, ``classify`` or a stereotype.
+    """Return by id the levels that elements have themselves: by options, ``classify`` or a
+    stereotype.
 
-    ``levels`` are those of the options, by ids or qualified names, which win. ``segment`` is the
-    part of an element in such a name.
+    *levels* are those of the options, by ids or qualified names, and take precedence. *segment*
+    returns the part of an element in such a name.
     """
-    found = _applied(graph)
-    known = frozenset(LEVELS.values())
-    for one in graph:
-        if "level" in one.attrs and (level := str(one.attrs["level"])) in known:
-            found[one.id] = level
+    stated = _levels_of_stereotypes(graph)
+    names = frozenset(LEVELS.values())
+    for element in graph:
+        if "level" in element.attrs and (level := str(element.attrs["level"])) in names:
+            stated[element.id] = level
     roots = graph.roots() if levels else []
     for name, level in levels.items():
-        found.update((one.id, level) for one in _named(graph, name, roots, segment) if level)
-    found.update((id, level) for id, level in levels.items() if level and id in graph)
-    return found
+        stated.update(
+            (element.id, level) for element in _find_named(graph, name, roots, segment) if level
+        )
+    stated.update((id, level) for id, level in levels.items() if level and id in graph)
+    return stated
 
 
-def _applied(graph: Graph) -> dict[str, str]:
-    """Levels by id that follow from the stereotypes that are applied."""
+def _levels_of_stereotypes(graph: Graph) -> dict[str, str]:
+    """Return levels by id that follow from the applied stereotypes."""
     names: dict[str, set[str]] = {}
     for application in graph.of_kind(Kind.APPLICATION):
-        for one in graph.targets(application, Edge.SUBJECT):
-            names.setdefault(one.id, set()).update(stereotypes(application))
+        for subject in graph.targets(application, Edge.SUBJECT):
+            names.setdefault(subject.id, set()).update(applied_stereotypes(application))
     levels = LEVELS.items()
-    found = (
-        (id, next((level for name, level in levels if name in own), ""))
-        for id, own in names.items()
+    stated = (
+        (id, next((level for name, level in levels if name in stereotypes), ""))
+        for id, stereotypes in names.items()
     )
-    return {id: level for id, level in found if level}
+    return {id: level for id, level in stated if level}
 
 
-def subjects(graph: Graph) -> Iterator[str]:
-    """Ids of what stereotypes are applied to."""
+def find_subjects(graph: Graph) -> Iterator[str]:
+    """Yield the ids of elements to which stereotypes are applied."""
     for application in graph.of_kind(Kind.APPLICATION):
-        yield from (one.id for one in graph.targets(application, Edge.SUBJECT))
+        yield from (subject.id for subject in graph.targets(application, Edge.SUBJECT))
 
 
-def stereotypes(application: Element) -> tuple[str, ...]:
-    """Stereotypes that are applied; what another profile calls like ours only by its general."""
+def applied_stereotypes(application: Element) -> tuple[str, ...]:
+    """Return the names of the applied stereotype and its generals.
+
+    A stereotype of another profile that shares a name with ours counts only through its generals.
+    """
     names = query.lineage(application)
     is_ours = application.attrs.get("namespace") in (NAMESPACE, None)
     return names if is_ours or len(names) > 1 else ()
 
 
-def _named(
+def _find_named(
     graph: Graph, name: str, siblings: list[Element], segment: Callable[[Element], str]
 ) -> Iterator[Element]:
-    """From the top down: only what the name begins with is looked into."""
-    for one in siblings:
-        part = segment(one)
+    """Yield the elements of a qualified name. Only subtrees whose name is a prefix are searched."""
+    for element in siblings:
+        part = segment(element)
         if name == part:
-            yield one
+            yield element
         elif name.startswith(f"{part}::"):
-            yield from _named(graph, name[len(part) + 2 :], graph.owned(one), segment)
+            yield from _find_named(graph, name[len(part) + 2 :], graph.owned(element), segment)
 
 
-def followers(graph: Graph, first: Iterable[str]) -> set[str]:
-    """Ids of these elements, and of all that may have a level because one of them has it."""
-    waiting = [graph[id] for id in first]
-    found = {one.id for one in waiting}
-    while waiting:
-        one = waiting.pop()
-        users = (user for edge in _FOLLOWED for user in graph.sources(one, edge))
-        new = [user for user in users if user.id not in found]
-        found.update(user.id for user in new)
-        waiting += new
-    return found
+def find_followers(graph: Graph, first: Iterable[str]) -> set[str]:
+    """Return the ids of elements, and of all that may take their level over from one of them."""
+    worklist = [graph[id] for id in first]
+    reached = {element.id for element in worklist}
+    while worklist:
+        element = worklist.pop()
+        users = (user for edge in _FOLLOWED for user in graph.sources(element, edge))
+        new = [user for user in users if user.id not in reached]
+        reached.update(user.id for user in new)
+        worklist += new
+    return reached
 
 
 class Tags(Struct, frozen=True):
-    """Tagged values as the types that the profile gives them; None or empty when absent."""
+    """Tagged values with the types that the profile gives them; None or empty if absent."""
 
     attrs: Mapping[str, object]
 
     def text(self, name: str) -> str:
-        """Text, or the empty string."""
+        """Return the text, or the empty string."""
         return next(iter(self.texts(name)), "")
 
     def texts(self, name: str) -> list[str]:
-        """All texts; a list of ids in one attribute is split."""
+        """Return all texts of a tag."""
         value = self.attrs.get(f"tag.{name}")
         if value is None:
             return []
-        return [str(one) for one in value] if isinstance(value, tuple) else [str(value)]
+        return [str(item) for item in value] if isinstance(value, tuple) else [str(value)]
 
     def ids(self, name: str) -> list[str]:
-        """References: ids of elements, or names."""
-        return [one for text in self.texts(name) for one in text.split()]
+        """Return references: ids of elements, or names. Several ids in one text are split."""
+        return [id for text in self.texts(name) for id in text.split()]
 
     def flag(self, name: str) -> bool | None:
-        """Truth value."""
+        """Return a truth value."""
         text = self.text(name).lower()
         return None if not text else text == "true"
 
     def amount(self, name: str) -> int | float | None:
-        """A number that is not negative; None when there is none or it cannot be read."""
-        value = number(self.text(name))
+        """Return a number that is not negative, or None."""
+        value = read_number(self.text(name))
         return value if value is not None and value >= 0 else None
 
     def integer(self, name: str) -> int | None:
-        """A whole number that is not negative."""
+        """Return a whole number that is not negative, or None."""
         value = self.amount(name)
         return int(value) if value is not None and value == int(value) else None
 
     def endpoint(self, name: str) -> str | None:
-        """An OPC UA address."""
+        """Return an OPC UA address, or None."""
         text = self.text(name)
         return text if text.startswith("opc.tcp://") else None
 
     def call_kind(self, name: str) -> str | None:
-        """What is done with an OPC UA node; a call when nothing is said."""
+        """Return the use of an OPC UA node; ``call`` if the tag is absent."""
         text = self.text(name) or "call"
         return text if text in CALL_KINDS else None
 
     def material_use(self, name: str) -> str | None:
-        """How a material is used."""
+        """Return how a material is used, or None."""
         text = self.text(name)
         return text if text in MATERIAL_USES else None
 
     def range(self, low: str, high: str) -> Range | None:
-        """Two numbers; one of them stands for both."""
+        """Return the range of two tags; one number stands for both bounds."""
 
         values = [v for v in (self.amount(low), self.amount(high)) if v is not None]
         return Range(values[0], values[-1]) if values else None
 
 
-def number(text: str) -> int | float | None:
-    """The number that a text is; whole numbers are integers."""
+def read_number(text: str) -> int | float | None:
+    """Return the number of a text, or None; whole numbers become integers."""
     try:
         value = float(text)
     except ValueError:

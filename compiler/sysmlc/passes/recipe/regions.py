@@ -15,12 +15,12 @@ def is_for_each(node: Element) -> bool:
 
 
 def is_block(graph: Graph, node: Element) -> bool:
-    """Whether a node only holds steps: a structured activity node that repeats nothing."""
+    """Whether a node only groups steps: a structured activity node that repeats nothing."""
     if node.kind is not Kind.STRUCTURED or node.subkind not in ("", "structured"):
         return False
-    inner = steps_in(graph, node)
-    forks = any(one.subkind == "fork" for one in inner)
-    return bool(inner) and not forks and len(entries(graph, node)) == 1
+    steps = list_steps(graph, node)
+    forks = any(step.subkind == "fork" for step in steps)
+    return bool(steps) and not forks and len(find_entries(graph, node)) == 1
 
 
 def is_inlined(graph: Graph, node: Element) -> bool:
@@ -28,43 +28,43 @@ def is_inlined(graph: Graph, node: Element) -> bool:
     return node.kind is Kind.STRUCTURED and (is_for_each(node) or is_block(graph, node))
 
 
-def contents(graph: Graph, activity: Element) -> Iterator[Element]:
-    """What an activity owns, and behind each inlined node what that owns."""
-    for one in graph.owned(activity):
-        yield one
-        if is_inlined(graph, one):
-            yield from contents(graph, one)
+def list_contents(graph: Graph, activity: Element) -> Iterator[Element]:
+    """Yield the elements that an activity owns; each inlined node is followed by its content."""
+    for element in graph.owned(activity):
+        yield element
+        if is_inlined(graph, element):
+            yield from list_contents(graph, element)
 
 
-def steps_in(graph: Graph, region: Element) -> list[Element]:
-    """The nodes that a structured node owns directly, those of data aside."""
-    return [one for one in graph.owned(region) if one.kind in _STEPS]
+def list_steps(graph: Graph, region: Element) -> list[Element]:
+    """Return the nodes that a structured node owns directly, without object nodes."""
+    return [element for element in graph.owned(region) if element.kind in _STEPS]
 
 
-def entries(graph: Graph, region: Element) -> list[Element]:
-    """The nodes with which the content begins: an initial node, else what nothing precedes."""
-    inner = steps_in(graph, region)
-    after = {target for _, target in _order(graph, region)}
-    starts = [one for one in inner if one.subkind == "initial"]
-    return starts or [one for one in inner if one.id not in after]
+def find_entries(graph: Graph, region: Element) -> list[Element]:
+    """Return the first nodes of the content: initial nodes, else nodes without predecessor."""
+    steps = list_steps(graph, region)
+    targets = {target for _, target in _list_successions(graph, region)}
+    starts = [step for step in steps if step.subkind == "initial"]
+    return starts or [step for step in steps if step.id not in targets]
 
 
-def exits(graph: Graph, region: Element) -> list[Element]:
-    """The nodes with which the content ends: final nodes, and what nothing follows."""
-    before = {source for source, _ in _order(graph, region)}
-    inner = steps_in(graph, region)
-    return [one for one in inner if one.subkind in _ENDS or one.id not in before]
+def find_exits(graph: Graph, region: Element) -> list[Element]:
+    """Return the last nodes of the content: final nodes, and nodes without successor."""
+    sources = {source for source, _ in _list_successions(graph, region)}
+    steps = list_steps(graph, region)
+    return [step for step in steps if step.subkind in _ENDS or step.id not in sources]
 
 
-def _order(graph: Graph, region: Element) -> Iterator[tuple[str, str]]:
-    """Which node of the content leads to which."""
+def _list_successions(graph: Graph, region: Element) -> Iterator[tuple[str, str]]:
+    """Yield the pairs of consecutive nodes of the content."""
     for flow in graph.owned(region):
         if flow.kind in (Kind.CONTROL_FLOW, Kind.OBJECT_FLOW):
             source, target = query.flow_source(graph, flow), query.flow_target(graph, flow)
             if source is not None and target is not None:
-                yield _step(graph, source).id, _step(graph, target).id
+                yield _step_of_end(graph, source).id, _step_of_end(graph, target).id
 
 
-def _step(graph: Graph, end: Element) -> Element:
-    above = graph.owner(end)
-    return above if end.kind is Kind.PIN and above is not None else end
+def _step_of_end(graph: Graph, end: Element) -> Element:
+    owner = graph.owner(end)
+    return owner if end.kind is Kind.PIN and owner is not None else end

@@ -1,13 +1,13 @@
-"""What the recipe pass decided or left out, so that nothing happens in silence."""
+"""Reports of the recipe pass: unreadable tags, levels by position, content that is left out."""
 
 from collections.abc import Callable, Iterator
 
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Element, Kind
 from sysmlc.passes.recipe.context import Context
-from sysmlc.passes.recipe.graphs import refined
+from sysmlc.passes.recipe.graphs import refine
 from sysmlc.passes.recipe.profile import NAMESPACE, Tags
-from sysmlc.passes.recipe.tasks import steps
+from sysmlc.passes.recipe.tasks import list_steps
 from sysmlc.recipe.model import Model
 
 UNREADABLE_TAG = rule(
@@ -34,7 +34,7 @@ _EXPECTED: dict[str, _Reading] = {
 
 def check_tags(context: Context, sink: Sink) -> None:
     """Report tagged values that are left out because they cannot be read."""
-    for application, stereotype in _ours(context):
+    for application, stereotype in _list_applications(context):
         tags = Tags(application.attrs)
         for name, (expected, reading) in _EXPECTED.items():
             value = tags.text(name)
@@ -52,10 +52,11 @@ def check_tags(context: Context, sink: Sink) -> None:
                 )
 
 
-def _ours(context: Context) -> Iterator[tuple[Element, str]]:
-    for one in context.graph.of_kind(Kind.APPLICATION):
-        if one.attrs.get("namespace") == NAMESPACE:
-            yield one, str(one.attrs.get("stereotype", ""))
+def _list_applications(context: Context) -> Iterator[tuple[Element, str]]:
+    """Yield the applications of stereotypes of the shipped profile."""
+    for application in context.graph.of_kind(Kind.APPLICATION):
+        if application.attrs.get("namespace") == NAMESPACE:
+            yield application, str(application.attrs.get("stereotype", ""))
 
 
 BY_POSITION = rule(
@@ -88,24 +89,24 @@ SAME_NAME = rule(
 )
 
 
-def remark(context: Context, model: Model, sink: Sink) -> None:
-    """Report what was decided by position, left out, or looks alike."""
+def report_decisions(context: Context, model: Model, sink: Sink) -> None:
+    """Report levels that follow from positions, content that is left out, and equal names."""
     recipe = context.graph[model.recipe.element]
-    _tasks(context, recipe, sink)
-    graphs = [(one, "task") for one in model.service_graphs]
-    graphs += [(one, "service") for one in model.function_graphs]
+    _report_tasks(context, recipe, sink)
+    graphs = [(flow_graph, "task") for flow_graph in model.service_graphs]
+    graphs += [(flow_graph, "service") for flow_graph in model.function_graphs]
     for graph, inside in graphs:
         activity = context.graph[graph.element]
-        for id, level in refined(context, activity, inside).remarks:
-            _step(context, activity, context.graph[id], level, sink)
+        for id, level in refine(context, activity, inside).remarks:
+            _report_step(context, activity, context.graph[id], level, sink)
 
 
-def _tasks(context: Context, recipe: Element, sink: Sink) -> None:
-    for step in steps(context, recipe):
+def _report_tasks(context: Context, recipe: Element, sink: Sink) -> None:
+    for step in list_steps(context, recipe):
         if not context.level(step.node):
-            _by_position(context, step.definition or step.node, "task", recipe, sink)
-        for other in () if step.definition else _namesakes(context, step.node):
-            names = context.name(step.node), context.name(other)
+            _report_by_position(context, step.definition or step.node, "task", recipe, sink)
+        for namesake in () if step.definition else _find_namesakes(context, step.node):
+            names = context.name(step.node), context.name(namesake)
             subject = context.graph.subject(step.node)
             sink.report(SAME_NAME, subject, element=names[0], other=names[1])
     for node in context.nodes(recipe):
@@ -115,22 +116,24 @@ def _tasks(context: Context, recipe: Element, sink: Sink) -> None:
             sink.report(CHOICE_OF_TASKS, subject, decision=names[0], recipe=names[1])
 
 
-def _namesakes(context: Context, node: Element) -> Iterator[Element]:
+def _find_namesakes(context: Context, node: Element) -> Iterator[Element]:
     return (
-        one
-        for one in context.graph.of_kind(Kind.ACTIVITY)
-        if node.name and one.name == node.name and not one.attrs.get("external")
+        activity
+        for activity in context.graph.of_kind(Kind.ACTIVITY)
+        if node.name and activity.name == node.name and not activity.attrs.get("external")
     )
 
 
-def _step(context: Context, activity: Element, found: Element, level: str, sink: Sink) -> None:
+def _report_step(
+    context: Context, activity: Element, element: Element, level: str, sink: Sink
+) -> None:
     if level:
-        _by_position(context, found, level, activity, sink)
+        _report_by_position(context, element, level, activity, sink)
     else:
-        sink.report(STRUCTURED, context.graph.subject(found), element=context.name(found))
+        sink.report(STRUCTURED, context.graph.subject(element), element=context.name(element))
 
 
-def _by_position(
+def _report_by_position(
     context: Context, element: Element, level: str, caller: Element, sink: Sink
 ) -> None:
     names = context.name(element), context.name(caller)

@@ -7,56 +7,56 @@ from msgspec import Struct
 from sysmlc.ir import Element, Kind, query
 from sysmlc.passes.recipe.context import Context
 from sysmlc.passes.recipe.data import Data
-from sysmlc.passes.recipe.expressions import optional
+from sysmlc.passes.recipe.expressions import read_optional
 from sysmlc.passes.recipe.machines import (
     Relation,
-    by_partition,
-    by_pins,
-    by_relation,
-    machine_of,
-    modes,
+    build_modes,
+    find_machine,
+    relations_by_dependency,
+    relations_by_partition,
+    relations_by_pins,
 )
-from sysmlc.passes.recipe.nodes import activity_flows, flow_ends, refinement
-from sysmlc.passes.recipe.profile import number
+from sysmlc.passes.recipe.nodes import find_flow_ends, find_refinement, list_flows
+from sysmlc.passes.recipe.profile import read_number
 from sysmlc.recipe.model import MaterialUse, Task
 
 
 class Step(Struct, frozen=True):
-    """A task node of a recipe, what defines it, and the activity that refines it."""
+    """A task node of a recipe, its definition, and the activity that refines it."""
 
     node: Element
     definition: Element | None
     refinement: Element | None
 
 
-def steps(context: Context, recipe: Element) -> list[Step]:
-    """The task nodes of a recipe, in order; what a recipe calls is a task."""
-    found = []
+def list_steps(context: Context, recipe: Element) -> list[Step]:
+    """Return the task nodes of a recipe, in order. An element that a recipe calls is a task."""
+    steps = []
     for node in context.nodes(recipe):
         calls = node.kind is Kind.ACTION and node.subkind in ("call-behavior", "call-operation")
         level = context.level(node)
         if level == "task" or (calls and not level):
             definition = context.definition(node)
-            found.append(Step(node, definition, refinement(context, definition)))
-    return found
+            steps.append(Step(node, definition, find_refinement(context, definition)))
+    return steps
 
 
-def task(context: Context, recipe: Element, step: Step, data: Data) -> Task:
-    """One task node as a value."""
+def build_task(context: Context, recipe: Element, step: Step, data: Data) -> Task:
+    """Return one task node as a value."""
     holder = step.definition or step.node
-    source = step.node if context.applied(step.node, "Task") else holder
+    source = step.node if context.find_application(step.node, "Task") else holder
     tags = context.tags(source, "Task")
     return Task(
         context.name(step.node),
         step.node.name or holder.name,
         tags.integer("maxDuration"),
-        material_uses(context, recipe, step),
-        modes(context, _relations(context, recipe, step)),
+        build_material_uses(context, recipe, step),
+        build_modes(context, _find_relations(context, recipe, step)),
         "" if step.refinement is None else context.name(step.refinement),
-        optional(tags.text("pre")),
-        optional(tags.text("post")),
-        data.bind(step.node),
-        data.assign(step.node),
+        read_optional(tags.text("pre")),
+        read_optional(tags.text("post")),
+        data.bind_inputs(step.node),
+        data.assign_outputs(step.node),
         bool(tags.flag("interruptible")),
         bool(tags.flag("noWait")),
         None,
@@ -67,30 +67,33 @@ def task(context: Context, recipe: Element, step: Step, data: Data) -> Task:
 # -- machines ----------------------------------------------------------------------------------
 
 
-def _relations(context: Context, recipe: Element, step: Step) -> Iterator[Relation]:
-    """Relations to machines on the node itself; when it has none, those of its definition."""
-    own = [*_by_flow(context, recipe, step.node), *by_relation(context, step.node)]
-    own += by_partition(context, step.node)
-    if not own and step.definition is not None:
-        own = [*by_relation(context, step.definition)]
-    if not own:
-        own = [*by_pins(context, step.node)]
-    yield from own
+def _find_relations(context: Context, recipe: Element, step: Step) -> Iterator[Relation]:
+    """Yield relations to machines of the node; without any, those of its definition."""
+    relations = [
+        *_relations_by_flow(context, recipe, step.node),
+        *relations_by_dependency(context, step.node),
+    ]
+    relations += relations_by_partition(context, step.node)
+    if not relations and step.definition is not None:
+        relations = [*relations_by_dependency(context, step.definition)]
+    if not relations:
+        relations = [*relations_by_pins(context, step.node)]
+    yield from relations
 
 
-def _by_flow(context: Context, recipe: Element, node: Element) -> Iterator[Relation]:
-    for flow, other in _adjacent(context, recipe, node):
-        machine = machine_of(context, other)
+def _relations_by_flow(context: Context, recipe: Element, node: Element) -> Iterator[Relation]:
+    for flow, neighbour in _list_adjacent(context, recipe, node):
+        machine = find_machine(context, neighbour)
         if machine is not None:
             yield Relation(flow, (machine,))
 
 
-def _adjacent(
+def _list_adjacent(
     context: Context, recipe: Element, node: Element
 ) -> Iterator[tuple[Element, Element]]:
-    """Flows at a node, each with the node at its other end."""
-    for flow in activity_flows(context, recipe):
-        source, target = flow_ends(context, flow)
+    """Yield the flows at a node, each with the node at its other end."""
+    for flow in list_flows(context, recipe):
+        source, target = find_flow_ends(context, flow)
         if target is node and source is not None:
             yield flow, source
         elif source is node and target is not None:
@@ -98,18 +101,20 @@ def _adjacent(
 
 
 def is_machine_flow(context: Context, flow: Element) -> bool:
-    """Whether a flow only says which machine a task needs."""
-    return any(machine_of(context, end) is not None for end in flow_ends(context, flow))
+    """Whether a flow only states which machine a task needs."""
+    return any(find_machine(context, end) is not None for end in find_flow_ends(context, flow))
 
 
 # -- materials ---------------------------------------------------------------------------------
 
 
-def material_uses(context: Context, recipe: Element, step: Step) -> tuple[MaterialUse, ...]:
-    """Materials of a task by the direction of their flows; in and out again is carried."""
+def build_material_uses(context: Context, recipe: Element, step: Step) -> tuple[MaterialUse, ...]:
+    """Return the materials of a task by the direction of their flows; in and out again is
+    carried.
+    """
     amounts: dict[tuple[str, str], float] = {}
-    for flow in activity_flows(context, recipe):
-        for material, use, quantity in _use(context, flow, step):
+    for flow in list_flows(context, recipe):
+        for material, use, quantity in _read_use(context, flow, step):
             key = (context.name(material), use)
             amounts[key] = amounts.get(key, 0) + quantity
     for name in {name for name, _ in amounts}:
@@ -122,25 +127,31 @@ def material_uses(context: Context, recipe: Element, step: Step) -> tuple[Materi
     )
 
 
-def _use(context: Context, flow: Element, step: Step) -> Iterator[tuple[Element, str, float]]:
-    source, target = flow_ends(context, flow)
+def _read_use(context: Context, flow: Element, step: Step) -> Iterator[tuple[Element, str, float]]:
+    source, target = find_flow_ends(context, flow)
     if flow.kind is not Kind.OBJECT_FLOW or step.node not in (source, target):
         return
-    material = material_of(context, flow)
+    material = find_material(context, flow)
     if material is None:
         return
-    other = source if target is step.node else target
-    holders = [one for one in (flow, other) if one and context.applied(one, "Material")]
-    tags = [context.tags(one, "Material") for one in holders]
-    quantity = next((q for one in tags if (q := one.amount("quantity"))), None)
-    use = next((u for one in tags if (u := one.material_use("use"))), "")
+    neighbour = source if target is step.node else target
+    holders = [
+        holder
+        for holder in (flow, neighbour)
+        if holder and context.find_application(holder, "Material")
+    ]
+    tags = [context.tags(holder, "Material") for holder in holders]
+    quantity = next((amount for holder in tags if (amount := holder.amount("quantity"))), None)
+    use = next((use for holder in tags if (use := holder.material_use("use"))), "")
     default = "consumed" if target is step.node else "produced"
-    weight = number(str(flow.attrs.get("weight", "")))
+    weight = read_number(str(flow.attrs.get("weight", "")))
     yield material, use or default, quantity if quantity is not None else weight or 1
 
 
-def material_of(context: Context, flow: Element) -> Element | None:
-    """The material that a flow carries: what is typed at one of its ends."""
+def find_material(context: Context, flow: Element) -> Element | None:
+    """Return the material that a flow carries: the type, or the element itself, at one of its
+    ends.
+    """
     graph = context.graph
     ends = (query.flow_source(graph, flow), query.flow_target(graph, flow))
     for end in ends:
@@ -156,33 +167,37 @@ def material_of(context: Context, flow: Element) -> Element | None:
 # -- order -------------------------------------------------------------------------------------
 
 
-def precedence(context: Context, recipe: Element, found: list[Step]) -> tuple[tuple[str, str], ...]:
-    """Pairs of tasks, the first done before the second: along control and material flow."""
+def find_precedence(
+    context: Context, recipe: Element, steps: list[Step]
+) -> tuple[tuple[str, str], ...]:
+    """Return the pairs of tasks of which the first precedes the second, by control and material
+    flow.
+    """
     following: dict[str, list[Element]] = {}
-    for flow in activity_flows(context, recipe):
-        source, target = flow_ends(context, flow)
+    for flow in list_flows(context, recipe):
+        source, target = find_flow_ends(context, flow)
         if source is not None and target is not None and not is_machine_flow(context, flow):
             following.setdefault(source.id, []).append(target)
-    ids = {step.node.id for step in found}
+    ids = {step.node.id for step in steps}
     pairs = {
-        (context.name(step.node), context.name(after))
-        for step in found
-        for after in _next_tasks(step.node, following, ids)
+        (context.name(step.node), context.name(next_task))
+        for step in steps
+        for next_task in _find_next_tasks(step.node, following, ids)
     }
     return tuple(sorted(pairs))
 
 
-def _next_tasks(
+def _find_next_tasks(
     node: Element, following: dict[str, list[Element]], tasks: set[str]
 ) -> Iterator[Element]:
     seen: set[str] = set()
     stack = list(following.get(node.id, ()))
     while stack:
-        one = stack.pop()
-        if one.id in seen:
+        successor = stack.pop()
+        if successor.id in seen:
             continue
-        seen.add(one.id)
-        if one.id in tasks:
-            yield one
+        seen.add(successor.id)
+        if successor.id in tasks:
+            yield successor
         else:
-            stack.extend(following.get(one.id, ()))
+            stack.extend(following.get(successor.id, ()))
