@@ -13,7 +13,7 @@ def refined(sources, frontend=FRONTEND):
     """The graph of sources that a front end reads."""
     graph, sink = Graph(), Sink()
     frontend.read(sources, graph, sink, Coverage())
-    pipeline.pipeline(PASSES).run(graph, sink)
+    pipeline.build_pipeline(PASSES).run(graph, sink)
     return graph
 
 

@@ -161,7 +161,7 @@ def graph(corpus, name, has_snapshots=True):
     FRONTEND.read(
         sources if has_snapshots else split_file_parts(sources)[0], made, sink, Coverage()
     )
-    pipeline.pipeline(("resolve", "classify")).run(made, sink)
+    pipeline.build_pipeline(("resolve", "classify")).run(made, sink)
     return made
 
 

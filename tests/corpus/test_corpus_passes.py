@@ -29,9 +29,9 @@ def models() -> list[Path]:
 def test_model_passes_and_passing_again_changes_nothing(path):
     graph, sink = Graph(), Sink()
     FRONTEND.read(load(path, path.name), graph, sink, Coverage())
-    pipeline.pipeline(STRUCTURAL).run(graph, sink, verify_each=True)
+    pipeline.build_pipeline(STRUCTURAL).run(graph, sink, verify_each=True)
     once = print_text(graph)
-    pipeline.pipeline(STRUCTURAL).run(graph, Sink(), verify_each=True)
+    pipeline.build_pipeline(STRUCTURAL).run(graph, Sink(), verify_each=True)
     assert print_text(graph) == once
     assert not graph.pending
     assert [found.message for found in sink if found.rule.code in ("SM150", "SM151")] == []

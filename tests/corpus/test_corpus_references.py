@@ -83,7 +83,7 @@ def documents(corpus, features):
 def graph(path):
     made, sink = Graph(), Sink()
     FRONTEND.read(load(path, path.name), made, sink, Coverage())
-    pipeline.pipeline(("resolve", "classify")).run(made, sink)
+    pipeline.build_pipeline(("resolve", "classify")).run(made, sink)
     assert [f.message for f in sink if f.rule.code in ("SM150", "SM151")] == []
     return made
 

@@ -32,7 +32,7 @@ UNSAYABLE = {("Arrowhead-5.0.uml", "xmi"): "tag."}
 def graph(name, data):
     made, sink = Graph(), Sink()
     FRONTEND.read([Source(name, data)], made, sink, Coverage())
-    pipeline.pipeline(("resolve", "classify")).run(made, sink)
+    pipeline.build_pipeline(("resolve", "classify")).run(made, sink)
     return made
 
 

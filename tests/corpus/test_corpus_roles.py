@@ -95,7 +95,7 @@ def compiled(*paths: Path) -> tuple[Graph, Sink]:
     sources = [source for path in paths for source in load(path, path.name)]
     FRONTEND.read(sources, graph, sink, Coverage())
     names = ("resolve", "inherit", "classify", "ports", "flows", "behaviours")
-    pipeline.pipeline(names).run(graph, sink, verify_each=True)
+    pipeline.build_pipeline(names).run(graph, sink, verify_each=True)
     return graph, sink
 
 

@@ -96,7 +96,9 @@ def compiled(corpus):
             graph, sink = Graph(), Sink()
             path = corpus / "xmi" / name
             FRONTEND.read(load(path, path.name), graph, sink, Coverage())
-            pipeline.pipeline(("resolve", "inherit", "classify", "ports", "flows")).run(graph, sink)
+            pipeline.build_pipeline(("resolve", "inherit", "classify", "ports", "flows")).run(
+                graph, sink
+            )
             known[name] = graph
         return known[name]
 

@@ -46,7 +46,7 @@ def text_of(graph):
 def read(text):
     graph = Graph()
     FRONTEND.read([Source("model.sysml", text.encode())], graph, Sink(), Coverage())
-    pipeline.pipeline(PASSES).run(graph, Sink())
+    pipeline.build_pipeline(PASSES).run(graph, Sink())
     return graph
 
 

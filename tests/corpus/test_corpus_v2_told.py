@@ -92,7 +92,7 @@ def rules_of(text):
     """Codes of errors and warnings about a text."""
     graph, sink = Graph(), Sink()
     FRONTEND.read([Source("model.sysml", text.encode())], graph, sink, Coverage())
-    pipeline.pipeline(("resolve", "inherit", "classify", "ports", "flows")).run(graph, sink)
+    pipeline.build_pipeline(("resolve", "inherit", "classify", "ports", "flows")).run(graph, sink)
     return {one.rule.code for one in sink if one.severity is not Severity.INFO}
 
 

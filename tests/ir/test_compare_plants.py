@@ -38,7 +38,7 @@ ARM = 'ID="arm" RefBaseSystemUnitPath="Lib/Arm">'
 def read(text):
     graph, sink = Graph(), Sink()
     FRONTEND.read([Source("plant.aml", text.encode())], graph, sink, Coverage())
-    pipeline.pipeline(["resolve"]).run(graph, sink)
+    pipeline.build_pipeline(["resolve"]).run(graph, sink)
     return graph
 
 

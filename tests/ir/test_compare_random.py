@@ -32,7 +32,7 @@ def read(form, seed):
     graph, sink = Graph(), Sink()
     source = Source(f"model.{form}", document(form, seed))
     READERS[form][0].read([source], graph, sink, Coverage())
-    pipeline.pipeline(["resolve"]).run(graph, sink)
+    pipeline.build_pipeline(["resolve"]).run(graph, sink)
     return graph
 
 

@@ -27,7 +27,7 @@ def refined(text: str, until: str) -> tuple[Graph, Sink]:
 def refine(graph: Graph, sink: Sink, until: str) -> None:
     """Run the structural passes up to and with ``until``."""
     names = STRUCTURAL[: STRUCTURAL.index(until) + 1]
-    pipeline.pipeline(names).run(graph, sink, verify_each=True)
+    pipeline.build_pipeline(names).run(graph, sink, verify_each=True)
 
 
 def before(text: str, name: str) -> str:

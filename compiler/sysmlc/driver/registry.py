@@ -99,7 +99,7 @@ def load_passes(options: Mapping[str, Mapping[str, object]]) -> list[Pass]:
             raise ConfigError(f"passes.{name}: there is no such pass; {advice}")
     loaded = [pipeline.load(name) for name in pipeline.NAMES]
     loaded += [_load_pass(entry) for entry in plug_ins.values()]
-    return pipeline.ordered(_set_options(step, options.get(step.name, {})) for step in loaded)
+    return pipeline.sort_passes(_set_options(step, options.get(step.name, {})) for step in loaded)
 
 
 def _load_pass(entry: EntryPoint) -> Pass:

@@ -1,4 +1,4 @@
-"""What a pass is: options as fields, a name, its predecessors, and ``run``."""
+"""The interface of a pass: options as fields, a name, its predecessors, and ``run``."""
 
 from typing import ClassVar, Protocol
 
@@ -7,13 +7,13 @@ from sysmlc.ir import Graph
 
 
 class Pass(Protocol):
-    """One refinement of the graph: valid before and after, and twice equals once.
+    """A refinement of the graph. The graph is valid before and after; running it twice equals once.
 
-    A pass is a frozen dataclass; its fields are its options.
+    A pass is a frozen value; its fields are its options.
     """
 
     name: ClassVar[str]
     after: ClassVar[tuple[str, ...]]
 
     def run(self, graph: Graph, sink: Sink) -> None:
-        """Refine the graph in place and report what is wrong with the model."""
+        """Refine the graph in place and report faults of the model."""

@@ -83,16 +83,15 @@ class Behaviours(Struct, frozen=True):
     """Link operations to the methods they inherit, and check calls.
 
     Assumes effective features. Guarantees: an operation that redefines another one and has no
-    method of its own has the other's; every call, trigger and state behaviour leads to
-    something of the right kind, or is reported. Which component a behaviour belongs to is
-    ``ir.query.component_name``.
+    method of its own has the other's; every call, trigger and state behaviour leads to an element
+    of the right kind, or is reported. The component of a behaviour is ``ir.query.component_name``.
     """
 
     name: ClassVar[str] = "behaviours"
     after: ClassVar[tuple[str, ...]] = ("inherit", "classify")
 
     def run(self, graph: Graph, sink: Sink) -> None:
-        """Link in place and report; see the class."""
+        """Link methods in place and report; see the class."""
         for operation in graph.of_kind(Kind.OPERATION):
             _inherit_method(graph, operation)
             _check_method(graph, sink, operation)
@@ -109,17 +108,19 @@ class Behaviours(Struct, frozen=True):
 
 
 def _inherit_method(graph: Graph, operation: Element) -> None:
-    for one in (operation, *redefined_features(graph, operation)):
-        methods = graph.targets(one, Edge.METHOD)
+    for candidate in (operation, *redefined(graph, operation)):
+        methods = graph.targets(candidate, Edge.METHOD)
         if methods:
-            if one is not operation or not _is_alone(graph, operation, methods):
+            if candidate is not operation or not _is_only_user(graph, operation, methods):
                 graph.replace_targets(Edge.METHOD, operation, methods)
             return
 
 
-def _is_alone(graph: Graph, operation: Element, methods: list[Element]) -> bool:
-    """Whether nobody else has the methods, so that to link them again would change no order."""
-    return all(graph.sources(one, Edge.METHOD) == [operation] for one in methods)
+def _is_only_user(graph: Graph, operation: Element, methods: list[Element]) -> bool:
+    """Whether no other operation has the methods, so that linking them again would change no
+    order.
+    """
+    return all(graph.sources(method, Edge.METHOD) == [operation] for method in methods)
 
 
 def _check_method(graph: Graph, sink: Sink, operation: Element) -> None:
@@ -127,21 +128,27 @@ def _check_method(graph: Graph, sink: Sink, operation: Element) -> None:
     if not methods and operation.attrs.get("abstract") is None:
         _suggest_method(graph, sink, operation)
     for method in methods:
-        own, other = (_signature(graph, one) for one in (operation, method))
-        if own != other and not method.attrs.get("external"):
+        parameters_, method_parameters = (
+            _parameter_directions(graph, element) for element in (operation, method)
+        )
+        if parameters_ != method_parameters and not method.attrs.get("external"):
             sink.report(
                 METHOD_PARAMETERS,
                 graph.subject(operation),
                 operation=graph.qualified_name(operation),
-                own=", ".join(own),
+                own=", ".join(parameters_),
                 method=graph.qualified_name(method),
-                other=", ".join(other),
+                other=", ".join(method_parameters),
             )
 
 
-def _signature(graph: Graph, owner: Element) -> list[str]:
-    """Directions of the parameters in order, results last: tools put them at either end."""
-    directions = [str(one.attrs.get("direction", "in")) for one in parameters(graph, owner)]
+def _parameter_directions(graph: Graph, owner: Element) -> list[str]:
+    """Return the directions of the parameters in order, results last: tools put them at either
+    end.
+    """
+    directions = [
+        str(parameter.attrs.get("direction", "in")) for parameter in parameters(graph, owner)
+    ]
     return sorted(directions, key=lambda direction: direction == "return")
 
 
@@ -149,9 +156,9 @@ def _suggest_method(graph: Graph, sink: Sink, operation: Element) -> None:
     owner = graph.owner(operation)
     if owner is None or "method" in _unresolved(operation):
         return
-    for one in graph.owned(owner):
-        is_free = one.kind in BEHAVIORS and graph.source(one, Edge.METHOD) is None
-        if is_free and one.name == operation.name and one.name:
+    for behavior in graph.owned(owner):
+        is_unused = behavior.kind in BEHAVIORS and graph.source(behavior, Edge.METHOD) is None
+        if is_unused and behavior.name == operation.name and behavior.name:
             sink.report(
                 METHOD_BY_NAME,
                 graph.subject(operation),
@@ -176,26 +183,26 @@ def _check_call(graph: Graph, sink: Sink, action: Element) -> None:
 
 
 def _check_pins(graph: Graph, sink: Sink, action: Element, called: Element) -> None:
-    pins = [one for one in graph.owned(action) if one.kind is Kind.PIN]
-    pins = [one for one in pins if one.subkind not in _NO_ARGUMENT]
-    ins, outs = _wanted(graph, called)
+    pins = [pin for pin in graph.owned(action) if pin.kind is Kind.PIN]
+    pins = [pin for pin in pins if pin.subkind not in _NO_ARGUMENT]
+    ins, outs = _count_parameters(graph, called)
     for direction, wanted in (("in", ins), ("out", outs)):
-        given = sum(1 for one in pins if one.attrs.get("direction", "in") == direction)
-        if given != wanted:
+        count = sum(1 for pin in pins if pin.attrs.get("direction", "in") == direction)
+        if count != wanted:
             sink.report(
                 CALL_ARGUMENTS,
                 graph.subject(action),
                 action=graph.qualified_name(action),
-                pins=given,
+                pins=count,
                 direction=direction,
                 called=graph.qualified_name(called),
                 parameters=wanted,
             )
 
 
-def _wanted(graph: Graph, called: Element) -> tuple[int, int]:
+def _count_parameters(graph: Graph, called: Element) -> tuple[int, int]:
     if called.kind is Kind.SIGNAL:
-        return sum(1 for one in features(graph, called) if one.kind is Kind.PROPERTY), 0
+        return sum(1 for feature in features(graph, called) if feature.kind is Kind.PROPERTY), 0
     return len(parameters(graph, called, *_IN)), len(parameters(graph, called, *_OUT))
 
 
@@ -226,5 +233,5 @@ def _check_behavior(
 
 
 def _unresolved(element: Element) -> tuple[object, ...]:
-    known = element.attrs.get("unresolved")
-    return known if isinstance(known, tuple) else ()
+    unresolved = element.attrs.get("unresolved")
+    return unresolved if isinstance(unresolved, tuple) else ()

@@ -52,12 +52,12 @@ _RELATIONS = {Edge.REDEFINES: "redefines", Edge.SUBSETS: "subsets"}
 
 
 class Inherit(Struct, frozen=True):
-    """Give every classifier its effective features, and check generalization.
+    """Give every classifier its effective features, and check generalizations.
 
     Assumes resolved references. Guarantees ``feature`` edges from each classifier to its own
     properties, ports, operations and receptions and then to those of each general in turn, each
-    once, without what one of them redefines. Private features are among them, for instances
-    have them. Generalizations that close a circle are reported and give nothing.
+    once, without redefined ones. Private features are included, because instances have them.
+    Generalization cycles are reported and inherit nothing.
     """
 
     name: ClassVar[str] = "inherit"
@@ -66,10 +66,10 @@ class Inherit(Struct, frozen=True):
     def run(self, graph: Graph, sink: Sink) -> None:
         """Add the edges and report; see the class."""
         hierarchy = _Hierarchy(graph)
-        for circle in hierarchy.circles:
-            _report_circle(graph, sink, circle)
+        for cycle in hierarchy.circles:
+            _report_cycle(graph, sink, cycle)
         for classifier in graph.of_kind(*CLASSIFIERS):
-            features = hierarchy.features(classifier)
+            features = hierarchy.effective_features(classifier)
             if features != graph.targets(classifier, Edge.FEATURE):
                 graph.replace_targets(Edge.FEATURE, classifier, features)
             _check_generals(graph, sink, classifier)
@@ -79,7 +79,7 @@ class Inherit(Struct, frozen=True):
 
 
 class _Hierarchy:
-    """Generalization without its circles."""
+    """The generalization graph without its cycles."""
 
     def __init__(self, graph: Graph) -> None:
         self._graph = graph
@@ -87,64 +87,78 @@ class _Hierarchy:
         self.circles: list[list[Element]] = []
         self._features: dict[str, dict[Element, None]] = {}
         # Components come out general before specific: each is ready when it is needed.
-        for number, ids in enumerate(strongly_connected_components(_generals(graph))):
+        for number, ids in enumerate(strong_components(_index_generals(graph))):
             self._component.update(dict.fromkeys(ids, number))
-            self._enter(ids)
+            self._add_component(ids)
 
-    def _enter(self, ids: list[str]) -> None:
+    def _add_component(self, ids: list[str]) -> None:
         members = sorted((self._graph[id] for id in ids), key=_document_order)
         if len(members) > 1 or members[0] in self._graph.targets(members[0], Edge.SPECIALIZES):
             self.circles.append(members)
         for member in members:
             self._features[member.id] = self._collect_features(member)
 
-    def direct(self, classifier: Element) -> list[Element]:
-        """Generals of the classifier that do not lead back to it."""
-        own = self._component.get(classifier.id)
-        ups = self._graph.targets(classifier, Edge.SPECIALIZES)
-        return [up for up in ups if self._component[up.id] != own]
+    def direct_generals(self, classifier: Element) -> list[Element]:
+        """Return the generals of the classifier that do not lead back to it."""
+        component = self._component.get(classifier.id)
+        generals_ = self._graph.targets(classifier, Edge.SPECIALIZES)
+        return [general for general in generals_ if self._component[general.id] != component]
 
-    def features(self, classifier: Element) -> list[Element]:
-        """Effective features of the classifier."""
+    def effective_features(self, classifier: Element) -> list[Element]:
+        """Return the effective features of the classifier."""
         if classifier.id not in self._features:
             return _own_features(self._graph, classifier)
         return list(self._features[classifier.id])
 
-    def is_above(self, general: Element, classifier: Element) -> bool:
-        """Whether the classifier specialises the general one, directly or not, and not back."""
+    def is_general_of(self, general: Element, classifier: Element) -> bool:
+        """Whether *general* is a direct or indirect general of the classifier, outside any
+        cycle.
+        """
         same = self._component.get(general.id) == self._component.get(classifier.id)
         return not same and general in generals(self._graph, classifier)
 
     def _collect_features(self, classifier: Element) -> dict[Element, None]:
-        found = dict.fromkeys(_own_features(self._graph, classifier))
-        for up in self.direct(classifier):
-            found.update(self._features[up.id])
-        replaced = {old for one in found for old in self._replaced_by(one)}
-        return {one: None for one in found if one not in replaced}
+        features = dict.fromkeys(_own_features(self._graph, classifier))
+        for general in self.direct_generals(classifier):
+            features.update(self._features[general.id])
+        redefined = {
+            redefined_feature
+            for feature in features
+            for redefined_feature in self._redefined_by(feature)
+        }
+        return {feature: None for feature in features if feature not in redefined}
 
-    def _replaced_by(self, feature: Element) -> Iterator[Element]:
+    def _redefined_by(self, feature: Element) -> Iterator[Element]:
         owner = self._graph.owner(feature)
-        for old in self._graph.targets(feature, Edge.REDEFINES):
-            former = self._graph.owner(old)
-            if owner is not None and former is not None and self.is_above(former, owner):
-                yield old
+        for redefined in self._graph.targets(feature, Edge.REDEFINES):
+            former_owner = self._graph.owner(redefined)
+            if (
+                owner is not None
+                and former_owner is not None
+                and self.is_general_of(former_owner, owner)
+            ):
+                yield redefined
 
 
-def _generals(graph: Graph) -> dict[str, dict[str, None]]:
-    """Ids of the direct generals of what specialises or is specialised."""
-    found: dict[str, dict[str, None]] = {}
+def _index_generals(graph: Graph) -> dict[str, dict[str, None]]:
+    """Map each classifier in a generalization to the ids of its direct generals."""
+    generals: dict[str, dict[str, None]] = {}
     for _, specific, general in graph.edges(Edge.SPECIALIZES):
-        found.setdefault(specific, {})[general] = None
-        found.setdefault(general, {})
-    return found
+        generals.setdefault(specific, {})[general] = None
+        generals.setdefault(general, {})
+    return generals
 
 
 def _own_features(graph: Graph, classifier: Element) -> list[Element]:
     # The ends that an association owns are no features of it that its instances hold.
     if classifier.kind is Kind.ASSOCIATION:
         ends = graph.targets(classifier, Edge.END)
-        return [one for one in graph.owned(classifier) if one.kind in FEATURES and one not in ends]
-    return [one for one in graph.owned(classifier) if one.kind in FEATURES]
+        return [
+            element
+            for element in graph.owned(classifier)
+            if element.kind in FEATURES and element not in ends
+        ]
+    return [element for element in graph.owned(classifier) if element.kind in FEATURES]
 
 
 def _document_order(element: Element) -> tuple[str, int, str]:
@@ -154,11 +168,11 @@ def _document_order(element: Element) -> tuple[str, int, str]:
 # -- rules -------------------------------------------------------------------------------------
 
 
-def _report_circle(graph: Graph, sink: Sink, circle: list[Element]) -> None:
-    names = [graph.qualified_name(one) for one in (*circle, circle[0])]
+def _report_cycle(graph: Graph, sink: Sink, cycle: list[Element]) -> None:
+    names = [graph.qualified_name(classifier) for classifier in (*cycle, cycle[0])]
     sink.report(
         GENERALIZATION_CYCLE,
-        graph.subject(circle[0]),
+        graph.subject(cycle[0]),
         element=names[0],
         cycle=", ".join(f"'{name}'" for name in names),
     )
@@ -166,7 +180,7 @@ def _report_circle(graph: Graph, sink: Sink, circle: list[Element]) -> None:
 
 def _check_generals(graph: Graph, sink: Sink, classifier: Element) -> None:
     for general in graph.targets(classifier, Edge.SPECIALIZES):
-        if not general.attrs.get("external") and not _same_kind(classifier, general):
+        if not general.attrs.get("external") and not _is_same_kind(classifier, general):
             sink.report(
                 GENERALIZATION_KIND,
                 graph.subject(classifier),
@@ -177,7 +191,7 @@ def _check_generals(graph: Graph, sink: Sink, classifier: Element) -> None:
             )
 
 
-def _same_kind(specific: Element, general: Element) -> bool:
+def _is_same_kind(specific: Element, general: Element) -> bool:
     return specific.kind is general.kind or {specific.kind, general.kind} <= _CLASSES
 
 
@@ -186,7 +200,7 @@ def _check_relation(
 ) -> None:
     if other.attrs.get("external"):
         return
-    if not _may_relate(graph, edge, feature, other, hierarchy):
+    if not _can_relate(graph, edge, feature, other, hierarchy):
         sink.report(
             REDEFINES_STRANGER,
             graph.subject(feature),
@@ -200,10 +214,10 @@ def _check_relation(
 
 
 def _check_types(graph: Graph, sink: Sink, edge: Edge, feature: Element, other: Element) -> None:
-    own, general = (graph.target(one, Edge.TYPED_BY) for one in (feature, other))
-    if own is not None and own.subkind == "attribute":
+    type_, general = (graph.target(element, Edge.TYPED_BY) for element in (feature, other))
+    if type_ is not None and type_.subkind == "attribute":
         return  # In AutomationML an attribute with attributes replaces the inherited one wholly.
-    if own is None or general is None or _narrower(graph, own, general):
+    if type_ is None or general is None or _is_narrower(graph, type_, general):
         return
     sink.report(
         TYPE_NOT_NARROWER,
@@ -211,7 +225,7 @@ def _check_types(graph: Graph, sink: Sink, edge: Edge, feature: Element, other: 
         element=graph.qualified_name(feature),
         relation=_RELATIONS[edge],
         other=graph.qualified_name(other),
-        type=own.name,
+        type=type_.name,
         other_type=general.name,
     )
 
@@ -220,7 +234,7 @@ def _check_multiplicities(
     graph: Graph, sink: Sink, edge: Edge, feature: Element, other: Element
 ) -> None:
     type_ = graph.target(feature, Edge.TYPED_BY)
-    if not _wider(feature, other) or (type_ is not None and type_.subkind == "attribute"):
+    if not _allows_more(feature, other) or (type_ is not None and type_.subkind == "attribute"):
         return
     sink.report(
         MULTIPLICITY_WIDER,
@@ -233,37 +247,45 @@ def _check_multiplicities(
     )
 
 
-def _may_relate(
+def _can_relate(
     graph: Graph, edge: Edge, feature: Element, other: Element, hierarchy: _Hierarchy
 ) -> bool:
-    owner, former = graph.owner(feature), graph.owner(other)
-    if owner is None or former is None:
+    owner, other_owner = graph.owner(feature), graph.owner(other)
+    if owner is None or other_owner is None:
         return False
-    if hierarchy.is_above(former, owner) or _is_of_role(graph, owner, former, hierarchy):
+    if hierarchy.is_general_of(other_owner, owner) or _is_feature_of_role(
+        graph, owner, other_owner, hierarchy
+    ):
         return True
     # Association ends relate through the classifiers at the other side; that is not followed.
-    if Kind.ASSOCIATION in (owner.kind, former.kind) or owner.kind not in CLASSIFIERS:
+    if Kind.ASSOCIATION in (owner.kind, other_owner.kind) or owner.kind not in CLASSIFIERS:
         return True
-    return edge is Edge.SUBSETS and owner is former
+    return edge is Edge.SUBSETS and owner is other_owner
 
 
-def _is_of_role(graph: Graph, owner: Element, former: Element, hierarchy: _Hierarchy) -> bool:
+def _is_feature_of_role(
+    graph: Graph, owner: Element, role_class: Element, hierarchy: _Hierarchy
+) -> bool:
     """Whether the owner plays the role that has the feature: AutomationML maps one on the other."""
-    if former.subkind != "role-class":
+    if role_class.subkind != "role-class":
         return False
     family = (owner, *generals(graph, owner))
-    roles = [role for one in family for role in graph.targets(one, Edge.REALIZES)]
-    return any(role is former or hierarchy.is_above(former, role) for role in roles)
+    roles = [role for classifier in family for role in graph.targets(classifier, Edge.REALIZES)]
+    return any(role is role_class or hierarchy.is_general_of(role_class, role) for role in roles)
 
 
-def _narrower(graph: Graph, narrow: Element, wide: Element) -> bool:
+def _is_narrower(graph: Graph, narrow: Element, wide: Element) -> bool:
     above = [narrow, *generals(graph, narrow), wide]
     # What a stand-in specialises is unknown, so nothing is held against it.
-    return any(one.attrs.get("external") for one in above) or conforms(graph, narrow, wide)
+    return any(classifier.attrs.get("external") for classifier in above) or conforms(
+        graph, narrow, wide
+    )
 
 
-def _wider(feature: Element, other: Element) -> bool:
-    own, general = (bounds(one.attrs.get("multiplicity")) for one in (feature, other))
-    if own is None or general is None or general[1] is None:
+def _allows_more(feature: Element, other: Element) -> bool:
+    limits, other_limits = (
+        bounds(element.attrs.get("multiplicity")) for element in (feature, other)
+    )
+    if limits is None or other_limits is None or other_limits[1] is None:
         return False
-    return own[1] is None or own[1] > general[1]
+    return limits[1] is None or limits[1] > other_limits[1]

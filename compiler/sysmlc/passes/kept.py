@@ -1,4 +1,4 @@
-"""Pass ``kept``: a plant that was saved as UML gets back what UML has no words for."""
+"""Pass ``kept``: restores what UML cannot express, from the comment that back end ``uml`` wrote."""
 
 import json
 from collections.abc import Iterable, Iterator
@@ -19,8 +19,8 @@ UNREADABLE = rule(
 )
 
 
-class _Kept(NamedTuple):
-    """An element that is not in the model; ``href`` is where references to it lead outside."""
+class _StoredElement(NamedTuple):
+    """An element that is not in the model; ``href`` is the external target of references to it."""
 
     id: str
     kind: Kind
@@ -30,9 +30,9 @@ class _Kept(NamedTuple):
 
 
 class _Record(Struct, frozen=True):
-    """What the comment says (metamodels/sysmlc-kept.schema.json)."""
+    """The content of the comment (metamodels/sysmlc-kept.schema.json)."""
 
-    elements: list[_Kept]
+    elements: list[_StoredElement]
     attributes: dict[str, dict[str, AttrValue]]
     names: dict[str, str]
     owners: dict[str, str | None]
@@ -42,19 +42,19 @@ class _Record(Struct, frozen=True):
 
 
 class Kept(Struct, frozen=True):
-    """Restores what back end ``uml`` kept; what is no longer in the model is passed over."""
+    """Restore what back end ``uml`` stored; records of removed elements are ignored."""
 
     name: ClassVar[str] = "kept"
     after: ClassVar[tuple[str, ...]] = ("resolve",)
 
     def run(self, graph: Graph, sink: Sink) -> None:
-        """Restore and remove the comment."""
+        """Restore the elements and remove the comment."""
         for comment in graph.of_kind(Kind.COMMENT):
             # Whether a text begins so is no secret: one that does is never watched.
             body = dict.get(comment.attrs, "body")
             if isinstance(body, str) and body.startswith(PREFIX):
                 try:
-                    record = _read(json.loads(body.removeprefix(PREFIX)))
+                    record = _read_record(json.loads(body.removeprefix(PREFIX)))
                 except (ValueError, TypeError, KeyError, AttributeError):
                     sink.report(UNREADABLE, graph.subject(comment))
                 else:
@@ -65,38 +65,46 @@ class Kept(Struct, frozen=True):
 # -- reading -----------------------------------------------------------------------------------
 
 
-def _read(given: Any) -> _Record:  # noqa: ANN401 - JSON
-    """Raises ValueError, TypeError, KeyError or AttributeError for a damaged record."""
+def _read_record(data: Any) -> _Record:  # noqa: ANN401 - JSON
+    """Return the record. Raises ValueError, TypeError, KeyError or AttributeError if it is
+    damaged.
+    """
     return _Record(
         elements=[
-            _Kept(_text(id), Kind(kind), _text(name), _maybe(owner), _maybe(href))
-            for id, kind, name, owner, href in given["elements"]
+            _StoredElement(
+                _require_text(id),
+                Kind(kind),
+                _require_text(name),
+                _read_optional_text(owner),
+                _read_optional_text(href),
+            )
+            for id, kind, name, owner, href in data["elements"]
         ],
         attributes={
-            id: {_text(name): _value(value) for name, value in attrs.items()}
-            for id, attrs in given["attributes"].items()
+            id: {_require_text(name): _read_value(value) for name, value in attrs.items()}
+            for id, attrs in data["attributes"].items()
         },
-        names={id: _text(name) for id, name in given["names"].items()},
-        owners={id: _maybe(owner) for id, owner in given["owners"].items()},
-        edges=[(Edge(edge), _text(a), _text(b)) for edge, a, b in given["edges"]],
-        made=[_text(id) for id in given["made"]],
-        applied=[_text(id) for id in given["applied"]],
+        names={id: _require_text(name) for id, name in data["names"].items()},
+        owners={id: _read_optional_text(owner) for id, owner in data["owners"].items()},
+        edges=[(Edge(edge), _require_text(a), _require_text(b)) for edge, a, b in data["edges"]],
+        made=[_require_text(id) for id in data["made"]],
+        applied=[_require_text(id) for id in data["applied"]],
     )
 
 
-def _text(value: object) -> str:
+def _require_text(value: object) -> str:
     if isinstance(value, str):
         return value
     raise TypeError(value)
 
 
-def _maybe(value: object) -> str | None:
-    return None if value is None else _text(value)
+def _read_optional_text(value: object) -> str | None:
+    return None if value is None else _require_text(value)
 
 
-def _value(value: object) -> AttrValue:
+def _read_value(value: object) -> AttrValue:
     if isinstance(value, list):
-        return tuple(_value(one) for one in value)
+        return tuple(_read_value(item) for item in value)
     if value is None or isinstance(value, str | int | float):
         return value
     raise TypeError(value)
@@ -106,75 +114,81 @@ def _value(value: object) -> AttrValue:
 
 
 def _restore(graph: Graph, record: _Record) -> None:
-    for one in _found(graph, record.made):
-        graph.remove(one)
-    _forget_profiles(graph, record.applied)
-    _add(graph, record.elements)
-    for one in _found(graph, record.attributes):
-        graph.set(one, **record.attributes[one.id])
-    for one in _found(graph, record.names):
-        graph.rename(one, record.names[one.id])
-    _move(graph, record.owners)
-    _redirect(graph, record.elements)
-    _connect(graph, record.edges)
+    for element in _list_present(graph, record.made):
+        graph.remove(element)
+    _remove_profiles(graph, record.applied)
+    _add_elements(graph, record.elements)
+    for element in _list_present(graph, record.attributes):
+        graph.set(element, **record.attributes[element.id])
+    for element in _list_present(graph, record.names):
+        graph.rename(element, record.names[element.id])
+    _move_elements(graph, record.owners)
+    _redirect_references(graph, record.elements)
+    _connect_edges(graph, record.edges)
 
 
-def _found(graph: Graph, ids: Iterable[str]) -> Iterator[Element]:
-    return (one for id in ids if (one := graph.get(id)) is not None)
+def _list_present(graph: Graph, ids: Iterable[str]) -> Iterator[Element]:
+    """Yield the elements of those ids that are still in the graph."""
+    return (element for id in ids if (element := graph.get(id)) is not None)
 
 
-def _add(graph: Graph, elements: list[_Kept]) -> None:
-    for one in elements:
-        if one.id and one.id not in graph and (one.owner is None or one.owner in graph):
-            graph.add(Element(one.id, one.kind, one.name, one.owner))
+def _add_elements(graph: Graph, elements: list[_StoredElement]) -> None:
+    for stored in elements:
+        if stored.id and stored.id not in graph and (stored.owner is None or stored.owner in graph):
+            graph.add(Element(stored.id, stored.kind, stored.name, stored.owner))
 
 
-def _move(graph: Graph, owners: dict[str, str | None]) -> None:
+def _move_elements(graph: Graph, owners: dict[str, str | None]) -> None:
     for id, owner in owners.items():
-        one, above = graph.get(id), graph.get(owner)
-        if one is None or (owner is not None and above is None):
+        element, new_owner = graph.get(id), graph.get(owner)
+        if element is None or (owner is not None and new_owner is None):
             continue
-        if above is None or one not in (above, *graph.ancestors(above)):
-            graph.move(one, above)
+        if new_owner is None or element not in (new_owner, *graph.ancestors(new_owner)):
+            graph.move(element, new_owner)
 
 
-def _redirect(graph: Graph, elements: list[_Kept]) -> None:
-    """Let what refers to a library element outside refer to the element that is restored."""
-    own = {kept.id for kept in elements}
-    outside = [one for one in graph if "href" in one.attrs and one.id not in own]
-    stubs = {str(one.attrs["href"]): one for one in outside}
-    for kept in elements:
-        stub, new = stubs.get(kept.href or ""), graph.get(kept.id)
-        if stub is None or new is None or stub.id not in graph:
+def _redirect_references(graph: Graph, elements: list[_StoredElement]) -> None:
+    """Redirect references to external library elements to the elements that are restored."""
+    restored = {stored.id for stored in elements}
+    external = [
+        element for element in graph if "href" in element.attrs and element.id not in restored
+    ]
+    stubs = {str(element.attrs["href"]): element for element in external}
+    for stored in elements:
+        stub, replacement = stubs.get(stored.href or ""), graph.get(stored.id)
+        if stub is None or replacement is None or stub.id not in graph:
             continue
         for edge in Edge:
             for source in graph.sources(stub, edge) if edge is not Edge.OWNS else ():
-                targets = [new if one is stub else one for one in graph.targets(source, edge)]
+                targets = [
+                    replacement if element is stub else element
+                    for element in graph.targets(source, edge)
+                ]
                 graph.replace_targets(edge, source, targets)
         if not graph.owned(stub):
             graph.remove(stub)
 
 
-def _connect(graph: Graph, edges: list[tuple[Edge, str, str]]) -> None:
-    """Draw the relations, in their order where the model has no others."""
+def _connect_edges(graph: Graph, edges: list[tuple[Edge, str, str]]) -> None:
+    """Add the relations, in their order if the model has no others."""
     wanted: dict[tuple[Edge, str], list[Element]] = {}
     for edge, source, target in edges:
         if source in graph and target in graph and edge is not Edge.OWNS:
             wanted.setdefault((edge, source), []).append(graph[target])
     for (edge, source), targets in wanted.items():
-        known = graph.targets(graph[source], edge)
-        others = [one for one in known if one not in targets]
-        graph.replace_targets(edge, graph[source], [*others, *targets])
+        existing = graph.targets(graph[source], edge)
+        unrelated = [element for element in existing if element not in targets]
+        graph.replace_targets(edge, graph[source], [*unrelated, *targets])
 
 
-def _forget_profiles(graph: Graph, packages: list[str]) -> None:
-    """Take off the profiles that were applied for roles that are restored."""
+def _remove_profiles(graph: Graph, packages: list[str]) -> None:
+    """Remove the profiles that were applied for the restored roles."""
     profiles: dict[str, Element] = {}
-    for package in _found(graph, packages):
+    for package in _list_present(graph, packages):
         for profile in graph.targets(package, Edge.APPLIES):
             profiles[profile.id] = profile
             graph.disconnect(Edge.APPLIES, package, profile)
     for profile in profiles.values():
-        for one in (profile, *graph.ancestors(profile)):
-            if one.id in graph and not graph.owned(one) and one.attrs.get("external"):
-                graph.remove(one)
+        for element in (profile, *graph.ancestors(profile)):
+            if element.id in graph and not graph.owned(element) and element.attrs.get("external"):
+                graph.remove(element)

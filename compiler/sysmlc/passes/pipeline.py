@@ -1,4 +1,4 @@
-"""The passes by name, and running them in the order that their ``after`` asks for."""
+"""The passes by name, in the order that their ``after`` requires."""
 
 from collections.abc import Callable, Iterable, Sequence
 from importlib import import_module
@@ -32,11 +32,11 @@ NAMES = (
 
 
 class InvalidGraphError(RuntimeError):
-    """A front end or a pass left a graph that ``verify`` rejects: our fault, not the model's."""
+    """A front end or a pass left a graph that ``verify`` rejects: a fault of the compiler."""
 
 
 def load(name: str) -> Pass:
-    """The pass of this name with its default options, imported only now.
+    """Import and return the pass of this name with its default options.
 
     Raises KeyError for an unknown name.
     """
@@ -46,22 +46,21 @@ def load(name: str) -> Pass:
     return cast("Pass", getattr(module, name.capitalize())())
 
 
-def ordered(passes: Iterable[Pass]) -> list[Pass]:
-    """The passes, each behind those that it names in ``after``, else in the order given.
+def sort_passes(passes: Iterable[Pass]) -> list[Pass]:
+    """Sort passes so that each follows those that it names in ``after``, else in the given order.
 
-    A name in ``after`` that is not among them is passed over. Raises ValueError when they wait
-    for one another.
+    Names in ``after`` that are not among them are ignored. Raises ValueError for a cycle.
     """
-    waiting = list(passes)
-    done: list[Pass] = []
-    while waiting:
-        names = {one.name for one in waiting}
-        ready = next((one for one in waiting if names.isdisjoint(one.after)), None)
+    remaining = list(passes)
+    sorted_passes: list[Pass] = []
+    while remaining:
+        names = {step.name for step in remaining}
+        ready = next((step for step in remaining if names.isdisjoint(step.after)), None)
         if ready is None:
             raise ValueError(f"passes wait for one another: {', '.join(sorted(names))}")
-        waiting.remove(ready)
-        done.append(ready)
-    return done
+        remaining.remove(ready)
+        sorted_passes.append(ready)
+    return sorted_passes
 
 
 class Pipeline(Struct, frozen=True):
@@ -78,28 +77,28 @@ class Pipeline(Struct, frozen=True):
         until: str | None = None,
         after_pass: Callable[[str, Graph], None] | None = None,
     ) -> None:
-        """Run the passes, up to and with ``until``; ``after_pass`` sees the graph behind each.
+        """Run the passes, up to and including *until*; *after_pass* gets the graph after each.
 
-        Raises KeyError when no pass has the name ``until``, InvalidGraphError with
-        ``verify_each`` when the graph is not valid before the first pass or behind one.
+        Raises KeyError if no pass has the name *until*, and, with *verify_each*, InvalidGraphError
+        if the graph is not valid before the first pass or after a pass.
         """
-        if until is not None and until not in {one.name for one in self.passes}:
+        if until is not None and until not in {step.name for step in self.passes}:
             raise KeyError(until)
         if verify_each:
             _verify("the front end", graph)
-        for one in self.passes:
-            one.run(graph, sink)
+        for step in self.passes:
+            step.run(graph, sink)
             if verify_each:
-                _verify(f"pass {one.name}", graph)
+                _verify(f"pass {step.name}", graph)
             if after_pass is not None:
-                after_pass(one.name, graph)
-            if one.name == until:
+                after_pass(step.name, graph)
+            if step.name == until:
                 return
 
 
-def pipeline(names: Sequence[str] = NAMES) -> Pipeline:
-    """The passes of these names with default options, in order."""
-    return Pipeline(tuple(ordered(load(name) for name in names)))
+def build_pipeline(names: Sequence[str] = NAMES) -> Pipeline:
+    """Return the passes of these names with default options, in order."""
+    return Pipeline(tuple(sort_passes(load(name) for name in names)))
 
 
 def run(
@@ -109,21 +108,23 @@ def run(
     until: str | None = None,
     after_pass: Callable[[str, Graph], None] | None = None,
 ) -> None:
-    """Run all passes, or those up to and with ``until``; see ``Pipeline.run``.
+    """Run all passes, or those up to and including *until*; see ``Pipeline.run``.
 
-    A pass that ``until`` does not need is not even imported.
+    A pass after *until* is not even imported.
     """
-    names = NAMES if until is None else NAMES[: _position(until) + 1]
-    pipeline(names).run(graph, sink, verify_each=verify_each, until=until, after_pass=after_pass)
+    names = NAMES if until is None else NAMES[: _find_position(until) + 1]
+    build_pipeline(names).run(
+        graph, sink, verify_each=verify_each, until=until, after_pass=after_pass
+    )
 
 
-def _position(name: str) -> int:
+def _find_position(name: str) -> int:
     if name not in NAMES:
         raise KeyError(name)
     return NAMES.index(name)
 
 
-def _verify(who: str, graph: Graph) -> None:
+def _verify(step: str, graph: Graph) -> None:
     faults = verify(graph)
     if faults:
-        raise InvalidGraphError(f"{who} left an invalid graph: " + "; ".join(faults[:5]))
+        raise InvalidGraphError(f"{step} left an invalid graph: " + "; ".join(faults[:5]))

@@ -17,7 +17,7 @@ from sysmlc.robots.study import Study
 
 
 class Robots(Struct, frozen=True):
-    """Reads floors and adds their contracts to those of behaviours and requirements."""
+    """Read floors and add their contracts to those of behaviours and requirements."""
 
     name: ClassVar[str] = "robots"
     after: ClassVar[tuple[str, ...]] = ("contracts",)
@@ -25,12 +25,17 @@ class Robots(Struct, frozen=True):
     def run(self, graph: Graph, sink: Sink) -> None:
         """Store a Study for each floor, and its contracts beside the others."""
         # Hardly any model has one: the rest is not even imported.
-        if not any(one.name == "Floors" for one in graph.of_kind(Kind.PACKAGE)):
+        if not any(contract.name == "Floors" for contract in graph.of_kind(Kind.PACKAGE)):
             return
 
-        found = list(read_studies(graph, sink))
-        made = [contract for study in found for contract in study_contracts(study)]
-        names = {one.component for one in made}
-        others = (one for one in graph.derived(Contract) if one.component not in names)
-        graph.store(Study, found)
-        graph.store(Contract, sorted([*others, *made], key=lambda one: one.component))
+        floor_studies = list(studies(graph, sink))
+        contracts = [contract for study in floor_studies for contract in contracts_of(study)]
+        names = {contract.component for contract in contracts}
+        other_contracts = (
+            contract for contract in graph.derived(Contract) if contract.component not in names
+        )
+        graph.store(Study, floor_studies)
+        graph.store(
+            Contract,
+            sorted([*other_contracts, *contracts], key=lambda contract: contract.component),
+        )

@@ -1,4 +1,4 @@
-"""Pass ``views``: the diagrams of authors become elements that lead to what they show."""
+"""Pass ``views``: turns the diagrams of authors into elements that refer to what they show."""
 
 from collections.abc import Iterable, Iterator
 from typing import ClassVar
@@ -23,11 +23,12 @@ SUBKIND = "diagram"
 
 
 class Views(Struct, frozen=True):
-    """Turn the drawings that a front end kept into Views.
+    """Turn the drawings that a front end stored into Views.
 
-    Assumes resolved references. Guarantees a View ``subkind="diagram"`` for each drawing, owned
-    by what owns the diagram, with ``references`` to everything of the unit that it shows.
-    Nothing else of the graph changes; it runs last because passes ask who refers to what.
+    Assumes resolved references. Guarantees a View ``subkind="diagram"`` for each drawing, owned by
+    the owner of the diagram, with ``references`` to every element of the unit that it shows.
+    Nothing else in the graph changes. The pass runs last because other passes ask who refers to an
+    element.
     """
 
     name: ClassVar[str] = "views"
@@ -38,16 +39,16 @@ class Views(Struct, frozen=True):
         drawings = graph.derived(Drawing)
         if not drawings:
             return
-        known = _Known(graph)
+        known = _DiagramIndex(graph)
         for drawing in drawings:
-            id = _id(graph, drawing)
+            id = _choose_id(graph, drawing)
             if id not in graph:
-                _add(graph, sink, drawing, id, known)
+                _add_view(graph, sink, drawing, id, known)
         graph.store(Drawing, ())
 
 
-class _Known:
-    """Elements by what diagrams call them: ids, or hrefs of which the id counts."""
+class _DiagramIndex:
+    """Elements by the ids that diagrams use; of an href only the id counts."""
 
     def __init__(self, graph: Graph) -> None:
         self._graph = graph
@@ -60,28 +61,28 @@ class _Known:
                 self._by_id.setdefault(href.rpartition("#")[2], element)
 
     def find(self, file: str, target: str) -> Element | None:
-        """The element that the id or href means in the file, or None."""
+        """Return the element that the id or href means in the file, or None."""
         id = target.rpartition("#")[2]
         exact = self._graph.get(f"{file}#{id}")
         return exact or self._graph.get(id) or self._by_id.get(id)
 
     def ids(self, file: str, targets: Iterable[str]) -> tuple[str, ...]:
-        """Ids in the graph of those that are there, each once."""
-        found = (self.find(file, target) for target in targets)
-        return tuple(dict.fromkeys(one.id for one in found if one is not None))
+        """Return the ids of the elements that exist, each once."""
+        elements = (self.find(file, target) for target in targets)
+        return tuple(dict.fromkeys(element.id for element in elements if element is not None))
 
 
-def _id(graph: Graph, drawing: Drawing) -> str:
+def _choose_id(graph: Graph, drawing: Drawing) -> str:
     if not drawing.id:
         return derived_id(drawing.source, f"diagram[{drawing.ordinal}]")
-    taken = graph.get(drawing.id)
-    is_other = taken is not None and taken.subkind != SUBKIND
-    return f"{drawing.source}#{drawing.id}" if is_other else drawing.id
+    existing = graph.get(drawing.id)
+    is_occupied = existing is not None and existing.subkind != SUBKIND
+    return f"{drawing.source}#{drawing.id}" if is_occupied else drawing.id
 
 
-def _add(graph: Graph, sink: Sink, drawing: Drawing, id: str, known: _Known) -> None:
-    owner = known.find(drawing.file, drawing.owner) if drawing.owner else None
-    context = known.find(drawing.file, drawing.context) if drawing.context else None
+def _add_view(graph: Graph, sink: Sink, drawing: Drawing, id: str, index: _DiagramIndex) -> None:
+    owner = index.find(drawing.file, drawing.owner) if drawing.owner else None
+    context = index.find(drawing.file, drawing.context) if drawing.context else None
     view = Element(
         id,
         Kind.VIEW,
@@ -89,50 +90,50 @@ def _add(graph: Graph, sink: Sink, drawing: Drawing, id: str, known: _Known) -> 
         owner.id if owner else None,
         drawing.ordinal,
         drawing.source,
-        dict(_attributes(drawing, known)),
+        dict(_list_attributes(drawing, index)),
     )
     graph.add(view)
     if context is not None:
         graph.connect(Edge.REPRESENTS, view, context)
-    shown = [known.find(drawing.file, target) for target in drawing.shown]
+    shown = [index.find(drawing.file, target) for target in drawing.shown]
     for element in shown:
         if element is not None:
             graph.connect(Edge.REFERENCES, view, element)
-    _report(graph, sink, drawing, view, shown)
+    _report_missing(graph, sink, drawing, view, shown)
 
 
-def _attributes(drawing: Drawing, known: _Known) -> Iterator[tuple[str, AttrValue]]:
+def _list_attributes(drawing: Drawing, index: _DiagramIndex) -> Iterator[tuple[str, AttrValue]]:
     yield "subkind", SUBKIND
     if drawing.diagram:
         yield "diagram", drawing.diagram
     yield "diagram_type", drawing.type
-    paths = [known.ids(drawing.file, path) for path in drawing.paths]
+    paths = [index.ids(drawing.file, path) for path in drawing.paths]
     nested = tuple(dict.fromkeys(path for path in paths if len(path) > 1))
     if nested:
         yield "nesting", nested
-    listed = known.ids(drawing.file, drawing.listed)
+    listed = index.ids(drawing.file, drawing.listed)
     if listed:
         yield "listed", listed
-    yield "relations", tuple(_relations(drawing, known))
+    yield "relations", tuple(_list_relations(drawing, index))
 
 
-def _relations(drawing: Drawing, known: _Known) -> Iterator[AttrValue]:
+def _list_relations(drawing: Drawing, index: _DiagramIndex) -> Iterator[AttrValue]:
     for edge, source, target in drawing.relations:
-        ends = [known.find(drawing.file, end) for end in (source, target)]
+        ends = [index.find(drawing.file, end) for end in (source, target)]
         if ends[0] is not None and ends[1] is not None:
             yield (str(edge.value), ends[0].id, ends[1].id)
 
 
-def _report(
+def _report_missing(
     graph: Graph, sink: Sink, drawing: Drawing, view: Element, shown: list[Element | None]
 ) -> None:
-    lines = len(drawing.relations)
-    missing = sum(element is None for element in shown) - lines
+    relation_count = len(drawing.relations)
+    missing = sum(element is None for element in shown) - relation_count
     if missing > 0:
         sink.report(
             MISSING,
             graph.subject(view),
             missing=missing,
-            all=len(shown) - lines,
+            all=len(shown) - relation_count,
             name=view.name or drawing.type,
         )

@@ -19,7 +19,7 @@ def read(*sources):
     """The graph of AutomationML files, refined as far as structure goes."""
     graph, sink = Graph(), Sink()
     FRONTEND.read(list(sources), graph, sink, Coverage())
-    pipeline.pipeline(PASSES).run(graph, sink)
+    pipeline.build_pipeline(PASSES).run(graph, sink)
     assert verify(graph) == []
     return graph
 
@@ -27,7 +27,7 @@ def read(*sources):
 def refined(text):
     """The graph that a text form means, refined."""
     graph = parse_text(text)
-    pipeline.pipeline(PASSES).run(graph, Sink())
+    pipeline.build_pipeline(PASSES).run(graph, Sink())
     return graph
 
 

@@ -16,14 +16,14 @@ def read(data, name="model.uml"):
     """The graph of an XMI document, classified."""
     graph, sink = Graph(), Sink()
     FRONTEND.read([Source(name, data)], graph, sink, Coverage())
-    pipeline.pipeline(PASSES).run(graph, sink)
+    pipeline.build_pipeline(PASSES).run(graph, sink)
     return graph
 
 
 def refined(text):
     """The graph that a text form means, classified."""
     graph = parse_text(text)
-    pipeline.pipeline(PASSES).run(graph, Sink())
+    pipeline.build_pipeline(PASSES).run(graph, Sink())
     return graph
 
 

@@ -59,7 +59,7 @@ PLANT = """<CAEXFile xmlns="http://www.dke.de/CAEX" SchemaVersion="3.0" FileName
 def plant():
     graph, sink = Graph(), Sink()
     FRONTEND.read([Source("plant.aml", PLANT.encode())], graph, sink, Coverage())
-    pipeline.pipeline(PASSES).run(graph, sink)
+    pipeline.build_pipeline(PASSES).run(graph, sink)
     return graph
 
 
@@ -135,7 +135,7 @@ def test_a_comment_that_was_changed_is_told_and_stays(body, plant):
     graph, sink = Graph(), Sink()
     data = text.replace(escaped, body).encode()
     XMI_FRONTEND.read([Source("model.uml", data)], graph, sink, Coverage())
-    pipeline.pipeline(PASSES).run(graph, sink)
+    pipeline.build_pipeline(PASSES).run(graph, sink)
     assert "SM189" in [found.rule.code for found in sink]
     assert [one for one in graph if str(one.attrs.get("body", "")).startswith(PREFIX)]
 
@@ -143,7 +143,7 @@ def test_a_comment_that_was_changed_is_told_and_stays(body, plant):
 @pytest.mark.parametrize(("text", "codes"), [("wrong", ["SM189"]), ("right", [])])
 def test_the_rule_reports_its_wrong_model_and_not_its_right_one(text, codes):
     graph, sink = parse_text(getattr(UNREADABLE, text)), Sink()
-    pipeline.pipeline(PASSES).run(graph, sink)
+    pipeline.build_pipeline(PASSES).run(graph, sink)
     assert [found.rule.code for found in sink] == codes
 
 
@@ -160,5 +160,5 @@ def test_a_random_plant_comes_back(seed):
     graph, sink = Graph(), Sink()
     source = Source("plant.aml", random_plant(Random(seed)))
     FRONTEND.read([source], graph, sink, Coverage())
-    pipeline.pipeline(PASSES).run(graph, sink)
+    pipeline.build_pipeline(PASSES).run(graph, sink)
     assert round_trip(graph)[2] == []

@@ -19,7 +19,7 @@ class Reading:
         sources = [Source(name, text.encode()) for name, text in named]
         FRONTEND.read(sources, self.graph, self.sink, self.coverage)
         assert verify(self.graph) == []
-        pipeline.pipeline(passes).run(self.graph, self.sink, verify_each=True)
+        pipeline.build_pipeline(passes).run(self.graph, self.sink, verify_each=True)
 
     def named(self, name, kind=None):
         """The only element with a qualified name."""

@@ -12,7 +12,7 @@ from sysmlc.passes import pipeline
 
 def graph_of(text):
     graph = parse_text(text)
-    pipeline.pipeline(("resolve", "inherit", "classify", "ports", "flows")).run(graph, Sink())
+    pipeline.build_pipeline(("resolve", "inherit", "classify", "ports", "flows")).run(graph, Sink())
     return graph
 
 

@@ -53,7 +53,7 @@ PLANT = """\
 def plant(data, name="plant.aml"):
     graph, sink = Graph(), Sink()
     CAEX.read([Source(name, data)], graph, sink, Coverage())
-    pipeline.pipeline(("resolve", "inherit", "classify", "ports")).run(graph, sink)
+    pipeline.build_pipeline(("resolve", "inherit", "classify", "ports")).run(graph, sink)
     return graph
 
 
@@ -61,7 +61,7 @@ def read_back(graph, sink=None):
     text, _ = document(graph, Sink())
     again, sink = Graph(), Sink() if sink is None else sink
     FRONTEND.read([Source("model.sysml", text.encode())], again, sink, Coverage())
-    pipeline.pipeline(("resolve", "inherit", "classify", "ports")).run(again, sink)
+    pipeline.build_pipeline(("resolve", "inherit", "classify", "ports")).run(again, sink)
     return again
 
 

@@ -83,7 +83,7 @@ def read_back(graph):
     text, _ = document(graph, Sink())
     again, sink = Graph(), Sink()
     FRONTEND.read([Source("model.sysml", text.encode())], again, sink, Coverage())
-    pipeline.pipeline(PASSES).run(again, sink, verify_each=True)
+    pipeline.build_pipeline(PASSES).run(again, sink, verify_each=True)
     return again, sink
 
 
@@ -118,7 +118,7 @@ def test_models_at_random_keep_their_structure(seed):
         graph, sink = Graph(), Sink()
         data = random_model(Random(seed + more), 2)
         XMI.read([Source("model.uml", data)], graph, sink, Coverage())
-        pipeline.pipeline(PASSES).run(graph, sink)
+        pipeline.build_pipeline(PASSES).run(graph, sink)
         again, found = read_back(graph)
         assert [one.message for one in found if one.rule.code in ("SM205", "SM482")] == []
         for kind in KEPT:

@@ -36,7 +36,7 @@ def test_rules_of_sysml_v1_are_silent_where_the_language_judges():
 def test_the_project_has_the_last_word():
     graph, sink = Graph(), Sink({"SM214": Severity.WARNING})
     FRONTEND.read([Source("model.sysml", VALID.encode())], graph, sink, Coverage())
-    pipeline.pipeline(("resolve", "inherit", "classify")).run(graph, sink)
+    pipeline.build_pipeline(("resolve", "inherit", "classify")).run(graph, sink)
     assert [one.rule.code for one in sink] == ["SM214"]
 
 

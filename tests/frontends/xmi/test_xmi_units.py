@@ -30,7 +30,7 @@ UNIT_CLASS = (
 def measured(source, sink=None):
     """Unit and quantity kind of the property ``load`` (names), and the refined graph."""
     graph = Read([source]).graph
-    pipeline.pipeline(("resolve", "inherit", "classify", "ports")).run(
+    pipeline.build_pipeline(("resolve", "inherit", "classify", "ports")).run(
         graph, sink or Sink(), verify_each=True
     )
     load = graph["load"]

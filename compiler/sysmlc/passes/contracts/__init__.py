@@ -34,7 +34,7 @@ SAME_COMPONENT = rule(
 
 
 class Contracts(Struct, frozen=True):
-    """Derives contracts.
+    """Derive contracts.
 
     ``tick_seconds`` is the length of a step for durations with a unit; ``assumed_low`` and
     ``assumed_high`` are the range of Integers that declare none.
@@ -48,76 +48,83 @@ class Contracts(Struct, frozen=True):
     after: ClassVar[tuple[str, ...]] = ("classify", "activities", "behaviours")
 
     def run(self, graph: Graph, sink: Sink) -> None:
-        """Store a Contract for each behaviour that is derived and for subjects of requirements."""
-        found = [*self._of_machines(graph, sink), *_of_activities(graph)]
-        found = add_formulas(graph, _told_apart(graph, found, sink), sink)
-        assumed = self.assumed_low, self.assumed_high
-        required = list(requirements.derive(graph, found, assumed, sink))
+        """Store a Contract for each derived behaviour and for subjects of requirements and
+        services.
+        """
+        derived = [*self._derive_machines(graph, sink), *_derive_activities(graph)]
+        derived = add_formulas(graph, _number_components(graph, derived, sink), sink)
+        assumed_range = self.assumed_low, self.assumed_high
+        required = list(requirements.derive(graph, derived, assumed_range, sink))
         report_general(graph, required, sink)
-        found = [*found, *required]
-        taken = [contract.component for contract in found]
-        found = _told_apart(graph, [*found, *services.derive(graph, taken, assumed, sink)], sink)
-        graph.store(Contract, sorted(found, key=lambda contract: contract.component))
+        derived = [*derived, *required]
+        components = [contract.component for contract in derived]
+        derived = _number_components(
+            graph, [*derived, *services.derive(graph, components, assumed_range, sink)], sink
+        )
+        graph.store(Contract, sorted(derived, key=lambda contract: contract.component))
 
-    def _of_machines(self, graph: Graph, sink: Sink) -> Iterator[Contract]:
+    def _derive_machines(self, graph: Graph, sink: Sink) -> Iterator[Contract]:
         writers = Writers(graph)
         for element in graph.of_kind(Kind.STATE_MACHINE):
-            contract = self._of_machine(graph, element, writers, sink)
+            contract = self._derive_machine(graph, element, writers, sink)
             if contract is not None:
                 yield contract
 
-    def _of_machine(
-        self, graph: Graph, about: Element, writers: Writers, sink: Sink
+    def _derive_machine(
+        self, graph: Graph, element: Element, writers: Writers, sink: Sink
     ) -> Contract | None:
-        if not _is_behaviour(graph, about):
+        if not _is_behaviour(graph, element):
             return None
         options = MachineOptions(self.tick_seconds, (self.assumed_low, self.assumed_high))
-        machine = read_machine(graph, about, sink, options, writers)
+        machine = read_machine(graph, element, sink, options, writers)
         if machine is None:
             return None
-        return statemachine.derive_contract(
-            graph, machine, query.component_name(graph, about), sink
-        )
+        name = query.component_name(graph, element)
+        return statemachine.derive_contract(graph, machine, name, sink)
 
 
 def _is_behaviour(graph: Graph, element: Element) -> bool:
-    """Whether it says what a component does: drawn here, and no protocol of an interface."""
-    is_drawn = any(one.kind is Kind.REGION for one in graph.owned(element))
-    is_own = is_drawn and element.subkind != "protocol" and not element.attrs.get("external")
-    return is_own and not _is_submachine(graph, element)
+    """Whether the state machine states what a component does: drawn here, and no protocol."""
+    is_drawn = any(region.kind is Kind.REGION for region in graph.owned(element))
+    is_concrete = is_drawn and element.subkind != "protocol" and not element.attrs.get("external")
+    return is_concrete and not _is_submachine(graph, element)
 
 
 def _is_submachine(graph: Graph, machine: Element) -> bool:
-    """Whether it is there for states to be it: it is nobody's behaviour by itself."""
-    is_called = any(one.kind is Kind.STATE for one in graph.sources(machine, Edge.CALLS))
-    own = (Edge.CLASSIFIER_BEHAVIOR, Edge.METHOD)
-    return is_called and not any(graph.sources(machine, edge) for edge in own)
+    """Whether only states refer to the machine, so that it is nobody's behaviour by itself."""
+    is_called = any(user.kind is Kind.STATE for user in graph.sources(machine, Edge.CALLS))
+    owner_edges = (Edge.CLASSIFIER_BEHAVIOR, Edge.METHOD)
+    return is_called and not any(graph.sources(machine, edge) for edge in owner_edges)
 
 
-def _of_activities(graph: Graph) -> Iterator[Contract]:
+def _derive_activities(graph: Graph) -> Iterator[Contract]:
     for tokens in graph.derived(TokenGraph):
         yield activity_contract.derive(tokens)
 
 
-def _told_apart(graph: Graph, contracts: list[Contract], sink: Sink) -> list[Contract]:
-    """The contracts with components that differ: the second of a name gets ``#2``."""
+def _number_components(graph: Graph, contracts: list[Contract], sink: Sink) -> list[Contract]:
+    """Return the contracts with distinct components: the second of a name gets ``#2``."""
     totals = Counter(contract.component for contract in contracts)
-    seen: Counter[str] = Counter()
-    made: list[Contract] = []
+    counts: Counter[str] = Counter()
+    numbered: list[Contract] = []
     for contract in contracts:
         name = contract.component
-        seen[name] += 1
+        counts[name] += 1
         if totals[name] > 1:
-            _report(graph, contract, [one for one in contracts if one.component == name], sink)
-        number = seen[name]
-        made.append(contract if number == 1 else replace(contract, component=f"{name}#{number}"))
-    return made
+            _report_same_name(
+                graph, contract, [other for other in contracts if other.component == name], sink
+            )
+        number = counts[name]
+        numbered.append(
+            contract if number == 1 else replace(contract, component=f"{name}#{number}")
+        )
+    return numbered
 
 
-def _report(graph: Graph, contract: Contract, same: list[Contract], sink: Sink) -> None:
-    """Tell that a component is not the only one of its name, with the files of the others."""
+def _report_same_name(graph: Graph, contract: Contract, same: list[Contract], sink: Sink) -> None:
+    """Report that a component is not the only one of its name, with the files of the others."""
     behaviour, name = graph[contract.origin], contract.component
-    files = dict.fromkeys(graph[one.origin].source for one in same)
+    files = dict.fromkeys(graph[other.origin].source for other in same)
     files.pop(behaviour.source, None)
     sink.report(
         SAME_COMPONENT,

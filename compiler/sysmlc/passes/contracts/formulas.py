@@ -1,4 +1,4 @@
-"""Constraints written in LTL, as conjuncts of the contracts of what they constrain."""
+"""Constraints written in LTL, as conjuncts of the contracts of the constrained components."""
 
 from collections.abc import Iterable, Iterator
 from functools import cached_property
@@ -47,18 +47,20 @@ OUTSIDE_GR1 = rule(
 
 
 def add_formulas(graph: Graph, contracts: list[Contract], sink: Sink) -> list[Contract]:
-    """The contracts with the formulas of the model's constraints as further conjuncts."""
-    made = {contract.component: contract for contract in contracts}
-    performed = _Performed(graph, contracts)
+    """Return the contracts with the formulas of the model's constraints as further conjuncts."""
+    by_component = {contract.component: contract for contract in contracts}
+    performed = _Performers(graph, contracts)
     for constraint in graph.of_kind(Kind.CONSTRAINT):
         if not _is_formula(constraint):
             continue
-        for component in _components(graph, constraint, performed):
-            if component in made:
-                made[component] = _with_formula(graph, made[component], constraint, sink)
+        for component in _list_components(graph, constraint, performed):
+            if component in by_component:
+                by_component[component] = _add_formula(
+                    graph, by_component[component], constraint, sink
+                )
             else:
                 _report_orphan(graph, constraint, component, sink)
-    return list(made.values())
+    return list(by_component.values())
 
 
 def _is_formula(constraint: Element) -> bool:
@@ -69,49 +71,55 @@ def _is_formula(constraint: Element) -> bool:
     return is_formal(str(constraint.attrs.get("language", "")), body)
 
 
-class _Performed:
-    """Which components perform an action: usages of it, and what else specialises it."""
+class _Performers:
+    """Index of the components that perform an action: its usages, and what specialises it."""
 
     def __init__(self, graph: Graph, contracts: list[Contract]) -> None:
         self._graph = graph
         self._contracts = contracts
 
-    def by(self, action: Element) -> list[str]:
-        """The components that do what an action definition says."""
+    def of_action(self, action: Element) -> list[str]:
+        """Return the components that perform an action definition."""
         return self._components.get(action.id, [])
 
     @cached_property
     def _components(self) -> dict[str, list[str]]:
-        found: dict[str, list[str]] = {}
-        for one in self._contracts:
-            origin = self._graph[one.origin]
+        components: dict[str, list[str]] = {}
+        for contract in self._contracts:
+            origin = self._graph[contract.origin]
             if origin.kind in _ACTIONS:
-                for action in _family(self._graph, origin):
-                    found.setdefault(action.id, []).append(one.component)
-        return found
+                for action in _list_definitions(self._graph, origin):
+                    components.setdefault(action.id, []).append(contract.component)
+        return components
 
 
-def _family(graph: Graph, usage: Element) -> list[Element]:
-    """What says how an action is performed: it, its method, and all that these specialise."""
+def _list_definitions(graph: Graph, usage: Element) -> list[Element]:
+    """Return the usage, its method, and everything that these specialise."""
     action = definition_of(graph, usage)
     return [usage, *dict.fromkeys((action, *query.generals(graph, action)))]
 
 
-def _components(graph: Graph, constraint: Element, performed: _Performed) -> Iterator[str]:
-    """Names of the components that a constraint speaks of, each once.
+def _list_components(graph: Graph, constraint: Element, performed: _Performers) -> Iterator[str]:
+    """Yield the names of the components that a constraint is about, each once.
 
-    What a requirement demands is no part of a behaviour (``logic.requirements``). What constrains
-    an action holds of all that perform it; an action of a library is no component itself.
+    Constraints of requirements are no part of a behaviour (``logic.requirements``). A constraint of
+    an action holds for all that perform it; an action of a library is no component itself.
     """
     owner = graph.owner(constraint)
     subjects = graph.targets(constraint, Edge.REFERENCES) or ([] if owner is None else [owner])
-    about = [one for one in subjects if not query.is_requirement(one)]
-    yield from dict.fromkeys(name for one in about for name in _about(graph, one, performed))
+    constrained = [element for element in subjects if not query.is_requirement(element)]
+    yield from dict.fromkeys(
+        name for element in constrained for name in _components_of(graph, element, performed)
+    )
 
 
-def _about(graph: Graph, one: Element, performed: _Performed) -> list[str]:
-    found = performed.by(one) if one.kind in _ACTIONS else []
-    return found if found or one.attrs.get("external") else [component_of(graph, one)]
+def _components_of(graph: Graph, element: Element, performed: _Performers) -> list[str]:
+    performers = performed.of_action(element) if element.kind in _ACTIONS else []
+    return (
+        performers
+        if performers or element.attrs.get("external")
+        else [component_of(graph, element)]
+    )
 
 
 def _report_orphan(graph: Graph, constraint: Element, component: str, sink: Sink) -> None:
@@ -119,10 +127,10 @@ def _report_orphan(graph: Graph, constraint: Element, component: str, sink: Sink
     sink.report(NO_CONTRACT, graph.subject(constraint), constraint=name, component=component)
 
 
-def _with_formula(graph: Graph, contract: Contract, constraint: Element, sink: Sink) -> Contract:
+def _add_formula(graph: Graph, contract: Contract, constraint: Element, sink: Sink) -> Contract:
 
     name = constraint.name or "<Constraint>"
-    scope = _scope(graph, contract)
+    scope = _find_scope(graph, contract)
     domains = {variable.name: variable.domain for variable in contract.variables}
     domains = domains if scope is None else domains | scope.domains
     subject = graph.subject(constraint)
@@ -133,8 +141,8 @@ def _with_formula(graph: Graph, contract: Contract, constraint: Element, sink: S
             formula = scope.settled(formula)
             contract = with_features(contract, scope, formula)
     except FormulaError as error:
-        known, facts = ", ".join(domains), told(error, body)
-        sink.report(NOT_A_FORMULA, subject, constraint=name, reason=facts, variables=known)
+        variables_, reason = ", ".join(domains), told(error, body)
+        sink.report(NOT_A_FORMULA, subject, constraint=name, reason=reason, variables=variables_)
         return contract
     conjuncts = [
         Conjunct(part, class_, constraint.id, f"'{name}' demands it.")
@@ -142,43 +150,47 @@ def _with_formula(graph: Graph, contract: Contract, constraint: Element, sink: S
     ]
     if any(one.class_ is Class.OTHER and not is_reducible(one.formula) for one in conjuncts):
         sink.report(OUTSIDE_GR1, subject, constraint=name)
-    return remembering(_extended(contract, conjuncts))
+    return remembering(_extend(contract, conjuncts))
 
 
 def report_general(graph: Graph, contracts: Iterable[Contract], sink: Sink) -> None:
     """Report each constraint of requirements that no reduction brings into GR(1)."""
 
     general = [
-        one.origin
+        conjunct.origin
         for contract in contracts
-        for one in (*contract.assumptions, *contract.guarantees)
-        if one.class_ is Class.OTHER and not is_reducible(one.formula)
+        for conjunct in (*contract.assumptions, *contract.guarantees)
+        if conjunct.class_ is Class.OTHER and not is_reducible(conjunct.formula)
     ]
     for constraint in map(graph.__getitem__, dict.fromkeys(general)):
         name = constraint.name or "<Constraint>"
         sink.report(OUTSIDE_GR1, graph.subject(constraint), constraint=name)
 
 
-def _scope(graph: Graph, contract: Contract) -> Scope | None:
-    """The features of an action, which formulas about it may speak of, too."""
+def _find_scope(graph: Graph, contract: Contract) -> Scope | None:
+    """Return the features of an action, which formulas about it may use, too."""
     origin = graph[contract.origin]
     if origin.kind not in _ACTIONS:
         return None
     return scope_of(context_of(graph, definition_of(graph, origin)), contract)
 
 
-def _extended(contract: Contract, conjuncts: list[Conjunct]) -> Contract:
-    """What speaks of inputs alone is an assumption, everything else a guarantee."""
-    assumed = [one for one in conjuncts if _is_about_inputs(contract, one.formula)]
-    promised = [one for one in conjuncts if one not in assumed]
+def _extend(contract: Contract, conjuncts: list[Conjunct]) -> Contract:
+    """Return the contract with further conjuncts: assumptions if they read only inputs, else
+    guarantees.
+    """
+    assumptions = [
+        conjunct for conjunct in conjuncts if _reads_only_inputs(contract, conjunct.formula)
+    ]
+    guarantees = [conjunct for conjunct in conjuncts if conjunct not in assumptions]
     return replace(
         contract,
-        assumptions=(*contract.assumptions, *assumed),
-        guarantees=(*contract.guarantees, *promised),
+        assumptions=(*contract.assumptions, *assumptions),
+        guarantees=(*contract.guarantees, *guarantees),
     )
 
 
-def _is_about_inputs(contract: Contract, formula: Formula) -> bool:
+def _reads_only_inputs(contract: Contract, formula: Formula) -> bool:
     owners = {variable.name: variable.owner for variable in contract.variables}
     used = [owners[variable.name] for variable in f.variables(formula)]
     return bool(used) and all(owner is Owner.ENVIRONMENT for owner in used)

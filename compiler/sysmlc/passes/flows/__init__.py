@@ -38,17 +38,17 @@ from sysmlc.passes.flows.rules import (
 class Flows(Struct, frozen=True):
     """Attach item flows to connectors and give both a domain.
 
-    Assumes directions of ports. Guarantees: an item flow that names no connector is
-    ``realizing`` the one connector between its source and its target, if there is exactly
-    one; ``domain`` of item flows and connectors is that of what they convey, where it is the
-    same for all. Nothing is repaired: what does not fit is reported.
+    Assumes directions of ports. Guarantees: an item flow that names no connector is ``realizing``
+    the connector between its source and its target, if there is exactly one; ``domain`` of item
+    flows and connectors is that of the conveyed items, if it is the same for all. Nothing is
+    repaired: conflicts are reported.
     """
 
     name: ClassVar[str] = "flows"
     after: ClassVar[tuple[str, ...]] = ("ports",)
 
     def run(self, graph: Graph, sink: Sink) -> None:
-        """Attach in place and report; see the class."""
+        """Attach flows in place and report; see the class."""
         for flow in graph.of_kind(Kind.ITEM_FLOW):
             _attach(graph, flow)
             _give_domain(graph, flow)
@@ -66,47 +66,51 @@ def _attach(graph: Graph, flow: Element) -> None:
     source, target = flow_source(graph, flow), flow_target(graph, flow)
     if source is None or target is None or graph.target(flow, Edge.REALIZING) is not None:
         return
-    there = {one.id for one in connectors_of(graph, target)}
-    joining = [one for one in connectors_of(graph, source) if one.id in there]
-    joining = list(dict.fromkeys(joining))
-    if len(joining) == 1:
-        graph.connect(Edge.REALIZING, flow, joining[0])
+    at_target = {connector.id for connector in connectors_of(graph, target)}
+    candidates = [
+        connector for connector in connectors_of(graph, source) if connector.id in at_target
+    ]
+    candidates = list(dict.fromkeys(candidates))
+    if len(candidates) == 1:
+        graph.connect(Edge.REALIZING, flow, candidates[0])
 
 
 def _give_domain(graph: Graph, flow: Element) -> None:
-    found = {domain_of(graph, item) for item in graph.targets(flow, Edge.CONVEYS)}
-    if len(found) == 1 and "domain" not in flow.attrs:
-        graph.set(flow, domain=found.pop())
+    domains = {domain_of(graph, item) for item in graph.targets(flow, Edge.CONVEYS)}
+    if len(domains) == 1 and "domain" not in flow.attrs:
+        graph.set(flow, domain=domains.pop())
 
 
 def _check_flow(graph: Graph, sink: Sink, flow: Element) -> None:
-    known = flow.attrs.get("unresolved")
-    unresolved = known if isinstance(known, tuple) else ()
+    unresolved_ = flow.attrs.get("unresolved")
+    unresolved = unresolved_ if isinstance(unresolved_, tuple) else ()
     for edge, name in ((Edge.FLOW_SOURCE, "source"), (Edge.FLOW_TARGET, "target")):
         if graph.target(flow, edge) is None and edge.value not in unresolved:
             subject = graph.subject(flow)
             sink.report(FLOW_WITHOUT_END, subject, flow=_title(graph, flow), end=name)
     if not graph.targets(flow, Edge.CONVEYS) and Edge.CONVEYS.value not in unresolved:
         sink.report(FLOW_OF_NOTHING, graph.subject(flow), flow=_title(graph, flow))
-    for port, along, way in _ported_ends(graph, flow):
+    for port, along, way in _list_port_ends(graph, flow):
         _check_direction(graph, sink, flow, port, along, way)
         _check_items(graph, sink, flow, port)
     _check_realizing(graph, sink, flow)
 
 
 def _title(graph: Graph, relation: Element) -> str:
-    """A name for a relation, which often has none: that of its ends."""
+    """Return a name for a relation, which often has none: the names of its ends."""
     if relation.name:
         return graph.qualified_name(relation)
     if relation.kind is Kind.ITEM_FLOW:
-        joined = [flow_source(graph, relation), flow_target(graph, relation)]
+        elements = [flow_source(graph, relation), flow_target(graph, relation)]
     else:
-        joined = [role_of(graph, end) for end in ends(graph, relation)]
-    return " - ".join(graph.qualified_name(one) if one else "?" for one in joined)
+        elements = [role_of(graph, end) for end in ends(graph, relation)]
+    return " - ".join(graph.qualified_name(element) if element else "?" for element in elements)
 
 
-def _ported_ends(graph: Graph, flow: Element) -> Iterator[tuple[Element, str, str]]:
-    """Ports at the ends of the flow, with the direction that it has in each, and in words."""
+def _list_port_ends(graph: Graph, flow: Element) -> Iterator[tuple[Element, str, str]]:
+    """Yield the ports at the ends of the flow, with the expected direction and a verb for
+    messages.
+    """
     for edge, outside, inside, way in (
         (Edge.FLOW_SOURCE, "out", "in", "leaves"),
         (Edge.FLOW_TARGET, "in", "out", "enters"),
@@ -118,8 +122,8 @@ def _ported_ends(graph: Graph, flow: Element) -> Iterator[tuple[Element, str, st
 
 def _runs_inside(graph: Graph, flow: Element, port: Element) -> bool:
     for connector in graph.targets(flow, Edge.REALIZING):
-        attached = ends(graph, connector)
-        outer = [one for one in attached if is_boundary(graph, one)]
+        connector_ends = ends(graph, connector)
+        outer = [end for end in connector_ends if is_boundary(graph, end)]
         if len(outer) == 1 and role_of(graph, outer[0]) is port:
             return True
     return False
@@ -141,9 +145,9 @@ def _check_direction(
 
 
 def _check_items(graph: Graph, sink: Sink, flow: Element, port: Element) -> None:
-    passed = _passed(graph, port)
+    item_types = _list_item_types(graph, port)
     for item in graph.targets(flow, Edge.CONVEYS):
-        if passed and not any(_fit(graph, item, one) for one in passed):
+        if item_types and not any(_conform(graph, item, item_type) for item_type in item_types):
             sink.report(
                 FLOW_ITEM,
                 graph.subject(flow),
@@ -153,16 +157,16 @@ def _check_items(graph: Graph, sink: Sink, flow: Element, port: Element) -> None
             )
 
 
-def _passed(graph: Graph, port: Element) -> list[Element]:
-    """Types of the flow properties of a port; empty when one of them is not known."""
+def _list_item_types(graph: Graph, port: Element) -> list[Element]:
+    """Return the types of the flow properties of a port; empty if one of them is unknown."""
     type_ = type_of(graph, port)
     if type_ is None:
         return []
-    types = [type_of(graph, one) for one in flow_properties(graph, type_)]
-    return [one for one in types if one is not None] if None not in types else []
+    types = [type_of(graph, property_) for property_ in flow_properties(graph, type_)]
+    return [property_ for property_ in types if property_ is not None] if None not in types else []
 
 
-def _fit(graph: Graph, item: Element, type_: Element) -> bool:
+def _conform(graph: Graph, item: Element, type_: Element) -> bool:
     return conforms(graph, item, type_) or conforms(graph, type_, item)
 
 
@@ -170,9 +174,9 @@ def _check_realizing(graph: Graph, sink: Sink, flow: Element) -> None:
     for connector in graph.targets(flow, Edge.REALIZING):
         if connector.kind is not Kind.CONNECTOR or connector.attrs.get("external"):
             continue
-        joined = _joined(graph, connector)
+        attached = _find_attached(graph, connector)
         for end in (flow_source(graph, flow), flow_target(graph, flow)):
-            if end is not None and joined and end.id not in joined:
+            if end is not None and attached and end.id not in attached:
                 sink.report(
                     FLOW_BESIDE_CONNECTOR,
                     graph.subject(flow),
@@ -182,14 +186,14 @@ def _check_realizing(graph: Graph, sink: Sink, flow: Element) -> None:
                 )
 
 
-def _joined(graph: Graph, connector: Element) -> set[str]:
-    """Ids of what a connector joins: roles, the parts on the way, and the types of both."""
-    attached = ends(graph, connector)
-    found = [one for end in attached for one in graph.targets(end, Edge.ROLE)]
-    found += [one for end in attached for one in graph.targets(end, Edge.PATH)]
-    types = [type_of(graph, one) for one in found]
-    owners = [graph.owner(one) for one in found]
-    return {one.id for one in (*found, *types, *owners) if one is not None}
+def _find_attached(graph: Graph, connector: Element) -> set[str]:
+    """Return the ids of the roles of a connector, the parts on its paths, and the types of both."""
+    connector_ends = ends(graph, connector)
+    elements = [element for end in connector_ends for element in graph.targets(end, Edge.ROLE)]
+    elements += [element for end in connector_ends for element in graph.targets(end, Edge.PATH)]
+    types = [type_of(graph, element) for element in elements]
+    owners = [graph.owner(element) for element in elements]
+    return {element.id for element in (*elements, *types, *owners) if element is not None}
 
 
 # -- connectors --------------------------------------------------------------------------------
@@ -218,21 +222,21 @@ def _settle_domain(graph: Graph, sink: Sink, connector: Element) -> None:
 
 
 def _check_connector(graph: Graph, sink: Sink, connector: Element) -> None:
-    attached = ends(graph, connector)
-    roles = [role_of(graph, end) for end in attached]
-    if len(roles) != 2 or not all(one is not None and one.kind is Kind.PORT for one in roles):
+    connector_ends = ends(graph, connector)
+    roles = [role_of(graph, end) for end in connector_ends]
+    if len(roles) != 2 or not all(role is not None and role.kind is Kind.PORT for role in roles):
         return
-    ports = [one for one in roles if one is not None]
-    if not _directions_agree(graph, attached):
-        _report_directions(graph, sink, connector, attached, ports)
+    ports = [role for role in roles if role is not None]
+    if not _has_matching_directions(graph, connector_ends):
+        _report_directions(graph, sink, connector, connector_ends, ports)
     _check_types(graph, sink, connector, ports)
 
 
-def _directions_agree(graph: Graph, attached: list[Element]) -> bool:
-    first, second = (end_direction(graph, one) for one in attached)
+def _has_matching_directions(graph: Graph, connector_ends: list[Element]) -> bool:
+    first, second = (end_direction(graph, end) for end in connector_ends)
     if "inout" in (first, second) or None in (first, second):
         return True
-    delegates = is_boundary(graph, attached[0]) != is_boundary(graph, attached[1])
+    delegates = is_boundary(graph, connector_ends[0]) != is_boundary(graph, connector_ends[1])
     return (first == second) is delegates
 
 
@@ -252,7 +256,7 @@ def _report_directions(
 
 def _check_types(graph: Graph, sink: Sink, connector: Element, ports: list[Element]) -> None:
     first, second = (type_of(graph, port) for port in ports)
-    if first is None or second is None or _compatible(graph, first, second):
+    if first is None or second is None or _are_compatible(graph, first, second):
         return
     sink.report(
         CONNECTOR_TYPES,
@@ -265,18 +269,22 @@ def _check_types(graph: Graph, sink: Sink, connector: Element, ports: list[Eleme
     )
 
 
-def _compatible(graph: Graph, first: Element, second: Element) -> bool:
-    families = [[one, *generals(graph, one)] for one in (first, second)]
-    if any(one.attrs.get("external") for family in families for one in family):
+def _are_compatible(graph: Graph, first: Element, second: Element) -> bool:
+    families = [[classifier, *generals(graph, classifier)] for classifier in (first, second)]
+    if any(classifier.attrs.get("external") for family in families for classifier in family):
         return True
-    if _fit(graph, first, second) or any(one in families[1] for one in families[0]):
+    if _conform(graph, first, second) or any(
+        classifier in families[1] for classifier in families[0]
+    ):
         return True
-    passed = [flow_properties(graph, one) for one in (first, second)]
+    properties = [flow_properties(graph, classifier) for classifier in (first, second)]
     return any(
-        _properties_fit(graph, one, other) for one in passed[0] for other in passed[1]
-    ) or not (passed[0] and passed[1])
+        _do_properties_conform(graph, classifier, other_property)
+        for classifier in properties[0]
+        for other_property in properties[1]
+    ) or not (properties[0] and properties[1])
 
 
-def _properties_fit(graph: Graph, one: Element, other: Element) -> bool:
-    types = type_of(graph, one), type_of(graph, other)
-    return types[0] is None or types[1] is None or _fit(graph, types[0], types[1])
+def _do_properties_conform(graph: Graph, left: Element, right: Element) -> bool:
+    types = type_of(graph, left), type_of(graph, right)
+    return types[0] is None or types[1] is None or _conform(graph, types[0], types[1])

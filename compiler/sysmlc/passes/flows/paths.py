@@ -1,4 +1,4 @@
-"""Connector ends whose path leads through what is not there."""
+"""Connector ends whose path leads through a feature that does not exist."""
 
 from collections.abc import Iterator
 
@@ -16,12 +16,12 @@ BROKEN_PATH = rule(
 
 
 def check_paths(graph: Graph, sink: Sink, connector: Element) -> None:
-    """Report each end of the connector whose path breaks, at its first step that is not there."""
+    """Report each end of the connector with a broken path, at the first step that is missing."""
     owner = graph.owner(connector)
     if owner is None or connector.attrs.get("external"):
         return
     for end in ends(graph, connector):
-        for classifier, step in _breaks(graph, owner, end):
+        for classifier, step in _find_breaks(graph, owner, end):
             sink.report(
                 BROKEN_PATH,
                 graph.subject(end),
@@ -31,25 +31,27 @@ def check_paths(graph: Graph, sink: Sink, connector: Element) -> None:
             )
 
 
-def _breaks(graph: Graph, owner: Element, end: Element) -> Iterator[tuple[Element, Element]]:
-    """The first step that is no feature of what is before it; what is not known ends the search."""
-    at: Element | None = _classifier(graph, owner)
+def _find_breaks(graph: Graph, owner: Element, end: Element) -> Iterator[tuple[Element, Element]]:
+    """Yield the first step that is no feature of its classifier; an unknown type ends the
+    search.
+    """
+    classifier: Element | None = _start_of_paths(graph, owner)
     for step in (*graph.targets(end, Edge.PATH), *graph.targets(end, Edge.ROLE)):
         if step.kind is Kind.INSTANCE:
-            at = graph.target(step, Edge.INSTANCE_OF)
+            classifier = graph.target(step, Edge.INSTANCE_OF)
             continue
-        if at is None or step.attrs.get("external") or _is_partly_known(graph, at):
+        if classifier is None or step.attrs.get("external") or _is_partly_known(graph, classifier):
             return
-        if not _has(graph, at, step):
+        if not _has_feature(graph, classifier, step):
             # Without a path it may be a connector of another block's diagram: Papyrus before 1.0.
             if graph.targets(end, Edge.PATH):
-                yield at, step
+                yield classifier, step
             return
-        at = type_of(graph, step)
+        classifier = type_of(graph, step)
 
 
-def _classifier(graph: Graph, owner: Element) -> Element | None:
-    """What has the features that paths start from: of an instance what classifies it."""
+def _start_of_paths(graph: Graph, owner: Element) -> Element | None:
+    """Return the classifier whose features paths start from: for an instance, its classifier."""
     if owner.kind is Kind.INSTANCE:
         return graph.target(owner, Edge.INSTANCE_OF)
     return owner
@@ -57,10 +59,12 @@ def _classifier(graph: Graph, owner: Element) -> Element | None:
 
 def _is_partly_known(graph: Graph, classifier: Element) -> bool:
     family = (classifier, *generals(graph, classifier))
-    return any(one.attrs.get("external") or "unresolved" in one.attrs for one in family)
+    return any(
+        ancestor.attrs.get("external") or "unresolved" in ancestor.attrs for ancestor in family
+    )
 
 
-def _has(graph: Graph, classifier: Element, feature: Element) -> bool:
+def _has_feature(graph: Graph, classifier: Element, feature: Element) -> bool:
     """Whether it is an effective feature, or one that an effective feature redefines."""
-    known = features(graph, classifier)
-    return feature in known or any(feature in redefined_features(graph, one) for one in known)
+    effective = features(graph, classifier)
+    return feature in effective or any(feature in redefined(graph, other) for other in effective)

@@ -1,4 +1,4 @@
-"""Pass ``interactions``: whether what sequence diagrams tell can happen."""
+"""Pass ``interactions``: checks whether the runs that sequence diagrams show can happen."""
 
 from collections.abc import Iterator
 from typing import ClassVar
@@ -16,58 +16,61 @@ _Place = tuple[str, int]
 
 
 class Interactions(Struct, frozen=True):
-    """Check every interaction; the graph stays as it is.
+    """Check every interaction; the graph stays unchanged.
 
-    Assumes features and generalizations (``inherit``). What is reported is in the graph as the
-    model has it: diagrams draw it as far as they can.
+    Assumes features and generalizations (``inherit``). Faulty elements stay in the graph, and
+    diagrams draw them as far as they can.
     """
 
     name: ClassVar[str] = "interactions"
     after: ClassVar[tuple[str, ...]] = ("inherit",)
 
     def run(self, graph: Graph, sink: Sink) -> None:
-        """Report what is wrong; see the class."""
+        """Report faults; see the class."""
         for interaction in graph.of_kind(Kind.INTERACTION):
-            places = dict(_places(graph, interaction))
-            for message in interactions.messages(graph, interaction):
-                _message(graph, sink, interaction, message, places)
+            places = dict(_locate_occurrences(graph, interaction))
+            for message in sequence.messages(graph, interaction):
+                _check_message(graph, sink, interaction, message, places)
             for item in graph.subtree(interaction):
                 if item.kind is Kind.FRAGMENT:
-                    _operands(graph, sink, interaction, item)
+                    _check_operands(graph, sink, interaction, item)
                 elif item.kind is Kind.EXECUTION:
-                    _execution(graph, sink, interaction, item, places)
-            _destructions(graph, sink, interaction)
-            _creations(graph, sink, interaction)
+                    _check_execution(graph, sink, interaction, item, places)
+            _check_destructions(graph, sink, interaction)
+            _check_creations(graph, sink, interaction)
 
 
-def _places(graph: Graph, interaction: Element) -> Iterator[tuple[str, _Place]]:
-    for container in interactions.iter_containers(graph, interaction):
-        for position, item in enumerate(interactions.interaction_fragments(graph, container)):
+def _locate_occurrences(graph: Graph, interaction: Element) -> Iterator[tuple[str, _Place]]:
+    """Yield the id of each occurrence with its container and its position."""
+    for container in sequence.containers(graph, interaction):
+        for position, item in enumerate(sequence.happenings(graph, container)):
             yield item.id, (container.id, position)
 
 
 # -- messages ----------------------------------------------------------------------------------
 
 
-def _message(
+def _check_message(
     graph: Graph, sink: Sink, interaction: Element, message: Element, places: dict[str, _Place]
 ) -> None:
-    problem = _problem(graph, message)
+    problem = _find_missing_end(graph, message)
     if problem and not message.attrs.get("unresolved"):
         _report(graph, sink, rules.MESSAGE_WITHOUT_LIFELINE, interaction, message, problem=problem)
     ends = (graph.target(message, Edge.SEND_EVENT), graph.target(message, Edge.RECEIVE_EVENT))
-    found = [places.get(end.id) for end in ends if end is not None]
-    if len(found) == 2 and found[0] is not None and found[1] is not None:
-        (sent_in, sent_at), (received_in, received_at) = found[0], found[1]
+    positions = [places.get(end.id) for end in ends if end is not None]
+    if len(positions) == 2 and positions[0] is not None and positions[1] is not None:
+        (sent_in, sent_at), (received_in, received_at) = positions[0], positions[1]
         if sent_in != received_in:
             _report(graph, sink, rules.ACROSS_OPERANDS, interaction, message)
         elif received_at < sent_at:
             _report(graph, sink, rules.RECEIVED_FIRST, interaction, message)
-    _signature(graph, sink, interaction, message)
+    _check_operation(graph, sink, interaction, message)
 
 
-def _problem(graph: Graph, message: Element) -> str:
-    """What is missing at the ends; a gate is an end, and so is a lost or found message's."""
+def _find_missing_end(graph: Graph, message: Element) -> str:
+    """Return what is missing at the ends of a message. Gates, and ends of lost messages, are
+    ends.
+    """
     if message.attrs.get("message_kind") == "unknown":
         return "has no lifeline at either end"
     for event, lifeline, verb in (
@@ -81,7 +84,7 @@ def _problem(graph: Graph, message: Element) -> str:
     return ""
 
 
-def _signature(graph: Graph, sink: Sink, interaction: Element, message: Element) -> None:
+def _check_operation(graph: Graph, sink: Sink, interaction: Element, message: Element) -> None:
     operation = graph.target(message, Edge.CALLS)
     lifeline = graph.target(message, Edge.FLOW_TARGET)
     if operation is None or operation.kind is not Kind.OPERATION or lifeline is None:
@@ -90,41 +93,43 @@ def _signature(graph: Graph, sink: Sink, interaction: Element, message: Element)
     type_ = interactions.type_of(graph, lifeline)
     if message.subkind == "reply" or represented is None or represented.kind is not Kind.PROPERTY:
         return
-    if type_ is not None and not _offers(graph, type_, operation):
+    if type_ is not None and not _has_operation(graph, type_, operation):
         names = {"operation": operation.name, "type": type_.name}
         _report(graph, sink, rules.NOT_OFFERED, interaction, message, **names)
 
 
-def _offers(graph: Graph, type_: Element, operation: Element) -> bool:
+def _has_operation(graph: Graph, type_: Element, operation: Element) -> bool:
     """Whether the type has the operation: own, inherited, realised, or at one of its ports."""
     owner = graph.owner(operation)
     if owner is None or operation.attrs.get("external"):
         return True
-    offering = {one.id: one for one in _offering(graph, type_)}
-    is_open = any(one.attrs.get("external") for one in offering.values())
-    return is_open or owner.id in offering or _holds_type(owner)
+    offering_classifiers = {
+        classifier.id: classifier for classifier in _list_offering(graph, type_)
+    }
+    is_open = any(classifier.attrs.get("external") for classifier in offering_classifiers.values())
+    return is_open or owner.id in offering_classifiers or _is_shared_namespace(owner)
 
 
-def _offering(graph: Graph, type_: Element) -> Iterator[Element]:
-    """The type, its generals and realised interfaces, and the same of its ports' types."""
+def _list_offering(graph: Graph, type_: Element) -> Iterator[Element]:
+    """Yield the type, its generals and realised interfaces, and the same of its ports' types."""
     types = [graph.target(port, Edge.TYPED_BY) for port in query.ports(graph, type_)]
-    for one in (type_, *(found for found in types if found is not None)):
-        for general in (one, *query.generals(graph, one)):
+    for type_of_port in (type_, *(port_type for port_type in types if port_type is not None)):
+        for general in (type_of_port, *query.generals(graph, type_of_port)):
             yield general
             for realised in graph.targets(general, Edge.REALIZES):
                 yield from (realised, *query.generals(graph, realised))
 
 
-def _holds_type(owner: Element) -> bool:
-    """An operation of an interaction or collaboration is nobody's in particular."""
+def _is_shared_namespace(owner: Element) -> bool:
+    """Whether operations of the owner belong to no classifier in particular."""
     return owner.kind is Kind.INTERACTION or owner.subkind == "collaboration"
 
 
 # -- fragments, executions, destructions -------------------------------------------------------
 
 
-def _operands(graph: Graph, sink: Sink, interaction: Element, fragment: Element) -> None:
-    if fragment.subkind in (*interactions.INTERACTION_USES, "state-invariant", "continuation"):
+def _check_operands(graph: Graph, sink: Sink, interaction: Element, fragment: Element) -> None:
+    if fragment.subkind in (*sequence.USES, "state-invariant", "continuation"):
         return
     count = len(interactions.operands(graph, fragment))
     is_single = fragment.subkind in _ONE_OPERAND
@@ -139,14 +144,14 @@ def _operands(graph: Graph, sink: Sink, interaction: Element, fragment: Element)
         )
 
 
-def _execution(
+def _check_execution(
     graph: Graph, sink: Sink, interaction: Element, execution: Element, places: dict[str, _Place]
 ) -> None:
     ends = (graph.target(execution, Edge.START), graph.target(execution, Edge.FINISH))
-    found = [places.get(end.id) for end in ends if end is not None]
-    if len(found) == 2 and found[0] is not None and found[1] is not None:
-        is_same = found[0][0] == found[1][0]
-        if is_same and found[1][1] < found[0][1]:
+    positions = [places.get(end.id) for end in ends if end is not None]
+    if len(positions) == 2 and positions[0] is not None and positions[1] is not None:
+        is_same = positions[0][0] == positions[1][0]
+        if is_same and positions[1][1] < positions[0][1]:
             sink.report(
                 rules.EXECUTION_BACKWARDS,
                 graph.subject(execution),
@@ -155,8 +160,8 @@ def _execution(
             )
 
 
-def _destructions(graph: Graph, sink: Sink, interaction: Element) -> None:
-    for container in interactions.iter_containers(graph, interaction):
+def _check_destructions(graph: Graph, sink: Sink, interaction: Element) -> None:
+    for container in sequence.containers(graph, interaction):
         destroyed: dict[str, Element] = {}
         for item in interactions.interaction_fragments(graph, container):
             if item.kind is not Kind.OCCURRENCE:
@@ -168,18 +173,18 @@ def _destructions(graph: Graph, sink: Sink, interaction: Element) -> None:
                     destroyed[lifeline.id] = lifeline
 
 
-def _creations(graph: Graph, sink: Sink, interaction: Element) -> None:
-    begun: set[str] = set()
+def _check_creations(graph: Graph, sink: Sink, interaction: Element) -> None:
+    started: set[str] = set()
     for item in graph.subtree(interaction):
         if item.kind is not Kind.OCCURRENCE:
             continue
         message = interactions.received_message(graph, item)
         for lifeline in interactions.covered_lifelines(graph, item):
             is_created = message is not None and message.subkind == "create-message"
-            if message is not None and is_created and lifeline.id in begun:
+            if message is not None and is_created and lifeline.id in started:
                 name = lifeline.name or "without name"
                 _report(graph, sink, rules.CREATED_LATE, interaction, message, lifeline=name)
-            begun.add(lifeline.id)
+            started.add(lifeline.id)
 
 
 def _report_destroyed(
@@ -194,13 +199,13 @@ def _report_destroyed(
 
 
 def _report(
-    graph: Graph, sink: Sink, what: Rule, interaction: Element, message: Element, **facts: str
+    graph: Graph, sink: Sink, rule: Rule, interaction: Element, message: Element, **facts: str
 ) -> None:
-    called = graph.target(message, Edge.CALLS)
+    operation = graph.target(message, Edge.CALLS)
     sink.report(
-        what,
+        rule,
         graph.subject(message),
-        message=message.name or (called.name if called is not None else "") or "without name",
+        message=message.name or (operation.name if operation is not None else "") or "without name",
         interaction=graph.qualified_name(interaction),
         **facts,  # type: ignore[arg-type]
     )

@@ -1,4 +1,4 @@
-"""Pass ``ports``: type and direction of every port, as far as the model gives them."""
+"""Pass ``ports``: type and direction of every port, as far as the model states them."""
 
 from collections.abc import Iterable
 from typing import ClassVar
@@ -66,12 +66,11 @@ _BY_PARAMETER = {"in": "in", "out": "out", "return": "out", "inout": "inout"}
 class Ports(Struct, frozen=True):
     """Give every port its type and direction.
 
-    Assumes effective features and roles. Guarantees: a port without a type that redefines a
-    typed one is typed alike; ``direction`` is set where, in this order, a flow port's own
-    direction, the flow properties of its type, the parameters of its type's operations, item
-    flows, or the port that it redefines give it; a conjugated port has the opposite of what
-    its type says. All other ports stay undirected and are counted, block by block. A
-    direction that the source states stays.
+    Assumes effective features and roles. Guarantees: a port without a type that redefines a typed
+    one has the same type; ``direction`` is set where, in this order, a flow port's own direction,
+    the flow properties of its type, the parameters of its type's operations, item flows, or the
+    redefined port give it; a conjugated port has the opposite of the direction of its type. All
+    other ports stay undirected and are counted for each block. A direction in the source stays.
     """
 
     name: ClassVar[str] = "ports"
@@ -79,22 +78,24 @@ class Ports(Struct, frozen=True):
 
     def run(self, graph: Graph, sink: Sink) -> None:
         """Complete the ports in place; see the class."""
-        ports = [one for one in graph.of_kind(Kind.PORT) if one.role != "constraint parameter"]
+        ports = [port for port in graph.of_kind(Kind.PORT) if port.role != "constraint parameter"]
         for port in ports:
             _give_type(graph, port)
         for port in ports:
             if "direction" not in port.attrs:
-                graph.set(port, direction=_direction(graph, port))
+                graph.set(port, direction=_find_direction(graph, port))
         for port in ports:
-            graph.set(port, direction=port.attrs.get("direction") or _redefined(graph, port))
-        plants = plant_ports.files(graph)
-        ours = [port for port in ports if port.source not in plants]
-        for port in ours:
+            graph.set(
+                port, direction=port.attrs.get("direction") or _redefined_direction(graph, port)
+            )
+        plants = plant_ports.find_plant_files(graph)
+        drawn_ports = [port for port in ports if port.source not in plants]
+        for port in drawn_ports:
             if not _is_typed(graph, port):
                 sink.report(UNTYPED_PORT, graph.subject(port), port=graph.qualified_name(port))
         for feature in graph.of_kind(Kind.PORT, Kind.PROPERTY, Kind.FLOW_PROPERTY, Kind.PARAMETER):
             _check_multiplicity(graph, sink, feature)
-        _report_undirected(graph, sink, ours)
+        _report_undirected(graph, sink, drawn_ports)
         _report_plants(graph, sink, [port for port in ports if port.source in plants])
 
 
@@ -107,50 +108,56 @@ def _give_type(graph: Graph, port: Element) -> None:
 # -- direction ---------------------------------------------------------------------------------
 
 
-def _direction(graph: Graph, port: Element) -> str | None:
+def _find_direction(graph: Graph, port: Element) -> str | None:
     return (
         _own_direction(graph, port)
-        or _seen_through(port, _by_type(graph, port))
-        or _by_item_flows(graph, port)
+        or _conjugate(port, _direction_by_type(graph, port))
+        or _direction_by_item_flows(graph, port)
     )
 
 
 def _own_direction(graph: Graph, port: Element) -> str | None:
-    """Direction of a flow port (SysML 1.2 clause 9.3.2.3; an atomic one is inout by default).
+    """Return the direction of a flow port (SysML 1.2 clause 9.3.2.3; an atomic one is inout by
+    default).
 
-    One that a flow specification types takes its direction from there.
+    A flow port that is typed by a flow specification takes its direction from there.
     """
     if port.role != "flow port":
         return None
-    given = tag(graph, port, "direction")
-    if given in FLOW_DIRECTIONS:
-        return str(given)
+    stated = tag(graph, port, "direction")
+    if stated in FLOW_DIRECTIONS:
+        return str(stated)
     type_ = type_of(graph, port)
-    return None if type_ is not None and _by_type(graph, port) else "inout"
+    return None if type_ is not None and _direction_by_type(graph, port) else "inout"
 
 
-def _seen_through(port: Element, direction: str | None) -> str | None:
+def _conjugate(port: Element, direction: str | None) -> str | None:
     return opposite(direction) if port.attrs.get("conjugated") else direction
 
 
-def _by_type(graph: Graph, port: Element) -> str | None:
+def _direction_by_type(graph: Graph, port: Element) -> str | None:
     type_ = type_of(graph, port)
     if type_ is None:
         return None
-    return _of_type(graph, type_) or opposite(_of_original(graph, type_))
+    return _direction_of_type(graph, type_) or opposite(_direction_of_original(graph, type_))
 
 
-def _of_type(graph: Graph, type_: Element) -> str | None:
-    flowing = [str(one.attrs.get("direction", "inout")) for one in flow_properties(graph, type_)]
-    return _together(flowing) or _together(_parameter_directions(graph, type_))
+def _direction_of_type(graph: Graph, type_: Element) -> str | None:
+    directions = [
+        str(property_.attrs.get("direction", "inout"))
+        for property_ in flow_properties(graph, type_)
+    ]
+    return _combine(directions) or _combine(_parameter_directions(graph, type_))
 
 
-def _of_original(graph: Graph, type_: Element) -> str | None:
-    """Direction of the block that a ~InterfaceBlock conjugates, for tools that leave it empty."""
+def _direction_of_original(graph: Graph, type_: Element) -> str | None:
+    """Return the direction of the block that a ~InterfaceBlock conjugates, if the tool left it
+    empty.
+    """
     if not has_stereotype(graph, type_, *_CONJUGATED):
         return None
     original = graph.get(str(tag(graph, type_, "original")))
-    return None if original is None else _of_type(graph, original)
+    return None if original is None else _direction_of_type(graph, original)
 
 
 def _parameter_directions(graph: Graph, type_: Element) -> Iterable[str]:
@@ -164,70 +171,79 @@ def _parameter_directions(graph: Graph, type_: Element) -> Iterable[str]:
                 yield (opposite(direction) or direction) if required else direction
 
 
-def _together(directions: Iterable[str]) -> str | None:
-    found = sorted(set(directions))
-    return found[0] if len(found) == 1 else ("inout" if found else None)
+def _combine(directions: Iterable[str]) -> str | None:
+    distinct = sorted(set(directions))
+    return distinct[0] if len(distinct) == 1 else ("inout" if distinct else None)
 
 
-def _by_item_flows(graph: Graph, port: Element) -> str | None:
-    leaving = [one for one in graph.sources(port, Edge.FLOW_SOURCE) if _is_item_flow(one)]
-    arriving = [one for one in graph.sources(port, Edge.FLOW_TARGET) if _is_item_flow(one)]
-    out = ["in" if _enters(graph, port, one) else "out" for one in leaving]
-    in_ = ["out" if _enters(graph, port, one) else "in" for one in arriving]
-    return _together((*out, *in_))
+def _direction_by_item_flows(graph: Graph, port: Element) -> str | None:
+    leaving = [flow for flow in graph.sources(port, Edge.FLOW_SOURCE) if _is_item_flow(flow)]
+    arriving = [flow for flow in graph.sources(port, Edge.FLOW_TARGET) if _is_item_flow(flow)]
+    directions = ["in" if _runs_inside(graph, port, flow) else "out" for flow in leaving]
+    arriving_directions = ["out" if _runs_inside(graph, port, flow) else "in" for flow in arriving]
+    return _combine((*directions, *arriving_directions))
 
 
 def _is_item_flow(flow: Element) -> bool:
     return flow.kind is Kind.ITEM_FLOW
 
 
-def _enters(graph: Graph, port: Element, flow: Element) -> bool:
+def _runs_inside(graph: Graph, port: Element, flow: Element) -> bool:
     """Whether the flow runs between the port and the inside of its block.
 
-    What starts at a block's own port and goes to a part has come in through it.
+    A flow from a block's own port to a part has entered the block through it.
     """
-    realising = [one for one in graph.targets(flow, Edge.REALIZING) if one.kind is Kind.CONNECTOR]
-    return any(_delegates(graph, one, port) for one in realising or _joining(graph, port, flow))
+    realising = [
+        connector
+        for connector in graph.targets(flow, Edge.REALIZING)
+        if connector.kind is Kind.CONNECTOR
+    ]
+    return any(
+        _delegates(graph, connector, port)
+        for connector in realising or _find_common_connectors(graph, port, flow)
+    )
 
 
-def _joining(graph: Graph, port: Element, flow: Element) -> list[Element]:
-    other = flow_target(graph, flow) if flow_source(graph, flow) is port else None
-    other = other or flow_source(graph, flow)
-    if other is None:
+def _find_common_connectors(graph: Graph, port: Element, flow: Element) -> list[Element]:
+    other_end = flow_target(graph, flow) if flow_source(graph, flow) is port else None
+    other_end = other_end or flow_source(graph, flow)
+    if other_end is None:
         return []
-    there = {one.id for one in connectors_of(graph, other)}
-    return [one for one in connectors_of(graph, port) if one.id in there]
+    at_other_end = {connector.id for connector in connectors_of(graph, other_end)}
+    return [connector for connector in connectors_of(graph, port) if connector.id in at_other_end]
 
 
 def _delegates(graph: Graph, connector: Element, port: Element) -> bool:
-    attached = ends(graph, connector)
-    own = [one for one in attached if role_of(graph, one) is port]
-    outer = [one for one in attached if is_boundary(graph, one)]
-    return len(outer) < len(attached) and any(one in outer for one in own)
+    connector_ends = ends(graph, connector)
+    port_ends = [end for end in connector_ends if role_of(graph, end) is port]
+    boundary_ends = [end for end in connector_ends if is_boundary(graph, end)]
+    return len(boundary_ends) < len(connector_ends) and any(
+        end in boundary_ends for end in port_ends
+    )
 
 
-def _redefined(graph: Graph, port: Element) -> str | None:
-    directions = (one.attrs.get("direction") for one in redefined_features(graph, port))
-    return next((str(one) for one in directions if one), None)
+def _redefined_direction(graph: Graph, port: Element) -> str | None:
+    directions = (port_.attrs.get("direction") for port_ in redefined(graph, port))
+    return next((str(port_) for port_ in directions if port_), None)
 
 
 # -- rules -------------------------------------------------------------------------------------
 
 
 def _is_typed(graph: Graph, port: Element) -> bool:
-    """Whether it has a type, or what is missing is told already."""
+    """Whether the port has a type, or its missing type has been reported."""
     unresolved = port.attrs.get("unresolved") or ()
-    broken = isinstance(unresolved, tuple) and Edge.TYPED_BY.value in unresolved
+    is_unresolved = isinstance(unresolved, tuple) and Edge.TYPED_BY.value in unresolved
     has_type = graph.target(port, Edge.TYPED_BY) is not None
-    return has_type or broken or bool(port.attrs.get("external"))
+    return has_type or is_unresolved or bool(port.attrs.get("external"))
 
 
 def _report_plants(graph: Graph, sink: Sink, ports: list[Element]) -> None:
-    own = [port for port in ports if not port.attrs.get("external")]
-    untyped = [port for port in own if not _is_typed(graph, port)]
-    plant_ports.report(graph, sink, plant_ports.UNTYPED, untyped, own)
-    undirected = plant_ports.undirected(graph, own)
-    plant_ports.report(graph, sink, plant_ports.UNDIRECTED, undirected, own)
+    internal = [port for port in ports if not port.attrs.get("external")]
+    untyped = [port for port in internal if not _is_typed(graph, port)]
+    plant_ports.report_by_file(graph, sink, plant_ports.UNTYPED, untyped, internal)
+    undirected = plant_ports.find_undirected(graph, internal)
+    plant_ports.report_by_file(graph, sink, plant_ports.UNDIRECTED, undirected, internal)
 
 
 def _check_multiplicity(graph: Graph, sink: Sink, feature: Element) -> None:
@@ -253,7 +269,7 @@ def _report_undirected(graph: Graph, sink: Sink, ports: list[Element]) -> None:
         if port.owner is not None and "direction" not in port.attrs:
             blocks.setdefault(port.owner, []).append(port)
     for id, undirected in blocks.items():
-        names = [f"'{one.name or one.id}'" for one in undirected]
+        names = [f"'{port_.name or port_.id}'" for port_ in undirected]
         more = f" and {len(names) - _LISTED} more" if len(names) > _LISTED else ""
         sink.report(
             UNDIRECTED_PORTS,

@@ -1,4 +1,6 @@
-"""What is told of the ports of AutomationML: once a file, for the language leaves much open."""
+"""Diagnostics on ports of AutomationML: one for each file, because the language leaves much
+open.
+"""
 
 from collections.abc import Iterable
 
@@ -23,45 +25,50 @@ UNTYPED = rule(
 )
 
 
-def files(graph: Graph) -> frozenset[str]:
-    """The files of AutomationML in the unit."""
+def find_plant_files(graph: Graph) -> frozenset[str]:
+    """Return the AutomationML files of the unit."""
     documents = graph.of_kind(Kind.DOCUMENT)
-    return frozenset(one.source for one in documents if one.subkind == "caex")
+    return frozenset(document.source for document in documents if document.subkind == "caex")
 
 
-def undirected(graph: Graph, ports: Iterable[Element]) -> list[Element]:
-    """Ports without direction in files where others have one; in most files none has.
+def find_undirected(graph: Graph, ports: Iterable[Element]) -> list[Element]:
+    """Return the ports without direction in files where other ports have one; in most files none
+    has.
 
-    What leads to a document, as a drawing of the element, has none.
+    A port that leads to a document, such as a drawing of the element, has no direction.
     """
-    flowing = [port for port in ports if not _leads_to_document(graph, port)]
-    telling = {port.source for port in flowing if "direction" in port.attrs}
-    return [p for p in flowing if p.source in telling and "direction" not in p.attrs]
+    flow_ports = [port for port in ports if not _leads_to_document(graph, port)]
+    files_with_directions = {port.source for port in flow_ports if "direction" in port.attrs}
+    return [
+        p for p in flow_ports if p.source in files_with_directions and "direction" not in p.attrs
+    ]
 
 
 def _leads_to_document(graph: Graph, port: Element) -> bool:
-    about = graph.sources(port, Edge.REFERENCES)
-    return any(one.kind is Kind.DOCUMENT for one in about)
+    referring = graph.sources(port, Edge.REFERENCES)
+    return any(element.kind is Kind.DOCUMENT for element in referring)
 
 
-def report(
-    graph: Graph, sink: Sink, about: Rule, found: Iterable[Element], ports: Iterable[Element]
+def report_by_file(
+    graph: Graph, sink: Sink, rule: Rule, faulty: Iterable[Element], ports: Iterable[Element]
 ) -> None:
-    """Report a rule about some of all ports, once for each file, at the first of them."""
-    every: dict[str, int] = {}
+    """Report a rule about the *faulty* among all *ports*, once for each file, at the first of
+    them.
+    """
+    totals: dict[str, int] = {}
     for port in ports:
-        every[port.source] = every.get(port.source, 0) + 1
+        totals[port.source] = totals.get(port.source, 0) + 1
     by_file: dict[str, list[Element]] = {}
-    for port in found:
+    for port in faulty:
         by_file.setdefault(port.source, []).append(port)
-    for file, some in by_file.items():
-        names = [f"'{graph.qualified_name(port)}'" for port in some[:_LISTED]]
-        more = f" and {len(some) - _LISTED} more" if len(some) > _LISTED else ""
+    for file, reported in by_file.items():
+        names = [f"'{graph.qualified_name(port)}'" for port in reported[:_LISTED]]
+        more = f" and {len(reported) - _LISTED} more" if len(reported) > _LISTED else ""
         sink.report(
-            about,
-            graph.subject(some[0]),
-            count=len(some),
-            all=every[file],
+            rule,
+            graph.subject(reported[0]),
+            count=len(reported),
+            all=totals[file],
             file=file,
             ports=", ".join(names) + more,
         )

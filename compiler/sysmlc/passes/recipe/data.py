@@ -118,14 +118,10 @@ class Data(Struct, frozen=True):
             if end.kind is Kind.ACTIVITY_PARAMETER:
                 return Var(self._parameter_name(end))
             incoming = [
-                flow_before
-                for flow_before in query.incoming(graph, end)
-                if flow_before.id not in seen
+                previous for previous in query.incoming(graph, end) if previous.id not in seen
             ]
-            seen.update(flow_before.id for flow_before in incoming)
-            stack.extend(
-                flow_before for flow_before in incoming if flow_before.kind is Kind.OBJECT_FLOW
-            )
+            seen.update(previous.id for previous in incoming)
+            stack.extend(previous for previous in incoming if previous.kind is Kind.OBJECT_FLOW)
         return None
 
     def _is_passed_on(self, pin: Element) -> bool:
@@ -233,7 +229,7 @@ def list_data_parameters(
     """Return the parameters that hold values or a required machine, in order."""
     elements = query.parameters(context.graph, element, *directions)
     return tuple(
-        build_parameter(context, element) for element in elements if is_input(context, element)
+        build_parameter(context, declared) for declared in elements if is_input(context, declared)
     )
 
 

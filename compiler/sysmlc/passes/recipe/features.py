@@ -81,10 +81,10 @@ def value_type(context: Context, element: Element) -> ValueType | None:
 
 def _build_type(context: Context, type_: Element) -> ValueType:
     family = [type_, *query.generals(context.graph, type_)]
-    for type_in_family in family:
-        if type_in_family.kind is Kind.ENUMERATION:
-            return _build_enumeration(context, type_in_family)
-        primitive = _PRIMITIVES.get(_local_name(type_in_family))
+    for candidate in family:
+        if candidate.kind is Kind.ENUMERATION:
+            return _build_enumeration(context, candidate)
+        primitive = _PRIMITIVES.get(_local_name(candidate))
         if primitive is not None:
             return primitive
     if type_.attrs.get("property_specific"):
@@ -97,11 +97,11 @@ def _build_type(context: Context, type_: Element) -> ValueType:
 
 def _build_enumeration(context: Context, enumeration: Element) -> EnumType:
     owned = context.graph.owned(enumeration)
-    literals = [element for element in owned if element.kind is Kind.ENUMERATION_LITERAL]
-    values = [element.attrs.get("value") for element in literals]
+    literals = [literal for literal in owned if literal.kind is Kind.ENUMERATION_LITERAL]
+    values = [literal.attrs.get("value") for literal in literals]
     plain = tuple(value for value in values if isinstance(value, bool | int | float | str))
     is_whole = len(plain) == len(literals)
-    names = tuple(element.name for element in literals)
+    names = tuple(literal.name for literal in literals)
     return EnumType(context.name(enumeration), names, plain if is_whole else ())
 
 

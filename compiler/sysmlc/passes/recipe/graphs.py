@@ -116,14 +116,14 @@ def add_ends(context: Context, activity: Element, draft: Draft) -> None:
     """Add an initial and a final node where the model draws none (UML 2.5.1 clause 15.2.3.2)."""
     id = context.name(activity)
     top_nodes = [node for node in draft.nodes if context.graph[node.element].owner == activity.id]
-    top_edges = [node for node in draft.edges if context.graph[node.element].owner == activity.id]
+    top_edges = [edge for edge in draft.edges if context.graph[edge.element].owner == activity.id]
     kinds = {node.kind for node in top_nodes}
     targets = {edge.target for edge in top_edges}
     sources = {edge.source for edge in top_edges}
     if "initial" not in kinds:
         draft.nodes.append(Node(f"{id}::initial", "initial"))
         first = [node.id for node in top_nodes if node.id not in targets]
-        draft.edges.extend(FlowEdge(f"{id}::initial", node) for node in first)
+        draft.edges.extend(FlowEdge(f"{id}::initial", target) for target in first)
     if not kinds & {"final", "flowFinal"}:
         draft.nodes.append(Node(f"{id}::final", "final"))
         last = [node for node in top_nodes if node.id not in sources]
@@ -141,8 +141,8 @@ def add_results(context: Context, activity: Element, data: Data, draft: Draft) -
         for element in query.parameters(context.graph, activity, *_OUT)
         if is_computed(element)
     ]
-    ends = [element for element in draft.nodes if element.kind == "final"]
-    ends = ends or [element for element in draft.nodes if element.kind == "flowFinal"]
+    ends = [node for node in draft.nodes if node.kind == "final"]
+    ends = ends or [node for node in draft.nodes if node.kind == "flowFinal"]
     for number, end in enumerate(ends if computed else (), 1):
         mark = "" if number == 1 else f"#{number}"
         results = [_build_result(context, element, data, mark) for element in computed]

@@ -107,9 +107,7 @@ def _is_argument(pin: Element) -> bool:
 
 def _machines_of_features(context: Context, features: Iterable[Element]) -> tuple[Element, ...]:
     types = (query.type_of(context.graph, feature) for feature in features)
-    machines = (
-        feature for feature in types if feature is not None and context.level(feature) == "machine"
-    )
+    machines = (type_ for type_ in types if type_ is not None and context.level(type_) == "machine")
     return tuple(dict.fromkeys(machines))
 
 
