@@ -66,7 +66,7 @@ def compile_model(
         inputs=inputs,
         config=config,
         backends=tuple(select_backends(list(emit))) if emit else (),
-        passes=tuple(pipeline.ordered([*registry.load_passes(config.passes), *passes])),
+        passes=tuple(pipeline.sort_passes([*registry.load_passes(config.passes), *passes])),
     )
     return compile_request(request)
 

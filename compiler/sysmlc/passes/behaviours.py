@@ -128,15 +128,15 @@ def _check_method(graph: Graph, sink: Sink, operation: Element) -> None:
     if not methods and operation.attrs.get("abstract") is None:
         _suggest_method(graph, sink, operation)
     for method in methods:
-        parameters_, method_parameters = (
+        own_parameters, method_parameters = (
             _parameter_directions(graph, element) for element in (operation, method)
         )
-        if parameters_ != method_parameters and not method.attrs.get("external"):
+        if own_parameters != method_parameters and not method.attrs.get("external"):
             sink.report(
                 METHOD_PARAMETERS,
                 graph.subject(operation),
                 operation=graph.qualified_name(operation),
-                own=", ".join(parameters_),
+                own=", ".join(own_parameters),
                 method=graph.qualified_name(method),
                 other=", ".join(method_parameters),
             )

@@ -101,8 +101,10 @@ class _Hierarchy:
     def direct_generals(self, classifier: Element) -> list[Element]:
         """Return the generals of the classifier that do not lead back to it."""
         component = self._component.get(classifier.id)
-        generals_ = self._graph.targets(classifier, Edge.SPECIALIZES)
-        return [general for general in generals_ if self._component[general.id] != component]
+        general_classifiers = self._graph.targets(classifier, Edge.SPECIALIZES)
+        return [
+            general for general in general_classifiers if self._component[general.id] != component
+        ]
 
     def effective_features(self, classifier: Element) -> list[Element]:
         """Return the effective features of the classifier."""

@@ -141,8 +141,10 @@ def _add_formula(graph: Graph, contract: Contract, constraint: Element, sink: Si
             formula = scope.settled(formula)
             contract = with_features(contract, scope, formula)
     except FormulaError as error:
-        variables_, reason = ", ".join(domains), told(error, body)
-        sink.report(NOT_A_FORMULA, subject, constraint=name, reason=reason, variables=variables_)
+        variable_names, reason = ", ".join(domains), told(error, body)
+        sink.report(
+            NOT_A_FORMULA, subject, constraint=name, reason=reason, variables=variable_names
+        )
         return contract
     conjuncts = [
         Conjunct(part, class_, constraint.id, f"'{name}' demands it.")

@@ -82,8 +82,8 @@ def _give_domain(graph: Graph, flow: Element) -> None:
 
 
 def _check_flow(graph: Graph, sink: Sink, flow: Element) -> None:
-    unresolved_ = flow.attrs.get("unresolved")
-    unresolved = unresolved_ if isinstance(unresolved_, tuple) else ()
+    value = flow.attrs.get("unresolved")
+    unresolved = value if isinstance(value, tuple) else ()
     for edge, name in ((Edge.FLOW_SOURCE, "source"), (Edge.FLOW_TARGET, "target")):
         if graph.target(flow, edge) is None and edge.value not in unresolved:
             subject = graph.subject(flow)
@@ -162,8 +162,8 @@ def _list_item_types(graph: Graph, port: Element) -> list[Element]:
     type_ = type_of(graph, port)
     if type_ is None:
         return []
-    types = [type_of(graph, property_) for property_ in flow_properties(graph, type_)]
-    return [property_ for property_ in types if property_ is not None] if None not in types else []
+    types = [type_of(graph, flow_property) for flow_property in flow_properties(graph, type_)]
+    return [] if None in types else [type_ for type_ in types if type_ is not None]
 
 
 def _conform(graph: Graph, item: Element, type_: Element) -> bool:

@@ -144,8 +144,8 @@ def _direction_by_type(graph: Graph, port: Element) -> str | None:
 
 def _direction_of_type(graph: Graph, type_: Element) -> str | None:
     directions = [
-        str(property_.attrs.get("direction", "inout"))
-        for property_ in flow_properties(graph, type_)
+        str(flow_property.attrs.get("direction", "inout"))
+        for flow_property in flow_properties(graph, type_)
     ]
     return _combine(directions) or _combine(_parameter_directions(graph, type_))
 
@@ -223,8 +223,8 @@ def _delegates(graph: Graph, connector: Element, port: Element) -> bool:
 
 
 def _redefined_direction(graph: Graph, port: Element) -> str | None:
-    directions = (port_.attrs.get("direction") for port_ in redefined(graph, port))
-    return next((str(port_) for port_ in directions if port_), None)
+    directions = (other.attrs.get("direction") for other in redefined(graph, port))
+    return next((str(direction) for direction in directions if direction), None)
 
 
 # -- rules -------------------------------------------------------------------------------------
@@ -269,7 +269,7 @@ def _report_undirected(graph: Graph, sink: Sink, ports: list[Element]) -> None:
         if port.owner is not None and "direction" not in port.attrs:
             blocks.setdefault(port.owner, []).append(port)
     for id, undirected in blocks.items():
-        names = [f"'{port_.name or port_.id}'" for port_ in undirected]
+        names = [f"'{member.name or member.id}'" for member in undirected]
         more = f" and {len(names) - _LISTED} more" if len(names) > _LISTED else ""
         sink.report(
             UNDIRECTED_PORTS,
