@@ -11,8 +11,8 @@ from sysmlc.driver import Request, compile_model
 from sysmlc.frontends.xmi import FRONTEND
 from sysmlc.ir import Edge, Graph, Kind
 from sysmlc.ir.text import print_text
-from sysmlc.passes.resolve.hrefs import is_standard, primitive
-from sysmlc.passes.resolve.libraries import libraries
+from sysmlc.passes.resolve.hrefs import find_primitive, is_standard
+from sysmlc.passes.resolve.libraries import load_libraries
 from sysmlc.sources import load
 
 pytestmark = pytest.mark.corpus
@@ -96,7 +96,7 @@ def test_nearly_all_references_to_standard_libraries_have_a_stand_in(corpus):
 
 def verdict(href):
     file, _, fragment = href.partition("#")
-    if libraries().find(file, fragment, "", ()) or primitive(href, "", Kind.DATA_TYPE):
+    if load_libraries().find(file, fragment, "", ()) or find_primitive(href, "", Kind.DATA_TYPE):
         return "known"
     return "new" if is_standard(file) else "other"
 
@@ -119,7 +119,7 @@ def test_stand_ins_say_of_sysml_what_its_profiles_say(corpus, name):
     ]
     assert len(stereotypes) > 50
     for stereotype in stereotypes:
-        found = libraries().find(
+        found = load_libraries().find(
             "pathmap://SysML16_PROFILES/SysML.profile.uml", stereotype.id, "", ()
         )
         assert found is not None, stereotype.id

@@ -7,7 +7,7 @@ from jsonschema import Draft202012Validator
 from passing import codes, refined
 
 from sysmlc.ir import Edge, Kind
-from sysmlc.passes.resolve.libraries import Libraries, libraries, names_in
+from sysmlc.passes.resolve.libraries import Libraries, load_libraries, read_names
 from sysmlc.support import resources
 
 BLOCK = (
@@ -118,16 +118,16 @@ def test_an_applied_package_of_sysml_is_a_profile():
 
 
 def test_the_name_that_a_reference_shows_tells_when_its_id_is_new():
-    found = libraries().find(
+    found = load_libraries().find(
         "SysML Profile.mdzip", "_2024x_1", "SysML::Ports&Flows::ProxyPort", {Kind.STEREOTYPE}
     )
     assert found.qualified_name == "SysML::Ports&Flows::ProxyPort"
-    assert libraries().find("plant.mdzip", "_2024x_1", "SysML::Blocks::Block", ()) is None
-    assert libraries().find("SysML Profile.mdzip", "_2024x_1", "", ()) is None
+    assert load_libraries().find("plant.mdzip", "_2024x_1", "SysML::Blocks::Block", ()) is None
+    assert load_libraries().find("SysML Profile.mdzip", "_2024x_1", "", ()) is None
 
 
 def test_one_name_for_several_elements_is_told_apart_by_kind_and_owner():
-    find = libraries().find
+    find = load_libraries().find
     md = "SysML Profile.mdzip"
     assert find(md, "Block", "", {Kind.STEREOTYPE}).qualified_name == "SysML::Blocks::Block"
     package = find(md, "Block", "", {Kind.PACKAGE}).qualified_name
@@ -150,7 +150,7 @@ def test_one_name_for_several_elements_is_told_apart_by_kind_and_owner():
     ],
 )  # fmt: skip
 def test_names_are_read_from_fragments(fragment, names):
-    assert names_in(fragment) == names
+    assert read_names(fragment) == names
 
 
 def test_the_data_file_is_as_its_schema_says():

@@ -9,7 +9,7 @@ from enum import StrEnum
 from functools import cache
 
 from sysmlc.ir import Edge
-from sysmlc.passes.resolve.libraries import libraries
+from sysmlc.passes.resolve.libraries import load_libraries
 
 
 class Family(StrEnum):
@@ -227,7 +227,7 @@ def parents(name: str) -> tuple[str, ...]:
     ``name`` and the result are names as XML tags show them.
     """
 
-    found = (up for library in _LIBRARIES for up in libraries().generals(library, name))
+    found = (up for library in _LIBRARIES for up in load_libraries().generals(library, name))
     return tuple(up for up in dict.fromkeys(map(mangled, found)) if up != name)
 
 

@@ -1,4 +1,6 @@
-"""The pass ``platform``: recipes on the plant that runs them (thesis 3.2)."""
+"""Pass ``platform``: maps the machines and services of recipes to the plant that runs them (thesis
+3.2).
+"""
 
 from collections.abc import Iterable, Sequence
 from typing import ClassVar
@@ -17,10 +19,11 @@ from sysmlc.recipe.platform import Binding, Offer, Unused, Used
 
 
 class Platform(Struct, frozen=True):
-    """Finds which element of the plant is which machine, and what it offers.
+    """Find the plant element of each machine, and the services that plant elements offer.
 
-    Assumes the models of the pass ``recipe``; then ``graph.derived(recipe.platform.Platform)``
-    holds one platform when there are recipes and a plant, else none. The graph stays as it is.
+    Assumes the models of the pass ``recipe``. Afterwards
+    ``graph.derived(recipe.platform.Platform)`` holds one platform if there are recipes and a plant,
+    else none. The graph stays unchanged.
     """
 
     name: ClassVar[str] = "platform"
@@ -37,49 +40,59 @@ class Platform(Struct, frozen=True):
 
 
 def _describe_platform(
-    context: Context, bound: Sequence[Binding], offered: Sequence[Offer]
+    context: Context, bindings: Sequence[Binding], offers: Sequence[Offer]
 ) -> model.Platform:
-    ids = sorted({*(one.plant for one in bound), *(one.plant for one in offered)})
+    ids = sorted({*(entry.plant for entry in bindings), *(entry.plant for entry in offers)})
     used = [context.found[id] for id in ids]
     return model.Platform(
-        used=tuple(sorted((_used(context, one) for one in used), key=lambda one: one.name)),
-        bindings=tuple(sorted(bound, key=lambda one: (one.machine, one.plant))),
-        offers=tuple(sorted(offered, key=lambda one: (one.service, one.machine, one.plant))),
-        unused=tuple(_unused(context, used)),
-        machines=tuple(context.machine_uses()),
-        services=tuple(context.service_uses()),
+        used=tuple(
+            sorted((_describe_used(context, entry) for entry in used), key=lambda entry: entry.name)
+        ),
+        bindings=tuple(sorted(bindings, key=lambda entry: (entry.machine, entry.plant))),
+        offers=tuple(sorted(offers, key=lambda entry: (entry.service, entry.machine, entry.plant))),
+        unused=tuple(_list_unused(context, used)),
+        machines=tuple(context.list_machine_uses()),
+        services=tuple(context.list_service_uses()),
     )
 
 
-def _used(context: Context, one: PlantElement) -> Used:
-    return Used(one.id, context.plant.name_of(one), _type(context, one), one.element.id)
+def _describe_used(context: Context, element: PlantElement) -> Used:
+    return Used(
+        element.id, context.plant.name_of(element), _type_name(context, element), element.element.id
+    )
 
 
-def _type(context: Context, one: PlantElement) -> str:
-    return "" if one.block is None else context.graph.qualified_name(one.block)
+def _type_name(context: Context, element: PlantElement) -> str:
+    return "" if element.block is None else context.graph.qualified_name(element.block)
 
 
-def _unused(context: Context, used: Iterable[PlantElement]) -> list[Unused]:
-    """The topmost elements that are not used, hold nothing used, and are in nothing used."""
+def _list_unused(context: Context, used: Iterable[PlantElement]) -> list[Unused]:
+    """Return the topmost unused elements that neither contain nor lie in a used element."""
     plant = context.plant
-    inside = {one.id for one in used}
-    holding = inside | {up.id for one in used for up in plant.iter_owners(one)}
-    tops: dict[str, int] = {}
+    used_ids = {element.id for element in used}
+    containing = used_ids | {up.id for element in used for up in plant.around(element)}
+    sizes: dict[str, int] = {}
     top_of: dict[str, str | None] = {}
-    for one in plant.elements.values():
-        above = next(plant.iter_owners(one), None)
-        if one.id in holding:
-            top_of[one.id] = None
-        elif above is None or above.id in holding - inside:
-            top_of[one.id] = one.id
-            tops[one.id] = 0
+    for element in plant.elements.values():
+        container = next(plant.around(element), None)
+        if element.id in containing:
+            top_of[element.id] = None
+        elif container is None or container.id in containing - used_ids:
+            top_of[element.id] = element.id
+            sizes[element.id] = 0
         else:
-            top_of[one.id] = top = top_of.get(above.id)
+            top_of[element.id] = top = top_of.get(container.id)
             if top is not None:
-                tops[top] += 1
-    found = ((plant.elements[id], contents) for id, contents in tops.items())
-    made = [
-        Unused(one.id, plant.name_of(one), _type(context, one), one.element.id, contents)
-        for one, contents in found
+                sizes[top] += 1
+    topmost = ((plant.elements[id], contents) for id, contents in sizes.items())
+    unused = [
+        Unused(
+            element.id,
+            plant.name_of(element),
+            _type_name(context, element),
+            element.element.id,
+            contents,
+        )
+        for element, contents in topmost
     ]
-    return sorted(made, key=lambda one: (one.name, one.id))
+    return sorted(unused, key=lambda element: (element.name, element.id))

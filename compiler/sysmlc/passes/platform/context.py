@@ -1,4 +1,4 @@
-"""What the pass ``platform`` asks of recipes, plant and graph."""
+"""The recipes, the plant and the graph of one unit, and statements about machines in the plant."""
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
@@ -15,42 +15,44 @@ _OVERLAY = ".overlay.yaml"
 
 
 class Statement(NamedTuple):
-    """Where, how it is said (``tag``, ``allocation``, ``overlay``), and what says it."""
+    """A statement of where something is: the target, its kind (``tag``, ``allocation``,
+    ``overlay``), its source.
+    """
 
     target: Element
     how: str
     by: Element
 
 
-def allocations(graph: Graph, element: Element) -> Iterator[Statement]:
-    """Everything that an element is allocated to (SysML 1.6 clause 15.3.1.1)."""
-    said: set[str] = set()
-    for one in graph.sources(element, Edge.CLIENT):
-        if one.role == "allocate":
-            how = "overlay" if one.source.endswith(_OVERLAY) else "allocation"
-            for target in graph.targets(one, Edge.SUPPLIER):
-                said.add(target.id)
-                yield Statement(target, how, one)
+def list_allocations(graph: Graph, element: Element) -> Iterator[Statement]:
+    """Yield everything that an element is allocated to (SysML 1.6 clause 15.3.1.1)."""
+    allocated: set[str] = set()
+    for dependency in graph.sources(element, Edge.CLIENT):
+        if dependency.role == "allocate":
+            how = "overlay" if dependency.source.endswith(_OVERLAY) else "allocation"
+            for target in graph.targets(dependency, Edge.SUPPLIER):
+                allocated.add(target.id)
+                yield Statement(target, how, dependency)
     for target in graph.targets(element, Edge.ALLOCATED_TO):
-        if target.id not in said:
+        if target.id not in allocated:
             yield Statement(target, "allocation", element)
 
 
-def of_machine(graph: Graph, machine: Machine) -> Iterator[Statement]:
-    """What is said about a machine: its tag ``plantElement``, and allocations.
+def list_machine_statements(graph: Graph, machine: Machine) -> Iterator[Statement]:
+    """Yield the statements about a machine: its tag ``plantElement``, and allocations.
 
-    What is said about the block of a machine that is a part or an instance holds when nothing
-    is said about itself.
+    Statements about the block of a machine that is a part or an instance hold if there are none
+    about the machine itself.
     """
     element = graph[machine.element]
-    own = [*_tagged(graph, element), *allocations(graph, element)]
+    statements = [*_list_tagged(graph, element), *list_allocations(graph, element)]
     type_ = query.type_of(graph, element) or graph.target(element, Edge.INSTANCE_OF)
-    if not own and type_ is not None:
-        own = [*_tagged(graph, type_), *allocations(graph, type_)]
-    yield from own
+    if not statements and type_ is not None:
+        statements = [*_list_tagged(graph, type_), *list_allocations(graph, type_)]
+    yield from statements
 
 
-def _tagged(graph: Graph, element: Element) -> Iterator[Statement]:
+def _list_tagged(graph: Graph, element: Element) -> Iterator[Statement]:
     for application in query.applications(graph, element):
         value = application.attrs.get("tag.plantElement")
         target = graph.get(value) if isinstance(value, str) else None
@@ -59,7 +61,7 @@ def _tagged(graph: Graph, element: Element) -> Iterator[Statement]:
 
 
 def is_structure(element: Element) -> bool:
-    """Whether an element without AutomationML may be one of a plant: block, part, instance."""
+    """Whether an element outside AutomationML can be part of a plant: a block, part or instance."""
     return element.kind in (Kind.CLASS, Kind.COMPONENT, Kind.PROPERTY, Kind.INSTANCE)
 
 
@@ -69,7 +71,7 @@ _TELLING = 5_000
 
 @dataclass
 class Context:
-    """One unit: its graph, its recipes, its plant, and what was found of it."""
+    """One unit: its graph, its recipes, its plant, and the plant elements found so far."""
 
     graph: Graph
     models: Sequence[Model]
@@ -79,51 +81,59 @@ class Context:
 
     @cached_property
     def plant(self) -> Plant:
-        """The plant in AutomationML; empty when the unit has none."""
+        """The plant in AutomationML; empty if the unit has none."""
         return Plant(self.graph)
 
     @cached_property
     def machines(self) -> dict[str, Machine]:
-        """Machines of all recipes by id, sorted."""
-        found = {one.id: one for model in self.models for one in model.machines}
-        return {id: found[id] for id in sorted(found) if found[id].element in self.graph}
+        """The machines of all recipes by id, sorted."""
+        by_id = {machine.id: machine for model in self.models for machine in model.machines}
+        return {id: by_id[id] for id in sorted(by_id) if by_id[id].element in self.graph}
 
     @cached_property
     def services(self) -> dict[str, Service]:
-        """Services of all recipes by id, sorted; those in several recipes have one definition."""
-        found = {one.id: one for model in self.models for one in model.services}
-        return {id: found[id] for id in sorted(found) if found[id].element in self.graph}
+        """The services of all recipes by id, sorted. Services of several recipes have one
+        definition.
+        """
+        by_id = {service.id: service for model in self.models for service in model.services}
+        return {id: by_id[id] for id in sorted(by_id) if by_id[id].element in self.graph}
 
-    def machine_uses(self) -> Iterator[tuple[str, tuple[str, ...], str]]:
-        """Machines, the recipes that use each, and its element."""
-        uses = _uses((one.id, model.recipe.id) for model in self.models for one in model.machines)
-        return ((id, uses[id], one.element) for id, one in self.machines.items())
+    def list_machine_uses(self) -> Iterator[tuple[str, tuple[str, ...], str]]:
+        """Yield the machines, the recipes that use each, and its element."""
+        uses = _collect_uses(
+            (machine.id, model.recipe.id) for model in self.models for machine in model.machines
+        )
+        return ((id, uses[id], machine.element) for id, machine in self.machines.items())
 
-    def service_uses(self) -> Iterator[tuple[str, tuple[str, ...], str]]:
-        """Services, the recipes that use each, and its element."""
-        uses = _uses((one.id, model.recipe.id) for model in self.models for one in model.services)
-        return ((id, uses[id], one.element) for id, one in self.services.items())
+    def list_service_uses(self) -> Iterator[tuple[str, tuple[str, ...], str]]:
+        """Yield the services, the recipes that use each, and its element."""
+        uses = _collect_uses(
+            (service.id, model.recipe.id) for model in self.models for service in model.services
+        )
+        return ((id, uses[id], service.element) for id, service in self.services.items())
 
     def has_plant(self) -> bool:
-        """Whether a plant is described, or a machine is said to be something outside recipes."""
+        """Whether a plant is described, or a machine is stated to be an element outside recipes."""
         return bool(self.plant) or any(
-            is_structure(said.target) and not self.is_machine(said.target)
-            for one in self.machines.values()
-            for said in of_machine(self.graph, one)
+            is_structure(statement.target) and not self.is_machine(statement.target)
+            for machine in self.machines.values()
+            for statement in list_machine_statements(self.graph, machine)
         )
 
     def is_machine(self, element: Element) -> bool:
-        """Whether it is a machine of a recipe, or a usage of one."""
+        """Whether the element is a machine of a recipe, or a usage of one."""
         type_ = query.type_of(self.graph, element)
-        return element.id in self._machines or (type_ is not None and type_.id in self._machines)
+        return element.id in self._machine_ids or (
+            type_ is not None and type_.id in self._machine_ids
+        )
 
     @cached_property
-    def _machines(self) -> frozenset[str]:
-        levels = (one.id for one in self.graph if one.attrs.get("level") == "machine")
-        return frozenset({*levels, *(one.element for one in self.machines.values())})
+    def _machine_ids(self) -> frozenset[str]:
+        by_level = (element.id for element in self.graph if element.attrs.get("level") == "machine")
+        return frozenset({*by_level, *(machine.element for machine in self.machines.values())})
 
-    def meant(self, element: Element) -> list[PlantElement]:
-        """Elements of the plant that an element of the graph stands for."""
+    def list_meant(self, element: Element) -> list[PlantElement]:
+        """Return the plant elements that an element of the graph stands for."""
         if self.plant:
             return self.plant.find_represented(element)
         if not is_structure(element) or self.is_machine(element):
@@ -132,24 +142,28 @@ class Context:
         block = element if is_class else query.type_of(self.graph, element)
         return [PlantElement(element.id, element, None, None, block, element.owner or "")]
 
-    def nearest(self, name: str) -> str:
-        """A clause on the elements of the plant that are called nearly so; empty if none is."""
+    def suggest_similar(self, name: str) -> str:
+        """Return a clause that suggests plant elements with a similar name; empty if there are
+        none.
+        """
         if not self.plant or len(self.plant.elements) > _TELLING:
             return ""
         names: dict[str, list[PlantElement]] = {}
-        for one in self.plant.elements.values():
-            names.setdefault(one.element.name, []).append(one)
+        for element in self.plant.elements.values():
+            names.setdefault(element.element.name, []).append(element)
         clause = did_you_mean(name, names)
         if not clause.startswith("did you mean '"):
             return ""
-        near = clause.removeprefix("did you mean '").removesuffix("'?")
-        told = [f"'{self.plant.name_of(one)}' (id {one.id})" for one in names[near]]
-        several = list(dict.fromkeys(told))[:3]
+        similar = clause.removeprefix("did you mean '").removesuffix("'?")
+        suggestions = [
+            f"'{self.plant.name_of(element)}' (id {element.id})" for element in names[similar]
+        ]
+        several = list(dict.fromkeys(suggestions))[:3]
         return f"did you mean {' or '.join(several)}?"
 
 
-def _uses(pairs: Iterable[tuple[str, str]]) -> dict[str, tuple[str, ...]]:
-    found: dict[str, set[str]] = {}
+def _collect_uses(pairs: Iterable[tuple[str, str]]) -> dict[str, tuple[str, ...]]:
+    recipes_by_id: dict[str, set[str]] = {}
     for id, recipe in pairs:
-        found.setdefault(id, set()).add(recipe)
-    return {id: tuple(sorted(recipes)) for id, recipes in found.items()}
+        recipes_by_id.setdefault(id, set()).add(recipe)
+    return {id: tuple(sorted(recipes)) for id, recipes in recipes_by_id.items()}

@@ -1,160 +1,183 @@
-"""Who offers which service: elements of the plant whose blocks own a fitting operation."""
+"""Offers: the plant elements whose blocks own an operation that fits a service."""
 
 from collections.abc import Callable, Iterator
 from typing import NamedTuple
 
 from sysmlc.ir import Edge, Element, Graph, Kind, query
 from sysmlc.passes.platform import rules
-from sysmlc.passes.platform.binding import misplaced
-from sysmlc.passes.platform.context import Context, allocations
+from sysmlc.passes.platform.binding import report_misplaced_services
+from sysmlc.passes.platform.context import Context, list_allocations
 from sysmlc.recipe.model import Service
 from sysmlc.recipe.plant import PlantElement
 from sysmlc.recipe.platform import Binding, Offer
 from sysmlc.support.suggestions import did_you_mean
 
 
-class _Place(NamedTuple):
-    """Where a service may run: a machine, or none, and its element of the plant."""
+class _Site(NamedTuple):
+    """A place where a service may run: a machine or "", and its element of the plant."""
 
     machine: str
     element: PlantElement
 
 
-class _Found(NamedTuple):
-    """An operation that offers a service, how that is known, and what says it."""
+class _OfferingOperation(NamedTuple):
+    """An operation that offers a service, the kind of evidence, and the id of its source."""
 
     operation: Element
     how: str
     by: str
 
 
-def find_offers(context: Context, bound: list[Binding]) -> list[Offer]:
-    """Every element of the plant that offers a service of a recipe."""
-    at = {one.machine: context.found[one.plant] for one in bound}
-    found: list[Offer] = []
+def find_offers(context: Context, bindings: list[Binding]) -> list[Offer]:
+    """Return every offer of a service of a recipe by an element of the plant."""
+    element_of_machine = {binding.machine: context.found[binding.plant] for binding in bindings}
+    offers: list[Offer] = []
     for service in context.services.values():
-        found += _of(context, service, at)
-    misplaced(context)
-    return found
+        offers += _find_offers_of(context, service, element_of_machine)
+    report_misplaced_services(context)
+    return offers
 
 
-def _of(context: Context, service: Service, at: dict[str, PlantElement]) -> list[Offer]:
-    places = list(_places(context, service, at))
-    said = list(_said(context, service))
-    made: list[Offer] = []
-    differing: list[_Differing] = []
-    of_block: dict[str, _Answer] = {}
-    for place in places:
-        block = place.element.block
+def _find_offers_of(
+    context: Context, service: Service, element_of_machine: dict[str, PlantElement]
+) -> list[Offer]:
+    sites = list(_list_sites(context, service, element_of_machine))
+    stated = list(_list_stated_operations(context, service))
+    offers: list[Offer] = []
+    mismatches: list[_Differing] = []
+    results: dict[str, _Answer] = {}
+    for site in sites:
+        block = site.element.block
         if block is None:
             continue
-        if block.id not in of_block:
-            of_block[block.id] = _operation(context, service, block, said)
-        one, why = of_block[block.id]
-        if one is not None:
-            context.found[place.element.id] = place.element
-            id = place.element.id
-            made.append(Offer(service.id, place.machine, id, one.operation.id, one.how, one.by))
-        elif why is not None:
-            differing.append((place, *why))
-    _report(context, service, places, made, differing)
-    _report_astray(context, service, places, said, made)
-    return made
+        if block.id not in results:
+            results[block.id] = _find_operation(context, service, block, stated)
+        match, mismatch = results[block.id]
+        if match is not None:
+            context.found[site.element.id] = site.element
+            id = site.element.id
+            offers.append(
+                Offer(service.id, site.machine, id, match.operation.id, match.how, match.by)
+            )
+        elif mismatch is not None:
+            mismatches.append((site, *mismatch))
+    _report_mismatches(context, service, sites, offers, mismatches)
+    _report_foreign_operations(context, service, sites, stated, offers)
+    return offers
 
 
-def _places(context: Context, service: Service, at: dict[str, PlantElement]) -> Iterator[_Place]:
-    """The elements of its machines and those it is allocated to; else the whole plant."""
-    named = [provider.machine for provider in service.providers]
-    places = [_Place(machine, at[machine]) for machine in named if machine in at]
+def _list_sites(
+    context: Context, service: Service, element_of_machine: dict[str, PlantElement]
+) -> Iterator[_Site]:
+    """Yield the elements of the service's machines and of its allocations; else the whole plant."""
+    machines = [provider.machine for provider in service.providers]
+    sites = [
+        _Site(machine, element_of_machine[machine])
+        for machine in machines
+        if machine in element_of_machine
+    ]
     element = context.graph[service.element]
-    for target, _, _ in allocations(context.graph, element):
+    for target, _, _ in list_allocations(context.graph, element):
         if not context.is_machine(target) and target.kind is not Kind.OPERATION:
-            places += [_Place("", one) for one in context.meant(target)]
-    if not named and not places:
-        places = [_Place("", one) for one in context.plant.elements.values()]
-    yield from {(one.machine, one.element.id): one for one in places}.values()
+            sites += [_Site("", part) for part in context.list_meant(target)]
+    if not machines and not sites:
+        sites = [_Site("", part) for part in context.plant.elements.values()]
+    yield from {(site.machine, site.element.id): site for site in sites}.values()
 
 
-def _said(context: Context, service: Service) -> Iterator[_Found]:
-    """Operations that the model itself ties to the service, the most direct first."""
+def _list_stated_operations(context: Context, service: Service) -> Iterator[_OfferingOperation]:
+    """Yield the operations that the model itself assigns to the service, the most direct first."""
     graph = context.graph
     element = graph[service.element]
     if element.kind is Kind.OPERATION:
-        yield _Found(element, "call", element.id)
-    for target, how, by in allocations(graph, element):
+        yield _OfferingOperation(element, "call", element.id)
+    for target, how, source in list_allocations(graph, element):
         if target.kind is Kind.OPERATION:
-            yield _Found(target, how, by.id)
+            yield _OfferingOperation(target, how, source.id)
     for operation in graph.sources(element, Edge.METHOD):
-        yield _Found(operation, "method", operation.id)
+        yield _OfferingOperation(operation, "method", operation.id)
 
 
-_Differing = tuple[_Place, Element, str]
-_Answer = tuple[_Found | None, tuple[Element, str] | None]
+_Differing = tuple[_Site, Element, str]
+_Answer = tuple[_OfferingOperation | None, tuple[Element, str] | None]
 
 
-def _operation(context: Context, service: Service, block: Element, said: list[_Found]) -> _Answer:
-    """The operation of a block that offers the service, or why the one of its name does not."""
-    kin = context.plant.class_ids(block)
-    for one in said:
-        if one.operation.owner in kin:
-            return one, None
+def _find_operation(
+    context: Context, service: Service, block: Element, stated: list[_OfferingOperation]
+) -> _Answer:
+    """Return the operation of a block that offers the service, or why the one of its name does
+    not.
+    """
+    family = context.plant.family(block)
+    for candidate in stated:
+        if candidate.operation.owner in family:
+            return candidate, None
     element = context.graph[service.element]
-    why: tuple[Element, str] | None = None
-    for operation in _operations(context, block):
+    mismatch: tuple[Element, str] | None = None
+    for operation in _list_operations(context, block):
         if element.name and operation.name == element.name:
-            problem = difference(context.graph, element, operation, context.is_machine)
+            problem = describe_difference(context.graph, element, operation, context.is_machine)
             if not problem:
-                return _Found(operation, "name", operation.id), None
-            why = why or (operation, problem)
-    return None, why
+                return _OfferingOperation(operation, "name", operation.id), None
+            mismatch = mismatch or (operation, problem)
+    return None, mismatch
 
 
-def _operations(context: Context, block: Element) -> Iterator[Element]:
-    for one in context.plant.classes(block):
-        yield from (own for own in context.graph.owned(one) if own.kind is Kind.OPERATION)
+def _list_operations(context: Context, block: Element) -> Iterator[Element]:
+    for classifier in context.plant.kin(block):
+        yield from (
+            feature for feature in context.graph.owned(classifier) if feature.kind is Kind.OPERATION
+        )
 
 
 # -- findings ----------------------------------------------------------------------------------
 
 
-def _report(
+def _report_mismatches(
     context: Context,
     service: Service,
-    places: list[_Place],
-    made: list[Offer],
-    differing: list[_Differing],
+    sites: list[_Site],
+    offers: list[Offer],
+    mismatches: list[_Differing],
 ) -> None:
     subject = context.graph.subject(context.graph[service.element])
-    told: set[str] = set()
-    for place, operation, problem in differing:
-        if operation.id not in told and (not made or place.machine):
-            told.add(operation.id)
+    reported: set[str] = set()
+    for site, operation, problem in mismatches:
+        if operation.id not in reported and (not offers or site.machine):
+            reported.add(operation.id)
             context.sink.report(
                 rules.PARAMETERS_DIFFER,
                 subject,
                 service=service.id,
                 operation=operation.name,
-                element=context.plant.name_of(place.element),
+                element=context.plant.name_of(site.element),
                 difference=problem,
             )
-    if not made and not differing and places and _is_expected(service):
+    if not offers and not mismatches and sites and _needs_offer(service):
         context.sink.report(
             rules.NOBODY_OFFERS,
             subject,
             help="{advice}",
             service=service.id,
-            advice=_advice(context, service, places),
+            advice=_advise(context, service, sites),
         )
 
 
-def _is_expected(service: Service) -> bool:
-    """Databases and the like are not in a plant; what runs on machines is (thesis 3.5.2)."""
+def _needs_offer(service: Service) -> bool:
+    """Whether the plant must offer the service.
+
+    Databases and the like are not part of a plant; services of machines are (thesis 3.5.2).
+    """
     return service.kind == "machine" or bool(service.providers)
 
 
-def _advice(context: Context, service: Service, places: list[_Place]) -> str:
-    blocks = {one.element.block.id: one.element.block for one in places if one.element.block}
-    names = {one.name for block in blocks.values() for one in _operations(context, block)}
+def _advise(context: Context, service: Service, sites: list[_Site]) -> str:
+    blocks = {site.element.block.id: site.element.block for site in sites if site.element.block}
+    names = {
+        operation.name
+        for block in blocks.values()
+        for operation in _list_operations(context, block)
+    }
     name = context.graph[service.element].name
     clause = did_you_mean(name, names)
     if clause.startswith("did you mean"):
@@ -162,25 +185,25 @@ def _advice(context: Context, service: Service, places: list[_Place]) -> str:
     return f"add the operation '{name}' to the block of its machine, in the overlay of the plant"
 
 
-def _report_astray(
+def _report_foreign_operations(
     context: Context,
     service: Service,
-    places: list[_Place],
-    said: list[_Found],
-    made: list[Offer],
+    sites: list[_Site],
+    stated: list[_OfferingOperation],
+    offers: list[Offer],
 ) -> None:
-    """An operation that the author chose for the service must belong to one of its elements."""
-    offering = {one.operation for one in made}
-    for one in said:
-        is_chosen = one.how in ("allocation", "overlay")
-        if is_chosen and places and one.operation.id not in offering:
+    """Report operations that the author chose for the service but that none of its elements has."""
+    offering_ids = {offer.operation for offer in offers}
+    for candidate in stated:
+        is_chosen = candidate.how in ("allocation", "overlay")
+        if is_chosen and sites and candidate.operation.id not in offering_ids:
             context.sink.report(
                 rules.OPERATION_ASTRAY,
-                context.graph.subject(context.graph[one.by]),
+                context.graph.subject(context.graph[candidate.by]),
                 service=service.id,
-                operation=context.graph.qualified_name(one.operation),
+                operation=context.graph.qualified_name(candidate.operation),
                 elements=", ".join(
-                    sorted({f"'{context.plant.name_of(p.element)}'" for p in places})[:3]
+                    sorted({f"'{context.plant.name_of(p.element)}'" for p in sites})[:3]
                 ),
             )
 
@@ -188,55 +211,57 @@ def _report_astray(
 _OUTPUTS = frozenset({"out", "return"})
 
 
-def difference(
+def describe_difference(
     graph: Graph, service: Element, operation: Element, is_machine: Callable[[Element], bool]
 ) -> str:
-    """What is different, as a clause; empty when the parameters fit.
+    """Return the difference of the signatures as a clause; empty if they fit.
 
-    Parameters fit by name, direction and type. Machines are no data, and what may be absent
-    (lower bound 0) need not be there. A ``return`` is an ``out``; the only output of both may
-    have any name.
+    Parameters fit by name, direction and type. Machines are no data, and a parameter with lower
+    bound 0 may be absent. A ``return`` is an ``out``; the only output of both may have any name.
     """
-    wanted, given = _by_name(graph, service), _by_name(graph, operation)
+    required, offered = _index_parameters(graph, service), _index_parameters(graph, operation)
     parts = [
-        f"the operation has no parameter '{one.name}'"
-        for key, one in wanted.items()
-        if key not in given and not _may_be_absent(graph, one, is_machine)
+        f"the operation has no parameter '{parameter.name}'"
+        for key, parameter in required.items()
+        if key not in offered and not _can_be_absent(graph, parameter, is_machine)
     ]
     parts += [
-        f"the service has no parameter '{one.name}'"
-        for key, one in given.items()
-        if key not in wanted and not _is_optional(one)
+        f"the service has no parameter '{parameter.name}'"
+        for key, parameter in offered.items()
+        if key not in required and not _is_optional(parameter)
     ]
-    for key in wanted:
-        if key in given:
-            parts += _between(graph, wanted[key], given[key])
+    for key in required:
+        if key in offered:
+            parts += _compare_parameters(graph, required[key], offered[key])
     return ", ".join(parts)
 
 
-def _by_name(graph: Graph, owner: Element) -> dict[str, Element]:
-    found = query.parameters(graph, owner)
-    outputs = [one for one in found if query.direction_of(one) in _OUTPUTS]
-    return {"" if [one] == outputs else one.name: one for one in found}
+def _index_parameters(graph: Graph, owner: Element) -> dict[str, Element]:
+    parameters = query.parameters(graph, owner)
+    outputs = [parameter for parameter in parameters if query.direction_of(parameter) in _OUTPUTS]
+    return {"" if [parameter] == outputs else parameter.name: parameter for parameter in parameters}
 
 
-def _may_be_absent(graph: Graph, one: Element, is_machine: Callable[[Element], bool]) -> bool:
-    type_ = query.type_of(graph, one)
-    return _is_optional(one) or (type_ is not None and is_machine(type_))
+def _can_be_absent(graph: Graph, parameter: Element, is_machine: Callable[[Element], bool]) -> bool:
+    type_ = query.type_of(graph, parameter)
+    return _is_optional(parameter) or (type_ is not None and is_machine(type_))
 
 
-def _is_optional(one: Element) -> bool:
-    limits = query.bounds(one.attrs.get("multiplicity"))
+def _is_optional(parameter: Element) -> bool:
+    limits = query.bounds(parameter.attrs.get("multiplicity"))
     return limits is not None and limits[0] == 0
 
 
-def _between(graph: Graph, wanted: Element, given: Element) -> list[str]:
-    there, here = query.direction_of(wanted), query.direction_of(given)
-    if there != here and not {there, here} <= _OUTPUTS:
-        return [f"'{wanted.name}' is {there} of the service, {here} of the operation"]
-    one, other = query.type_of(graph, wanted), query.type_of(graph, given)
-    if one is None or other is None or one.name == other.name:
+def _compare_parameters(graph: Graph, required: Element, offered: Element) -> list[str]:
+    name, directions = (
+        required.name,
+        [query.direction_of(parameter) for parameter in (required, offered)],
+    )
+    if directions[0] != directions[1] and not _OUTPUTS.issuperset(directions):
+        return [f"'{name}' is {directions[0]} of the service, {directions[1]} of the operation"]
+    expected, actual = query.type_of(graph, required), query.type_of(graph, offered)
+    if expected is None or actual is None or expected.name == actual.name:
         return []
-    if query.conforms(graph, one, other) or query.conforms(graph, other, one):
+    if query.conforms(graph, expected, actual) or query.conforms(graph, actual, expected):
         return []
-    return [f"'{wanted.name}' is a {one.name} of the service, a {other.name} of the operation"]
+    return [f"'{name}' is a {expected.name} of the service, a {actual.name} of the operation"]

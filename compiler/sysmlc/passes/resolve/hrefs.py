@@ -1,4 +1,6 @@
-"""Libraries that every tool brings along, and what a reference into a file says of its target."""
+"""References into other files: what an href says about its target, and the files of the
+standards.
+"""
 
 import re
 from urllib.parse import unquote
@@ -46,43 +48,47 @@ _PACKAGEABLE = re.compile(r"(?:.*-)?(?P<name>[^-]+)_PackageableElement")
 _ESCAPE = re.compile(r"_u([0-9a-fA-F]{4})")
 
 
-def split(href: str) -> tuple[str, str]:
-    """File and fragment of an href."""
+def split_href(href: str) -> tuple[str, str]:
+    """Return the file and the fragment of an href."""
     library, _, fragment = href.partition("#")
     return library, fragment
 
 
 def is_href(target: str) -> bool:
-    """Whether a reference's target names a file, not only an id."""
+    """Whether the target of a reference names a file, not only an id."""
     return "://" in target or target.find("#") > 0
 
 
 def is_standard(library: str) -> bool:
-    """Whether the file is UML's, SysML's or our own, whose content is known without reading it."""
+    """Whether the file is one of UML, SysML or sysmlc, whose content is known without reading
+    it.
+    """
     return _STANDARD.match(unquote(library)) is not None
 
 
 def has_primitives_only(library: str) -> bool:
-    """Whether the file is UML's library of primitive types, which are five for good."""
+    """Whether the file is UML's library of primitive types, which never gets new elements."""
     return _PRIMITIVES_ONLY.fullmatch(unquote(library)) is not None
 
 
-def primitive(href: str, path: str, kind: Kind) -> str:
-    """UML primitive that an href leads to, or the empty string.
+def find_primitive(href: str, path: str, kind: Kind) -> str:
+    """Return the UML primitive that an href leads to, or the empty string.
 
-    ``path`` and ``kind`` are what the source says of the target. The primitive value types of
-    SysML count as UML's, those of Ecore and Java as the nearest one.
+    *path* and *kind* are what the source says about the target. The primitive value types of SysML
+    count as those of UML, the types of Ecore and Java as the nearest one.
     """
-    if kind not in (Kind.CLASS, Kind.DATA_TYPE) or not is_standard(split(href)[0]):
+    if kind not in (Kind.CLASS, Kind.DATA_TYPE) or not is_standard(split_href(href)[0]):
         return ""
-    return _ALIASES.get(name_of(href, path).lower(), "")
+    return _ALIASES.get(read_name(href, path).lower(), "")
 
 
-def name_of(href: str, path: str) -> str:
-    """Name of the target: last part of its path, else what the fragment shows of it."""
+def read_name(href: str, path: str) -> str:
+    """Return the name of the target: the last part of its path, else what the fragment shows of
+    it.
+    """
     if path:
         return path.rpartition("::")[2]
-    fragment = unquote(split(href)[1])
+    fragment = unquote(split_href(href)[1])
     for form in (_PACKAGEABLE, _ROLE_NAME):
         match = form.fullmatch(fragment)
         if match:
@@ -90,9 +96,12 @@ def name_of(href: str, path: str) -> str:
     return re.split(r"[./]", fragment)[-1] or fragment
 
 
-def kind_of(href: str, kinds: set[Kind]) -> Kind:
-    """Kind of the target, from what its references say; the most telling one wins."""
+def choose_kind(href: str, kinds: set[Kind]) -> Kind:
+    """Return the kind of the target from the kinds that its references expect.
+
+    A kind other than Class is more specific and wins.
+    """
     if "stereotype_packagedElement_" in href:
         return Kind.STEREOTYPE
-    told = sorted(kinds - {Kind.CLASS})
-    return told[0] if told else Kind.CLASS
+    specific = sorted(kinds - {Kind.CLASS})
+    return specific[0] if specific else Kind.CLASS

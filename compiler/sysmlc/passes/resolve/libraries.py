@@ -1,20 +1,21 @@
-"""Stand-ins for the libraries of UML, SysML and MagicDraw: names, kinds, generalizations.
+"""Elements of the libraries of UML, SysML and MagicDraw: names, kinds, generalizations, and stubs.
 
-The data are ours (metamodels/libraries.json): what the standards and tools call their elements
-and how their references write them. They are read when a reference first needs them.
+The data are our own (metamodels/libraries.json): the names in the standards and tools, and the form
+of references to them. They are read when a reference first needs them.
 """
 
 import json
 import re
 from collections.abc import Collection, Iterable, Iterator
 from functools import cache
+from typing import Any
 from urllib.parse import unquote
 
 from msgspec import Struct
 
 from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind
 from sysmlc.ir.identity import derived_id
-from sysmlc.passes.resolve.hrefs import split
+from sysmlc.passes.resolve.hrefs import split_href
 from sysmlc.support import resources
 
 _ROLE_NAME = re.compile(r"[a-zA-Z]+_(?:packagedElement|nestedPackage|owned[A-Z][A-Za-z]+)_(.+)")
@@ -22,8 +23,8 @@ _ESCAPE = re.compile(r"_u([0-9a-fA-F]{4})")
 _METACLASS = re.compile(r"[A-Z][A-Za-z]+")
 
 
-class StandIn(Struct, frozen=True):
-    """What is known of one element of a library.
+class LibraryElement(Struct, frozen=True):
+    """An element of a library that is not read.
 
     ``generals`` and ``metaclasses`` are qualified names; ``href`` is the same for all dialects.
     """
@@ -36,12 +37,12 @@ class StandIn(Struct, frozen=True):
 
     @property
     def name(self) -> str:
-        """Its name: the last part of the qualified one."""
+        """The last part of the qualified name."""
         return self.qualified_name.rpartition("::")[2]
 
     @property
     def owner(self) -> str:
-        """Qualified name of its package, empty for the library itself."""
+        """The qualified name of the package, empty for the library itself."""
         return self.qualified_name.rpartition("::")[0]
 
 
@@ -54,12 +55,12 @@ class _Library(Struct, frozen=True):
 
 
 class Libraries:
-    """The stand-ins, by qualified name, by id and by the name that a reference shows."""
+    """The library elements by qualified name, by id, and by the name that a reference shows."""
 
     def __init__(self, content: str) -> None:
         data = json.loads(content)
-        self._libraries = {one["name"]: _library(one) for one in data["libraries"]}
-        self._entries: dict[str, dict[str, object]] = data["elements"]
+        self._libraries = {one["name"]: _read_library(one) for one in data["libraries"]}
+        self._entries: dict[str, dict[str, Any]] = data["elements"]
         self._by_id: dict[str, str] = {}
         self._by_name: dict[tuple[str, str], list[str]] = {}
         self._stereotypes: dict[tuple[str, str], list[str]] = {}
@@ -72,20 +73,25 @@ class Libraries:
                     tag = re.sub(r"\W", "_", short)
                     self._stereotypes.setdefault((library, tag), []).append(name)
 
-    def find(self, file: str, fragment: str, path: str, kinds: Iterable[Kind]) -> StandIn | None:
-        """The element that a reference into ``file`` means.
+    def find(
+        self, file: str, fragment: str, path: str, kinds: Iterable[Kind]
+    ) -> LibraryElement | None:
+        """Return the element that a reference into *file* means, or None.
 
-        Told by its id, else by the name in the fragment, else by ``path``, the qualified name
-        that the reference shows; ``kinds`` is what it is used as.
+        It is identified by its id, else by the name in the fragment, else by *path*, the qualified
+        name that the reference shows. *kinds* are the kinds that the references expect.
         """
-        known = self._by_id.get(fragment)
-        if known is None:
-            found = (self._named(one, fragment, path, kinds) for one in self._of_file(file))
-            known = next((name for name in found if name), None)
-        return None if known is None else self.get(known)
+        name = self._by_id.get(fragment)
+        if name is None:
+            names = (
+                self._find_name(library, fragment, path, kinds)
+                for library in self._find_libraries(file)
+            )
+            name = next((name for name in names if name), None)
+        return None if name is None else self.get(name)
 
-    def get(self, qualified_name: str) -> StandIn | None:
-        """The element with this qualified name, or None."""
+    def get(self, qualified_name: str) -> LibraryElement | None:
+        """Return the element with this qualified name, or None."""
         library, _, rest = qualified_name.partition("::")
         home = self._libraries.get(library)
         entry = self._entries.get(qualified_name)
@@ -94,47 +100,58 @@ class Libraries:
         href = f"{home.uri}#{rest.replace('::', '.') or '_0'}"
         if entry is None:
             is_other = home.others and _METACLASS.fullmatch(rest)
-            return StandIn(qualified_name, Kind(home.others), href) if is_other else None
-        return StandIn(
+            return LibraryElement(qualified_name, Kind(home.others), href) if is_other else None
+        return LibraryElement(
             qualified_name,
             Kind(str(entry["kind"])),
             href,
-            tuple(entry.get("specializes", ())),  # type: ignore[arg-type]
-            tuple(f"UML::{name}" for name in entry.get("extends", ())),  # type: ignore[attr-defined]
+            tuple(entry.get("specializes", ())),
+            tuple(f"UML::{name}" for name in entry.get("extends", ())),
         )
 
     def generals(self, library: str, name: str) -> tuple[str, ...]:
-        """Names of what the stereotypes of this name in a library specialise.
+        """Return the names of the generals of the stereotypes with this name in a library.
 
-        The name is as XML tags show it: ``System_context`` is "System context".
+        The name has the form of XML tags: ``System_context`` is "System context".
         """
-        found = self._stereotypes.get((library, name), ())
-        ups = (up for one in found for up in self._entries[one].get("specializes", ()))  # type: ignore[attr-defined]
-        return tuple(dict.fromkeys(up.rpartition("::")[2] for up in ups))
+        stereotypes = self._stereotypes.get((library, name), ())
+        generals = (
+            general
+            for stereotype in stereotypes
+            for general in self._entries[stereotype].get("specializes", ())
+        )
+        return tuple(dict.fromkeys(general.rpartition("::")[2] for general in generals))
 
-    def _of_file(self, file: str) -> Iterator[_Library]:
+    def _find_libraries(self, file: str) -> Iterator[_Library]:
         plain = unquote(file)
-        return (one for one in self._libraries.values() if re.fullmatch(one.files, plain))
+        return (
+            library for library in self._libraries.values() if re.fullmatch(library.files, plain)
+        )
 
-    def _named(self, library: _Library, fragment: str, path: str, kinds: Iterable[Kind]) -> str:
-        for names in (names_in(fragment), [part for part in path.split("::") if part]):
+    def _find_name(self, library: _Library, fragment: str, path: str, kinds: Iterable[Kind]) -> str:
+        for names in (read_names(fragment), [part for part in path.split("::") if part]):
             if not names or names == [library.name]:
                 if names or _is_root(fragment):
                     return library.name
                 continue
-            found = self._by_name.get((library.name, names[-1].lower()), [])
-            if found:
-                return min(found, key=lambda one: _distance(one, names, self._kind(one), kinds))
+            candidates = self._by_name.get((library.name, names[-1].lower()), [])
+            if candidates:
+                return min(
+                    candidates,
+                    key=lambda candidate: _distance(
+                        candidate, names, self._expectedof(candidate), kinds
+                    ),
+                )
             if library.others and _METACLASS.fullmatch(names[-1]):
                 return f"{library.name}::{names[-1]}"
         return ""
 
-    def _kind(self, name: str) -> Kind:
+    def _expectedof(self, name: str) -> Kind:
         return Kind(str(self._entries[name]["kind"]))
 
 
-def names_in(fragment: str) -> list[str]:
-    """Names from the root down that a fragment shows, as the tools write them.
+def read_names(fragment: str) -> list[str]:
+    """Return the names that a fragment shows, from the root down, as the tools write them.
 
     Eclipse: ``SysML.package_packagedElement_Blocks.stereotype_packagedElement_Block`` or
     ``//blocks/Block``; OMG: ``SysML.Block``, ``_SysML_Libraries_PackageableElement-...``.
@@ -146,18 +163,18 @@ def names_in(fragment: str) -> list[str]:
     if _is_root(plain):
         return []
     names = [part for part in re.split(r"[./]", plain) if part and part != "@"]
-    found = ((_ROLE_NAME.fullmatch(name), name) for name in names)
-    return [_ESCAPE.sub(_character, match[1] if match else name) for match, name in found]
+    matches = ((_ROLE_NAME.fullmatch(name), name) for name in names)
+    return [_ESCAPE.sub(_decode_character, match[1] if match else name) for match, name in matches]
 
 
 @cache
-def libraries() -> Libraries:
-    """The stand-ins; read once."""
+def load_libraries() -> Libraries:
+    """Return the libraries; they are read once."""
     return Libraries(resources.read_text("metamodels", "libraries.json"))
 
 
-def _library(entry: dict[str, object]) -> _Library:
-    files = "|".join(f"(?:{pattern})" for pattern in entry["files"])  # type: ignore[attr-defined]
+def _read_library(entry: dict[str, Any]) -> _Library:
+    files = "|".join(f"(?:{pattern})" for pattern in entry["files"])
     return _Library(str(entry["name"]), str(entry["uri"]), files, str(entry.get("others", "")))
 
 
@@ -168,56 +185,62 @@ def _is_root(fragment: str) -> bool:
 def _distance(
     name: str, names: list[str], kind: Kind, kinds: Iterable[Kind]
 ) -> tuple[bool, int, int, str]:
-    """How far an element is from what a reference shows: kind, owners, depth."""
-    above = {part.lower() for part in name.split("::")}
-    missing = sum(part.lower() not in above for part in names)
+    """Return how far an element is from what a reference shows: kind, owners, depth."""
+    owners = {part.lower() for part in name.split("::")}
+    missing = sum(part.lower() not in owners for part in names)
     is_package = kind in (Kind.PACKAGE, Kind.PROFILE)
-    wants_package = any(one in (Kind.PACKAGE, Kind.PROFILE) for one in kinds)
+    wants_package = any(expected in (Kind.PACKAGE, Kind.PROFILE) for expected in kinds)
     return is_package is not wants_package and kind not in kinds, missing, name.count("::"), name
 
 
-def _character(code: re.Match[str]) -> str:
+def _decode_character(code: re.Match[str]) -> str:
     return chr(int(code[1], 16))
 
 
 def find_library_element(
     target: str, paths: Collection[str], kinds: Collection[Kind]
-) -> StandIn | None:
-    """The element of a known library that a reference means, or None.
+) -> LibraryElement | None:
+    """Return the element of a known library that a reference means, or None.
 
-    ``paths`` and ``kinds`` are what all references to it say: their order must not matter.
+    *paths* and *kinds* come from all references to it, because their order must not matter.
     """
-    file, fragment = split(target)
-    return libraries().find(file, fragment, min(filter(None, paths), default=""), kinds)
+    file, fragment = split_href(target)
+    return load_libraries().find(file, fragment, min(filter(None, paths), default=""), kinds)
 
 
-def add_stub(graph: Graph, stand_in: StandIn, origin: str) -> Element:
-    """Add the stand-in with its packages, generals and metaclasses, unless it is there.
+def add_stub(graph: Graph, library_element: LibraryElement, origin: str) -> Element:
+    """Add an external stub with its packages, generals and metaclasses, unless it exists.
 
-    The packages of SysML are profiles, for Eclipse applies them one by one: what a stand-in is
-    must not depend on the dialect that uses it.
+    The packages of SysML are profiles, because Eclipse applies them one by one: a stub must not
+    depend on the dialect that refers to it.
     """
-    owner = _add_named(graph, stand_in.owner, origin)
-    id = derived_id(stand_in.href, "stub")
-    found = graph.get(id)
-    if found is not None:
-        return found
-    attrs: dict[str, AttrValue] = {"external": True, "library": True, "href": stand_in.href}
+    owner = _add_named_stub(graph, library_element.owner, origin)
+    id = derived_id(library_element.href, "stub")
+    existing = graph.get(id)
+    if existing is not None:
+        return existing
+    attrs: dict[str, AttrValue] = {"external": True, "library": True, "href": library_element.href}
     attrs["origin"] = origin
-    made = graph.add(
-        Element(id, stand_in.kind, stand_in.name, None if owner is None else owner.id, attrs=attrs)
+    stub = graph.add(
+        Element(
+            id,
+            library_element.kind,
+            library_element.name,
+            None if owner is None else owner.id,
+            attrs=attrs,
+        )
     )
     for edge, names in (
-        (Edge.SPECIALIZES, stand_in.generals),
-        (Edge.EXTENDS, stand_in.metaclasses),
+        (Edge.SPECIALIZES, library_element.generals),
+        (Edge.EXTENDS, library_element.metaclasses),
     ):
         for name in names:
-            general = _add_named(graph, name, origin)
+            general = _add_named_stub(graph, name, origin)
             if general is not None:
-                graph.connect(edge, made, general)
-    return made
+                graph.connect(edge, stub, general)
+    return stub
 
 
-def _add_named(graph: Graph, name: str, origin: str) -> Element | None:
-    stand_in = libraries().get(name) if name else None
-    return None if stand_in is None else add_stub(graph, stand_in, origin)
+def _add_named_stub(graph: Graph, name: str, origin: str) -> Element | None:
+    library_element = load_libraries().get(name) if name else None
+    return None if library_element is None else add_stub(graph, library_element, origin)

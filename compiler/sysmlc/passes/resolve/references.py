@@ -1,4 +1,4 @@
-"""What needs an element: references to come, and attributes that hold ids."""
+"""Uses of elements that must be resolved: pending references, and attributes that hold ids."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
@@ -23,7 +23,7 @@ _ATTRIBUTES: dict[Kind, dict[str, Kind]] = {
 
 
 class Use(NamedTuple):
-    """One place that needs an element: an edge to come, or an attribute that holds an id."""
+    """One use of an element: a pending edge, or an attribute that holds an id."""
 
     holder: Element
     target: str
@@ -35,16 +35,18 @@ class Use(NamedTuple):
 
     @property
     def relation(self) -> str:
+        """The name of the edge or of the attribute."""
         return self.edge.value if self.edge else self.attribute
 
-    def place(self) -> tuple[str, int, str]:
+    def location(self) -> tuple[str, int, str]:
+        """Return file, ordinal and id of the holder, which order uses by the text."""
         ordinal = self.ordinal if self.ordinal >= 0 else self.holder.ordinal
         return self.holder.source, ordinal, self.holder.id
 
 
 @dataclass(slots=True)
 class Need:
-    """What all places of one file need that name a target by the same words."""
+    """All uses in one file that name a target with the same words."""
 
     graph: Graph
     file: str
@@ -57,12 +59,12 @@ class Need:
     """The attributes among the places."""
 
     def uses(self) -> list[Use]:
-        """Return all places."""
+        """Return all uses."""
         return [use_of(self.graph[r.source], r) for r in self.references] + self.held
 
-    def first(self) -> Use:
-        """Return the first place in the unit, whatever the order in which files are read."""
-        return min(self.uses(), key=Use.place)
+    def first_use(self) -> Use:
+        """Return the first use in the unit, whatever the order in which files are read."""
+        return min(self.uses(), key=Use.location)
 
 
 def use_of(holder: Element, reference: Reference) -> Use:
@@ -71,8 +73,8 @@ def use_of(holder: Element, reference: Reference) -> Use:
     return Use(holder, target, kind, path, ordinal, edge)
 
 
-def needs(graph: Graph, held: list[Use]) -> list[Need]:
-    """Group places by file, target and description of the target.
+def group_uses(graph: Graph, held_ids: list[Use]) -> list[Need]:
+    """Group uses by file, target and description of the target.
 
     These are the pending references whose target is no id of the graph, and all attributes.
     """
@@ -84,18 +86,18 @@ def needs(graph: Graph, held: list[Use]) -> list[Need]:
             if key not in groups:
                 groups[key] = Need(graph, *key)
             groups[key].references.append(reference)
-    for use in held:
+    for use in held_ids:
         key = (use.holder.source, use.target, use.kind, use.path)
         groups.setdefault(key, Need(graph, *key)).held.append(use)
     return list(groups.values())
 
 
-def attributes(graph: Graph) -> Iterator[Use]:
-    """The ids that attributes hold."""
-    for holder_kind, named in _ATTRIBUTES.items():
+def list_held_ids(graph: Graph) -> Iterator[Use]:
+    """Yield the uses in attributes that hold ids."""
+    for holder_kind, attributes_of_kind in _ATTRIBUTES.items():
         for element in graph.of_kind(holder_kind):
             attrs = element.attrs
-            if attrs and not attrs.keys().isdisjoint(named):
-                for name, kind in named.items():
+            if attrs and not attrs.keys().isdisjoint(attributes_of_kind):
+                for name, kind in attributes_of_kind.items():
                     for id in ids_in(attrs.get(name)):
                         yield Use(element, id, kind, attribute=name)

@@ -1,11 +1,13 @@
-"""Reports what leads nowhere in the unit; of a long list of one element all at once."""
+"""Diagnostics of the pass ``resolve``: missing elements, and files that are not part of the
+unit.
+"""
 
 from sysmlc.diagnostics import Place, Rule, Sink, Subject
 from sysmlc.ir import Graph, Kind
-from sysmlc.ir.identity import is_generated
-from sysmlc.passes.resolve.hrefs import PRIMITIVES, has_primitives_only, is_standard, split
+from sysmlc.ir.identity import is_made_by_tools
+from sysmlc.passes.resolve.hrefs import PRIMITIVES, has_primitives_only, is_standard, split_href
 from sysmlc.passes.resolve.references import Need, Use
-from sysmlc.passes.resolve.resolver import stand_in_id
+from sysmlc.passes.resolve.resolver import stub_id
 from sysmlc.passes.resolve.rules import (
     BROKEN_ID,
     BROKEN_REFERENCE,
@@ -18,10 +20,10 @@ _SINGLY = 4
 """References of one element and relation that lead nowhere and are reported one by one."""
 
 
-def report_lost(graph: Graph, sink: Sink, lost: list[Use]) -> None:
-    """Report what leads nowhere; of a long list of one element all at once."""
+def report_unresolved(graph: Graph, sink: Sink, unresolved: list[Use]) -> None:
+    """Report references without target; a long list of one element is one diagnostic."""
     lists: dict[tuple[str, str], list[Use]] = {}
-    for use in lost:
+    for use in unresolved:
         lists.setdefault((use.holder.id, use.relation), []).append(use)
     for uses in lists.values():
         for use in uses if len(uses) <= _SINGLY else ():
@@ -32,7 +34,7 @@ def report_lost(graph: Graph, sink: Sink, lost: list[Use]) -> None:
 
 def _report_many(graph: Graph, sink: Sink, uses: list[Use]) -> None:
     first = uses[0]
-    _mark(graph, first)
+    _mark_unresolved(graph, first)
     subject = _subject(graph, first)
     sink.report(
         MANY_BROKEN,
@@ -44,14 +46,14 @@ def _report_many(graph: Graph, sink: Sink, uses: list[Use]) -> None:
     )
 
 
-def _mark(graph: Graph, use: Use) -> None:
-    known = use.holder.attrs.get("unresolved")
-    names = {str(name) for name in known} if isinstance(known, tuple) else set()
+def _mark_unresolved(graph: Graph, use: Use) -> None:
+    marked = use.holder.attrs.get("unresolved")
+    names = {str(name) for name in marked} if isinstance(marked, tuple) else set()
     graph.set(use.holder, unresolved=tuple(sorted(names | {use.relation})))
 
 
 def _report_broken(graph: Graph, sink: Sink, use: Use) -> None:
-    _mark(graph, use)
+    _mark_unresolved(graph, use)
     subject = _subject(graph, use)
     sink.report(
         BROKEN_REFERENCE if use.edge else BROKEN_ID,
@@ -72,11 +74,13 @@ def _subject(graph: Graph, use: Use) -> Subject:
 _LISTED = 10
 
 
-def report_libraries(graph: Graph, sink: Sink, outside: dict[str, list[Need]]) -> None:
-    """Report each library once, with what its elements are used by; ``outside`` is by href."""
+def report_libraries(graph: Graph, sink: Sink, external: dict[str, list[Need]]) -> None:
+    """Report each missing file once, with the users of its elements. *external* is keyed by
+    href.
+    """
     libraries: dict[str, dict[str, list[Use]]] = {}
-    for href, needs in outside.items():
-        library, _ = split(href)
+    for href, needs in external.items():
+        library, _ = split_href(href)
         if not is_standard(library) or _is_doubtful(graph, href):
             uses = [use for need in needs for use in need.uses()]
             libraries.setdefault(library, {})[href] = uses
@@ -86,40 +90,42 @@ def report_libraries(graph: Graph, sink: Sink, outside: dict[str, list[Need]]) -
 
 
 def _is_doubtful(graph: Graph, href: str) -> bool:
-    """Whether a standard library surely has no such element, or only its id is known.
+    """Whether a standard library surely has no such element, or only the element's id is known.
 
-    Newer versions may have new elements; profiles that are applied say nothing by themselves.
+    Newer versions may have new elements; an applied profile has no effect by itself.
     """
-    stub = graph[stand_in_id(href)]
-    is_nameless = is_generated(stub.name) and stub.kind is not Kind.PROFILE
-    return is_nameless or (has_primitives_only(split(href)[0]) and stub.name not in PRIMITIVES)
+    stub = graph[stub_id(href)]
+    is_nameless = is_made_by_tools(stub.name) and stub.kind is not Kind.PROFILE
+    return is_nameless or (has_primitives_only(split_href(href)[0]) and stub.name not in PRIMITIVES)
 
 
 def _report_library(
     graph: Graph, sink: Sink, rule: Rule, library: str, missing: dict[str, list[Use]]
 ) -> None:
-    first = min((use for uses in missing.values() for use in uses), key=Use.place)
-    file, ordinal, _ = first.place()
-    lines = [_takes_down(graph, href, missing[href]) for href in sorted(missing)]
+    first = min((use for uses in missing.values() for use in uses), key=Use.location)
+    file, ordinal, _ = first.location()
+    lines = [_describe_loss(graph, href, missing[href]) for href in sorted(missing)]
     more = [f"and {len(lines) - _LISTED} more"] if len(lines) > _LISTED else []
     sink.report(
         rule,
-        _user(graph, first, Place(file, ordinal) if file else None),
+        _subject_of_first(graph, first, Place(file, ordinal) if file else None),
         notes=(*lines[:_LISTED], *more),
         library=library,
         count=len(missing),
     )
 
 
-def _user(graph: Graph, first: Use, place: Place | None) -> Subject:
-    """The first element that uses a library; what another library uses is told all the same."""
+def _subject_of_first(graph: Graph, first: Use, place: Place | None) -> Subject:
+    """Return the first user of a library as the subject; a use in another library has no element
+    id.
+    """
     holder = first.holder
     id = "" if holder.attrs.get("library") else holder.id
     return Subject(graph.qualified_name(holder), id, place)
 
 
-def _takes_down(graph: Graph, href: str, uses: list[Use]) -> str:
-    stand_in = graph[stand_in_id(href)]
+def _describe_loss(graph: Graph, href: str, uses: list[Use]) -> str:
+    stub = graph[stub_id(href)]
     users = sorted({graph.qualified_name(use.holder) for use in uses})
     more = f" and {len(users) - 2} more" if len(users) > 2 else ""
-    return f"{stand_in.kind} '{stand_in.name}', used by {', '.join(users[:2])}{more}"
+    return f"{stub.kind} '{stub.name}', used by {', '.join(users[:2])}{more}"

@@ -1,4 +1,4 @@
-"""What each reference means: an element of the unit, or a stand-in for one outside it."""
+"""Name resolution: the element of the unit, or the external stub, that each reference means."""
 
 import posixpath
 from collections.abc import Iterable
@@ -11,36 +11,38 @@ from sysmlc.ir import AttrValue, Element, Graph, Kind
 from sysmlc.ir.identity import derived_id, is_globally_unique
 from sysmlc.passes.resolve.hrefs import (
     PRIMITIVE_TYPES,
+    choose_kind,
+    find_primitive,
     is_href,
-    kind_of,
-    name_of,
-    primitive,
-    split,
+    read_name,
+    split_href,
 )
-from sysmlc.passes.resolve.libraries import StandIn, add_stub, find_library_element
+from sysmlc.passes.resolve.libraries import LibraryElement, add_stub, find_library_element
 from sysmlc.passes.resolve.references import Need, Use
 
 
-class Targets:
+class UnitIndex:
     """Elements of the unit by id, and by file and id."""
 
     def __init__(self, graph: Graph) -> None:
         self._graph = graph
 
     @cached_property
-    def _prefixed(self) -> dict[str, list[Element]]:
-        """Elements whose ids several files have, by that id: in the graph the file is before it."""
+    def _by_shared_id(self) -> dict[str, list[Element]]:
+        """Elements whose id occurs in several files, by that id; in the graph the file precedes
+        it.
+        """
         index: dict[str, list[Element]] = {}
         for element in self._graph:
             if "#" in element.id and element.source:
                 index.setdefault(element.id.rpartition("#")[2], []).append(element)
         return index
 
-    def _named(self, fragment: str) -> list[Element]:
-        """Elements of all files with this id."""
+    def _with_id(self, fragment: str) -> list[Element]:
+        """Return the elements of all files with this id."""
         plain = self._graph.get(fragment)
-        found = self._prefixed.get(fragment, [])
-        return found if plain is None or "#" in fragment or not plain.source else [*found, plain]
+        shared = self._by_shared_id.get(fragment, [])
+        return shared if plain is None or "#" in fragment or not plain.source else [*shared, plain]
 
     @cached_property
     def _files(self) -> dict[str, set[str]]:
@@ -50,127 +52,132 @@ class Targets:
         return index
 
     def find(self, file: str, target: str) -> Element | None:
-        """The element that ``target`` means in ``file``, or None when no file of the unit has it.
+        """Return the element that *target* means in *file*, or None if no file of the unit has it.
 
-        A file is known by its path relative to ``file``, else by its name alone: that is all
-        that a ``pathmap:`` leaves. An id that no tool gives twice is found whatever the file.
+        A file is found by its path relative to *file*, else by its base name, which is all that a
+        ``pathmap:`` leaves. An id that no tool assigns twice is found in any file.
         """
         exact = self._graph.get(target)
         if exact is not None:
             return exact
         if not is_href(target):
-            return self._graph.get(f"{file}#{target.lstrip('#')}") or self._in(
+            return self._graph.get(f"{file}#{target.lstrip('#')}") or self._find_in_files(
                 target.lstrip("#"), (file,)
             )
-        library, fragment = split(target)
-        found = self._in(fragment, self.files(file, library))
-        if found is None and is_globally_unique(fragment):
-            found = _first(self._named(fragment))
-        return found
+        library, fragment = split_href(target)
+        element = self._find_in_files(fragment, self.files(file, library))
+        if element is None and is_unmistakable(fragment):
+            element = _smallest_id(self._with_id(fragment))
+        return element
 
     def files(self, file: str, library: str) -> tuple[str, ...]:
-        """Files of the unit that ``library``, as ``file`` names it, can mean."""
+        """Return the files of the unit that *library*, as *file* names it, can mean."""
         plain = unquote(library)
         named = self._files.get(_basename(plain), set())
-        beside = posixpath.normpath(posixpath.join(posixpath.dirname(file), plain))
-        exact = [name for name in named if name.partition("!")[0] in (beside, plain)]
+        relative = posixpath.normpath(posixpath.join(posixpath.dirname(file), plain))
+        exact = [name for name in named if name.partition("!")[0] in (relative, plain)]
         return tuple(sorted(exact or named))
 
-    def _in(self, fragment: str, files: tuple[str, ...]) -> Element | None:
-        found = self._named(fragment) if files else []
-        return _first(element for element in found if element.source in files)
+    def _find_in_files(self, fragment: str, files: tuple[str, ...]) -> Element | None:
+        candidates = self._with_id(fragment) if files else []
+        return _smallest_id(element for element in candidates if element.source in files)
 
 
 def _basename(file: str) -> str:
     return posixpath.basename(file.partition("!")[0])
 
 
-def _first(elements: Iterable[Element]) -> Element | None:
+def _smallest_id(elements: Iterable[Element]) -> Element | None:
     # The smallest id, not the first that was read: the order of the files must not matter.
     return min(elements, key=lambda element: element.id, default=None)
 
 
 @dataclass(slots=True)
-class Answers:
-    """What each target means, by the file that names it."""
+class Resolver:
+    """The meaning of each target, by the file that names it."""
 
     graph: Graph
-    targets: Targets
-    outside: dict[str, list[Need]] = field(default_factory=dict)
-    """Needs of elements outside the unit, by the href of the stand-in."""
-    known: "dict[str, StandIn]" = field(default_factory=dict)
-    """Those of ``outside`` that are elements of a known library."""
-    _found: dict[tuple[str, str], str | None] = field(default_factory=dict)
+    index: UnitIndex
+    external: dict[str, list[Need]] = field(default_factory=dict)
+    """Uses of elements outside the unit, by the href of the stub."""
+    library_elements: dict[str, LibraryElement] = field(default_factory=dict)
+    """The elements of known libraries among them, by href."""
+    _internal: dict[tuple[str, str], str | None] = field(default_factory=dict)
     _stubs: dict[str, str] = field(default_factory=dict)
 
-    def find(self, needs: list[Need]) -> None:
-        """Look for every target, and make the stand-ins for those outside the unit."""
-        distant: dict[str, list[Need]] = {}
+    def resolve(self, needs: list[Need]) -> None:
+        """Resolve every target, and add external stubs for those outside the unit."""
+        external: dict[str, list[Need]] = {}
         for need in needs:
             if need.target not in self.graph and self._is_outside(need.file, need.target):
-                distant.setdefault(need.target, []).append(need)
-        for target in sorted(distant):
-            href = self._canonical(target, distant[target])
-            self._stubs[target] = stand_in_id(href)
-            self.outside.setdefault(href, []).extend(distant[target])
-        for href in sorted(self.outside):
-            self._add(href, self.outside[href])
+                external.setdefault(need.target, []).append(need)
+        for target in sorted(external):
+            href = self._find_canonical_href(target, external[target])
+            self._stubs[target] = stub_id(href)
+            self.external.setdefault(href, []).extend(external[target])
+        for href in sorted(self.external):
+            self._add_external(href, self.external[href])
 
     def get(self, file: str, target: str) -> Element | None:
-        """The element that ``target`` means in a file."""
+        """Return the element that *target* means in a file."""
         if target in self.graph:
             return self.graph[target]
-        found = self._found.get((file, target))
-        return self.graph.get(found or self._stubs.get(target))
+        id = self._internal.get((file, target)) or self._stubs.get(target)
+        return self.graph.get(id)
 
     def _is_outside(self, file: str, target: str) -> bool:
-        element = self.targets.find(file, target)
-        self._found[file, target] = element.id if element else None
+        element = self.index.find(file, target)
+        self._internal[file, target] = element.id if element else None
         if element is not None or not is_href(target):
             return False
-        return not self.targets.files(file, split(target)[0])
+        return not self.index.files(file, split_href(target)[0])
 
-    def _canonical(self, target: str, needs: list[Need]) -> str:
-        # All are asked, for the order in which they come must not matter.
-        said = {(need.path, need.kind) for need in needs}
-        name = max({primitive(target, path, kind) for path, kind in said})
+    def _find_canonical_href(self, target: str, needs: list[Need]) -> str:
+        """Return the href of the stub for a target, the same for all spellings of a library
+        element.
+        """
+        # All references to the target count, because their order must not matter.
+        descriptions = {(need.path, need.kind) for need in needs}
+        name = max({find_primitive(target, path, kind) for path, kind in descriptions})
         if name:
             return PRIMITIVE_TYPES + name
-        found = find_library_element(target, {path for path, _ in said}, {kind for _, kind in said})
-        if found is None:
+        element = find_library_element(
+            target, {path for path, _ in descriptions}, {kind for _, kind in descriptions}
+        )
+        if element is None:
             return target
-        if found.owner == "PrimitiveTypes":
-            return PRIMITIVE_TYPES + found.name
-        self.known[found.href] = found
-        return found.href
+        if element.owner == "PrimitiveTypes":
+            return PRIMITIVE_TYPES + element.name
+        self.library_elements[element.href] = element
+        return element.href
 
-    def _add(self, href: str, needs: list[Need]) -> None:
-        if href in self.known:
-            add_stub(self.graph, self.known[href], _origin(needs))
+    def _add_external(self, href: str, needs: list[Need]) -> None:
+        if href in self.library_elements:
+            add_stub(self.graph, self.library_elements[href], _find_origin(needs))
         else:
-            _stand_in(self.graph, href, needs)
+            _add_unknown_stub(self.graph, href, needs)
 
 
-def stand_in_id(href: str) -> str:
-    """Id of the stand-in for an element outside the unit, by its address."""
+def stub_id(href: str) -> str:
+    """Return the id of the external stub for an address."""
     return derived_id(href, "stub")
 
 
-def _origin(needs: list[Need]) -> str:
-    return min((need.first() for need in needs), key=Use.place).holder.id
+def _find_origin(needs: list[Need]) -> str:
+    return min((need.first_use() for need in needs), key=Use.location).holder.id
 
 
-def _stand_in(graph: Graph, href: str, needs: list[Need]) -> None:
-    id = stand_in_id(href)
+def _add_unknown_stub(graph: Graph, href: str, needs: list[Need]) -> None:
+    id = stub_id(href)
     if id in graph:
         return
     path = min((need.path for need in needs if need.path), default="")
-    kind = kind_of(href, {need.kind for need in needs})
+    kind = choose_kind(href, {need.kind for need in needs})
     attrs: dict[str, AttrValue] = {"external": True, "href": href}
     if href.startswith(PRIMITIVE_TYPES):
         kind, path = Kind.DATA_TYPE, ""
         attrs["subkind"] = "primitive"
     if "::" in path:
         attrs["qualified_name"] = path
-    attrs["origin"] = _origin(needs)
-    graph.add(Element(id, kind, name_of(href, path), attrs=attrs))
+    attrs["origin"] = _find_origin(needs)
+    graph.add(Element(id, kind, read_name(href, path), attrs=attrs))
