@@ -51,8 +51,8 @@ def documented() -> dict[str, str]:
 
 
 def is_handled(name: str) -> bool:
-    plain = vocabulary.mangled(name)
-    above = [plain, *vocabulary.parents(plain)]
+    plain = vocabulary.mangle(name)
+    above = [plain, *vocabulary.find_generals(plain)]
     return any(one in table for one in above for table in (*vocabulary.ROLES, tags.HANDLERS))
 
 

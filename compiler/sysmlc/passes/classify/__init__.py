@@ -1,4 +1,4 @@
-"""Pass ``classify``: what each element is in SysML, and at which level of a recipe."""
+"""Pass ``classify``: the role of each element in SysML, and its level in a recipe."""
 
 from collections.abc import Iterator
 from typing import ClassVar
@@ -14,18 +14,18 @@ from sysmlc.passes.classify.constraints import check_constraints
 from sysmlc.passes.classify.lineage import (
     Ancestor,
     Profiles,
-    known_meanings,
-    look_alike,
-    meanings,
+    find_look_alike,
+    find_meanings,
+    meanings_of_sysml,
 )
 from sysmlc.passes.classify.literals import check_literals
 from sysmlc.passes.classify.relations import add_relations
-from sysmlc.passes.classify.requirements import check_requirements, give_requirement
-from sysmlc.passes.classify.roles import STRUCTURED, by_stereotype, by_structure
+from sysmlc.passes.classify.requirements import check_requirements, complete_requirement
+from sysmlc.passes.classify.roles import STRUCTURED, role_by_stereotype, role_by_structure
 from sysmlc.passes.classify.rules import LOOK_ALIKE, OPTIONAL_WITH_VALUE, UNKNOWN_STEREOTYPE
-from sysmlc.passes.classify.tags import HANDLERS, check_tags, give_tags, optional_with_value
-from sysmlc.passes.classify.units import give_units
-from sysmlc.passes.classify.vocabulary import LEVELS, Family, is_role_or_kept, mangled
+from sysmlc.passes.classify.tags import HANDLERS, apply_tags, check_tags, find_optional_with_value
+from sysmlc.passes.classify.units import link_units
+from sysmlc.passes.classify.vocabulary import LEVELS, Family, is_known, mangle
 
 _Meanings = dict[str, tuple[str, ...]]
 
@@ -33,13 +33,12 @@ _Meanings = dict[str, tuple[str, ...]]
 class Classify(Struct, frozen=True):
     """Give every stereotype application its lineage and every element its role.
 
-    Assumes resolved references. Guarantees: ``lineage`` on applications, and ``instance-of``
-    when the stereotype is in the unit; ``role`` as docs/ir.md lists them (one that a front end
-    gave stays unless a stereotype says otherwise); what the tags of SysML's stereotypes say, as
-    attributes and edges; ``req_id`` and ``text`` of requirements; ``direction`` of flow
-    properties; ``level`` on what a stereotype of the shipped profile, or a general classifier
-    with a level, puts there; the edges that dependencies and bindings mean. The kind of an
-    element never changes.
+    Assumes resolved references. Guarantees: ``lineage`` on applications, and ``instance-of`` if the
+    stereotype is in the unit; ``role`` as docs/ir.md lists them (a role from a front end stays
+    unless a stereotype states another one); the meaning of the tags of SysML's stereotypes, as
+    attributes and edges; ``req_id`` and ``text`` of requirements; ``direction`` of flow properties;
+    ``level`` on elements to which a stereotype of the shipped profile, or a general classifier,
+    gives one; the edges that dependencies and bindings mean. The kind of an element never changes.
     """
 
     name: ClassVar[str] = "classify"
@@ -47,14 +46,14 @@ class Classify(Struct, frozen=True):
 
     def run(self, graph: Graph, sink: Sink) -> None:
         """Classify in place; see the class."""
-        lineages = _lineages(graph)
-        known = _meanings(graph, sink, lineages)
-        _give_roles(graph, _by_subject(graph, known))
-        give_tags(graph, known)
-        give_units(graph, known)
-        _check_optional(graph, sink, known)
+        lineages = _find_lineages(graph)
+        meanings = _find_meanings(graph, sink, lineages)
+        _give_roles(graph, _group_by_subject(graph, meanings))
+        apply_tags(graph, meanings)
+        link_units(graph, meanings)
+        _check_optional(graph, sink, meanings)
         _give_levels(graph, lineages)
-        _give_values(graph)
+        _complete_attributes(graph)
         check_literals(graph, sink)
         add_bindings(graph)
         add_allocations(graph)
@@ -67,58 +66,66 @@ class Classify(Struct, frozen=True):
 # -- stereotypes -------------------------------------------------------------------------------
 
 
-def _lineages(graph: Graph) -> dict[str, tuple[Ancestor, ...]]:
+def _find_lineages(graph: Graph) -> dict[str, tuple[Ancestor, ...]]:
     profiles = Profiles(graph)
-    found: dict[str, tuple[Ancestor, ...]] = {}
+    lineages: dict[str, tuple[Ancestor, ...]] = {}
     for application in graph.of_kind(Kind.APPLICATION):
-        stereotype = profiles.stereotype(application)
+        stereotype = profiles.find_stereotype(application)
         if stereotype is not None:
             graph.connect(Edge.INSTANCE_OF, application, stereotype)
-        found[application.id] = profiles.lineage(application)
-        names = dict.fromkeys(one.name for one in found[application.id])
+        lineages[application.id] = profiles.lineage(application)
+        names = dict.fromkeys(ancestor.name for ancestor in lineages[application.id])
         graph.set(application, lineage=tuple(names))
-    return found
+    return lineages
 
 
-def _meanings(graph: Graph, sink: Sink, lineages: dict[str, tuple[Ancestor, ...]]) -> _Meanings:
-    """Names of SysML stereotypes that each application stands for, look-alikes included."""
-    found: _Meanings = {}
+def _find_meanings(
+    graph: Graph, sink: Sink, lineages: dict[str, tuple[Ancestor, ...]]
+) -> _Meanings:
+    """Return the names of the SysML stereotypes that each application stands for, look-alikes
+    included.
+    """
+    meanings: _Meanings = {}
     doubtful: dict[tuple[str, str], list[Element]] = {}
     for id, lineage in lineages.items():
         application = graph[id]
-        alike = look_alike(lineage)
-        found[id] = known_meanings(alike) if alike else meanings(lineage)
-        if alike or _is_unknown(graph, application, lineage):
-            doubtful.setdefault((_full_name(application), alike), []).append(application)
-    for (name, alike), applications in doubtful.items():
-        _report(graph, sink, name, alike, applications)
-    return found
+        similar = find_look_alike(lineage)
+        meanings[id] = meanings_of_sysml(similar) if similar else find_meanings(lineage)
+        if similar or _has_unknown_stereotype(graph, application, lineage):
+            doubtful.setdefault((_full_name(application), similar), []).append(application)
+    for (name, similar), applications in doubtful.items():
+        _report_stereotype(graph, sink, name, similar, applications)
+    return meanings
 
 
-def _by_subject(graph: Graph, known: _Meanings) -> _Meanings:
-    found: _Meanings = {}
-    for id, names in known.items():
+def _group_by_subject(graph: Graph, meanings: _Meanings) -> _Meanings:
+    by_subject: _Meanings = {}
+    for id, names in meanings.items():
         for subject in graph.targets(graph[id], Edge.SUBJECT):
-            found[subject.id] = (*found.get(subject.id, ()), *names)
-    return found
+            by_subject[subject.id] = (*by_subject.get(subject.id, ()), *names)
+    return by_subject
 
 
-def _check_optional(graph: Graph, sink: Sink, known: _Meanings) -> None:
-    for parameter in optional_with_value(graph, known):
+def _check_optional(graph: Graph, sink: Sink, meanings: _Meanings) -> None:
+    for parameter in find_optional_with_value(graph, meanings):
         name = graph.qualified_name(parameter)
         sink.report(OPTIONAL_WITH_VALUE, graph.subject(parameter), parameter=name)
 
 
-def _is_unknown(graph: Graph, application: Element, lineage: tuple[Ancestor, ...]) -> bool:
+def _has_unknown_stereotype(
+    graph: Graph, application: Element, lineage: tuple[Ancestor, ...]
+) -> bool:
     if graph.target(application, Edge.INSTANCE_OF) is not None:
         return False
-    return all(one.family is Family.CUSTOM or _is_unheard(one) for one in lineage)
+    return all(
+        ancestor.family is Family.CUSTOM or _is_missing_in_sysml(ancestor) for ancestor in lineage
+    )
 
 
-def _is_unheard(one: Ancestor) -> bool:
+def _is_missing_in_sysml(ancestor: Ancestor) -> bool:
     """Whether its namespace is SysML's, which has no such stereotype."""
-    name = mangled(one.name)
-    return one.family is Family.SYSML and not (name in HANDLERS or is_role_or_kept(name))
+    name = mangle(ancestor.name)
+    return ancestor.family is Family.SYSML and not (name in HANDLERS or is_known(name))
 
 
 def _full_name(application: Element) -> str:
@@ -126,13 +133,19 @@ def _full_name(application: Element) -> str:
     return f"{application.attrs.get('stereotype', '')} ({namespace})"
 
 
-def _report(graph: Graph, sink: Sink, name: str, alike: str, applications: list[Element]) -> None:
-    bases = [one for app in applications for one in graph.targets(app, Edge.SUBJECT)]
+def _report_stereotype(
+    graph: Graph, sink: Sink, name: str, similar: str, applications: list[Element]
+) -> None:
+    bases = [
+        subject
+        for application in applications
+        for subject in graph.targets(application, Edge.SUBJECT)
+    ]
     sink.report(
-        LOOK_ALIKE if alike else UNKNOWN_STEREOTYPE,
+        LOOK_ALIKE if similar else UNKNOWN_STEREOTYPE,
         graph.subject(bases[0] if bases else applications[0]),
         stereotype=name,
-        known=alike,
+        known=similar,
         count=len(applications),
     )
 
@@ -140,57 +153,59 @@ def _report(graph: Graph, sink: Sink, name: str, alike: str, applications: list[
 # -- roles and levels --------------------------------------------------------------------------
 
 
-def _give_roles(graph: Graph, known: _Meanings) -> None:
-    for id, names in known.items():
-        role = by_stereotype(graph[id], names)
+def _give_roles(graph: Graph, meanings: _Meanings) -> None:
+    for id, names in meanings.items():
+        role = role_by_stereotype(graph[id], names)
         if role:
             graph.set(graph[id], role=role)
     # Most elements of a large model are of behaviour, to which structure gives no role.
     for element in graph.of_kind(*STRUCTURED):
         if not element.role:
-            graph.set(element, role=by_structure(graph, element) or None)
+            graph.set(element, role=role_by_structure(graph, element) or None)
 
 
 def _give_levels(graph: Graph, lineages: dict[str, tuple[Ancestor, ...]]) -> None:
-    found: dict[str, set[str]] = {}
+    levels_by_subject: dict[str, set[str]] = {}
     for id, lineage in lineages.items():
         for subject in graph.targets(graph[id], Edge.SUBJECT):
-            found.setdefault(subject.id, set()).update(_levels(lineage))
-    for id, levels in found.items():
+            levels_by_subject.setdefault(subject.id, set()).update(_list_levels(lineage))
+    for id, levels in levels_by_subject.items():
         # An OPC UA call is often said of a service too: the first of the table is the level.
-        level = next((one for one in LEVELS.values() if one in levels), None)
+        level = next((name for name in LEVELS.values() if name in levels), None)
         graph.set(graph[id], level=level or graph[id].attrs.get("level"))
     _inherit_levels(graph)
 
 
 def _inherit_levels(graph: Graph) -> None:
     """Give classifiers without a level that of the nearest general one, layer by layer."""
-    layer = [one for one in graph if "level" in one.attrs]
+    layer = [element for element in graph if "level" in element.attrs]
     while layer:
-        below = (sub for one in layer for sub in graph.sources(one, Edge.SPECIALIZES))
-        layer = [sub for sub in dict.fromkeys(below) if "level" not in sub.attrs]
+        specials = (
+            special for element in layer for special in graph.sources(element, Edge.SPECIALIZES)
+        )
+        layer = [special for special in dict.fromkeys(specials) if "level" not in special.attrs]
         # A layer is looked at as a whole before it changes: the order must not matter.
-        for sub, level in [(sub, _level_above(graph, sub)) for sub in layer]:
-            graph.set(sub, level=level)
+        for special, level in [(special, _level_of_general(graph, special)) for special in layer]:
+            graph.set(special, level=level)
 
 
-def _level_above(graph: Graph, classifier: Element) -> AttrValue:
-    ups = graph.targets(classifier, Edge.SPECIALIZES)
-    return next(up.attrs["level"] for up in ups if "level" in up.attrs)
+def _level_of_general(graph: Graph, classifier: Element) -> AttrValue:
+    generals = graph.targets(classifier, Edge.SPECIALIZES)
+    return next(general.attrs["level"] for general in generals if "level" in general.attrs)
 
 
-def _levels(lineage: tuple[Ancestor, ...]) -> Iterator[str]:
-    for one in lineage:
-        if one.family is Family.SYSMLC and one.name in LEVELS:
-            yield LEVELS[one.name]
+def _list_levels(lineage: tuple[Ancestor, ...]) -> Iterator[str]:
+    for ancestor in lineage:
+        if ancestor.family is Family.SYSMLC and ancestor.name in LEVELS:
+            yield LEVELS[ancestor.name]
 
 
-def _give_values(graph: Graph) -> None:
+def _complete_attributes(graph: Graph) -> None:
     for element in graph.of_kind(*CLASSIFIERS, Kind.PACKAGE, Kind.OPERATION):
         if element.role == "requirement":
-            give_requirement(graph, element)
+            complete_requirement(graph, element)
     for element in graph.of_kind(Kind.PROPERTY, Kind.FLOW_PROPERTY):
         if element.role == "flow property":
-            given = element.attrs.get("direction") or tag(graph, element, "direction")
+            direction = element.attrs.get("direction") or tag(graph, element, "direction")
             # SysML 1.6 clause 9.3.2.7: the default direction is inout.
-            graph.set(element, direction=given or "inout")
+            graph.set(element, direction=direction or "inout")

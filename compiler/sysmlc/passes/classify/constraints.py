@@ -1,4 +1,4 @@
-"""Checks of constraint properties: their types, and what is bound to their parameters."""
+"""Checks of constraint properties: their types, and the bindings of their parameters."""
 
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Edge, Element, Graph, Kind
@@ -29,12 +29,12 @@ UNITS_DIFFER = rule(
 
 
 def check_constraints(graph: Graph, sink: Sink) -> None:
-    """Report usages without constraint block, parameters without binding, units that differ."""
+    """Report usages without constraint block, parameters without binding, and units that differ."""
     for usage in graph.of_kind(Kind.PROPERTY):
         if usage.role == "constraint property" and not usage.attrs.get("external"):
             _check_usage(graph, sink, usage)
-    for one, other in [(graph[a], graph[b]) for _, a, b in graph.edges(Edge.BINDS)]:
-        _check_units(graph, sink, one, other)
+    for left, right in [(graph[a], graph[b]) for _, a, b in graph.edges(Edge.BINDS)]:
+        _check_units(graph, sink, left, right)
 
 
 def _check_usage(graph: Graph, sink: Sink, usage: Element) -> None:
@@ -44,10 +44,14 @@ def _check_usage(graph: Graph, sink: Sink, usage: Element) -> None:
     if type_ is None and not (isinstance(unresolved, tuple) and "typed-by" in unresolved):
         sink.report(NO_CONSTRAINT_BLOCK, graph.subject(usage), property=name)
     if type_ is not None:
-        found = features(graph, type_)
-        open_ = [one for one in found if _is_parameter(one) and not _is_bound(graph, usage, one)]
-        if open_:
-            names = ", ".join(f"'{one.name}'" for one in open_)
+        type_features = features(graph, type_)
+        unbound = [
+            feature
+            for feature in type_features
+            if _is_parameter(feature) and not _is_bound(graph, usage, feature)
+        ]
+        if unbound:
+            names = ", ".join(f"'{feature.name}'" for feature in unbound)
             sink.report(UNBOUND_PARAMETER, graph.subject(usage), property=name, parameters=names)
 
 
@@ -56,7 +60,7 @@ def _is_parameter(feature: Element) -> bool:
 
 
 def _is_bound(graph: Graph, usage: Element, parameter: Element) -> bool:
-    """Whether a connector end at the parameter leads through the usage, or says no way at all.
+    """Whether a connector end at the parameter leads through the usage, or has no path at all.
 
     Old Papyrus files have no paths, so that any binding of the parameter may be meant.
     """
@@ -64,20 +68,22 @@ def _is_bound(graph: Graph, usage: Element, parameter: Element) -> bool:
     return any(not path or usage in path for path in paths)
 
 
-def _check_units(graph: Graph, sink: Sink, one: Element, other: Element) -> None:
-    unit, other_unit = unit_of(graph, one), unit_of(graph, other)
-    if unit is None or other_unit is None or _is_same(unit, other_unit):
+def _check_units(graph: Graph, sink: Sink, left: Element, right: Element) -> None:
+    unit, other_unit = unit_of(graph, left), unit_of(graph, right)
+    if unit is None or other_unit is None or _is_same_unit(unit, other_unit):
         return
     sink.report(
         UNITS_DIFFER,
-        graph.subject(one),
-        one=graph.qualified_name(one),
+        graph.subject(left),
+        one=graph.qualified_name(left),
         unit=unit.name,
-        other=graph.qualified_name(other),
+        other=graph.qualified_name(right),
         other_unit=other_unit.name,
     )
 
 
-def _is_same(one: Element, other: Element) -> bool:
-    """Units that only text names are elements of their value types, one for each."""
-    return one is other or one.name == other.name
+def _is_same_unit(left: Element, right: Element) -> bool:
+    """Whether two units are the same. A unit that only a text names is an element of each value
+    type.
+    """
+    return left is right or left.name == right.name

@@ -1,4 +1,4 @@
-"""Which stereotypes an application stands for, the general ones included."""
+"""The lineage of stereotype applications: the applied stereotype and its general ones."""
 
 import re
 from collections.abc import Iterator
@@ -9,14 +9,14 @@ from msgspec import Struct
 
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.ir.query import tag
-from sysmlc.passes.classify.vocabulary import MEANINGFUL, Family, family, mangled, parents
+from sysmlc.passes.classify.vocabulary import MEANINGFUL, Family, find_family, find_generals, mangle
 
 _REMEMBERED = 1 << 10
 """Stereotypes whose lineage is kept: a model applies a few of them thousands of times."""
 
 
 class Ancestor(Struct, frozen=True):
-    """One stereotype of a lineage: its local name and whose it is."""
+    """A stereotype of a lineage: its local name and the family of its profile."""
 
     name: str
     family: Family
@@ -40,7 +40,7 @@ _LIBRARY_FAMILIES = _FAMILIES | {
 
 @dataclass(slots=True)
 class Profiles:
-    """Stereotypes of the unit, found for applications by namespace and local name."""
+    """Index of the stereotypes of the unit, by namespace and local name."""
 
     graph: Graph
     _named: dict[str, list[Element]] = field(default_factory=dict)
@@ -50,129 +50,154 @@ class Profiles:
     def __post_init__(self) -> None:
         for stereotype in self.graph.of_kind(Kind.STEREOTYPE):
             if stereotype.attrs.get("library") or not stereotype.attrs.get("external"):
-                self._named.setdefault(mangled(stereotype.name), []).append(stereotype)
+                self._named.setdefault(mangle(stereotype.name), []).append(stereotype)
 
     def lineage(self, application: Element) -> tuple[Ancestor, ...]:
-        """From the applied stereotype to the most general one, each name of a family once.
+        """Return the stereotypes from the applied one to the most general, each name of a family
+        once.
 
-        Profiles of the unit come first; behind them, or without them, stands what SysML says
-        of its own stereotypes.
+        Profiles of the unit come first; they are followed by, or without them replaced by, the
+        generals that SysML defines for its own stereotypes.
         """
-        stereotype = self.stereotype(application)
+        stereotype = self.find_stereotype(application)
         if stereotype is None:
             attrs = application.attrs
-            return _said(str(attrs.get("namespace", "")), str(attrs.get("stereotype", "")))
-        above = (one for up in self._family_tree(stereotype) for one in _known_above(up))
-        return tuple(dict.fromkeys(above))
+            return _lineage_by_name(
+                str(attrs.get("namespace", "")), str(attrs.get("stereotype", ""))
+            )
+        ancestors = (
+            ancestor
+            for member in self._walk_generals(stereotype)
+            for ancestor in _walk_sysml_generals(member)
+        )
+        return tuple(dict.fromkeys(ancestors))
 
-    def stereotype(self, application: Element) -> Element | None:
-        """The applied Stereotype when a file of the unit, or a stand-in, has it."""
-        given = self.graph.target(application, Edge.INSTANCE_OF)
-        if given is not None and given.kind is Kind.STEREOTYPE:
-            return given
+    def find_stereotype(self, application: Element) -> Element | None:
+        """Return the applied Stereotype if a file of the unit, or an external stub, has it."""
+        assigned = self.graph.target(application, Edge.INSTANCE_OF)
+        if assigned is not None and assigned.kind is Kind.STEREOTYPE:
+            return assigned
         namespace = str(application.attrs.get("namespace", ""))
-        key = namespace, mangled(str(application.attrs.get("stereotype", "")))
+        key = namespace, mangle(str(application.attrs.get("stereotype", "")))
         if key not in self._chosen:
             self._chosen[key] = self._choose(*key)
         return self._chosen[key]
 
     def _choose(self, namespace: str, name: str) -> Element | None:
-        """The one of that name whose profile has the namespace; alone in the unit it will do,
-        unless the namespace is known to be somebody else's."""
-        whose = family(namespace)
-        candidates = sorted(self._named.get(name, ()), key=lambda one: one.id)
-        if whose is not Family.CUSTOM:
-            # What SysML says of its own stereotypes is known without any library.
-            candidates = [one for one in candidates if not one.attrs.get("external")]
-        for fits in (self._has_uri, self._has_name):
-            found = next((one for one in candidates if fits(one, namespace)), None)
-            if found is not None:
-                return found
-        same = [one for one in candidates if self._family(one) is whose]
-        return same[0] if same and (len(same) == 1 or whose is not Family.CUSTOM) else None
+        """Return the stereotype of that name whose profile has the namespace, or None.
 
-    def _family_tree(self, stereotype: Element) -> Iterator[Ancestor]:
-        seen = {stereotype.id}
+        If only one stereotype of the unit has the name, it is taken, unless the namespace belongs
+        to another known family.
+        """
+        owner_family = find_family(namespace)
+        candidates = sorted(self._named.get(name, ()), key=lambda candidate: candidate.id)
+        if owner_family is not Family.CUSTOM:
+            # What SysML says of its own stereotypes is known without any library.
+            candidates = [
+                candidate for candidate in candidates if not candidate.attrs.get("external")
+            ]
+        for fits in (self._has_uri, self._has_name):
+            match = next(
+                (candidate for candidate in candidates if fits(candidate, namespace)), None
+            )
+            if match is not None:
+                return match
+        of_same_family = [
+            candidate for candidate in candidates if self._family_of(candidate) is owner_family
+        ]
+        return (
+            of_same_family[0]
+            if of_same_family and (len(of_same_family) == 1 or owner_family is not Family.CUSTOM)
+            else None
+        )
+
+    def _walk_generals(self, stereotype: Element) -> Iterator[Ancestor]:
+        visited = {stereotype.id}
         level = [stereotype]
         while level:
-            yield from (Ancestor(one.name, self._family(one)) for one in level)
-            ups = [up for one in level for up in self.graph.targets(one, Edge.SPECIALIZES)]
-            level = [up for up in dict.fromkeys(ups) if up.id not in seen]
-            seen.update(up.id for up in level)
+            yield from (Ancestor(member.name, self._family_of(member)) for member in level)
+            generals = [
+                general
+                for member in level
+                for general in self.graph.targets(member, Edge.SPECIALIZES)
+            ]
+            level = [general for general in dict.fromkeys(generals) if general.id not in visited]
+            visited.update(general.id for general in level)
 
-    def _family(self, stereotype: Element) -> Family:
+    def _family_of(self, stereotype: Element) -> Family:
         if stereotype.id not in self._families:
             self._families[stereotype.id] = self._find_family(stereotype)
         return self._families[stereotype.id]
 
     def _find_family(self, stereotype: Element) -> Family:
         if stereotype.attrs.get("external"):
-            found = family(str(stereotype.attrs.get("href", "")))
-            return self._library_family(stereotype) if found is Family.CUSTOM else found
-        for profile in self._profiles(stereotype):
-            found = family(self._uri(profile))
-            if found is not Family.CUSTOM:
-                return found
-        names = (mangled(profile.name) for profile in self._profiles(stereotype))
+            family = find_family(str(stereotype.attrs.get("href", "")))
+            return self._find_library_family(stereotype) if family is Family.CUSTOM else family
+        for profile in self._profiles_of(stereotype):
+            family = find_family(self._uri_of(profile))
+            if family is not Family.CUSTOM:
+                return family
+        names = (mangle(profile.name) for profile in self._profiles_of(stereotype))
         return next((_FAMILIES[name] for name in names if name in _FAMILIES), Family.CUSTOM)
 
-    def _library_family(self, stereotype: Element) -> Family:
-        names = (mangled(profile.name) for profile in self._profiles(stereotype))
-        known = (_LIBRARY_FAMILIES[name] for name in names if name in _LIBRARY_FAMILIES)
-        return next(known, Family.CUSTOM)
+    def _find_library_family(self, stereotype: Element) -> Family:
+        names = (mangle(profile.name) for profile in self._profiles_of(stereotype))
+        families = (_LIBRARY_FAMILIES[name] for name in names if name in _LIBRARY_FAMILIES)
+        return next(families, Family.CUSTOM)
 
-    def _profiles(self, stereotype: Element) -> list[Element]:
-        above = self.graph.ancestors(stereotype)
-        return [one for one in above if one.kind in (Kind.PROFILE, Kind.PACKAGE)]
+    def _profiles_of(self, stereotype: Element) -> list[Element]:
+        ancestors = self.graph.ancestors(stereotype)
+        return [ancestor for ancestor in ancestors if ancestor.kind in (Kind.PROFILE, Kind.PACKAGE)]
 
-    def _uri(self, profile: Element) -> str:
+    def _uri_of(self, profile: Element) -> str:
         return str(profile.attrs.get("uri") or tag(self.graph, profile, "nsURI") or "")
 
     def _has_uri(self, stereotype: Element, namespace: str) -> bool:
-        return any(self._uri(one) == namespace for one in self._profiles(stereotype))
+        return any(self._uri_of(profile) == namespace for profile in self._profiles_of(stereotype))
 
     def _has_name(self, stereotype: Element, namespace: str) -> bool:
         # MagicDraw: http://www.magicdraw.com/schemas/Arrowhead.xmi of the profile "Arrowhead".
         last = re.sub(r"\.xmi$", "", namespace.rpartition("/")[2])
-        return any(mangled(one.name) == last for one in self._profiles(stereotype))
+        return any(mangle(profile.name) == last for profile in self._profiles_of(stereotype))
 
 
 @lru_cache(_REMEMBERED)
-def _said(namespace: str, name: str) -> tuple[Ancestor, ...]:
-    """The lineage of a stereotype that only SysML can say something of."""
-    return tuple(dict.fromkeys(_known_above(Ancestor(name, family(namespace)))))
+def _lineage_by_name(namespace: str, name: str) -> tuple[Ancestor, ...]:
+    """Return the lineage of a stereotype that no profile of the unit defines."""
+    return tuple(dict.fromkeys(_walk_sysml_generals(Ancestor(name, find_family(namespace)))))
 
 
-def _known_above(start: Ancestor) -> Iterator[Ancestor]:
+def _walk_sysml_generals(start: Ancestor) -> Iterator[Ancestor]:
+    """Yield the ancestor and its generals as SysML defines them."""
     level = [start]
     while level:
         yield from level
         level = [
-            Ancestor(up, one.family)
-            for one in level
-            if one.family is Family.SYSML
-            for up in parents(mangled(one.name))
+            Ancestor(general, ancestor.family)
+            for ancestor in level
+            if ancestor.family is Family.SYSML
+            for general in find_generals(mangle(ancestor.name))
         ]
 
 
-def meanings(lineage: tuple[Ancestor, ...]) -> tuple[str, ...]:
-    """Names that count as stereotypes of SysML (UML's Trace and Refine among them)."""
-    known = (Family.SYSML, Family.STANDARD)
-    return tuple(mangled(one.name) for one in lineage if one.family in known)
+def find_meanings(lineage: tuple[Ancestor, ...]) -> tuple[str, ...]:
+    """Return the names that count as stereotypes of SysML, UML's Trace and Refine among them."""
+    families = (Family.SYSML, Family.STANDARD)
+    return tuple(mangle(ancestor.name) for ancestor in lineage if ancestor.family in families)
 
 
-def look_alike(lineage: tuple[Ancestor, ...]) -> str:
-    """Name of SysML's that a purely custom lineage bears, or the empty string.
+def find_look_alike(lineage: tuple[Ancestor, ...]) -> str:
+    """Return the name of a SysML stereotype in a purely custom lineage, or the empty string.
 
     Papyrus profiles often declare a FullPort of their own without specialising SysML's, and a
-    profile that is not in the unit cannot say what it specialises. Another standard's
-    namespace (MARTE's FlowPort) is never mistaken.
+    profile that is not in the unit cannot state its generals. A stereotype in the namespace of
+    another standard (MARTE's FlowPort) never counts.
     """
-    if any(one.family is not Family.CUSTOM for one in lineage):
+    if any(ancestor.family is not Family.CUSTOM for ancestor in lineage):
         return ""
-    return next((one.name for one in lineage if one.name in MEANINGFUL), "")
+    return next((ancestor.name for ancestor in lineage if ancestor.name in MEANINGFUL), "")
 
 
-def known_meanings(name: str) -> tuple[str, ...]:
-    """Meanings of SysML's stereotype of this name."""
-    return meanings(tuple(_known_above(Ancestor(name, Family.SYSML))))
+def meanings_of_sysml(name: str) -> tuple[str, ...]:
+    """Return the meanings of SysML's stereotype of this name."""
+    return find_meanings(tuple(_walk_sysml_generals(Ancestor(name, Family.SYSML))))

@@ -1,4 +1,4 @@
-"""Values of UML's and SysML's enumerations that are none of their literals."""
+"""Checks of attributes whose values must be literals of enumerations of UML or SysML."""
 
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Element, Graph, Kind
@@ -23,8 +23,8 @@ def check_literals(graph: Graph, sink: Sink) -> None:
     """Report and remove directions and aggregations that do not exist."""
     for element in graph.of_kind(*_KINDS):
         attrs = element.attrs
-        for attribute, known in _LITERALS.items() if attrs else ():
-            if attribute in attrs and attrs[attribute] not in known:
+        for attribute, literals in _LITERALS.items() if attrs else ():
+            if attribute in attrs and attrs[attribute] not in literals:
                 _report(graph, sink, element, attribute)
                 # SysML 1.6 clause 9.3.2: a flow property without direction has inout.
                 is_flow = element.role == "flow property" and attribute == "direction"
@@ -35,18 +35,20 @@ def check_literals(graph: Graph, sink: Sink) -> None:
 
 
 def _check_tag(graph: Graph, sink: Sink, port: Element) -> None:
-    """The direction of a flow port of SysML 1.1 is a tag, which ``ports`` reads."""
-    given = tag(graph, port, "direction")
-    if isinstance(given, str) and given and given not in FLOW_DIRECTIONS:
-        _report(graph, sink, port, "direction", given)
+    """Check the direction of a flow port of SysML 1.1: a tag, which the pass ``ports`` reads."""
+    direction = tag(graph, port, "direction")
+    if isinstance(direction, str) and direction and direction not in FLOW_DIRECTIONS:
+        _report(graph, sink, port, "direction", direction)
 
 
-def _report(graph: Graph, sink: Sink, element: Element, attribute: str, given: str = "") -> None:
+def _report(
+    graph: Graph, sink: Sink, element: Element, attribute: str, tag_value: str = ""
+) -> None:
     sink.report(
         UNKNOWN_LITERAL,
         graph.subject(element),
         attribute=attribute,
         element=graph.qualified_name(element),
-        value=given or element.attrs[attribute],
-        known=", ".join(FLOW_DIRECTIONS if given else _LITERALS[attribute]),
+        value=tag_value or element.attrs[attribute],
+        known=", ".join(FLOW_DIRECTIONS if tag_value else _LITERALS[attribute]),
     )

@@ -11,22 +11,22 @@ _OF_REQUIREMENTS = frozenset({"satisfy", "derive", "verify", "copy"})
 
 
 def add_relations(graph: Graph, sink: Sink) -> None:
-    """Add from each client to each supplier the edge that the dependency's role means."""
+    """Add from each client to each supplier the edge that the role of the dependency means."""
     for dependency in graph.of_kind(Kind.DEPENDENCY):
-        edge = _edge(dependency)
+        edge = _choose_edge(dependency)
         for client in graph.targets(dependency, Edge.CLIENT):
             for supplier in graph.targets(dependency, Edge.SUPPLIER):
                 graph.connect(edge, client, supplier)
-        _check(graph, sink, dependency)
+        _check_suppliers(graph, sink, dependency)
 
 
-def _edge(dependency: Element) -> Edge:
+def _choose_edge(dependency: Element) -> Edge:
     if dependency.role in _EDGES:
         return _EDGES[dependency.role]
     return _EDGES_OF_SUBKINDS.get(dependency.subkind, Edge.DEPENDS)
 
 
-def _check(graph: Graph, sink: Sink, dependency: Element) -> None:
+def _check_suppliers(graph: Graph, sink: Sink, dependency: Element) -> None:
     if dependency.role not in _OF_REQUIREMENTS:
         return
     for supplier in graph.targets(dependency, Edge.SUPPLIER):

@@ -1,4 +1,4 @@
-"""Requirements: their id and text in every dialect, and what must hold between them."""
+"""Requirements: their id and text in every dialect, and the rules that hold between them."""
 
 from html.parser import HTMLParser
 
@@ -43,37 +43,39 @@ COPY_DIFFERS = rule(
 _KINDS = (*CLASSIFIERS, Kind.PACKAGE, Kind.OPERATION)
 
 
-def give_requirement(graph: Graph, requirement: Element) -> None:
-    """Set ``req_id`` and ``text`` from the tags, however the tool spells them."""
+def complete_requirement(graph: Graph, requirement: Element) -> None:
+    """Set ``req_id`` and ``text`` from the tags, in whatever spelling the tool uses."""
     for attribute, tag_name in (("req_id", "id"), ("text", "text")):
         value = tag(graph, requirement, tag_name)
         if value is not None:
-            shown = readable(value) if isinstance(value, str) else value
-            graph.set(requirement, **{attribute: shown})
+            text = strip_markup(value) if isinstance(value, str) else value
+            graph.set(requirement, **{attribute: text})
 
 
-def readable(text: str) -> str:
-    """The text itself, or the words of an HTML document: MagicDraw keeps formatted text so."""
+def strip_markup(text: str) -> str:
+    """Return a text without markup: MagicDraw stores formatted texts as HTML documents."""
     if not text.lstrip()[:6].lower().startswith("<html"):
         return text
 
-    return words(text)
+    return extract_text(text)
 
 
 # -- rules -------------------------------------------------------------------------------------
 
 
 def check_requirements(graph: Graph, sink: Sink) -> None:
-    """Report missing and repeated ids, and copies whose text is not their master's."""
-    known: dict[str, list[Element]] = {}
-    for requirement in (one for one in graph.of_kind(*_KINDS) if one.role == "requirement"):
+    """Report missing and repeated ids, and copies whose text differs from their master's."""
+    by_id: dict[str, list[Element]] = {}
+    for requirement in (
+        element for element in graph.of_kind(*_KINDS) if element.role == "requirement"
+    ):
         id = str(requirement.attrs.get("req_id", "")).strip()
         if id:
-            known.setdefault(id, []).append(requirement)
+            by_id.setdefault(id, []).append(requirement)
         elif not requirement.attrs.get("external") and requirement.kind is not Kind.REQUIREMENT:
             name = graph.qualified_name(requirement)
             sink.report(NO_ID, graph.subject(requirement), requirement=name)
-    for id, requirements in known.items():
+    for id, requirements in by_id.items():
         _report_repeated(graph, sink, id, requirements)
     for dependency in graph.of_kind(Kind.DEPENDENCY):
         if dependency.role == "copy":
@@ -82,23 +84,23 @@ def check_requirements(graph: Graph, sink: Sink) -> None:
 
 def _report_repeated(graph: Graph, sink: Sink, id: str, requirements: list[Element]) -> None:
     first = graph.qualified_name(requirements[0])
-    for other in requirements[1:]:
-        name = graph.qualified_name(other)
-        sink.report(REPEATED_ID, graph.subject(other), id=id, requirement=name, first=first)
+    for requirement in requirements[1:]:
+        name = graph.qualified_name(requirement)
+        sink.report(REPEATED_ID, graph.subject(requirement), id=id, requirement=name, first=first)
 
 
 def _check_copy(graph: Graph, sink: Sink, dependency: Element) -> None:
     for copy in graph.targets(dependency, Edge.CLIENT):
         for master in graph.targets(dependency, Edge.SUPPLIER):
-            own, others = _text(copy), _text(master)
+            copy_text, master_text = _normalise_text(copy), _normalise_text(master)
             # A copy without a text of its own takes its master's: MagicDraw leaves it empty.
-            if own and others and own != others:
+            if copy_text and master_text and copy_text != master_text:
                 names = graph.qualified_name(copy), graph.qualified_name(master)
                 subject = graph.subject(dependency)
                 sink.report(COPY_DIFFERS, subject, copy=names[0], master=names[1])
 
 
-def _text(requirement: Element) -> str:
+def _normalise_text(requirement: Element) -> str:
     return " ".join(str(requirement.attrs.get("text", "")).split())
 
 
@@ -106,16 +108,16 @@ _BLOCKS = frozenset(["p", "br", "li", "tr", "div", "h1", "h2", "h3", "h4", "ul",
 _SILENT = frozenset(["head", "style", "script"])
 
 
-def words(text: str) -> str:
-    """The words of an HTML document, a line for each block."""
-    reader = _Words()
-    reader.feed(text)
-    reader.close()
-    rows = (" ".join(row.split()) for row in "".join(reader.found).splitlines())
+def extract_text(text: str) -> str:
+    """Return the words of an HTML document, a line for each block."""
+    parser = _TextExtractor()
+    parser.feed(text)
+    parser.close()
+    rows = (" ".join(row.split()) for row in "".join(parser.found).splitlines())
     return "\n".join(row for row in rows if row)
 
 
-class _Words(HTMLParser):
+class _TextExtractor(HTMLParser):
     def __init__(self) -> None:
         super().__init__(convert_charrefs=True)
         self.found: list[str] = []

@@ -1,4 +1,4 @@
-"""Role of an element: what its stereotypes, its type and its owner make of it."""
+"""Role of an element, from its stereotypes, its type and its owner."""
 
 from collections.abc import Mapping
 
@@ -62,53 +62,55 @@ _OBJECTS = frozenset({Kind.CLASS, Kind.COMPONENT, Kind.ACTOR, Kind.ITEM})
 _OTHERS = frozenset({Kind.INTERFACE, Kind.SIGNAL, Kind.USE_CASE})
 
 
-def by_stereotype(element: Element, meanings: tuple[str, ...]) -> str:
-    """Role that SysML stereotypes give to an element of this kind, or the empty string."""
+def role_by_stereotype(element: Element, meanings: tuple[str, ...]) -> str:
+    """Return the role that SysML stereotypes give to an element of this kind, or the empty
+    string.
+    """
     roles = _BY_STEREOTYPE.get(element.kind, {})
     return next((role for name, role in roles.items() if name in meanings), "")
 
 
-def by_structure(graph: Graph, element: Element) -> str:
-    """Role that kind, type and owner give; the roles of the types must be known already."""
+def role_by_structure(graph: Graph, element: Element) -> str:
+    """Return the role that kind, type and owner give; the roles of types must be known already."""
     if element.kind is Kind.PROPERTY:
         return _property_role(graph, element)
     if element.kind is Kind.CLASS:
         return _class_role(graph, element)
-    if element.kind is Kind.PORT and _is_of_constraint_block(graph, element):
+    if element.kind is Kind.PORT and _is_in_constraint_block(graph, element):
         return "constraint parameter"
     if element.kind is Kind.VIEW and element.subkind == "diagram":
         return ""
     return _BY_KIND.get(element.kind, "")
 
 
-def _is_of_constraint_block(graph: Graph, feature: Element) -> bool:
+def _is_in_constraint_block(graph: Graph, feature: Element) -> bool:
     owner = graph.owner(feature)
     return owner is not None and owner.role == "constraint block"
 
 
 def _class_role(graph: Graph, class_: Element) -> str:
-    """What SysML's ports say of a class whose own stereotype is not known.
+    """Return the role of a class without a known stereotype, from its ports.
 
     Proxy ports are typed by interface blocks, and ports are owned by blocks (SysML 1.6 clauses
     9.3.2.1 and 9.3.2.13).
     """
-    if any(one.role == "proxy port" for one in graph.sources(class_, Edge.TYPED_BY)):
+    if any(element.role == "proxy port" for element in graph.sources(class_, Edge.TYPED_BY)):
         return "interface block"
-    return "block" if any(one.role in _SYSML_PORTS for one in graph.owned(class_)) else ""
+    return "block" if any(element.role in _SYSML_PORTS for element in graph.owned(class_)) else ""
 
 
 def _property_role(graph: Graph, feature: Element) -> str:
     owner, type_ = graph.owner(feature), type_of(graph, feature)
-    if owner is None or owner.kind is Kind.STEREOTYPE or _is_loose_end(graph, owner, feature):
+    if owner is None or owner.kind is Kind.STEREOTYPE or _is_association_end(graph, owner, feature):
         return ""
     if type_ is not None and type_.role == "constraint block":
         return "constraint property"
-    if _is_of_constraint_block(graph, feature):
+    if _is_in_constraint_block(graph, feature):
         return "constraint parameter"
     return _role_by_type(feature, type_)
 
 
-def _is_loose_end(graph: Graph, owner: Element, feature: Element) -> bool:
+def _is_association_end(graph: Graph, owner: Element, feature: Element) -> bool:
     return owner.kind is Kind.ASSOCIATION and feature in graph.targets(owner, Edge.END)
 
 

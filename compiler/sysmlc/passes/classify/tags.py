@@ -1,6 +1,7 @@
-"""What SysML's stereotypes say of their elements besides a role: attributes and edges, by table.
+"""Meanings of the tags of SysML's stereotypes: attributes and edges, by a table of handlers.
 
 SysML 1.6 (formal/19-11-01), the stereotype tables of clauses 7 to 11; docs/ir.md has the result.
+Tags that a profile of the unit does not define are reported.
 """
 
 from collections.abc import Callable, Iterator, Mapping
@@ -8,23 +9,25 @@ from collections.abc import Callable, Iterator, Mapping
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind
 from sysmlc.ir.query import bounds, generals
-from sysmlc.passes.classify.vocabulary import mangled
+from sysmlc.passes.classify.vocabulary import mangle
 
 _Handler = Callable[[Graph, Element, Element], None]
 """Takes the graph, the application and an element that it is applied to."""
 
 
-def give_tags(graph: Graph, known: Mapping[str, tuple[str, ...]]) -> None:
-    """Set attributes and edges; ``known`` maps ids of applications to SysML stereotypes."""
-    for id, names in known.items():
-        handlers = [one for name in names for one in HANDLERS.get(name, ())]
-        for subject in _subjects(graph, graph[id]) if handlers else ():
+def apply_tags(graph: Graph, meanings: Mapping[str, tuple[str, ...]]) -> None:
+    """Set attributes and edges; *meanings* maps ids of applications to SysML stereotypes."""
+    for id, names in meanings.items():
+        handlers = [handler for name in names for handler in HANDLERS.get(name, ())]
+        for subject in _find_subjects(graph, graph[id]) if handlers else ():
             for handler in handlers:
                 handler(graph, graph[id], subject)
 
 
-def _subjects(graph: Graph, application: Element) -> list[Element]:
-    """What it is applied to; an event's application speaks of the triggers that name it."""
+def _find_subjects(graph: Graph, application: Element) -> list[Element]:
+    """Return the subjects of an application; for one on an event, the triggers that name the
+    event.
+    """
     folded = application.attrs.get("on") in ("change-event", "generalization")
     return graph.targets(application, Edge.REFERENCES if folded else Edge.SUBJECT)
 
@@ -32,110 +35,115 @@ def _subjects(graph: Graph, application: Element) -> list[Element]:
 # -- reading tags ------------------------------------------------------------------------------
 
 
-def value(application: Element, name: str) -> AttrValue:
-    """A tag of one application; tools differ in the case of its name."""
+def tag_value(application: Element, name: str) -> AttrValue:
+    """Return a tag of one application; tools differ in the case of its name."""
     exact = application.attrs.get(f"tag.{name}")
     if exact is not None:
         return exact
-    wanted = f"tag.{name.lower()}"
-    return next((v for key, v in application.attrs.items() if key.lower() == wanted), None)
+    lowered = f"tag.{name.lower()}"
+    return next((v for key, v in application.attrs.items() if key.lower() == lowered), None)
 
 
-def elements(graph: Graph, application: Element, name: str) -> list[Element]:
-    """Elements that a tag leads to; a stereotype's instance stands for what it is applied to.
+def tag_elements(graph: Graph, application: Element, name: str) -> list[Element]:
+    """Return the elements that a tag refers to; an application stands for its subjects.
 
-    Papyrus writes the id of the application where a tag is typed by a stereotype.
+    Papyrus writes the id of the application if a tag is typed by a stereotype.
     """
-    found = (graph.get(text) for text in _texts(value(application, name)))
-    return [real for one in found if one is not None for real in _real(graph, one)]
+    referred = (graph.get(text) for text in _list_texts(tag_value(application, name)))
+    return [
+        resolved
+        for element in referred
+        if element is not None
+        for resolved in _subjects_or_itself(graph, element)
+    ]
 
 
-def _texts(given: AttrValue) -> Iterator[str]:
-    if isinstance(given, tuple):
-        for one in given:
-            yield from _texts(one)
-    elif isinstance(given, str):
-        yield given
+def _list_texts(content: AttrValue) -> Iterator[str]:
+    if isinstance(content, tuple):
+        for item in content:
+            yield from _list_texts(item)
+    elif isinstance(content, str):
+        yield content
 
 
-def _real(graph: Graph, element: Element) -> list[Element]:
+def _subjects_or_itself(graph: Graph, element: Element) -> list[Element]:
     if element.kind is Kind.APPLICATION:
         return graph.targets(element, Edge.SUBJECT)
     return [element]
 
 
-def _shown(graph: Graph, given: AttrValue) -> AttrValue:
-    """The value, or the name of the element that it is the id of."""
-    named = graph.get(given) if isinstance(given, str) else None
-    return named.name if named is not None and named.name else given
+def _name_or_value(graph: Graph, content: AttrValue) -> AttrValue:
+    """Return the value, or the name of the element whose id it is."""
+    element = graph.get(content) if isinstance(content, str) else None
+    return element.name if element is not None and element.name else content
 
 
 # -- handlers ----------------------------------------------------------------------------------
 
 
-def _attribute(attribute: str, tag_name: str) -> _Handler:
+def _set_attribute(attribute: str, tag_name: str) -> _Handler:
     def give(graph: Graph, application: Element, subject: Element) -> None:
-        found = _shown(graph, value(application, tag_name))
+        found = _name_or_value(graph, tag_value(application, tag_name))
         if found not in (None, ""):
             graph.set(subject, **{attribute: found})
 
     return give
 
 
-def _flag(attribute: str, tag_name: str) -> _Handler:
+def _set_flag(attribute: str, tag_name: str) -> _Handler:
     def give(graph: Graph, application: Element, subject: Element) -> None:
-        if value(application, tag_name) in ("true", True):
+        if tag_value(application, tag_name) in ("true", True):
             graph.set(subject, **{attribute: True})
 
     return give
 
 
-def _constant(attribute: str, given: AttrValue) -> _Handler:
+def _set_constant(attribute: str, constant: AttrValue) -> _Handler:
     def give(graph: Graph, _application: Element, subject: Element) -> None:
-        graph.set(subject, **{attribute: given})
+        graph.set(subject, **{attribute: constant})
 
     return give
 
 
-def _edge(edge: Edge, *tag_names: str) -> _Handler:
+def _add_edges(edge: Edge, *tag_names: str) -> _Handler:
     def give(graph: Graph, application: Element, subject: Element) -> None:
         for tag_name in tag_names:
-            for target in elements(graph, application, tag_name):
+            for target in tag_elements(graph, application, tag_name):
                 if target is not subject:
                     graph.connect(edge, subject, target)
 
     return give
 
 
-def _ids(attribute: str, tag_name: str) -> _Handler:
+def _set_ids(attribute: str, tag_name: str) -> _Handler:
     def give(graph: Graph, application: Element, subject: Element) -> None:
-        found = tuple(one.id for one in elements(graph, application, tag_name))
+        found = tuple(one.id for one in tag_elements(graph, application, tag_name))
         if found:
             graph.set(subject, **{attribute: found})
 
     return give
 
 
-def _allocated_from(graph: Graph, application: Element, subject: Element) -> None:
-    for source in elements(graph, application, "allocatedFrom"):
+def _add_allocations_from(graph: Graph, application: Element, subject: Element) -> None:
+    for source in tag_elements(graph, application, "allocatedFrom"):
         if source is not subject:
             graph.connect(Edge.ALLOCATED_TO, source, subject)
 
 
-def _bound(graph: Graph, application: Element, subject: Element) -> None:
-    """A bound reference is bound to the last property of its path (clause 8.3.2.4)."""
-    path = elements(graph, application, "bindingPath")
-    if not path:
-        ends = elements(graph, application, "boundEnd")
-        path = [role for end in ends for role in graph.targets(end, Edge.ROLE)]
-    if path and path[-1] is not subject:
-        graph.connect(Edge.BINDS, subject, path[-1])
+def _add_binding(graph: Graph, application: Element, subject: Element) -> None:
+    """Bind a bound reference to the last property of its path (clause 8.3.2.4)."""
+    bound = tag_elements(graph, application, "bindingPath")
+    if not bound:
+        ends = tag_elements(graph, application, "boundEnd")
+        bound = [role for end in ends for role in graph.targets(end, Edge.ROLE)]
+    if bound and bound[-1] is not subject:
+        graph.connect(Edge.BINDS, subject, bound[-1])
 
 
-def _conform(graph: Graph, application: Element, subject: Element) -> None:
-    """A view that conforms by generalization (clause 7.3.2.1) realises what it specialises.
+def _add_conformance(graph: Graph, application: Element, subject: Element) -> None:
+    """Let a view that conforms by generalization (clause 7.3.2.1) realise what it specialises.
 
-    It is the role of its generals that tells which of several generalizations is meant.
+    The role of its generals shows which of several generalizations is meant.
     """
     if application.attrs.get("on") == "generalization":
         for general in graph.targets(subject, Edge.SPECIALIZES):
@@ -143,72 +151,74 @@ def _conform(graph: Graph, application: Element, subject: Element) -> None:
                 graph.connect(Edge.REALIZES, subject, general)
 
 
-def _path_multiplicity(graph: Graph, application: Element, subject: Element) -> None:
+def _set_path_multiplicity(graph: Graph, application: Element, subject: Element) -> None:
     # Clause 8.3.2.10: without bounds none is given for the path.
-    lower, upper = value(application, "lower"), value(application, "upper")
+    lower, upper = tag_value(application, "lower"), tag_value(application, "upper")
     if lower is not None or upper is not None:
         text = f"{'0' if lower is None else lower}..{'*' if upper in (None, '-1') else upper}"
         graph.set(subject, path_multiplicity=text)
 
 
-def _distribution(graph: Graph, application: Element, subject: Element) -> None:
-    """``Normal(mean=5, standardDeviation=1)``: the distribution and its parameters."""
+def _set_distribution(graph: Graph, application: Element, subject: Element) -> None:
+    """Set the distribution with its parameters: ``Normal(mean=5, standardDeviation=1)``."""
     name = str(application.attrs.get("stereotype", ""))
-    given = [
+    parameters = [
         f"{key.removeprefix('tag.')}={value}"
         for key, value in application.attrs.items()
         if key.startswith("tag.")
     ]
-    graph.set(subject, distribution=f"{name}({', '.join(given)})" if given else name)
+    graph.set(subject, distribution=f"{name}({', '.join(parameters)})" if parameters else name)
 
 
-def _path(graph: Graph, application: Element, subject: Element) -> None:
+def _add_path(graph: Graph, application: Element, subject: Element) -> None:
     # A front end reads the paths of connector ends, part with port included.
     if subject.kind is not Kind.CONNECTOR_END:
-        _edge(Edge.PATH, "propertyPath", "onNestedPort")(graph, application, subject)
+        _add_edges(Edge.PATH, "propertyPath", "onNestedPort")(graph, application, subject)
 
 
 HANDLERS: dict[str, tuple[_Handler, ...]] = {
-    "AdjunctProperty": (_edge(Edge.REFERENCES, "principal"),),
-    "Allocated": (_edge(Edge.ALLOCATED_TO, "allocatedTo"), _allocated_from),
-    "Block": (_flag("encapsulated", "isEncapsulated"),),
-    "BoundReference": (_bound,),
-    "ChangeStructuralFeatureEvent": (_edge(Edge.REFERENCES, "structuralFeature"),),
-    "ConnectorProperty": (_edge(Edge.REFERENCES, "connector"),),
-    "Conform": (_conform,),
-    "Continuous": (_constant("rate", "continuous"),),
-    "DirectedFeature": (_attribute("feature_direction", "featureDirection"),),
+    "AdjunctProperty": (_add_edges(Edge.REFERENCES, "principal"),),
+    "Allocated": (_add_edges(Edge.ALLOCATED_TO, "allocatedTo"), _add_allocations_from),
+    "Block": (_set_flag("encapsulated", "isEncapsulated"),),
+    "BoundReference": (_add_binding,),
+    "ChangeStructuralFeatureEvent": (_add_edges(Edge.REFERENCES, "structuralFeature"),),
+    "ConnectorProperty": (_add_edges(Edge.REFERENCES, "connector"),),
+    "Conform": (_add_conformance,),
+    "Continuous": (_set_constant("rate", "continuous"),),
+    "DirectedFeature": (_set_attribute("feature_direction", "featureDirection"),),
     "DirectedRelationshipPropertyPath": (
-        _ids("source_context", "sourceContext"),
-        _ids("source_path", "sourcePropertyPath"),
-        _ids("target_context", "targetContext"),
-        _ids("target_path", "targetPropertyPath"),
+        _set_ids("source_context", "sourceContext"),
+        _set_ids("source_path", "sourcePropertyPath"),
+        _set_ids("target_context", "targetContext"),
+        _set_ids("target_path", "targetPropertyPath"),
     ),
-    "Discrete": (_constant("rate", "discrete"),),
-    "DistributedProperty": (_distribution,),
+    "Discrete": (_set_constant("rate", "discrete"),),
+    "DistributedProperty": (_set_distribution,),
     "ElementGroup": (
-        _attribute("criterion", "criterion"),
-        _edge(Edge.REFERENCES, "member", "orderedMember"),
+        _set_attribute("criterion", "criterion"),
+        _add_edges(Edge.REFERENCES, "member", "orderedMember"),
     ),
-    "ElementPropertyPath": (_path,),
-    "EndPathMultiplicity": (_path_multiplicity,),
-    "FlowPort": (_flag("conjugated", "isConjugated"),),
-    "NoBuffer": (_constant("no_buffer", True),),
-    "Overwrite": (_constant("overwrite", True),),
-    "ParticipantProperty": (_edge(Edge.REFERENCES, "end"),),
-    "Probability": (_attribute("probability", "probability"),),
-    "PropertySpecificType": (_constant("property_specific", True),),
-    "Rate": (_attribute("rate", "rate"),),
-    "View": (_edge(Edge.REALIZES, "viewpoint"),),
-    "_InterfaceBlock": (_edge(Edge.REFERENCES, "original"),),
-    "ConjugatedInterfaceBlock": (_edge(Edge.REFERENCES, "original"),),
+    "ElementPropertyPath": (_add_path,),
+    "EndPathMultiplicity": (_set_path_multiplicity,),
+    "FlowPort": (_set_flag("conjugated", "isConjugated"),),
+    "NoBuffer": (_set_constant("no_buffer", True),),
+    "Overwrite": (_set_constant("overwrite", True),),
+    "ParticipantProperty": (_add_edges(Edge.REFERENCES, "end"),),
+    "Probability": (_set_attribute("probability", "probability"),),
+    "PropertySpecificType": (_set_constant("property_specific", True),),
+    "Rate": (_set_attribute("rate", "rate"),),
+    "View": (_add_edges(Edge.REALIZES, "viewpoint"),),
+    "_InterfaceBlock": (_add_edges(Edge.REFERENCES, "original"),),
+    "ConjugatedInterfaceBlock": (_add_edges(Edge.REFERENCES, "original"),),
 }
 """By stereotype; one that specialises it has the same meaning, in the order of the lineage."""
 
 
-def optional_with_value(graph: Graph, known: Mapping[str, tuple[str, ...]]) -> Iterator[Element]:
-    """Parameters that are «optional» although their multiplicity asks for a value."""
-    for id in (id for id, names in known.items() if "Optional" in names):
+def find_optional_with_value(
+    graph: Graph, meanings: Mapping[str, tuple[str, ...]]
+) -> Iterator[Element]:
+    """Yield the parameters that are «optional» although their multiplicity requires a value."""
+    for id in (id for id, names in meanings.items() if "Optional" in names):
         for parameter in graph.targets(graph[id], Edge.SUBJECT):
             limits = bounds(parameter.attrs.get("multiplicity"))
             if parameter.kind is Kind.PARAMETER and limits is not None and limits[0] > 0:
@@ -228,38 +238,47 @@ _TAG = "tag."
 
 
 def check_tags(graph: Graph, sink: Sink) -> None:
-    """Report tags of applications whose stereotypes, general ones included, are in the unit."""
-    known: dict[str, frozenset[str] | None] = {}
-    found: dict[tuple[str, str], list[Element]] = {}
+    """Report tags that a stereotype of the unit does not define, once for each stereotype and
+    tag.
+    """
+    defined: dict[str, frozenset[str] | None] = {}
+    undefined: dict[tuple[str, str], list[Element]] = {}
     for application in graph.of_kind(Kind.APPLICATION):
         stereotype = graph.target(application, Edge.INSTANCE_OF)
         if stereotype is None:
             continue
-        if stereotype.id not in known:
-            known[stereotype.id] = _properties(graph, stereotype)
-        for tag in _undefined(application, known[stereotype.id]):
-            found.setdefault((stereotype.id, tag), []).append(application)
-    for (_, tag), applications in found.items():
+        if stereotype.id not in defined:
+            defined[stereotype.id] = _list_properties(graph, stereotype)
+        for tag in _find_undefined(application, defined[stereotype.id]):
+            undefined.setdefault((stereotype.id, tag), []).append(application)
+    for (_, tag), applications in undefined.items():
         _report(graph, sink, tag, applications)
 
 
-def _properties(graph: Graph, stereotype: Element) -> frozenset[str] | None:
-    """Names of its properties as XML shows them; None when some of them cannot be known."""
+def _list_properties(graph: Graph, stereotype: Element) -> frozenset[str] | None:
+    """Return the names of its properties as XML shows them, or None if some cannot be known."""
     family = [stereotype, *generals(graph, stereotype)]
-    if any(one.attrs.get("external") or one.attrs.get("library") for one in family):
+    if any(
+        classifier.attrs.get("external") or classifier.attrs.get("library") for classifier in family
+    ):
         return None
-    owned = (part for one in family for part in graph.owned(one) if part.kind is Kind.PROPERTY)
-    return frozenset(mangled(part.name).lower() for part in owned)
+    owned = (
+        feature
+        for classifier in family
+        for feature in graph.owned(classifier)
+        if feature.kind is Kind.PROPERTY
+    )
+    return frozenset(mangle(feature.name).lower() for feature in owned)
 
 
-def _undefined(application: Element, known: frozenset[str] | None) -> Iterator[str]:
-    if known is not None:
+def _find_undefined(application: Element, defined: frozenset[str] | None) -> Iterator[str]:
+    if defined is not None:
         tags = (name.removeprefix(_TAG) for name in application.attrs if name.startswith(_TAG))
-        yield from (tag for tag in tags if mangled(tag).lower() not in known)
+        yield from (tag for tag in tags if mangle(tag).lower() not in defined)
 
 
 def _report(graph: Graph, sink: Sink, tag: str, applications: list[Element]) -> None:
-    first, others = applications[0], len(applications) - 1
+    first, further = applications[0], len(applications) - 1
     subject = graph.subject(first)
     sink.report(
         UNDEFINED_TAG,
@@ -267,5 +286,5 @@ def _report(graph: Graph, sink: Sink, tag: str, applications: list[Element]) -> 
         tag=tag,
         stereotype=first.name,
         element=graph.qualified_name(graph.target(first, Edge.SUBJECT) or first),
-        others=f" and {others} more" if others else "",
+        others=f" and {further} more" if further else "",
     )

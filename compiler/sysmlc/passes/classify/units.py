@@ -1,4 +1,4 @@
-"""Units and quantity kinds: what is one, what it says, and which value type has which.
+"""Units and quantity kinds: their elements, their symbols, and the value types that use them.
 
 SysML 1.0 to 1.2 have stereotypes for them; since SysML 1.3 they are instances of library blocks
 (SysML 1.6 clause 8.3.3.2 and annex E.5, QUDV). Tools without the library write plain text.
@@ -11,7 +11,7 @@ from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind
 from sysmlc.ir.identity import derived_id
 from sysmlc.ir.query import generals
 from sysmlc.ir.query.units import is_quantity_kind, is_unit
-from sysmlc.passes.classify.tags import elements, value
+from sysmlc.passes.classify.tags import tag_elements, tag_value
 
 _QUANTITY_KIND = re.compile(r"(Simple|Derived|Specialized)?QuantityKind")
 _UNIT = re.compile(
@@ -24,18 +24,18 @@ _NAMED = re.compile(r"(?P<kind>[^\[\]]+)\[(?P<unit>[^\[\]]+)\]")
 """Name of a value type of MagicDraw's ISO 80000 library: ``length[metre]``."""
 
 
-def give_units(graph: Graph, known: Mapping[str, tuple[str, ...]]) -> None:
-    """Find units and quantity kinds, and lead each value type to its own; see docs/ir.md."""
+def link_units(graph: Graph, meanings: Mapping[str, tuple[str, ...]]) -> None:
+    """Give units and quantity kinds their role, and link value types to them; see docs/ir.md."""
     _give_library_roles(graph)
     for unit in graph.of_kind(*_KINDS):
         if is_unit(unit) or is_quantity_kind(unit):
-            _describe(graph, unit)
+            _describe_unit(graph, unit)
     give_symbols(graph)
-    for id in (id for id, names in known.items() if "ValueType" in names or "Unit" in names):
+    for id in (id for id, names in meanings.items() if "ValueType" in names or "Unit" in names):
         for subject in graph.targets(graph[id], Edge.SUBJECT):
-            _refer(graph, graph[id], subject)
+            _link_by_tags(graph, graph[id], subject)
     for value_type in graph.of_kind(Kind.DATA_TYPE):
-        _refer_by_name(graph, value_type)
+        _link_by_name(graph, value_type)
 
 
 # -- what is a unit ----------------------------------------------------------------------------
@@ -49,9 +49,9 @@ def _give_library_roles(graph: Graph) -> None:
 
 def _library_role(graph: Graph, instance: Element) -> str | None:
     for direct in graph.targets(instance, Edge.INSTANCE_OF):
-        for one in (direct, *generals(graph, direct)):
-            role = _role_of_block(one.name)
-            if role and (one.attrs.get("external") or _is_in_library(graph, one)):
+        for classifier in (direct, *generals(graph, direct)):
+            role = _role_of_block(classifier.name)
+            if role and (classifier.attrs.get("external") or _is_in_library(graph, classifier)):
                 return role
     return None
 
@@ -69,7 +69,7 @@ def _is_in_library(graph: Graph, block: Element) -> bool:
 # -- what it says ------------------------------------------------------------------------------
 
 
-def _describe(graph: Graph, unit: Element) -> None:
+def _describe_unit(graph: Graph, unit: Element) -> None:
     for slot in graph.owned(unit):
         for feature in graph.targets(slot, Edge.INSTANCE_OF) if slot.kind is Kind.SLOT else ():
             if feature.name in _TEXTS and slot.attrs.get("value") not in (None, ""):
@@ -79,124 +79,140 @@ def _describe(graph: Graph, unit: Element) -> None:
                     graph.connect(Edge.REFERENCES, unit, kind)
     for application in graph.sources(unit, Edge.SUBJECT):
         for tag, attribute in _TEXTS.items() if application.kind is Kind.APPLICATION else ():
-            given = value(application, tag)
-            if given not in (None, ""):
-                graph.set(unit, **{attribute: given})
+            text = tag_value(application, tag)
+            if text not in (None, ""):
+                graph.set(unit, **{attribute: text})
 
 
 # -- which value type has which ----------------------------------------------------------------
 
 
-def _refer(graph: Graph, application: Element, subject: Element) -> None:
-    """Follow the tags ``unit`` and ``quantityKind`` (``dimension`` in SysML 1.0 and 1.1)."""
+def _link_by_tags(graph: Graph, application: Element, subject: Element) -> None:
+    """Link a value type by its tags ``unit`` and ``quantityKind`` (``dimension`` in SysML 1.0 and
+    1.1).
+    """
     for tag, kind in (
         ("unit", Kind.UNIT),
         ("quantityKind", Kind.QUANTITY_KIND),
         ("dimension", Kind.QUANTITY_KIND),
     ):
-        given = value(application, tag)
-        found = elements(graph, application, tag) or _stubs(graph, subject, given)
-        if not found and _is_readable(given):
-            found = [_named(graph, application.id, subject, kind, str(given).strip())]
-        for target in found:
-            _settle(graph, target, kind)
+        tag_content = tag_value(application, tag)
+        targets = tag_elements(graph, application, tag) or _find_stubs(graph, subject, tag_content)
+        if not targets and _is_name(tag_content):
+            targets = [
+                _ensure_named(graph, application.id, subject, kind, str(tag_content).strip())
+            ]
+        for target in targets:
+            _give_unit_role(graph, target, kind)
             if target is not subject:
                 graph.connect(Edge.REFERENCES, subject, target)
 
 
-def _stubs(graph: Graph, subject: Element, given: AttrValue) -> list[Element]:
-    """What the front end has left of a unit in a file that is not there."""
+def _find_stubs(graph: Graph, subject: Element, href: AttrValue) -> list[Element]:
+    """Return the stubs that the front end left for a unit in a file that is not read."""
     referred = graph.targets(subject, Edge.REFERENCES)
-    return [one for one in referred if given and one.attrs.get("href") == given]
+    return [element for element in referred if href and element.attrs.get("href") == href]
 
 
-def _is_readable(given: AttrValue) -> bool:
-    """Whether it is a name; what has ``#`` or looks like a tool's id is a broken reference."""
-    if not isinstance(given, str) or not given.strip():
+def _is_name(text: AttrValue) -> bool:
+    """Whether a text is a name. A text with ``#`` or in the form of a tool's id is a broken
+    reference.
+    """
+    if not isinstance(text, str) or not text.strip():
         return False
-    return "#" not in given and not re.fullmatch(r"_\S{15,}|EAID_\S+", given)
+    return "#" not in text and not re.fullmatch(r"_\S{15,}|EAID_\S+", text)
 
 
-def _settle(graph: Graph, target: Element, kind: Kind) -> None:
-    """What a value type names as its unit is a unit, also when nothing else is known of it."""
+def _give_unit_role(graph: Graph, target: Element, kind: Kind) -> None:
+    """Give the target of a value type's unit the role of a unit, even if nothing else is known of
+    it.
+    """
     if target.kind is not kind and not target.role:
         graph.set(target, role="unit" if kind is Kind.UNIT else "quantity kind")
 
 
-def _named(graph: Graph, origin: str, owner: Element, kind: Kind, name: str) -> Element:
+def _ensure_named(graph: Graph, origin: str, owner: Element, kind: Kind, name: str) -> Element:
     id = derived_id(origin, f"{kind} {name}")
-    known = graph.get(id)
-    if known is not None:
-        return known
-    made = Element(id, kind, name, owner.id)
-    made.attrs["origin"] = origin
+    existing = graph.get(id)
+    if existing is not None:
+        return existing
+    element = Element(id, kind, name, owner.id)
+    element.attrs["origin"] = origin
     if owner.attrs.get("external"):
-        made.attrs["external"] = True
-    return graph.add(made)
+        element.attrs["external"] = True
+    return graph.add(element)
 
 
-def _refer_by_name(graph: Graph, value_type: Element) -> None:
-    found = _NAMED.fullmatch(value_type.name) if value_type.attrs.get("external") else None
-    if found is None or not _is_used(graph, value_type):
+def _link_by_name(graph: Graph, value_type: Element) -> None:
+    match = _NAMED.fullmatch(value_type.name) if value_type.attrs.get("external") else None
+    if match is None or not _is_used_by_model(graph, value_type):
         return
     if not any(map(is_unit, graph.targets(value_type, Edge.REFERENCES))):
-        for kind, name in ((Kind.UNIT, found["unit"]), (Kind.QUANTITY_KIND, found["kind"])):
-            made = _named(graph, value_type.id, value_type, kind, name.strip())
-            graph.connect(Edge.REFERENCES, value_type, made)
+        for kind, name in ((Kind.UNIT, match["unit"]), (Kind.QUANTITY_KIND, match["kind"])):
+            element = _ensure_named(graph, value_type.id, value_type, kind, name.strip())
+            graph.connect(Edge.REFERENCES, value_type, element)
 
 
-def _is_used(graph: Graph, value_type: Element) -> bool:
-    return any(not one.attrs.get("external") for one in _users(graph, value_type))
+def _is_used_by_model(graph: Graph, value_type: Element) -> bool:
+    return any(not user.attrs.get("external") for user in _list_users(graph, value_type))
 
 
-def _users(graph: Graph, value_type: Element) -> Iterator[Element]:
+def _list_users(graph: Graph, value_type: Element) -> Iterator[Element]:
     yield from graph.sources(value_type, Edge.TYPED_BY)
     yield from graph.sources(value_type, Edge.SPECIALIZES)
 
 
 def give_symbols(graph: Graph) -> None:
-    """Set the symbol of each unit without one whose factors are all known."""
+    """Set the symbol of each derived unit without one if all its factors are known.
+
+    ``m·s^-1`` comes from the factors of QUDV (SysML 1.6 annex E.5): a DerivedUnit has UnitFactors,
+    each a unit with an exponent, which is a number or an instance of Rational.
+    """
     for unit in graph.of_kind(Kind.INSTANCE):
         if is_unit(unit) and "symbol" not in unit.attrs:
-            parts = [_part(graph, factor) for factor in _referred(graph, unit, "factor")]
+            parts = [
+                _write_factor(graph, factor) for factor in _referred_by_slots(graph, unit, "factor")
+            ]
             if parts and all(parts):
                 graph.set(unit, symbol="·".join(parts))
 
 
-def _part(graph: Graph, factor: Element) -> str:
-    unit = next(_referred(graph, factor, "unit"), None)
+def _write_factor(graph: Graph, factor: Element) -> str:
+    unit = next(_referred_by_slots(graph, factor, "unit"), None)
     if unit is None or not is_unit(unit):
         return ""
-    exponent = _exponent(graph, factor)
+    exponent = _write_exponent(graph, factor)
     text = str(unit.attrs.get("symbol") or unit.name)
     return text if exponent in ("", "1") else f"{text}^{exponent}"
 
 
-def _exponent(graph: Graph, factor: Element) -> str:
-    rational = next(_referred(graph, factor, "exponent"), None)
+def _write_exponent(graph: Graph, factor: Element) -> str:
+    rational = next(_referred_by_slots(graph, factor, "exponent"), None)
     if rational is None:
-        return _shown(_slot_value(graph, factor, "exponent"))
-    above, below = (_shown(_slot_value(graph, rational, n)) for n in ("numerator", "denominator"))
-    return above if below in ("", "1") else f"({above}/{below})"
+        return _as_text(_slot_value(graph, factor, "exponent"))
+    numerator, denominator = (
+        _as_text(_slot_value(graph, rational, feature)) for feature in ("numerator", "denominator")
+    )
+    return numerator if denominator in ("", "1") else f"({numerator}/{denominator})"
 
 
-def _shown(value: AttrValue) -> str:
+def _as_text(value: AttrValue) -> str:
     return "" if value is None else str(value)
 
 
-def _slots(graph: Graph, instance: Element, feature: str) -> Iterator[Element]:
+def _find_slots(graph: Graph, instance: Element, feature: str) -> Iterator[Element]:
     for slot in graph.owned(instance):
         if slot.kind is Kind.SLOT:
-            names = {one.name for one in graph.targets(slot, Edge.INSTANCE_OF)}
+            names = {defining.name for defining in graph.targets(slot, Edge.INSTANCE_OF)}
             if names & {feature, f"{feature}s"}:
                 yield slot
 
 
-def _referred(graph: Graph, instance: Element, feature: str) -> Iterator[Element]:
-    for slot in _slots(graph, instance, feature):
+def _referred_by_slots(graph: Graph, instance: Element, feature: str) -> Iterator[Element]:
+    for slot in _find_slots(graph, instance, feature):
         yield from graph.targets(slot, Edge.REFERENCES)
 
 
 def _slot_value(graph: Graph, instance: Element, feature: str) -> AttrValue:
-    found = (slot.attrs.get("value") for slot in _slots(graph, instance, feature))
-    return next((one for one in found if one is not None), None)
+    values = (slot.attrs.get("value") for slot in _find_slots(graph, instance, feature))
+    return next((value for value in values if value is not None), None)

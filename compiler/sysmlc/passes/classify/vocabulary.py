@@ -1,4 +1,4 @@
-"""Stereotypes that sysmlc knows: their namespaces in every dialect, their generalizations, roles.
+"""Known stereotypes: their namespaces in every dialect, their generalizations, their roles.
 
 SysML 1.6 (formal/19-11-01); MagicDraw's additional stereotypes; SysML 1.1's FlowPort and
 FlowSpecification (SysML 1.6 annex C).
@@ -13,7 +13,7 @@ from sysmlc.passes.resolve.libraries import load_libraries
 
 
 class Family(StrEnum):
-    """Whose stereotype it is."""
+    """The origin of a stereotype's profile."""
 
     SYSML = "SysML"
     SYSMLC = "sysmlc"
@@ -201,34 +201,36 @@ ROLES = (
 """All tables of stereotypes that give a role."""
 
 
-def is_role_or_kept(name: str) -> bool:
-    """Whether a stereotype in SysML's namespace gives a role, or is kept for others to read."""
+def is_known(name: str) -> bool:
+    """Whether a stereotype in SysML's namespace gives a role, or is retained for other readers."""
     return name in KEPT or name in MAGICDRAW or any(name in table for table in ROLES)
 
 
-def family(namespace: str) -> Family:
-    """Whose stereotypes a namespace (or the file of a profile) holds."""
-    for found, namespaces in _NAMESPACES:
+def find_family(namespace: str) -> Family:
+    """Return the family of the stereotypes of a namespace, or of the file of a profile."""
+    for candidate, namespaces in _NAMESPACES:
         if namespaces.match(namespace):
-            return found
+            return candidate
     return Family.CUSTOM
 
 
 @cache
-def mangled(name: str) -> str:
-    """A stereotype's name as XML tags show it: ``SD-DD`` becomes ``SD_DD``."""
+def mangle(name: str) -> str:
+    """Return the name of a stereotype as XML tags show it: ``SD-DD`` becomes ``SD_DD``."""
     return re.sub(r"\W", "_", name)
 
 
 @cache
-def parents(name: str) -> tuple[str, ...]:
-    """What a stereotype of SysML specialises, when no profile of the unit says it.
+def find_generals(name: str) -> tuple[str, ...]:
+    """Return the generals of a stereotype of SysML, if no profile of the unit defines them.
 
-    ``name`` and the result are names as XML tags show them.
+    *name* and the result are names as XML tags show them.
     """
 
-    found = (up for library in _LIBRARIES for up in load_libraries().generals(library, name))
-    return tuple(up for up in dict.fromkeys(map(mangled, found)) if up != name)
+    names = (
+        general for library in _LIBRARIES for general in load_libraries().generals(library, name)
+    )
+    return tuple(general for general in dict.fromkeys(map(mangle, names)) if general != name)
 
 
 _LIBRARIES = ("SysML", "MD Customization for SysML", "MD Customization for Requirements")
