@@ -7,8 +7,8 @@ from jsonschema import Draft202012Validator
 
 from sysmlc.diagnostics import Sink
 from sysmlc.overlay import files_of, read
-from sysmlc.overlay.yaml_tree import parse
-from sysmlc.passes.overlay.finder import beside, join, split
+from sysmlc.overlay.yaml_tree import parse_yaml
+from sysmlc.passes.overlay.finder import join_path, name_in_unit, split_path
 from sysmlc.sources import Source
 from sysmlc.support import resources
 
@@ -141,14 +141,16 @@ def test_a_misspelt_word_is_answered_with_the_nearest():
 
 
 def test_places_count_characters_and_bytes():
-    top = parse('\ufeffoverlay: 1\n"é": {x: ü, y: 1}\n'.encode())
+    top = parse_yaml('\ufeffoverlay: 1\n"é": {x: ü, y: 1}\n'.encode())
     inner = top.entries["é"].entries["y"]
-    assert inner.spot == (2, 16, 3 + 11 + 5 + 1 + 1 + 10)
+    assert inner.find_spot == (2, 16, 3 + 11 + 5 + 1 + 1 + 10)
     assert top.keys["é"][:2] == (2, 1)
 
 
 def test_plain_words_are_names_and_quoted_digits_are_too():
-    top = parse(b"a: no\nb: 0x1F\nc: '12'\nd: 12\ne: 1.5\nf: true\ng: ~\nh: 2024-01-01\n1: x\n")
+    top = parse_yaml(
+        b"a: no\nb: 0x1F\nc: '12'\nd: 12\ne: 1.5\nf: true\ng: ~\nh: 2024-01-01\n1: x\n"
+    )
     assert {key: one.scalar for key, one in top.entries.items()} == {
         "a": "no",
         "b": "0x1F",
@@ -205,10 +207,10 @@ def test_the_schema_is_a_schema_and_its_words_are_explained():
     ],
 )
 def test_paths_are_split_as_those_of_caex(path, names):
-    assert split(path) == names
-    assert split(join(names)) == names
+    assert split_path(path) == names
+    assert split_path(join_path(names)) == names
 
 
 def test_files_are_named_from_where_the_overlay_is():
-    assert beside("a/p.overlay.yaml", "../b/gate.uml") == "b/gate.uml"
-    assert beside("p.overlay.yaml", "./gate.uml") == "gate.uml"
+    assert name_in_unit("a/p.overlay.yaml", "../b/gate.uml") == "b/gate.uml"
+    assert name_in_unit("p.overlay.yaml", "./gate.uml") == "gate.uml"

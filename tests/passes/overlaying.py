@@ -4,7 +4,7 @@ from sysmlc.diagnostics import Sink
 from sysmlc.ir import Graph
 from sysmlc.ir.text import parse_text
 from sysmlc.overlay.model import Refinement
-from sysmlc.overlay.reading import read
+from sysmlc.overlay.reading import read_overlay
 from sysmlc.passes import pipeline
 from sysmlc.sources import Source
 
@@ -59,7 +59,7 @@ Package model "Gate" @gate.uml:1
 
 def overlay_of(text: str, sink: Sink, file: str = "plant.overlay.yaml") -> Refinement | None:
     """What an overlay says."""
-    return read(Source(file, text.encode("utf-8")), sink)
+    return read_overlay(Source(file, text.encode("utf-8")), sink)
 
 
 def laid_over(

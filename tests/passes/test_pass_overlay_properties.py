@@ -165,11 +165,11 @@ def test_any_text_is_an_overlay_or_is_told(text):
 
 @given(st.binary(max_size=60))
 def test_any_bytes_are_an_overlay_or_are_told(data):
-    from sysmlc.overlay.reading import read
+    from sysmlc.overlay.reading import read_overlay
     from sysmlc.sources import Source
 
     sink = Sink()
-    made = read(Source("p.overlay.yaml", data), sink)
+    made = read_overlay(Source("p.overlay.yaml", data), sink)
     assert (made is None) == bool(len(sink))
 
 

@@ -3,7 +3,6 @@
 import os
 from collections.abc import Iterable
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from msgspec import Struct
 
@@ -11,13 +10,10 @@ from sysmlc.diagnostics import Sink
 from sysmlc.driver import faults
 from sysmlc.driver.inputs import name_of
 from sysmlc.ir import Graph
-from sysmlc.overlay import SUFFIX
+from sysmlc.overlay import SUFFIX, Refinement, list_files, read_overlay
 from sysmlc.sources import Roots, Source, SourceError
 from sysmlc.sources.limits import DOCUMENT_LIMITS
 from sysmlc.sources.whole import read_whole
-
-if TYPE_CHECKING:
-    from sysmlc.overlay import Refinement
 
 
 class LoadedOverlay(Struct, frozen=True):
@@ -25,7 +21,7 @@ class LoadedOverlay(Struct, frozen=True):
 
     path: Path
     source: Source
-    refinement: "Refinement | None"
+    refinement: Refinement | None
 
 
 def find_overlay(model: Path) -> Path | None:
@@ -53,17 +49,13 @@ def load_overlay(
     except SourceError as problem:
         faults.report_unreadable(problem, sink)
         return None
-    from sysmlc.overlay import read
-
-    return LoadedOverlay(path, source, read(source, sink))
+    return LoadedOverlay(path, source, read_overlay(source, sink))
 
 
 def store_refinements(overlays: Iterable[LoadedOverlay], graph: Graph) -> None:
     """Store the content of the overlays in the graph, for the pass ``overlay``."""
     refinements = [o.refinement for o in overlays if o.refinement is not None]
     if refinements:
-        from sysmlc.overlay import Refinement
-
         graph.store(Refinement, refinements)
 
 
@@ -71,6 +63,4 @@ def list_models(overlay: LoadedOverlay) -> list[str]:
     """Return the files that the entries of an overlay name, each once, as written there."""
     if overlay.refinement is None:
         return []
-    from sysmlc.overlay import files_of
-
-    return files_of(overlay.refinement)
+    return list_files(overlay.refinement)

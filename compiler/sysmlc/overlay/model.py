@@ -1,4 +1,4 @@
-"""What one overlay says, as values with the places where it says it."""
+"""The model of an overlay: its entries, with their positions in the file."""
 
 from typing import NamedTuple
 
@@ -9,7 +9,7 @@ from sysmlc.ir import AttrValue
 
 
 class Spot(NamedTuple):
-    """Where something stands: line and column from 1, and the byte from 0."""
+    """A position in a file: line and column from 1, and the byte offset from 0."""
 
     line: int = 1
     column: int = 1
@@ -24,7 +24,7 @@ class Term(NamedTuple):
 
 
 class Key(NamedTuple):
-    """What an entry is about: an id or a path, and the path that helps when the id is gone."""
+    """The subject of an entry: an id or a path, and the path that replaces an id that is gone."""
 
     text: str
     path: str
@@ -32,7 +32,7 @@ class Key(NamedTuple):
 
 
 class ItemEntry(Struct, frozen=True):
-    """A kind of thing that flows. A plain name makes a new block."""
+    """An item type. A plain name makes a new block."""
 
     key: Key
     domain: str
@@ -41,7 +41,7 @@ class ItemEntry(Struct, frozen=True):
 
 
 class PortEntry(Struct, frozen=True):
-    """What the author says of a port; empty and None where the model is left as it is."""
+    """The direction and type of a port; empty and None where the model is left unchanged."""
 
     key: Key
     direction: str
@@ -74,7 +74,7 @@ class ParameterEntry(Struct, frozen=True):
 
 
 class OperationEntry(Struct, frozen=True):
-    """An operation; ``parameters`` is None when those of its method count."""
+    """An operation; ``parameters`` is None if those of its method count."""
 
     name: Term
     parameters: tuple[ParameterEntry, ...] | None
@@ -83,7 +83,7 @@ class OperationEntry(Struct, frozen=True):
 
 
 class ValueEntry(Struct, frozen=True):
-    """A value property, for what a plant does not say of its state."""
+    """A value property, for parts of the state that a plant does not describe."""
 
     name: Term
     type: Term | None
@@ -91,7 +91,7 @@ class ValueEntry(Struct, frozen=True):
 
 
 class BlockEntry(Struct, frozen=True):
-    """What the author adds to a block."""
+    """The additions to a block."""
 
     key: Key
     specializes: tuple[Term, ...]
@@ -102,7 +102,7 @@ class BlockEntry(Struct, frozen=True):
 
 
 class Allocation(Struct, frozen=True):
-    """Something of the model that is allocated to something else of it."""
+    """An allocation of one element of the model to another."""
 
     source: Term
     target: Term
@@ -110,7 +110,7 @@ class Allocation(Struct, frozen=True):
 
 
 class Refinement(Struct, frozen=True):
-    """One overlay. Entries are in an order of their own, whatever order the file has."""
+    """One overlay. The order of its entries does not depend on the file."""
 
     file: str
     package: str
@@ -122,10 +122,12 @@ class Refinement(Struct, frozen=True):
     allocations: tuple[Allocation, ...]
 
     def subject(self, term: Term | Key, about: str = "") -> Subject:
-        """A word of the overlay as the subject of a finding about the element of this id."""
+        """Return a word of the overlay as the subject of a diagnostic about the element of this
+        id.
+        """
         return Subject(term.text, about, place_of(self.file, term.spot))
 
 
 def place_of(file: str, spot: Spot) -> Place:
-    """The place of a spot in a file."""
+    """Return the place of a position in a file."""
     return Place(file, line=spot.line, column=spot.column)

@@ -1,4 +1,4 @@
-"""Whether an overlay has the shape of its schema; every fault is told at its place."""
+"""Validation of an overlay against its schema; every fault is reported at its position."""
 
 import json
 from collections.abc import Iterator, Sequence
@@ -21,72 +21,72 @@ _MOST = 100
 """Faults that are told of one overlay; a file of another kind has thousands."""
 
 
-def check(top: Value, file: str, sink: Sink) -> bool:
-    """Whether the overlay can be used; what is wrong with it is reported."""
-    twice = list(_twice(top))
-    for where, key, spot in twice[:_MOST]:
+def check_schema(top: Value, file: str, sink: Sink) -> bool:
+    """Whether the overlay has the form of the schema; faults are reported."""
+    repeated = list(_find_repeated_keys(top))
+    for where, key, spot in repeated[:_MOST]:
         subject = Subject(place=place_of(file, spot))
         sink.report(rules.KEY_TWICE, subject, where=where, key=key)
-    errors = sorted(_validator().iter_errors(top.plain()), key=_order)
+    errors = sorted(_load_validator().iter_errors(top.as_json()), key=_path_of)
     for error in errors[:_MOST]:
-        _report(error, top, file, sink)
-    return not errors and not twice
+        _report_error(error, top, file, sink)
+    return not errors and not repeated
 
 
 @cache
-def _validator() -> "Draft202012Validator":
+def _load_validator() -> "Draft202012Validator":
     from jsonschema import Draft202012Validator
 
     schema = resources.read_text("metamodels", "sysmlc-overlay.schema.json")
     return Draft202012Validator(json.loads(schema))
 
 
-def _order(error: "ValidationError") -> list[str]:
+def _path_of(error: "ValidationError") -> list[str]:
     return [str(step) for step in error.absolute_path]
 
 
-def _twice(top: Value) -> Iterator[tuple[str, str, Spot]]:
-    """Keys that stand twice in a mapping; a mapping with an anchor is looked at once."""
-    waiting: list[tuple[Value, tuple[str | int, ...]]] = [(top, ())]
-    seen: set[int] = set()
-    for value, path in waiting:
-        if id(value) in seen:
+def _find_repeated_keys(top: Value) -> Iterator[tuple[str, str, Spot]]:
+    """Yield the keys that a mapping has twice; a mapping with an anchor is visited once."""
+    worklist: list[tuple[Value, tuple[str | int, ...]]] = [(top, ())]
+    visited: set[int] = set()
+    for value, path in worklist:
+        if id(value) in visited:
             continue
-        seen.add(id(value))
-        yield from ((_where(path), key, spot) for key, spot in value.again)
-        waiting += [(one, (*path, key)) for key, one in (value.entries or {}).items()]
-        waiting += [(one, (*path, index)) for index, one in enumerate(value.items or [])]
+        visited.add(id(value))
+        yield from ((_describe_path(path), key, spot) for key, spot in value.again)
+        worklist += [(inner, (*path, key)) for key, inner in (value.entries or {}).items()]
+        worklist += [(inner, (*path, index)) for index, inner in enumerate(value.items or [])]
 
 
-def _report(error: "ValidationError", top: Value, file: str, sink: Sink) -> None:
+def _report_error(error: "ValidationError", top: Value, file: str, sink: Sink) -> None:
     path = list(error.absolute_path)
-    value = _at(top, path)
-    where = _where(path)
+    value = _find_at(top, path)
+    where = _describe_path(path)
     if error.validator == "additionalProperties" and value.entries is not None:
-        known = list(error.schema.get("properties", {})) if isinstance(error.schema, dict) else []
+        allowed = list(error.schema.get("properties", {})) if isinstance(error.schema, dict) else []
         for key in value.entries:
-            if key not in known:
+            if key not in allowed:
                 subject = Subject(place=place_of(file, value.keys[key]))
-                advice = did_you_mean(key, known)
+                advice = did_you_mean(key, allowed)
                 sink.report(rules.UNKNOWN_KEY, subject, where=where, key=key, advice=advice)
         return
     subject = Subject(place=place_of(file, value.spot))
-    sink.report(rules.SHAPE, subject, where=where, problem=_problem(error))
+    sink.report(rules.SHAPE, subject, where=where, problem=_describe_problem(error))
 
 
-def _where(path: Sequence[str | int]) -> str:
-    shown = "/".join(str(step + 1) if isinstance(step, int) else step for step in path)
-    return f"at '{shown}'" if shown else "at the top"
+def _describe_path(path: Sequence[str | int]) -> str:
+    text = "/".join(str(step + 1) if isinstance(step, int) else step for step in path)
+    return f"at '{text}'" if text else "at the top"
 
 
-def _at(top: Value, path: Sequence[str | int]) -> Value:
+def _find_at(top: Value, path: Sequence[str | int]) -> Value:
     for step in path:
-        inside = (top.entries or {}).get(step) if isinstance(step, str) else (top.items or [])[step]
-        top = inside or top
+        inner = (top.entries or {}).get(step) if isinstance(step, str) else (top.items or [])[step]
+        top = inner or top
     return top
 
 
-def _problem(error: "ValidationError") -> str:
+def _describe_problem(error: "ValidationError") -> str:
     if error.validator == "not":
         return "what flows both ways has no 'from' and no 'to'"
     if error.validator == "minProperties":

@@ -1,7 +1,7 @@
-"""YAML as a tree in which every value knows where it stands; nothing of it is ever executed.
+"""YAML as a tree in which every value knows its position; no tag of the file is executed.
 
-The tree is built from events (YAML 1.2 chapter 3): no depth of a file uses up our stack, and an
-alias shares what it stands for, so that a small file cannot grow without end.
+The tree is built from events (YAML 1.2 chapter 3): deeply nested files do not exhaust the stack,
+and an alias shares its value, so that a small file cannot grow without limit.
 """
 
 import re
@@ -32,17 +32,17 @@ _REAL = re.compile(r"[-+]?(\.[0-9]+|[0-9]+(\.[0-9]*)?)([eE][-+]?[0-9]{1,3})?")
 
 
 class TreeError(Exception):
-    """The text is no YAML that we read; ``spot`` says where."""
+    """The text is not readable YAML; ``spot`` is the position of the fault."""
 
     def __init__(self, problem: str, spot: Spot) -> None:
         super().__init__(problem)
         self.problem = problem
-        self.spot = spot
+        self.find_spot = spot
 
 
 @dataclass(slots=True)
 class Value:
-    """A scalar, a list or a mapping. ``size`` counts what is in it, aliases as often as used."""
+    """A scalar, a list or a mapping. ``size`` counts its values, those of aliases at every use."""
 
     spot: Spot
     scalar: Scalar = None
@@ -55,30 +55,30 @@ class Value:
     """Keys that stand there once more."""
     size: int = 1
 
-    def plain(self) -> object:
-        """The value as JSON knows it."""
+    def as_json(self) -> object:
+        """The value as JSON types."""
         if self.items is not None:
-            return [one.plain() for one in self.items]
+            return [value.as_json() for value in self.items]
         if self.entries is not None:
-            return {key: one.plain() for key, one in self.entries.items()}
+            return {key: value.as_json() for key, value in self.entries.items()}
         return self.scalar
 
 
-def parse(data: bytes) -> Value:
-    """The document in a file; an empty file is an empty mapping. Raises TreeError."""
+def parse_yaml(data: bytes) -> Value:
+    """Return the document in a file; an empty file is an empty mapping. Raises TreeError."""
     if len(data) > _LARGEST:
         raise TreeError(f"it is larger than {_LARGEST >> 20} MB", Spot())
     try:
         text = data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         before = data[: error.start].decode("utf-8", "replace")
-        spot = Lines(before, 0).spot(len(before))
+        spot = Lines(before, 0).find_spot(len(before))
         raise TreeError("it is not UTF-8 here", spot) from None
-    return _Builder(text, len(data) - len(text.encode())).document()
+    return _Builder(text, len(data) - len(text.encode())).build_document()
 
 
 class Lines:
-    """From characters to lines, columns and bytes."""
+    """Converts positions of characters to lines, columns and bytes."""
 
     def __init__(self, text: str, mark: int) -> None:
         self._text = text
@@ -87,8 +87,8 @@ class Lines:
         for start, end in zip(self._starts, self._starts[1:], strict=False):
             self._bytes.append(self._bytes[-1] + len(text[start:end].encode()))
 
-    def spot(self, index: int) -> Spot:
-        """The place of a character, counted from 0."""
+    def find_spot(self, index: int) -> Spot:
+        """Return the position of a character, counted from 0."""
         line = bisect_right(self._starts, index) - 1
         start = self._starts[line]
         offset = self._bytes[line] + len(self._text[start:index].encode())
@@ -96,16 +96,16 @@ class Lines:
 
 
 class _Builder:
-    """Builds the tree while events arrive."""
+    """Builds the tree from events."""
 
     def __init__(self, text: str, mark: int) -> None:
         self._text = text
         self._lines = Lines(text, mark)
-        self._open: list[_Open] = []
+        self._open: list[_OpenCollection] = []
         self._anchors: dict[str, Value | None] = {}
         self._top: Value | None = None
 
-    def document(self) -> Value:
+    def build_document(self) -> Value:
         from ruamel.yaml import YAML
         from ruamel.yaml.error import MarkedYAMLError, YAMLError
         from ruamel.yaml.reader import ReaderError
@@ -114,95 +114,95 @@ class _Builder:
             for number, event in enumerate(YAML(typ="rt", pure=True).parse(self._text)):
                 if number > _MOST:
                     raise TreeError("it has too many values", self._spot(event.start_mark))
-                self._take(event)
+                self._handle_event(event)
         except MarkedYAMLError as error:
             mark = error.problem_mark or error.context_mark
             raise TreeError(_first_line(error.problem or error), self._spot(mark)) from None
         except ReaderError as error:
-            spot = self._lines.spot(error.position)
+            spot = self._lines.find_spot(error.position)
             raise TreeError(f"the character #x{error.character:04x} is not allowed", spot) from None
         except (YAMLError, ValueError) as error:
             raise TreeError(_first_line(error), Spot()) from None
         return self._top or Value(Spot(), entries={})
 
     def _spot(self, mark: "StreamMark | None") -> Spot:
-        return Spot() if mark is None else self._lines.spot(mark.index)
+        return Spot() if mark is None else self._lines.find_spot(mark.index)
 
-    def _take(self, event: "Event") -> None:
+    def _handle_event(self, event: "Event") -> None:
         from ruamel.yaml import events
 
         spot = self._spot(event.start_mark)
         match event:
             case events.AliasEvent():
-                self._add(self._shared(str(event.anchor), spot), "")
+                self._add_value(self._resolve_alias(str(event.anchor), spot), "")
             case events.ScalarEvent():
                 _refuse_tag(event.tag, spot)
-                scalar = event.value if event.style else _resolved(event.value)
-                self._add(Value(spot, scalar, event.value), event.anchor or "")
+                scalar = event.value if event.style else _resolve_scalar(event.value)
+                self._add_value(Value(spot, scalar, event.value), event.anchor or "")
             case events.MappingStartEvent():
-                self._start(event, Value(spot, entries={}))
+                self._open_collection(event, Value(spot, entries={}))
             case events.SequenceStartEvent():
-                self._start(event, Value(spot, items=[]))
+                self._open_collection(event, Value(spot, items=[]))
             case events.MappingEndEvent() | events.SequenceEndEvent():
-                done = self._open.pop()
-                self._add(done.value, done.anchor)
+                closed = self._open.pop()
+                self._add_value(closed.value, closed.anchor)
             case events.DocumentStartEvent() if self._top is not None:
                 raise TreeError("a second document begins", spot)
 
-    def _shared(self, name: str, spot: Spot) -> Value:
+    def _resolve_alias(self, name: str, spot: Spot) -> Value:
         if name not in self._anchors:
             raise TreeError(f"there is no anchor '{name}' before this", spot)
-        known = self._anchors[name]
-        if known is None:
+        anchored = self._anchors[name]
+        if anchored is None:
             raise TreeError(f"'{name}' contains itself", spot)
-        return known
+        return anchored
 
-    def _start(self, event: "CollectionStartEvent", made: Value) -> None:
-        _refuse_tag(event.tag, made.spot)
+    def _open_collection(self, event: "CollectionStartEvent", collection: Value) -> None:
+        _refuse_tag(event.tag, collection.spot)
         if len(self._open) == _DEEPEST:
-            raise TreeError("it is nested too deeply", made.spot)
+            raise TreeError("it is nested too deeply", collection.spot)
         if event.anchor:
             self._anchors[event.anchor] = None
-        self._open.append(_Open(made, event.anchor or ""))
+        self._open.append(_OpenCollection(collection, event.anchor or ""))
 
-    def _add(self, value: Value, anchor: str) -> None:
+    def _add_value(self, value: Value, anchor: str) -> None:
         if anchor:
             self._anchors[anchor] = value
         if not self._open:
             self._top = value
             return
-        self._open[-1].take(value)
+        self._open[-1].add(value)
         if self._open[-1].value.size > _MOST:
             raise TreeError("its aliases make it too large", value.spot)
 
 
 @dataclass(slots=True)
-class _Open:
+class _OpenCollection:
     """A list or mapping that is not closed; ``key`` waits for its value."""
 
     value: Value
     anchor: str
     key: tuple[str, Spot] | None = None
 
-    def take(self, inner: Value) -> None:
-        self.value.size += inner.size
+    def add(self, value: Value) -> None:
+        self.value.size += value.size
         if self.value.items is not None:
-            self.value.items.append(inner)
+            self.value.items.append(value)
         elif self.key is None:
-            self.key = (_key(inner), inner.spot)
+            self.key = (_key_text(value), value.spot)
         else:
-            self._put(*self.key, inner)
+            self._add_entry(*self.key, value)
             self.key = None
 
-    def _put(self, key: str, spot: Spot, inner: Value) -> None:
+    def _add_entry(self, key: str, spot: Spot, value: Value) -> None:
         if self.value.entries is None or key in self.value.entries:
             self.value.again.append((key, spot))
             return
-        self.value.entries[key] = inner
+        self.value.entries[key] = value
         self.value.keys[key] = spot
 
 
-def _key(value: Value) -> str:
+def _key_text(value: Value) -> str:
     if value.items is not None or value.entries is not None:
         raise TreeError("a key is a word, not a list or a mapping", value.spot)
     return value.text
@@ -213,8 +213,8 @@ def _refuse_tag(tag: object, spot: Spot) -> None:
         raise TreeError(f"the tag {tag} is not read", spot)
 
 
-def _resolved(text: str) -> Scalar:
-    """What a plain scalar means in the core schema (YAML 1.2.2 clause 10.3.2)."""
+def _resolve_scalar(text: str) -> Scalar:
+    """Return the value of a plain scalar in the core schema (YAML 1.2.2 clause 10.3.2)."""
     if text in _CONSTANTS:
         return _CONSTANTS[text]
     if _INTEGER.fullmatch(text):

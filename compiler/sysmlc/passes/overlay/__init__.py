@@ -1,4 +1,4 @@
-"""Pass ``overlay``: what overlays add to the model (thesis 3.4)."""
+"""Pass ``overlay``: applies overlay documents to the model (thesis 3.4)."""
 
 from collections.abc import Sequence
 from typing import ClassVar
@@ -9,7 +9,7 @@ from sysmlc.diagnostics import Sink
 from sysmlc.ir import Edge, Graph, Kind, derived_id
 from sysmlc.overlay.model import Allocation, PortEntry, Refinement
 from sysmlc.passes.overlay import rules
-from sysmlc.passes.overlay.behaviors import add_behaviors, note_behaviors, resolve_calls
+from sysmlc.passes.overlay.behaviors import add_behaviors, find_behaviors, resolve_calls
 from sysmlc.passes.overlay.blocks import refine_block
 from sysmlc.passes.overlay.finder import ANYTHING, PORT, TYPE, Finder
 from sysmlc.passes.overlay.flows import add_flows
@@ -19,25 +19,28 @@ from sysmlc.passes.overlay.items import add_items, check_domains
 class Overlay(Struct, frozen=True):
     """Add item types, flows, port directions, operations, behaviours and allocations.
 
-    Assumes resolved references, and overlays that the driver has stored in the graph.
-    Guarantees: each entry is in the graph as an author of SysML would have drawn it, or is
-    reported where it stands in the overlay. It runs before features are inherited and ports
-    directed, so that what is added is inherited, directed and checked like all else.
+    Assumes resolved references, and overlays that the driver has stored in the graph. Guarantees:
+    each entry is in the graph as an author of SysML would have drawn it, or is reported at its
+    place in the overlay. The pass runs before features are inherited and ports directed, so that
+    added elements are inherited, directed and checked like all others.
     """
 
     name: ClassVar[str] = "overlay"
     after: ClassVar[tuple[str, ...]] = ("resolve", "kept")
 
     def run(self, graph: Graph, sink: Sink) -> None:
-        """Add in place and report; see the class."""
-        add_all(graph.derived(Refinement), graph, sink)
+        """Apply the overlays in place and report; see the class."""
+        apply_overlays(graph.derived(Refinement), graph, sink)
 
 
-def add_all(refinements: Sequence[Refinement], graph: Graph, sink: Sink) -> None:
-    """Add what the overlays say; of several, each step of all before the next step."""
+def apply_overlays(refinements: Sequence[Refinement], graph: Graph, sink: Sink) -> None:
+    """Apply overlays in steps: elements that later steps name come first.
+
+    Each step is done for all overlays before the next one.
+    """
     roots = graph.roots()
-    ordered = sorted(refinements, key=lambda one: one.file)
-    finders = [Finder(graph, sink, one, roots) for one in ordered]
+    in_file_order = sorted(refinements, key=lambda refinement: refinement.file)
+    finders = [Finder(graph, sink, refinement, roots) for refinement in in_file_order]
     for finder in finders:
         add_items(finder)
     for finder in finders:
@@ -48,7 +51,7 @@ def add_all(refinements: Sequence[Refinement], graph: Graph, sink: Sink) -> None
         check_domains(finder)
         for block in finder.refinement.blocks:
             refine_block(finder, block)
-            note_behaviors(finder, block)
+            find_behaviors(finder, block)
     for finder in finders:
         for block in finder.refinement.blocks:
             add_behaviors(finder, block)
@@ -60,13 +63,19 @@ def add_all(refinements: Sequence[Refinement], graph: Graph, sink: Sink) -> None
 
 
 def add_allocation(finder: Finder, entry: Allocation) -> None:
-    """Add an allocation as its author would have drawn it; ``classify`` gives it its meaning."""
+    """Add an allocation (SysML 1.6 clause 15) as its author would have drawn it.
+
+    The pass ``classify`` gives it its meaning.
+    """
     graph = finder.graph
-    client, supplier = finder.term(entry.source, ANYTHING), finder.term(entry.target, ANYTHING)
+    client, supplier = (
+        finder.find_term(entry.source, ANYTHING),
+        finder.find_term(entry.target, ANYTHING),
+    )
     if client is None or supplier is None:
         return
-    owners = (one.id for one in graph.ancestors(client) if one.kind is Kind.PACKAGE)
-    made = finder.add(
+    owners = (ancestor.id for ancestor in graph.ancestors(client) if ancestor.kind is Kind.PACKAGE)
+    dependency = finder.ensure_element(
         derived_id(client.id, f"allocation of an overlay:{supplier.id}"),
         Kind.DEPENDENCY,
         "",
@@ -76,27 +85,27 @@ def add_allocation(finder: Finder, entry: Allocation) -> None:
         subkind="abstraction",
         role="allocate",
     )
-    graph.connect(Edge.CLIENT, made, client)
-    graph.connect(Edge.SUPPLIER, made, supplier)
+    graph.connect(Edge.CLIENT, dependency, client)
+    graph.connect(Edge.SUPPLIER, dependency, supplier)
 
 
 def refine_port(finder: Finder, entry: PortEntry) -> None:
-    """Give a port its direction and type; who contradicts the model is told so."""
+    """Give a port its direction and type; report contradictions to the model."""
     graph = finder.graph
-    port = finder.entry(entry.key, PORT)
+    port = finder.find_entry(entry.key, PORT)
     if port is None:
         return
-    known = port.attrs.get("direction")
-    if entry.direction and known not in (None, entry.direction):
+    stated = port.attrs.get("direction")
+    if entry.direction and stated not in (None, entry.direction):
         finder.report(
             rules.OTHER_WISE,
             entry.key,
             name=graph.qualified_name(port),
             what="direction",
             new=entry.direction,
-            old=str(known),
+            old=str(stated),
         )
-    graph.set(port, direction=entry.direction or known)
-    type_ = None if entry.type is None else finder.term(entry.type, TYPE)
+    graph.set(port, direction=entry.direction or stated)
+    type_ = None if entry.type is None else finder.find_term(entry.type, TYPE)
     if type_ is not None:
         graph.replace_targets(Edge.TYPED_BY, port, [type_])

@@ -1,24 +1,24 @@
-"""What blocks are and can do: general blocks, values, operations with their parameters."""
+"""Entries about blocks: general blocks, values, operations with their parameters."""
 
 from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind, derived_id
 from sysmlc.ir.query import generals, parameters
 from sysmlc.overlay.model import BlockEntry, OperationEntry, Term, ValueEntry
 from sysmlc.passes.overlay import rules
 from sysmlc.passes.overlay.finder import BLOCK, TYPE, Finder
-from sysmlc.passes.overlay.items import describe
+from sysmlc.passes.overlay.items import add_description
 
 _Signature = list[tuple[str, AttrValue]]
 
 
 def refine_block(finder: Finder, entry: BlockEntry) -> None:
-    """Add what the overlay says of a block, but for behaviours."""
-    block = finder.entry(entry.key, BLOCK)
+    """Apply what the overlay states about a block, except behaviours."""
+    block = finder.find_entry(entry.key, BLOCK)
     if block is None:
         return
     for general in entry.specializes:
-        found = finder.term(general, BLOCK)
-        if found is not None and found is not block:
-            finder.graph.connect(Edge.SPECIALIZES, block, found)
+        general_block = finder.find_term(general, BLOCK)
+        if general_block is not None and general_block is not block:
+            finder.graph.connect(Edge.SPECIALIZES, block, general_block)
     for value in entry.values:
         _add_value(finder, block, value)
     for operation in entry.operations:
@@ -29,7 +29,12 @@ def _add_value(finder: Finder, block: Element, entry: ValueEntry) -> None:
     graph = finder.graph
     id = derived_id(block.id, f"value of an overlay:{entry.name.text}")
     holder = next(
-        (one for one in _with_generals(finder, block) if _has(finder, one, entry, id)), None
+        (
+            candidate
+            for candidate in _with_generals(finder, block)
+            if _has_other_feature(finder, candidate, entry, id)
+        ),
+        None,
     )
     if holder is not None:
         name = graph.qualified_name(block)
@@ -37,8 +42,8 @@ def _add_value(finder: Finder, block: Element, entry: ValueEntry) -> None:
         facts = {"feature": entry.name.text, "block": name, "where": where}
         finder.report(rules.FEATURE_TWICE, entry.name, **facts)
         return
-    type_ = None if entry.type is None else finder.term(entry.type, TYPE)
-    made = finder.add(
+    type_ = None if entry.type is None else finder.find_term(entry.type, TYPE)
+    value = finder.ensure_element(
         id,
         Kind.PROPERTY,
         entry.name.text,
@@ -49,8 +54,8 @@ def _add_value(finder: Finder, block: Element, entry: ValueEntry) -> None:
         default=entry.default,
     )
     if type_ is not None:
-        graph.connect(Edge.TYPED_BY, made, type_)
-        if entry.default is not None and not fits(graph, entry.default, type_):
+        graph.connect(Edge.TYPED_BY, value, type_)
+        if entry.default is not None and not fits_type(graph, entry.default, type_):
             facts = {"value": str(entry.default), "feature": entry.name.text, "type": type_.name}
             finder.report(rules.UNFIT_VALUE, entry.name, **facts)
 
@@ -59,34 +64,40 @@ def _with_generals(finder: Finder, block: Element) -> list[Element]:
     return [block, *generals(finder.graph, block)]
 
 
-def _has(finder: Finder, block: Element, entry: ValueEntry, id: str) -> bool:
+def _has_other_feature(finder: Finder, block: Element, entry: ValueEntry, id: str) -> bool:
     """Whether a block owns another feature of the name."""
     owned = finder.graph.owned(block)
-    return any(one.name == entry.name.text and one.id != id for one in owned)
+    return any(feature.name == entry.name.text and feature.id != id for feature in owned)
 
 
 def _add_operation(finder: Finder, block: Element, entry: OperationEntry) -> None:
-    """Add an operation, or find that the block has it with the same parameters already."""
+    """Add an operation, unless the block already has it with the same parameters."""
     graph, name = finder.graph, entry.name
     id = derived_id(block.id, f"operation of an overlay:{name.text}")
-    same = operation_of(finder, block, name)
-    if same is not None and same.id != id:
-        if entry.parameters is not None and _signature(finder, same) != _wanted(entry):
+    existing = find_operation(finder, block, name)
+    if existing is not None and existing.id != id:
+        if entry.parameters is not None and _read_signature(finder, existing) != _stated_signature(
+            entry
+        ):
             shown = graph.qualified_name(block)
             finder.report(rules.OPERATION_TWICE, name, operation=name.text, block=shown)
         return
-    made = finder.add(id, Kind.OPERATION, name.text, block.id, name.spot, origin=block.id)
-    describe(finder, made, entry.description, name)
-    for number, given in enumerate(entry.parameters or ()):
-        add_parameter(finder, made, number, given.name, given.direction, given.type)
+    operation = finder.ensure_element(
+        id, Kind.OPERATION, name.text, block.id, name.spot, origin=block.id
+    )
+    add_description(finder, operation, entry.description, name)
+    for number, parameter in enumerate(entry.parameters or ()):
+        add_parameter(
+            finder, operation, number, parameter.name, parameter.direction, parameter.type
+        )
 
 
-def operation_of(finder: Finder, block: Element, name: Term) -> Element | None:
-    """The operation that the block, or the nearest general block, has under this name."""
-    for one in (block, *generals(finder.graph, block)):
-        for inner in finder.graph.owned(one):
-            if inner.kind is Kind.OPERATION and inner.name == name.text:
-                return inner
+def find_operation(finder: Finder, block: Element, name: Term) -> Element | None:
+    """Return the operation that the block, or the nearest general block, has under this name."""
+    for classifier in (block, *generals(finder.graph, block)):
+        for feature in finder.graph.owned(classifier):
+            if feature.kind is Kind.OPERATION and feature.name == name.text:
+                return feature
     return None
 
 
@@ -98,24 +109,32 @@ def add_parameter(
     direction: str,
     type: Term | Element | None,
 ) -> None:
-    """Add a parameter in its place among the others."""
+    """Add a parameter at its position among the others."""
     id = derived_id(operation.id, f"parameter:{number}:{name.text}")
-    given = None if direction == "in" else direction
-    made = finder.add(
-        id, Kind.PARAMETER, name.text, operation.id, name.spot, origin=operation.id, direction=given
+    stated_direction = None if direction == "in" else direction
+    parameter = finder.ensure_element(
+        id,
+        Kind.PARAMETER,
+        name.text,
+        operation.id,
+        name.spot,
+        origin=operation.id,
+        direction=stated_direction,
     )
-    found = finder.term(type, TYPE) if isinstance(type, Term) else type
-    if found is not None:
-        finder.graph.connect(Edge.TYPED_BY, made, found)
+    type_element = finder.find_term(type, TYPE) if isinstance(type, Term) else type
+    if type_element is not None:
+        finder.graph.connect(Edge.TYPED_BY, parameter, type_element)
 
 
-def _signature(finder: Finder, operation: Element) -> _Signature:
-    found = parameters(finder.graph, operation)
-    return sorted((one.name, one.attrs.get("direction", "in")) for one in found)
+def _read_signature(finder: Finder, operation: Element) -> _Signature:
+    owned = parameters(finder.graph, operation)
+    return sorted((parameter.name, parameter.attrs.get("direction", "in")) for parameter in owned)
 
 
-def _wanted(entry: OperationEntry) -> _Signature:
-    return sorted((one.name.text, one.direction) for one in entry.parameters or ())
+def _stated_signature(entry: OperationEntry) -> _Signature:
+    return sorted(
+        (parameter.name.text, parameter.direction) for parameter in entry.parameters or ()
+    )
 
 
 _FORMS: dict[str, tuple[type, ...]] = {
@@ -128,16 +147,18 @@ _FORMS: dict[str, tuple[type, ...]] = {
 """What YAML makes of the values of UML's primitives."""
 
 
-def fits(graph: Graph, value: AttrValue, type_: Element) -> bool:
-    """Whether a value is of the primitive or the enumeration that a type is in the end.
+def fits_type(graph: Graph, value: AttrValue, type_: Element) -> bool:
+    """Whether a value belongs to the primitive or the enumeration that a type is or specialises.
 
-    Of any other type nobody can tell, so any value fits it.
+    Values of any other type cannot be checked, so any value fits.
     """
-    for one in (type_, *generals(graph, type_)):
-        if one.kind is Kind.ENUMERATION:
-            return value in [literal.name for literal in _literals(graph, one)]
-        if one.kind is Kind.DATA_TYPE and one.name in _FORMS:
-            return isinstance(value, _FORMS[one.name]) and _is_truth(value, one)
+    for candidate in (type_, *generals(graph, type_)):
+        if candidate.kind is Kind.ENUMERATION:
+            return value in [literal.name for literal in _literals(graph, candidate)]
+        if candidate.kind is Kind.DATA_TYPE and candidate.name in _FORMS:
+            return isinstance(value, _FORMS[candidate.name]) and _agrees_on_boolean(
+                value, candidate
+            )
     return True
 
 
@@ -145,6 +166,6 @@ def _literals(graph: Graph, enumeration: Element) -> list[Element]:
     return [one for one in graph.owned(enumeration) if one.kind is Kind.ENUMERATION_LITERAL]
 
 
-def _is_truth(value: AttrValue, type_: Element) -> bool:
-    """Whether it is a truth value just where one is wanted: to Python true is a number."""
+def _agrees_on_boolean(value: AttrValue, type_: Element) -> bool:
+    """Whether Booleans and numbers are not confused: to Python, true is a number."""
     return isinstance(value, bool) == (type_.name == "Boolean")

@@ -1,4 +1,4 @@
-"""Finds what the words of an overlay mean: by id first, then by path or qualified name."""
+"""Lookup of the words of an overlay: by id first, then by path or qualified name."""
 
 import re
 from collections.abc import Iterable, Iterator
@@ -18,30 +18,32 @@ from sysmlc.support.suggestions import did_you_mean
 _SEPARATORS = frozenset("/[]@:")
 
 
-def split(path: str) -> tuple[str, ...]:
-    """The names of a path; brackets mean nothing but the name in them, as in CAEX paths."""
-    return tuple(_names(path)) if "[" in path else tuple(path.split("/"))
+def split_path(path: str) -> tuple[str, ...]:
+    """Return the names of a path; brackets only delimit the name in them, as in CAEX paths."""
+    return tuple(_read_names(path)) if "[" in path else tuple(path.split("/"))
 
 
-def _names(path: str) -> Iterator[str]:
+def _read_names(path: str) -> Iterator[str]:
     name, depth = "", 0
-    for sign in path:
-        depth += (sign == "[") - (sign == "]")
-        if sign == "/" and depth == 0:
+    for character in path:
+        depth += (character == "[") - (character == "]")
+        if character == "/" and depth == 0:
             yield name
             name = ""
-        elif not (sign == "[" and depth == 1) and not (sign == "]" and depth == 0):
-            name += sign
+        elif not (character == "[" and depth == 1) and not (character == "]" and depth == 0):
+            name += character
     yield name
 
 
-def join(names: Iterable[str]) -> str:
-    """The path of these names; AML.Engine brackets all when one needs it, we that one."""
+def join_path(names: Iterable[str]) -> str:
+    """Return the path of these names. AML.Engine brackets all names if one needs it, we only that
+    one.
+    """
     return "/".join(f"[{n}]" if _SEPARATORS.intersection(n) else n for n in names)
 
 
-def beside(file: str, name: str) -> str:
-    """Name in the unit of the file that ``file`` calls ``name``."""
+def name_in_unit(file: str, name: str) -> str:
+    """Return the name in the unit of the file that *file* calls *name*."""
     return normalize("NFC", normpath(f"{dirname(file) or '.'}/{name}"))
 
 
@@ -58,7 +60,7 @@ _ByName = dict[str, list[Element]]
 
 
 class Sort(NamedTuple):
-    """What a word may mean: kinds of elements, and how a sentence calls them."""
+    """The kinds of elements that a word may mean, and their name in messages."""
 
     title: str
     kinds: tuple[Kind, ...]
@@ -77,7 +79,7 @@ ANYTHING = Sort("element", ())
 
 @dataclass(slots=True)
 class Finder:
-    """Looks in one graph for what one overlay names, and adds what it says."""
+    """Looks up the words of one overlay in the graph, reports failures, and adds elements."""
 
     graph: Graph
     sink: Sink
@@ -96,111 +98,126 @@ class Finder:
 
     # -- what words mean -----------------------------------------------------------------------
 
-    def entry(self, key: Key, sort: Sort) -> Element | None:
-        """What an entry is about; None when that is not clear, which is reported."""
-        found = self.named(key.text, sort)
+    def find_entry(self, key: Key, sort: Sort) -> Element | None:
+        """Return the element that an entry is about, or None if that is unclear, which is
+        reported.
+        """
+        elements = self.find_named(key.text, sort)
         if key.path:
-            found = self._with_path(key, found, self.named(key.path, sort))
+            elements = self._compare_with_path(key, elements, self.find_named(key.path, sort))
         self.about = ""
-        one = self.only(Term(key.text, key.spot), found, sort, key.path)
-        self.about = "" if one is None else one.id
-        return one
+        element = self.require_one(Term(key.text, key.spot), elements, sort, key.path)
+        self.about = "" if element is None else element.id
+        return element
 
-    def _with_path(self, key: Key, found: list[Element], other: list[Element]) -> list[Element]:
-        """What the id means, else the path; that the two do not agree is reported."""
-        if len(other) != 1 or other == found:
-            return found or other
+    def _compare_with_path(
+        self, key: Key, by_id: list[Element], by_path: list[Element]
+    ) -> list[Element]:
+        """Return the elements of the id, else those of the path; report if the two disagree."""
+        if len(by_path) != 1 or by_path == by_id:
+            return by_id or by_path
         id, path = key.text, str(key.path)
-        if not found:
-            self.report(rules.BY_PATH, key, id=id, path=path, new=other[0].id)
-        elif len(found) == 1:
-            self.report(rules.OTHER_PATH, key, id=id, path=path, meant=self.path(found[0]))
-        return found or other
+        if not by_id:
+            self.report(rules.BY_PATH, key, id=id, path=path, new=by_path[0].id)
+        elif len(by_id) == 1:
+            self.report(rules.OTHER_PATH, key, id=id, path=path, meant=self.path_of(by_id[0]))
+        return by_id or by_path
 
-    def term(self, term: Term, sort: Sort) -> Element | None:
-        """What a word means; None when that is not clear, which is reported."""
+    def find_term(self, term: Term, sort: Sort) -> Element | None:
+        """Return the element that a word means, or None if that is unclear, which is reported."""
         if sort is TYPE:
-            known = self.items.get(term.text) or self._primitive(term.text)
-            if known is not None:
-                return known
-        return self.only(term, self.named(term.text, sort), sort, "")
+            item = self.items.get(term.text) or self._find_primitive(term.text)
+            if item is not None:
+                return item
+        return self.require_one(term, self.find_named(term.text, sort), sort, "")
 
-    def named(self, text: str, sort: Sort) -> list[Element]:
-        """Everything that an id, a path, a qualified name or ``file#qualified name`` means."""
-        by_id = self._by_id(text)
+    def find_named(self, text: str, sort: Sort) -> list[Element]:
+        """Return everything that an id, a path, a qualified name or ``file#qualified name``
+        means.
+        """
+        by_id = self._find_by_id(text)
         if by_id is not None:
-            return _unique([self._as(by_id, sort)])
-        file, sign, name = text.partition("#")
-        unit_name = beside(self.refinement.file, file) if sign else ""
-        words = name if sign else text
-        for names in dict.fromkeys((split(words), tuple(words.split("::")))):
-            found = [self._as(one, sort) for one in self._along(names, unit_name)]
-            if any(found):
-                return _unique(found)
+            return _unique([self._convert(by_id, sort)])
+        file, separator, name = text.partition("#")
+        unit_name = name_in_unit(self.refinement.file, file) if separator else ""
+        name_part = name if separator else text
+        for names in dict.fromkeys((split_path(name_part), tuple(name_part.split("::")))):
+            elements = [
+                self._convert(element, sort) for element in self._walk_path(names, unit_name)
+            ]
+            if any(elements):
+                return _unique(elements)
         return []
 
-    def _by_id(self, text: str) -> Element | None:
-        found = self.graph.get(text) or self.graph.get(plain(text))
-        if found is not None:
-            return found
+    def _find_by_id(self, text: str) -> Element | None:
+        element = self.graph.get(text) or self.graph.get(normalise_guid(text))
+        if element is not None:
+            return element
         if self._other_ids is None:
-            self._other_ids = dict(_other_ids(self.graph))
-        return self._other_ids.get(plain(text))
+            self._other_ids = dict(_list_other_ids(self.graph))
+        return self._other_ids.get(normalise_guid(text))
 
-    def _along(self, names: tuple[str, ...], file: str) -> Iterator[Element]:
-        level = [one for one in self.roots if one.name == names[0] and all(names)]
+    def _walk_path(self, names: tuple[str, ...], file: str) -> Iterator[Element]:
+        level = [element for element in self.roots if element.name == names[0] and all(names)]
         for name in names[1:]:
-            inside = [one for top in level for one in self._inside(top, name)]
-            level = list(dict.fromkeys(inside))
-        for one in level:
-            if not file or one.source == file:
-                yield one
+            members = [element for top in level for element in self._find_inside(top, name)]
+            level = list(dict.fromkeys(members))
+        for element in level:
+            if not file or element.source == file:
+                yield element
 
-    def _inside(self, top: Element, name: str) -> list[Element]:
-        """What has this name in an element, or in what it is an instance or usage of."""
-        waiting = [top]
-        for one in waiting[:]:
-            waiting += self.graph.targets(one, Edge.INSTANCE_OF)
-            type_ = type_of(self.graph, one)
-            waiting += [] if type_ is None else [type_]
-        for one in waiting[:]:
-            waiting += generals(self.graph, one)
-        for one in waiting:
-            found = self._members(one).get(name)
-            if found:
-                return found
+    def _find_inside(self, top: Element, name: str) -> list[Element]:
+        """Return the elements of this name in an element, or in its types, classifiers and
+        generals.
+        """
+        scopes = [top]
+        for scope in scopes[:]:
+            scopes += self.graph.targets(scope, Edge.INSTANCE_OF)
+            type_ = type_of(self.graph, scope)
+            scopes += [] if type_ is None else [type_]
+        for scope in scopes[:]:
+            scopes += generals(self.graph, scope)
+        for scope in scopes:
+            members = self._index_members(scope).get(name)
+            if members:
+                return members
         return []
 
-    def _members(self, top: Element) -> _ByName:
-        """What an element owns, by name; asked for again and again of large hierarchies."""
-        owned = self.graph.owned(top)
-        last = (len(owned), owned[-1].id if owned else "")
-        seen, known = self._named.get(top.id, ((-1, ""), {}))
-        if seen != last:
-            known = {}
-            for one in owned:
-                known.setdefault(one.name, []).append(one)
-            self._named[top.id] = (last, known)
-        return known
+    def _index_members(self, top: Element) -> _ByName:
+        """Return the elements that an element owns, by name.
 
-    def _as(self, element: Element, sort: Sort) -> Element | None:
-        """The element, or what classifies it when only that is of the sort."""
+        The index is stored, because large hierarchies are searched again and again.
+        """
+        owned = self.graph.owned(top)
+        current = (len(owned), owned[-1].id if owned else "")
+        version, by_name = self._named.get(top.id, ((-1, ""), {}))
+        if version != current:
+            by_name = {}
+            for element in owned:
+                by_name.setdefault(element.name, []).append(element)
+            self._named[top.id] = (current, by_name)
+        return by_name
+
+    def _convert(self, element: Element, sort: Sort) -> Element | None:
+        """Return the element, or its classifier if only that is of the sort."""
         if not sort.kinds or element.kind in sort.kinds:
             return element
         if sort is FEATURE:
             return self.graph.target(element, Edge.REPRESENTS)
         if sort in (BLOCK, TYPE):
-            found = self.graph.target(element, Edge.INSTANCE_OF) or type_of(self.graph, element)
-            if found is not None and found.kind in sort.kinds:
-                return found
+            classifier = self.graph.target(element, Edge.INSTANCE_OF) or type_of(
+                self.graph, element
+            )
+            if classifier is not None and classifier.kind in sort.kinds:
+                return classifier
         return None
 
-    def _primitive(self, name: str) -> Element | None:
+    def _find_primitive(self, name: str) -> Element | None:
         if name not in _PRIMITIVES:
             return None
-        for known in self.graph.of_kind(Kind.DATA_TYPE):
-            if known.subkind == "primitive" and known.name == name:
-                return known
+        for data_type in self.graph.of_kind(Kind.DATA_TYPE):
+            if data_type.subkind == "primitive" and data_type.name == name:
+                return data_type
         href = PRIMITIVE_TYPES + name
         attrs: dict[str, AttrValue] = {"external": True, "href": href, "subkind": "primitive"}
         return self.graph.add(Element(derived_id(href, "stub"), Kind.DATA_TYPE, name, attrs=attrs))
@@ -212,86 +229,97 @@ class Finder:
         subject = self.refinement.subject(term, self.about)
         self.sink.report(rule, subject, notes=(), help="", **facts)
 
-    def only(self, term: Term, found: list[Element], sort: Sort, path: str) -> Element | None:
-        """The one that was found; that there is none, or several, is reported."""
-        if len(found) == 1:
-            return found[0]
-        if found:
-            listed = self._listed(found)
+    def require_one(
+        self, term: Term, elements: list[Element], sort: Sort, path: str
+    ) -> Element | None:
+        """Return the only element; report if there is none, or if there are several."""
+        if len(elements) == 1:
+            return elements[0]
+        if elements:
+            listed = self._list_paths(elements)
             self.report(rules.AMBIGUOUS, term, word=term.text, sort=sort.title, listed=listed)
-        elif (other := self.named(term.text, ANYTHING)) and len(other) == 1:
-            kind = other[0].kind.value
+        elif (of_any_sort := self.find_named(term.text, ANYTHING)) and len(of_any_sort) == 1:
+            kind = of_any_sort[0].kind.value
             self.report(rules.WRONG_SORT, term, word=term.text, sort=sort.title, kind=kind)
         else:
-            advice = self._absent(term) or self._nearest(path or term.text, sort)
+            advice = self._describe_missing_file(term) or self._suggest(path or term.text, sort)
             self.report(rules.NO_MATCH, term, word=term.text, sort=sort.title, advice=advice)
         return None
 
-    def _absent(self, term: Term) -> str:
-        """That the file which a word names was not read, if so."""
-        file, sign, _ = term.text.partition("#")
-        name = beside(self.refinement.file, file)
-        is_there = not sign or any(element.source == name for element in self.graph)
-        return "" if is_there else f"the file '{file}' is not part of the compile unit"
+    def _describe_missing_file(self, term: Term) -> str:
+        """Return a clause if the file that a word names was not read."""
+        file, separator, _ = term.text.partition("#")
+        name = name_in_unit(self.refinement.file, file)
+        is_present = not separator or any(element.source == name for element in self.graph)
+        return "" if is_present else f"the file '{file}' is not part of the compile unit"
 
-    def _nearest(self, word: str, sort: Sort) -> str:
+    def _suggest(self, word: str, sort: Sort) -> str:
         self._advised += 1
         if self._advised > _ADVISED:
             return "the first findings of this kind name what is near"
         if _GUID.fullmatch(word.strip()):
             return "'sysmlc show MODEL' prints all ids"
-        hint = did_you_mean(word, self.known(sort))
+        hint = did_you_mean(word, self.list_paths(sort))
         return hint if not hint.endswith(" more") else "'sysmlc show MODEL' prints all names"
 
-    def _listed(self, found: Iterable[Element]) -> str:
-        words = [f"{self.path(one)} ({one.id})" for one in found]
+    def _list_paths(self, elements: Iterable[Element]) -> str:
+        words = [f"{self.path_of(element)} ({element.id})" for element in elements]
         return ", ".join(words[:_LISTED]) + (", ..." if len(words) > _LISTED else "")
 
-    def known(self, sort: Sort) -> list[str]:
-        """Paths of what a word of this sort may mean, as far as a person can choose among them."""
+    def list_paths(self, sort: Sort) -> list[str]:
+        """Return the paths of the elements that a word of this sort may mean, for suggestions."""
         elements = self.graph.of_kind(*sort.kinds) if sort.kinds else list(self.graph)
-        own = [one for one in elements if one.name and not one.attrs.get("library")]
-        return [*(self.items if sort is TYPE else ()), *(self.path(one) for one in own[:_TELLING])]
+        named_elements = [
+            element for element in elements if element.name and not element.attrs.get("library")
+        ]
+        return [
+            *(self.items if sort is TYPE else ()),
+            *(self.path_of(element) for element in named_elements[:_TELLING]),
+        ]
 
-    def path(self, element: Element) -> str:
-        """Path by which an element can be named."""
-        names = [element.name, *(one.name for one in self.graph.ancestors(element))]
-        return join(reversed(names)) if all(names) else element.id
+    def path_of(self, element: Element) -> str:
+        """Return the path by which an element can be named."""
+        names = [element.name, *(ancestor.name for ancestor in self.graph.ancestors(element))]
+        return join_path(reversed(names)) if all(names) else element.id
 
     # -- what is added -------------------------------------------------------------------------
 
-    def add(
+    def ensure_element(
         self, id: str, kind: Kind, name: str, owner: str | None, spot: Spot, **attrs: AttrValue
     ) -> Element:
-        """The element of the overlay with this id, new or known, with these attributes."""
-        known = self.graph.get(id)
-        if known is None:
+        """Return the element with this id, added if it is new, with these attributes."""
+        element = self.graph.get(id)
+        if element is None:
             file = self.refinement.file
-            known = self.graph.add(Element(id, kind, name, owner, spot.offset, file, attrs={}))
+            element = self.graph.add(Element(id, kind, name, owner, spot.offset, file, attrs={}))
             if owner is None:
-                self.roots.append(known)
-        self.graph.set(known, **attrs)
-        return known
+                self.roots.append(element)
+        self.graph.set(element, **attrs)
+        return element
 
 
-def _other_ids(graph: Graph) -> Iterator[tuple[str, Element]]:
-    """Ids that stand for an element beside its own: of repeated interfaces, in another spelling."""
+def _list_other_ids(graph: Graph) -> Iterator[tuple[str, Element]]:
+    """Yield further ids of elements: those of repeated interfaces, and GUIDs in another
+    spelling.
+    """
     for element in graph:
-        if plain(element.id) != element.id:
-            yield plain(element.id), element
+        if normalise_guid(element.id) != element.id:
+            yield normalise_guid(element.id), element
     for element in graph.of_kind(Kind.PROPERTY, Kind.INSTANCE):
         pairs = element.attrs.get("interface_ids")
         for pair in pairs if isinstance(pairs, tuple) else ():
             port = graph.get(str(pair[0])) if isinstance(pair, tuple) else None
             if port is not None and isinstance(pair, tuple):
-                yield plain(str(pair[1])), port
+                yield normalise_guid(str(pair[1])), port
 
 
-def plain(id: str) -> str:
-    """A GUID without braces and in lower case, as writers differ in both; else the id itself."""
-    found = _GUID.fullmatch(id.strip())
-    return found[1].lower() if found else id
+def normalise_guid(id: str) -> str:
+    """Return a GUID without braces and in lower case, because tools differ in both; else the id
+    itself.
+    """
+    match = _GUID.fullmatch(id.strip())
+    return match[1].lower() if match else id
 
 
-def _unique(found: Iterable[Element | None]) -> list[Element]:
-    return list(dict.fromkeys(one for one in found if one is not None))
+def _unique(elements: Iterable[Element | None]) -> list[Element]:
+    return list(dict.fromkeys(element for element in elements if element is not None))

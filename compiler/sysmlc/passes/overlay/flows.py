@@ -1,4 +1,4 @@
-"""Item flows on connectors, each with the way that it runs (SysML 1.6 clause 9.3.2.5)."""
+"""Entries about connectors: item flows with their direction (SysML 1.6 clause 9.3.2.5)."""
 
 from collections.abc import Iterator
 
@@ -6,7 +6,7 @@ from sysmlc.ir import Edge, Element, Kind, derived_id
 from sysmlc.ir.query import ends, role_of
 from sysmlc.overlay.model import ConnectorEntry, FlowEntry, Term
 from sysmlc.passes.overlay import rules
-from sysmlc.passes.overlay.finder import CONNECTOR, FEATURE, TYPE, Finder, plain
+from sysmlc.passes.overlay.finder import CONNECTOR, FEATURE, TYPE, Finder, normalise_guid
 from sysmlc.support.suggestions import did_you_mean
 
 _Ends = tuple[list[Element], list[Element]]
@@ -14,110 +14,123 @@ _Ends = tuple[list[Element], list[Element]]
 
 def add_flows(finder: Finder, entry: ConnectorEntry) -> None:
     """Add the item flows of a connector."""
-    connector = finder.entry(entry.key, CONNECTOR)
+    connector = finder.find_entry(entry.key, CONNECTOR)
     if connector is None:
         return
     for flow in entry.flows:
-        joined = _ends(finder, connector, flow)
-        item = finder.term(flow.item, TYPE)
-        if joined is not None and item is not None:
-            _add(finder, connector, flow, item, joined)
+        sides = _find_ends(finder, connector, flow)
+        item = finder.find_term(flow.item, TYPE)
+        if sides is not None and item is not None:
+            _add_flow(finder, connector, flow, item, sides)
 
 
-def _add(finder: Finder, connector: Element, flow: FlowEntry, item: Element, joined: _Ends) -> None:
+def _add_flow(
+    finder: Finder, connector: Element, flow: FlowEntry, item: Element, end_sides: _Ends
+) -> None:
     graph = finder.graph
-    sources, targets = _features(finder, joined)
-    way = ">".join(",".join(one.id for one in side) for side in (sources, targets))
-    id = derived_id(connector.id, f"item flow:{item.id}:{way}")
-    owners = (one.id for one in graph.ancestors(connector) if one.kind is Kind.PACKAGE)
-    made = finder.add(
+    sources, targets = _find_features(finder, end_sides)
+    direction = ">".join(",".join(element.id for element in side) for side in (sources, targets))
+    id = derived_id(connector.id, f"item flow:{item.id}:{direction}")
+    owners = (element.id for element in graph.ancestors(connector) if element.kind is Kind.PACKAGE)
+    item_flow = finder.ensure_element(
         id, Kind.ITEM_FLOW, "", next(owners, None), flow.spot, origin=connector.id, role="item flow"
     )
-    graph.connect(Edge.CONVEYS, made, item)
-    graph.connect(Edge.REALIZING, made, connector)
+    graph.connect(Edge.CONVEYS, item_flow, item)
+    graph.connect(Edge.REALIZING, item_flow, connector)
     for edge, side in ((Edge.FLOW_SOURCE, sources), (Edge.FLOW_TARGET, targets)):
-        for one in side:
-            graph.connect(edge, made, one)
+        for element in side:
+            graph.connect(edge, item_flow, element)
 
 
-def _features(finder: Finder, joined: _Ends) -> _Ends:
-    """Ports or parts at both sides. One port of two parts would not tell which way it flows."""
-    sides = [[_role(finder, end) for end in side] for side in joined]
-    if len(joined[0]) == 1 and sides[0] == sides[1]:
-        sides = [[_part(finder, end) for end in side] for side in joined]
+def _find_features(finder: Finder, end_sides: _Ends) -> _Ends:
+    """Return the ports or parts at both sides.
+
+    Two parts with the same port are told from one another by the parts, else the direction is lost.
+    """
+    sides = [[_role_or_end(finder, end) for end in side] for side in end_sides]
+    if len(end_sides[0]) == 1 and sides[0] == sides[1]:
+        sides = [[_part_or_role(finder, end) for end in side] for side in end_sides]
     return sides[0], sides[1]
 
 
-def _role(finder: Finder, end: Element) -> Element:
+def _role_or_end(finder: Finder, end: Element) -> Element:
     return role_of(finder.graph, end) or end
 
 
-def _part(finder: Finder, end: Element) -> Element:
+def _part_or_role(finder: Finder, end: Element) -> Element:
     path = finder.graph.targets(end, Edge.PATH)
-    return path[-1] if path else _role(finder, end)
+    return path[-1] if path else _role_or_end(finder, end)
 
 
 # -- ends --------------------------------------------------------------------------------------
 
 
-def _ends(finder: Finder, connector: Element, flow: FlowEntry) -> _Ends | None:
-    """Ends that the flow starts from and leads to, both for one that runs both ways."""
-    attached = [end for end in ends(finder.graph, connector) if role_of(finder.graph, end)]
+def _find_ends(finder: Finder, connector: Element, flow: FlowEntry) -> _Ends | None:
+    """Return the ends that the flow starts from and leads to; both ends for one in both
+    directions.
+    """
+    connector_ends = [end for end in ends(finder.graph, connector) if role_of(finder.graph, end)]
     if flow.is_both:
-        return (attached, attached) if _are_two(finder, connector, flow, attached) else None
-    given = [_end(finder, attached, word) for word in (flow.source, flow.target)]
-    if None in (one for one, word in zip(given, (flow.source, flow.target), strict=True) if word):
+        return (
+            (connector_ends, connector_ends)
+            if _require_two(finder, connector, flow, connector_ends)
+            else None
+        )
+    stated = [_find_end(finder, connector_ends, word) for word in (flow.source, flow.target)]
+    if None in (end for end, word in zip(stated, (flow.source, flow.target), strict=True) if word):
         return None
-    source, target = given
-    source = source or _other(attached, target)
-    target = target or _other(attached, source)
+    source, target = stated
+    source = source or _find_other(connector_ends, target)
+    target = target or _find_other(connector_ends, source)
     if source is None or target is None or source is target:
-        _are_two(finder, connector, flow, [one for one in (source, target) if one][:1])
+        _require_two(finder, connector, flow, [end for end in (source, target) if end][:1])
         return None
     return [source], [target]
 
 
-def _other(attached: list[Element], end: Element | None) -> Element | None:
-    rest = [one for one in attached if one is not end]
-    return rest[0] if len(rest) == 1 else None
+def _find_other(connector_ends: list[Element], end: Element | None) -> Element | None:
+    remaining = [candidate for candidate in connector_ends if candidate is not end]
+    return remaining[0] if len(remaining) == 1 else None
 
 
-def _are_two(finder: Finder, connector: Element, flow: FlowEntry, found: list[Element]) -> bool:
-    if len(found) == 2:
+def _require_two(
+    finder: Finder, connector: Element, flow: FlowEntry, named_ends: list[Element]
+) -> bool:
+    if len(named_ends) == 2:
         return True
-    name = finder.path(connector)
+    name = finder.path_of(connector)
     finder.report(rules.NO_TWO_ENDS, flow.item, item=flow.item.text, connector=name)
     return False
 
 
-def _end(finder: Finder, attached: list[Element], word: Term | None) -> Element | None:
-    """The end that a word means: its port or part, the path to it, or the id of one."""
+def _find_end(finder: Finder, connector_ends: list[Element], word: Term | None) -> Element | None:
+    """Return the end that a word means: by its port or part, the path to it, or the id of one."""
     if word is None:
         return None
-    spelt = {end.id: list(_spellings(finder, end)) for end in attached}
-    found = [end for end in attached if word.text in spelt[end.id]]
-    if not found:
-        found = [end for end in attached if _has_id(finder, end, word.text)]
-    if len(found) == 1:
-        return found[0]
-    longest = [max(names, key=len) for names in spelt.values()]
+    spellings = {end.id: list(_list_spellings(finder, end)) for end in connector_ends}
+    matches = [end for end in connector_ends if word.text in spellings[end.id]]
+    if not matches:
+        matches = [end for end in connector_ends if _has_id(finder, end, word.text)]
+    if len(matches) == 1:
+        return matches[0]
+    longest = [max(names, key=len) for names in spellings.values()]
     advice = did_you_mean(word.text, longest)
-    rule = rules.END_OF_BOTH if found else rules.ONTO_NOTHING
+    rule = rules.END_OF_BOTH if matches else rules.ONTO_NOTHING
     finder.report(rule, word, end=word.text, listed=" and ".join(longest), advice=advice)
     return None
 
 
-def _spellings(finder: Finder, end: Element) -> Iterator[str]:
-    """``st/p_sIn``, ``st.p_sIn``, ``p_sIn`` and ``st`` for port p_sIn of part st."""
-    steps = [*finder.graph.targets(end, Edge.PATH), _role(finder, end)]
+def _list_spellings(finder: Finder, end: Element) -> Iterator[str]:
+    """Yield ``st/p_sIn``, ``st.p_sIn``, ``p_sIn`` and ``st`` for port p_sIn of part st."""
+    steps = [*finder.graph.targets(end, Edge.PATH), _role_or_end(finder, end)]
     names = [step.name for step in steps]
-    for sign in ("/", "."):
-        yield from (sign.join(names[start:]) for start in range(len(names)))
-        yield from (sign.join(names[:stop]) for stop in range(1, len(names)))
+    for separator in ("/", "."):
+        yield from (separator.join(names[start:]) for start in range(len(names)))
+        yield from (separator.join(names[:stop]) for stop in range(1, len(names)))
 
 
 def _has_id(finder: Finder, end: Element, word: str) -> bool:
-    steps = [end, *finder.graph.targets(end, Edge.PATH), _role(finder, end)]
-    if any(plain(word) == plain(step.id) for step in steps):
+    steps = [end, *finder.graph.targets(end, Edge.PATH), _role_or_end(finder, end)]
+    if any(normalise_guid(word) == normalise_guid(step.id) for step in steps):
         return True
-    return any(found in steps for found in finder.named(word, FEATURE))
+    return any(element in steps for element in finder.find_named(word, FEATURE))
