@@ -108,7 +108,7 @@ class Behaviours(Struct, frozen=True):
 
 
 def _inherit_method(graph: Graph, operation: Element) -> None:
-    for candidate in (operation, *redefined(graph, operation)):
+    for candidate in (operation, *redefined_features(graph, operation)):
         methods = graph.targets(candidate, Edge.METHOD)
         if methods:
             if candidate is not operation or not _is_only_user(graph, operation, methods):

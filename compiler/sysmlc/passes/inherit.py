@@ -87,7 +87,7 @@ class _Hierarchy:
         self.circles: list[list[Element]] = []
         self._features: dict[str, dict[Element, None]] = {}
         # Components come out general before specific: each is ready when it is needed.
-        for number, ids in enumerate(strong_components(_index_generals(graph))):
+        for number, ids in enumerate(strongly_connected_components(_index_generals(graph))):
             self._component.update(dict.fromkeys(ids, number))
             self._add_component(ids)
 

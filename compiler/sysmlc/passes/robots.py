@@ -24,18 +24,13 @@ class Robots(Struct, frozen=True):
 
     def run(self, graph: Graph, sink: Sink) -> None:
         """Store a Study for each floor, and its contracts beside the others."""
-        # Hardly any model has one: the rest is not even imported.
-        if not any(contract.name == "Floors" for contract in graph.of_kind(Kind.PACKAGE)):
+        if not any(package.name == "Floors" for package in graph.of_kind(Kind.PACKAGE)):
             return
-
-        floor_studies = list(studies(graph, sink))
-        contracts = [contract for study in floor_studies for contract in contracts_of(study)]
+        floor_studies = list(read_studies(graph, sink))
+        contracts = [contract for study in floor_studies for contract in study_contracts(study)]
         names = {contract.component for contract in contracts}
-        other_contracts = (
+        contracts += [
             contract for contract in graph.derived(Contract) if contract.component not in names
-        )
+        ]
         graph.store(Study, floor_studies)
-        graph.store(
-            Contract,
-            sorted([*other_contracts, *contracts], key=lambda contract: contract.component),
-        )
+        graph.store(Contract, sorted(contracts, key=lambda contract: contract.component))

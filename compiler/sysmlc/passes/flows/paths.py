@@ -67,4 +67,6 @@ def _is_partly_known(graph: Graph, classifier: Element) -> bool:
 def _has_feature(graph: Graph, classifier: Element, feature: Element) -> bool:
     """Whether it is an effective feature, or one that an effective feature redefines."""
     effective = features(graph, classifier)
-    return feature in effective or any(feature in redefined(graph, other) for other in effective)
+    return feature in effective or any(
+        feature in redefined_features(graph, other) for other in effective
+    )

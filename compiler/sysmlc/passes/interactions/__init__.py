@@ -29,7 +29,7 @@ class Interactions(Struct, frozen=True):
         """Report faults; see the class."""
         for interaction in graph.of_kind(Kind.INTERACTION):
             places = dict(_locate_occurrences(graph, interaction))
-            for message in sequence.messages(graph, interaction):
+            for message in interactions.messages(graph, interaction):
                 _check_message(graph, sink, interaction, message, places)
             for item in graph.subtree(interaction):
                 if item.kind is Kind.FRAGMENT:
@@ -42,8 +42,8 @@ class Interactions(Struct, frozen=True):
 
 def _locate_occurrences(graph: Graph, interaction: Element) -> Iterator[tuple[str, _Place]]:
     """Yield the id of each occurrence with its container and its position."""
-    for container in sequence.containers(graph, interaction):
-        for position, item in enumerate(sequence.happenings(graph, container)):
+    for container in interactions.iter_containers(graph, interaction):
+        for position, item in enumerate(interactions.interaction_fragments(graph, container)):
             yield item.id, (container.id, position)
 
 
@@ -129,7 +129,7 @@ def _is_shared_namespace(owner: Element) -> bool:
 
 
 def _check_operands(graph: Graph, sink: Sink, interaction: Element, fragment: Element) -> None:
-    if fragment.subkind in (*sequence.USES, "state-invariant", "continuation"):
+    if fragment.subkind in (*interactions.INTERACTION_USES, "state-invariant", "continuation"):
         return
     count = len(interactions.operands(graph, fragment))
     is_single = fragment.subkind in _ONE_OPERAND
@@ -161,7 +161,7 @@ def _check_execution(
 
 
 def _check_destructions(graph: Graph, sink: Sink, interaction: Element) -> None:
-    for container in sequence.containers(graph, interaction):
+    for container in interactions.iter_containers(graph, interaction):
         destroyed: dict[str, Element] = {}
         for item in interactions.interaction_fragments(graph, container):
             if item.kind is not Kind.OCCURRENCE:

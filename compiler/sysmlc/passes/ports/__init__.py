@@ -223,7 +223,7 @@ def _delegates(graph: Graph, connector: Element, port: Element) -> bool:
 
 
 def _redefined_direction(graph: Graph, port: Element) -> str | None:
-    directions = (other.attrs.get("direction") for other in redefined(graph, port))
+    directions = (other.attrs.get("direction") for other in redefined_features(graph, port))
     return next((str(direction) for direction in directions if direction), None)
 
 

@@ -4,7 +4,7 @@ unit.
 
 from sysmlc.diagnostics import Place, Rule, Sink, Subject
 from sysmlc.ir import Graph, Kind
-from sysmlc.ir.identity import is_made_by_tools
+from sysmlc.ir.identity import is_generated
 from sysmlc.passes.resolve.hrefs import PRIMITIVES, has_primitives_only, is_standard, split_href
 from sysmlc.passes.resolve.references import Need, Use
 from sysmlc.passes.resolve.resolver import stub_id
@@ -95,7 +95,7 @@ def _is_doubtful(graph: Graph, href: str) -> bool:
     Newer versions may have new elements; an applied profile has no effect by itself.
     """
     stub = graph[stub_id(href)]
-    is_nameless = is_made_by_tools(stub.name) and stub.kind is not Kind.PROFILE
+    is_nameless = is_generated(stub.name) and stub.kind is not Kind.PROFILE
     return is_nameless or (has_primitives_only(split_href(href)[0]) and stub.name not in PRIMITIVES)
 
 

@@ -66,7 +66,7 @@ class UnitIndex:
             )
         library, fragment = split_href(target)
         element = self._find_in_files(fragment, self.files(file, library))
-        if element is None and is_unmistakable(fragment):
+        if element is None and is_globally_unique(fragment):
             element = _smallest_id(self._with_id(fragment))
         return element
 
