@@ -6,7 +6,7 @@ import pytest
 from jsonschema import Draft202012Validator
 
 from sysmlc.diagnostics import Sink
-from sysmlc.overlay import files_of, read
+from sysmlc.overlay import list_files, read_overlay
 from sysmlc.overlay.yaml_tree import parse_yaml
 from sysmlc.passes.overlay.finder import join_path, name_in_unit, split_path
 from sysmlc.sources import Source
@@ -19,7 +19,7 @@ def told(data):
     """Code, line, column and message of each finding; nothing of a bad overlay is used."""
     sink = Sink()
     text = data.encode("utf-8") if isinstance(data, str) else data
-    made = read(Source("p.overlay.yaml", text), sink)
+    made = read_overlay(Source("p.overlay.yaml", text), sink)
     assert (made is None) == bool(len(sink))
     places = [(found, found.subject.place) for found in sink]
     return [(f.rule.code, place.line, place.column, f.message) for f, place in places]
@@ -136,14 +136,14 @@ def test_each_fault_of_shape_is_told_with_its_place(text, findings):
 
 def test_a_misspelt_word_is_answered_with_the_nearest():
     sink = Sink()
-    read(Source("p.overlay.yaml", RIGHT.replace("domain", "domian").encode()), sink)
+    read_overlay(Source("p.overlay.yaml", RIGHT.replace("domain", "domian").encode()), sink)
     assert [found.help for found in sink] == ["did you mean 'domain'?"]
 
 
 def test_places_count_characters_and_bytes():
     top = parse_yaml('\ufeffoverlay: 1\n"é": {x: ü, y: 1}\n'.encode())
     inner = top.entries["é"].entries["y"]
-    assert inner.find_spot == (2, 16, 3 + 11 + 5 + 1 + 1 + 10)
+    assert inner.spot == (2, 16, 3 + 11 + 5 + 1 + 1 + 10)
     assert top.keys["é"][:2] == (2, 1)
 
 
@@ -166,7 +166,7 @@ def test_plain_words_are_names_and_quoted_digits_are_too():
 
 def test_anchors_may_be_used_for_what_is_said_again():
     text = RIGHT + "connectors:\n  a: &one\n    flows: [{item: MiniPallet, to: x}]\n  b: *one\n"
-    made = read(Source("p.overlay.yaml", text.encode()), Sink())
+    made = read_overlay(Source("p.overlay.yaml", text.encode()), Sink())
     assert [one.key.text for one in made.connectors] == ["a", "b"]
     assert made.connectors[0].flows == made.connectors[1].flows
 
@@ -174,7 +174,9 @@ def test_anchors_may_be_used_for_what_is_said_again():
 def test_entries_have_an_order_of_their_own():
     rows = ["  B: {domain: physical}\n", "  A: {domain: information}\n"]
     made = [
-        read(Source("p.overlay.yaml", ("overlay: 1\nitems:\n" + "".join(order)).encode()), Sink())
+        read_overlay(
+            Source("p.overlay.yaml", ("overlay: 1\nitems:\n" + "".join(order)).encode()), Sink()
+        )
         for order in (rows, rows[::-1])
     ]
     names = [[(one.key.text, one.domain) for one in each.items] for each in made]
@@ -187,8 +189,8 @@ def test_files_that_terms_name_are_known():
         "    values: {v: {type: 'types.uml#T::V'}}\n"
         "    operations: {go: {method: 'models/gate.uml#Gate::Go'}}\n"
     )
-    made = read(Source("p.overlay.yaml", text.encode()), Sink())
-    assert files_of(made) == ["models/gate.uml", "types.uml"]
+    made = read_overlay(Source("p.overlay.yaml", text.encode()), Sink())
+    assert list_files(made) == ["models/gate.uml", "types.uml"]
 
 
 def test_the_schema_is_a_schema_and_its_words_are_explained():
