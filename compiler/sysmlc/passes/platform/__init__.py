@@ -70,11 +70,11 @@ def _list_unused(context: Context, used: Iterable[PlantElement]) -> list[Unused]
     """Return the topmost unused elements that neither contain nor lie in a used element."""
     plant = context.plant
     used_ids = {element.id for element in used}
-    containing = used_ids | {up.id for element in used for up in plant.around(element)}
+    containing = used_ids | {up.id for element in used for up in plant.iter_owners(element)}
     sizes: dict[str, int] = {}
     top_of: dict[str, str | None] = {}
     for element in plant.elements.values():
-        container = next(plant.around(element), None)
+        container = next(plant.iter_owners(element), None)
         if element.id in containing:
             top_of[element.id] = None
         elif container is None or container.id in containing - used_ids:

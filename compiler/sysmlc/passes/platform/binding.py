@@ -38,8 +38,10 @@ def _list_statements(context: Context, machine: Machine) -> Iterator[tuple[Plant
     graph = context.graph
     element = graph[machine.element]
     if context.plant and is_of_plant(graph, element):
-        yield from ((part, "itself", element.id) for part in context.plant.meant_by(element))
-    by_id = context.plant.with_id(machine.aml_id) if machine.aml_id else None
+        yield from (
+            (part, "itself", element.id) for part in context.plant.find_represented(element)
+        )
+    by_id = context.plant.find_by_id(machine.aml_id) if machine.aml_id else None
     if by_id is not None:
         yield by_id, "id", element.id
     for target, how, source in list_machine_statements(graph, machine):

@@ -108,7 +108,7 @@ def _find_operation(
     """Return the operation of a block that offers the service, or why the one of its name does
     not.
     """
-    family = context.plant.family(block)
+    family = context.plant.class_ids(block)
     for candidate in stated:
         if candidate.operation.owner in family:
             return candidate, None
@@ -124,7 +124,7 @@ def _find_operation(
 
 
 def _list_operations(context: Context, block: Element) -> Iterator[Element]:
-    for classifier in context.plant.kin(block):
+    for classifier in context.plant.classes(block):
         yield from (
             feature for feature in context.graph.owned(classifier) if feature.kind is Kind.OPERATION
         )

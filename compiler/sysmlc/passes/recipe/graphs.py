@@ -261,7 +261,7 @@ def _list_object_edges(
             continue
         for target in _find_targets(context, flow, draft):
             edge = _build_edge(context, flow, source, target, data, draft)
-            if edge.target not in reachable([edge.source], ordered):
+            if edge.target not in find_reachable([edge.source], ordered):
                 yield edge
 
 

@@ -9,8 +9,8 @@ from sysmlc.ir import Element, Kind, query
 from sysmlc.passes.recipe.context import Context
 from sysmlc.passes.recipe.features import find_member, literal_default, value_type
 from sysmlc.passes.recipe.machines import find_opcua_node
-from sysmlc.recipe.checks import graphs
-from sysmlc.recipe.expression import Expr, variables
+from sysmlc.recipe.checks import iter_graphs
+from sysmlc.recipe.expression import Expr, iter_variables
 from sysmlc.recipe.model import (
     MachineVariable,
     Model,
@@ -27,7 +27,7 @@ def add_machine_variables(context: Context, model: Model) -> Model:
     names_by_machine: dict[str, set[str]] = {}
     for parameters, expressions in _list_scopes(model):
         machines = dict(_machine_parameters(parameters))
-        for name in (name for expression in expressions for name in variables(expression)):
+        for name in (name for expression in expressions for name in iter_variables(expression)):
             head, _, rest = name.partition(".")
             if rest and head in machines:
                 names_by_machine.setdefault(machines[head], set()).add(rest)
@@ -55,7 +55,7 @@ def _list_scopes(model: Model) -> Iterator[tuple[tuple[Parameter, ...], list[Exp
     recipe: Recipe = model.recipe
     bindings = [value for task in recipe.tasks for _, value in task.bind]
     yield (*recipe.inputs, *recipe.variables), bindings
-    for graph in graphs(model):
+    for graph in iter_graphs(model):
         expressions = [value for node in graph.nodes for _, value in node.bind]
         expressions += [node.expression for node in graph.nodes if node.expression is not None]
         expressions += [edge.guard for edge in graph.edges if edge.guard is not None]
