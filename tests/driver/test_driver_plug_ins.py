@@ -1,6 +1,6 @@
 """Passes and back ends of other distributions."""
 
-import sys
+from importlib import import_module
 from pathlib import Path
 
 import pytest
@@ -79,10 +79,16 @@ def test_a_pass_that_cannot_be_used_is_an_error_of_the_configuration(folder, ent
         registry.load_passes({})
 
 
-def test_rules_of_a_pass_are_in_the_catalogue(folder, monkeypatch):
-    rules = sys.modules["sysmlc.diagnostics.rule"]
-    monkeypatch.setattr(rules, "_rules", dict(rules._rules))
-    monkeypatch.setattr(rules, "_names", set(rules._names))
+@pytest.fixture
+def rules():
+    """Remove the rule of the pass after the test."""
+    yield
+    catalogue = import_module("sysmlc.diagnostics.rule")
+    catalogue._rules.pop("SM947", None)
+    catalogue._names.discard("long-name")
+
+
+def test_rules_of_a_pass_are_in_the_catalogue(folder, rules):
     (folder / "strict_names.py").write_text(
         "from sysmlc.diagnostics import Severity, rule\n"
         'LONG = rule("SM947", "long-name", Severity.INFO, "a long name")\n' + PASS

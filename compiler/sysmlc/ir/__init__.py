@@ -3,11 +3,10 @@
 from importlib import import_module
 from typing import TYPE_CHECKING
 
-from sysmlc.ir.element import AttrValue, Element
+from sysmlc.ir.element import AttrValue, Element, Reference
 from sysmlc.ir.graph import Graph
 from sysmlc.ir.identity import derived_id
 from sysmlc.ir.kinds import Edge, Kind
-from sysmlc.ir.reference import Reference
 from sysmlc.ir.verify import verify
 
 if TYPE_CHECKING:

@@ -4,7 +4,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING, TypeVar, cast
 
 from sysmlc.diagnostics import Place, Subject
-from sysmlc.ir.element import AttrValue, Element
+from sysmlc.ir.element import AttrValue, Element, Reference
 from sysmlc.ir.kinds import Edge, Kind
 from sysmlc.ir.neighbours import (
     Index,
@@ -13,7 +13,6 @@ from sysmlc.ir.neighbours import (
     list_neighbours,
     remove_neighbour,
 )
-from sysmlc.ir.reference import Reference
 
 if TYPE_CHECKING:
     from networkx import DiGraph
@@ -137,7 +136,7 @@ class Graph:
     # -- names and positions -------------------------------------------------------------------
 
     def qualified_name(self, element: Element) -> str:
-        """Return the names from the root down, joined by ``::``; ``<Kind>`` replaces no name."""
+        """Return the names from the root down, joined by ``::``; no name is ``<Kind>``."""
         path = [element, *self.ancestors(element)]
         return "::".join(part.name or f"<{part.kind}>" for part in reversed(path))
 

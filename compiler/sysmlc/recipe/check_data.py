@@ -196,6 +196,7 @@ def _definitely_set(graph: FlowGraph) -> dict[str, set[str]]:
     defined: dict[str, set[str]] = {}
     for id in sort_topologically(nodes, edges):
         incoming = [defined[predecessor] for predecessor in predecessors.get(id, ())]
+        # A join or a step waits for all incoming edges; elsewhere only one of them is taken.
         if not incoming:
             before = start
         elif nodes[id].kind in ("join", "service", "function"):

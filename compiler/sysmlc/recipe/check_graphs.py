@@ -98,6 +98,8 @@ def _iter_fork_problems(graph: FlowGraph) -> Iterator[tuple[str, str]]:
         if len(branches) > 1:
             is_join = node.kind == "join" or node.kind in STEPS
             open_forks, problem = _join(branches) if is_join else _merge(branches)
+        # One report for a node; behind it the common prefix continues, so that the consequences
+        # of the fault are not reported.
         if problem:
             yield node.element, f"{problem} '{_local_name(id)}'"
         targets = successors.get(id, [])

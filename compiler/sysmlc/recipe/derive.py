@@ -275,11 +275,13 @@ def _call_time(node: Node, tables: Tables, machines: tuple[str, ...]) -> Range |
 
 
 def _helper_time(graph: FlowGraph, tables: Tables, machines: tuple[str, ...]) -> Range | None:
+    # A helper that calls itself would never end: inside it, it counts as a helper without a graph.
     rest = tables.without(graph.id)
     return compute_duration(graph, lambda node: node_range(node, rest, machines))
 
 
 def _wait_time(node: Node, tables: Tables, machines: tuple[str, ...]) -> Range | None:
+    # Nothing in the recipe bounds how long a signal can take.
     return Range(0, None)
 
 

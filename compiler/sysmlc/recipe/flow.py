@@ -59,6 +59,7 @@ def forward_edges(graph: FlowGraph) -> list[tuple[str, str]]:
     """Return the edges without back edges, those that lead to the entry of a cycle."""
     nodes = [node.id for node in graph.nodes]
     edges = list(dict.fromkeys((e.source, e.target) for e in graph.edges))
+    # Without the back edges of a cycle the cycles inside it are components of their own.
     while cycles := find_cycles(nodes, edges):
         for cycle in cycles:
             inside = set(cycle)
@@ -104,6 +105,7 @@ def compute_duration(graph: FlowGraph, cost: Cost) -> Range | None:
     starts = [node.id for node in graph.nodes if node.kind == "initial"]
     spans = _Clock(nodes, costs).run(list(nodes), edges, starts[:1])
     ends = [span for id, span in spans.items() if nodes[id].kind == "final"]
+    # A flow final node ends one branch only (UML 2.5.1, 15.3.3.2): it counts without a final node.
     ends = ends or [span for id, span in spans.items() if nodes[id].kind == "flowFinal"]
     if not ends:
         return None
@@ -119,6 +121,7 @@ class _Clock(Struct, frozen=True):
     def run(self, ids: Iterable[str], edges: _Edges, starts: list[str]) -> dict[str, _Span]:
         """Return the span of each node if *starts* begin at 0; a cycle counts as one step."""
         spans: dict[str, _Span] = {}
+        # A node that no start reaches has no span: it does not delay the nodes behind it.
         for component, is_cycle in _iter_components(ids, edges):
             inside = set(component)
             incoming = [(a, b) for a, b in edges if b in inside and a not in inside and a in spans]
@@ -159,6 +162,8 @@ class _Clock(Struct, frozen=True):
         bounds = [node.max_iterations for node in loops if node.max_iterations is not None]
         if not loops or len(bounds) < len(loops):
             return None
+        # A loop that is tested first runs its body as often as the bound says, and is closed as
+        # often; a loop that is tested last is closed once less, because the last round leaves it.
         is_tested_first = not any(self._has_step(head, loop.id, inner) for loop in loops)
         return sum(bounds) - (0 if is_tested_first else len(loops))
 

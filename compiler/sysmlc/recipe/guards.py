@@ -100,10 +100,12 @@ def _sample_domain(name: str, guards: list[Expr], type_: ValueType | None) -> li
     constants = [value for guard in guards for value in _iter_constants(name, guard)]
     texts = sorted({value for value in constants if isinstance(value, str)})
     if texts:
+        # One text that is equal to none of the constants stands for all the others.
         return [*texts, "\x00other"]
     numeric = type_ in ("integer", "real") or any(_is_numeric(name, guard) for guard in guards)
     if not numeric:
         return [False, True]
+    # Guards change their value at a constant: one value below, at and above each is enough.
     step = 1 if type_ == "integer" else 0.5
     numbers = {value for value in constants if isinstance(value, int | float)} | {0, 1, 2}
     return sorted({value + shift for value in numbers for shift in (-step, 0, step)})

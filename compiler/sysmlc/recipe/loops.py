@@ -21,12 +21,14 @@ def with_loops(graph: FlowGraph, bounds: Mapping[str, int]) -> FlowGraph:
     nodes = {node.id: node for node in graph.nodes}
     edges = list(graph.edges)
     active = set(nodes)
+    # A for-each node repeats its body without a decision: its cycle is complete already.
     closing = _find_for_each_back_edges(graph)
     without_for_each = replace(graph, edges=tuple(edge for edge in edges if edge not in closing))
     while (found := _find_next_loop(without_for_each, active)) is not None:
         loop, cycle = found
         edges = [_assign_role(edge, loop, cycle) for edge in edges]
         nodes[loop] = _make_loop_node(nodes[loop], cycle, edges, bounds)
+        # Without its loop node the cycle is gone, and the cycles inside it become visible.
         active.discard(loop)
     return replace(graph, nodes=tuple(nodes.values()), edges=tuple(edges))
 

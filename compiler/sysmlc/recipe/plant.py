@@ -161,4 +161,5 @@ class Plant:
 
 
 def _normalise_id(id: str) -> str:
+    # Some AutomationML editors write ids in braces and in capitals, others do not.
     return id.strip("{} ").casefold()

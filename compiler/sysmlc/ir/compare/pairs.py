@@ -146,8 +146,8 @@ def _pair_by_alternate_id(pairs: Pairs) -> None:
 def _are_ids_stable(pairs: Pairs, common: list[tuple[Element, Element]]) -> bool:
     """Return whether equal ids denote the same elements.
 
-    Tools that number the elements of each export shift the ids: many a kind and name then has
-    another id in the new model, and the id has another kind and name.
+    If a tool numbers the elements anew in each export, ids are shifted: the kind and name of an id
+    in one model belong to another id in the other model.
     """
     unequal = [(old, new) for old, new in common if _kind_and_name(old) != _kind_and_name(new)]
     if len(unequal) <= _FEW:
