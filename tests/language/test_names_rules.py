@@ -5,7 +5,8 @@ from resolving import documents, library, told
 
 from sysmlc.diagnostics import Sink
 from sysmlc.language.names import resolve
-from sysmlc.language.names.rules import CYCLE, NO_STANDARD_LIBRARY, TOO_DEEP, UNRESOLVED
+from sysmlc.language.names.resolution import CYCLE, NO_STANDARD_LIBRARY, TOO_DEEP
+from sysmlc.language.names.unresolved import UNRESOLVED
 
 
 def codes(text):

@@ -11,8 +11,7 @@ from sysmlc.language.interchange.effective_names import (
     find_effective_name,
     redefine_nothing,
 )
-from sysmlc.language.interchange.elements import Element, walk_elements
-from sysmlc.language.interchange.unfolding import unfold
+from sysmlc.language.interchange.unfolding import Element, unfold, walk_elements
 from sysmlc.language.metaclasses import is_a
 from sysmlc.language.text.lexer import quote_name
 from sysmlc.language.tree import Document, Node

@@ -13,9 +13,8 @@ from sysmlc.language.interchange.effective_names import (
     redefine_nothing,
 )
 from sysmlc.language.interchange.element_ids import assign_ids, find_conjugated
-from sysmlc.language.interchange.elements import Element, Link, walk_elements
 from sysmlc.language.interchange.metamodel import list_features
-from sysmlc.language.interchange.unfolding import unfold
+from sysmlc.language.interchange.unfolding import Element, Link, unfold, walk_elements
 from sysmlc.language.library import SHIPPED
 from sysmlc.language.metaclasses import is_a
 from sysmlc.language.tree import AttributeValue, Document, Node, find_root, locate

@@ -5,8 +5,13 @@ from collections.abc import Callable
 
 from sysmlc.language.metaclasses import kinds_of
 from sysmlc.language.names import contexts
-from sysmlc.language.names import expression_results as results
-from sysmlc.language.names import positional_redefinition as positions
+from sysmlc.language.names.expression_results import find_value_result
+from sysmlc.language.names.positional_redefinition import (
+    find_own_features,
+    find_redefined,
+    gather_features,
+    may_redefine_by_position,
+)
 from sysmlc.language.tree import Node, Reference, Relation
 
 GENERALIZATION_KINDS = kinds_of("Specialization") | {"Conjugation", "FeatureChaining"}
@@ -176,7 +181,7 @@ class GeneralLookup(ABC):
         cached = self._positional_members.get(scope)
         if cached is None:
             cached = self._positional_members[scope] = [
-                member for member in scope.members if positions.may_redefine_by_position(member)
+                member for member in scope.members if may_redefine_by_position(member)
             ]
         return cached
 
@@ -184,14 +189,14 @@ class GeneralLookup(ABC):
         """Return the features that ``feature`` redefines by its position or its membership."""
         cached = self._positions.get(feature)
         if cached is None:
-            if not positions.may_redefine_by_position(feature):
+            if not may_redefine_by_position(feature):
                 return self._positions.setdefault(feature, [])
             if feature in self._active_positions:
                 self.cycle_hits += 1
                 return []
             hits_before = self.cycle_hits
             self._active_positions.add(feature)
-            cached = positions.find_redefined(feature, self) or self._by_role(feature)
+            cached = find_redefined(feature, self) or self._by_role(feature)
             self._active_positions.discard(feature)
             if self.cycle_hits == hits_before:
                 self._positions[feature] = cached
@@ -202,7 +207,7 @@ class GeneralLookup(ABC):
         key = (scope, role)
         cached = self._own_of_role.get(key)
         if cached is None:
-            cached = self._own_of_role[key] = positions.find_own_features(scope, role)
+            cached = self._own_of_role[key] = find_own_features(scope, role)
         return cached
 
     def features_of_role(self, scope: Node, role: str) -> list[Node]:
@@ -215,7 +220,7 @@ class GeneralLookup(ABC):
                 return []
             hits_before = self.cycle_hits
             self._active_positions.add(key)
-            cached = positions.gather_features(scope, role, self)
+            cached = gather_features(scope, role, self)
             self._active_positions.discard(key)
             if self.cycle_hits == hits_before:
                 self._at_positions[key] = cached
@@ -235,7 +240,7 @@ class GeneralLookup(ABC):
         cached = self._implied_generals.get(node)
         if cached is None:
             hits_before = self.cycle_hits
-            value = results.find_value_result(node, self) if not self.generals(node) else None
+            value = find_value_result(node, self) if not self.generals(node) else None
             by_position = self.redefined_by_position(node)
             cached = self._implied(node)
             if by_position:

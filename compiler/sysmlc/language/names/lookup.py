@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterable
 
 from sysmlc.language.metaclasses import NAMESPACES, TYPES
 from sysmlc.language.names import contexts
-from sysmlc.language.names import expression_results as results
+from sysmlc.language.names.expression_results import find_result
 from sysmlc.language.names.imports import ImportLookup
 from sysmlc.language.names.members import Hits
 from sysmlc.language.tree import Node, Reference, Relation
@@ -50,14 +50,14 @@ class Lookup(ImportLookup):
         self._active.add(reference)
         targets = self._resolve_chain(node, relation)
         self._active.discard(reference)
-        is_whole, new_hits = len(targets) == len(reference.chain), self.cycle_hits - hits_before
-        if not is_whole and new_hits > _MAX_CYCLES:
+        is_resolved, new_hits = len(targets) == len(reference.chain), self.cycle_hits - hits_before
+        if not is_resolved and new_hits > _MAX_CYCLES:
             # Memoise the failure, because each further try would take as long.
             self.circular_references.add(reference)
         # A lookup that failed because of a cycle may succeed later, unless it is the outermost one.
-        if is_whole or not self._active or not 0 < new_hits <= _MAX_CYCLES:
+        if is_resolved or not self._active or not 0 < new_hits <= _MAX_CYCLES:
             reference.set_targets(targets)
-        return targets[-1] if is_whole else None
+        return targets[-1] if is_resolved else None
 
     def _resolve_chain(self, node: Node, relation: Relation) -> list[Node]:
         """Return the element of each link of the chain, up to the first that is not found."""
@@ -72,7 +72,7 @@ class Lookup(ImportLookup):
                 scope = targets[-1] if index else self._resolve_link(node, context.before)
                 hit = self.descend(scope, names, 0, kinds) if scope else None
             elif context.operand is not None:
-                scope = results.find_result(context.operand, self)
+                scope = find_result(context.operand, self)
                 hit = self.descend(scope, names, 0, kinds) if scope else None
             else:
                 hit = self.search(context, names, kinds)

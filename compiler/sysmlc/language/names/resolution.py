@@ -4,12 +4,36 @@ import gc
 import sys
 from collections.abc import Sequence
 
-from sysmlc.diagnostics import Sink, Subject
+from sysmlc.diagnostics import Severity, Sink, Subject, rule
 from sysmlc.language.library import SHIPPED, Library
 from sysmlc.language.names.model import Model
-from sysmlc.language.names.rules import CYCLE, NO_STANDARD_LIBRARY, TOO_DEEP
 from sysmlc.language.names.unresolved import report_unresolved
 from sysmlc.language.tree import Document, Node, Relation, find_root, make_subject
+
+CYCLE = rule(
+    "SM206",
+    "specialization-cycle",
+    Severity.WARNING,
+    "'{name}' specialises itself{through}",
+    help="remove one specialisation of the circle",
+)
+NO_STANDARD_LIBRARY = rule(
+    "SM207",
+    "no-standard-library",
+    Severity.WARNING,
+    "the standard library of SysML v2 is not installed; the core that sysmlc bundles replaces it",
+    help=(
+        "if names of the library are missing, get the library's files from the SysML v2 release "
+        "and name their folder with --library PATH or the environment variable SYSML_LIBRARY_PATH"
+    ),
+)
+TOO_DEEP = rule(
+    "SM208",
+    "names-too-deep",
+    Severity.ERROR,
+    "what '{name}' leads to is behind too many other names",
+    help="refer to the element itself",
+)
 
 _RECURSION_LIMIT = 20_000
 """Recursion limit during resolution: names lead to names that lead to further names."""

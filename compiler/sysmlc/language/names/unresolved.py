@@ -2,16 +2,30 @@
 
 import re
 
-from sysmlc.diagnostics import Sink
+from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.language.metaclasses import describe_kind, kinds_of
 from sysmlc.language.names import contexts
 from sysmlc.language.names.expression_results import find_result
 from sysmlc.language.names.generals import GENERALIZATION_KINDS
 from sysmlc.language.names.lookup import Lookup
 from sysmlc.language.names.model import Model
-from sysmlc.language.names.rules import TOO_CIRCULAR, UNRESOLVED
 from sysmlc.language.tree import Document, Node, Reference, Relation, make_subject
 from sysmlc.support.suggestions import did_you_mean
+
+UNRESOLVED = rule(
+    "SM205",
+    "unresolved-name",
+    Severity.ERROR,
+    "'{name}' is not known here{inside}",
+    help="{advice}",
+)
+TOO_CIRCULAR = rule(
+    "SM240",
+    "names-too-circular",
+    Severity.ERROR,
+    "'{name}' was looked for in 2,000 circles of names, and is given up",
+    help="give the namesakes names of their own, or qualify what they specialise",
+)
 
 _EXPECTED_WORDS = {
     "Subclassification": "a definition",
@@ -26,6 +40,14 @@ _EXPECTED_WORDS = {
     "FeatureChaining": "a usage or feature",
     "importedNamespace": "a namespace",
 }
+_IMPORT_RELATIONS = frozenset({"importedNamespace", "importedMembership"})
+_NOT_GIVEN = "give the file that has it as an input too, or the folder of all files"
+_UNNAMED = "declare it, or import the package that has it"
+_TYPES_OF_LIBRARY = ("ScalarValues", "ISQ")
+_UNITS_OF_LIBRARY = ("SI",)
+_CLASSIFIERS = kinds_of("Classifier")
+_OPERATORS = frozenset({"OperatorExpression"})
+_MEMBERSHIP_IMPORTS = kinds_of("MembershipImport")
 
 
 def make_advice(
@@ -61,16 +83,6 @@ def make_advice(
     return did_you_mean(names[-1], known_names or roots) if known_names or roots else _UNNAMED
 
 
-_IMPORT_RELATIONS = frozenset({"importedNamespace", "importedMembership"})
-_NOT_GIVEN = "give the file that has it as an input too, or the folder of all files"
-_UNNAMED = "declare it, or import the package that has it"
-
-
-_TYPES_OF_LIBRARY = ("ScalarValues", "ISQ")
-_UNITS_OF_LIBRARY = ("SI",)
-_CLASSIFIERS = kinds_of("Classifier")
-
-
 def _find_unimported_package(
     model: Model,
     use: tuple[Node, Relation],
@@ -103,9 +115,6 @@ def _is_unit(node: Node) -> bool:
             return node is not node.owner.members[0]
         node = node.owner
     return False
-
-
-_OPERATORS = frozenset({"OperatorExpression"})
 
 
 def _find_library_package(
@@ -145,9 +154,6 @@ def _advise_import(
             ):
                 return f"'{name}' is in '{package.name}': import {package.name}::*, not it alone"
     return f"'{name}' is in '{package.name}', which is not imported here"
-
-
-_MEMBERSHIP_IMPORTS = kinds_of("MembershipImport")
 
 
 def _search_regardless(

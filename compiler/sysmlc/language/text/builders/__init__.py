@@ -6,11 +6,10 @@ from types import ModuleType
 from sysmlc.language.text.builders import (
     actions,
     connections,
+    declarations,
     definitions,
     expressions,
-    features,
     kerml,
-    names,
     namespaces,
     nodes,
     operators,
@@ -21,15 +20,15 @@ from sysmlc.language.text.builders import (
 )
 from sysmlc.language.text.lalr import Action
 
-_COMMON = (nodes, names, namespaces, features, operators, expressions, connections)
+_COMMON = (nodes, declarations, namespaces, operators, expressions, connections)
 _SYSML = (definitions, usages, actions, referring_usages, transitions)
 
 
-def _actions(modules: tuple[ModuleType, ...]) -> Mapping[str, Action]:
+def _collect_actions(modules: tuple[ModuleType, ...]) -> Mapping[str, Action]:
     return {name: action for module in modules for name, action in module.ACTIONS.items()}
 
 
 ACTIONS: Mapping[str, Mapping[str, Action]] = {
-    "kerml": _actions((*_COMMON, relationships, kerml)),
-    "sysml": _actions(_COMMON + _SYSML),
+    "kerml": _collect_actions((*_COMMON, relationships, kerml)),
+    "sysml": _collect_actions(_COMMON + _SYSML),
 }

@@ -1,9 +1,13 @@
 """Action nodes: accept, send, assign, terminate, if, while, loop, for (SysML 8.2.2.17)."""
 
 from sysmlc.language.text.builders.connections import Tail
+from sysmlc.language.text.builders.declarations import (
+    Names,
+    SpecializationPart,
+    apply_names,
+    apply_specializations,
+)
 from sysmlc.language.text.builders.expressions import find_chain
-from sysmlc.language.text.builders.features import SpecializationPart, apply_specializations
-from sysmlc.language.text.builders.names import Names, apply_names
 from sysmlc.language.text.builders.nodes import FEATURE, add_members, make_node
 from sysmlc.language.text.lexer import Tokens
 from sysmlc.language.tree import Node, Relation

@@ -4,14 +4,15 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
-from sysmlc.language.text.builders.definitions import USAGE_KINDS, Keyword, finish_usage
-from sysmlc.language.text.builders.features import (
+from sysmlc.language.text.builders.declarations import (
+    Names,
     SpecializationPart,
+    apply_names,
     apply_specializations,
     apply_value,
     make_multiplicity,
 )
-from sysmlc.language.text.builders.names import Names, apply_names
+from sysmlc.language.text.builders.definitions import USAGE_KINDS, Keyword, finish_usage
 from sysmlc.language.text.builders.nodes import FEATURE, OWNING, make_node
 from sysmlc.language.text.lexer import BuildFault, Tokens
 from sysmlc.language.tree import Node, Reference, Relation

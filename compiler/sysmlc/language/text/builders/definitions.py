@@ -2,12 +2,13 @@
 
 from functools import partial
 
-from sysmlc.language.text.builders.features import (
+from sysmlc.language.text.builders.declarations import (
+    Names,
     SpecializationPart,
+    apply_names,
     apply_specializations,
     apply_value,
 )
-from sysmlc.language.text.builders.names import Names, apply_names
 from sysmlc.language.text.builders.nodes import FEATURE, OWNING, add_members, make_node
 from sysmlc.language.text.lexer import BuildFault, Tokens
 from sysmlc.language.tree import Node, Reference, Relation

@@ -11,18 +11,19 @@ from sysmlc.language.text.builders.connections import (
     apply_tail,
     split_ends_and_body,
 )
+from sysmlc.language.text.builders.declarations import (
+    Names,
+    SpecializationPart,
+    apply_names,
+    apply_specializations,
+    apply_value,
+    make_multiplicity,
+)
 from sysmlc.language.text.builders.definitions import (
     build_keywordless_usage,
     finish_usage,
     prepend_members,
 )
-from sysmlc.language.text.builders.features import (
-    SpecializationPart,
-    apply_specializations,
-    apply_value,
-    make_multiplicity,
-)
-from sysmlc.language.text.builders.names import Names, apply_names
 from sysmlc.language.text.builders.namespaces import build_metadata, build_prefix_metadata
 from sysmlc.language.text.builders.nodes import FEATURE, OWNING, add_members, make_node
 from sysmlc.language.text.builders.usages import Prefix, check_prefixes
@@ -206,7 +207,7 @@ def _build_multiplicity_subset(
     return add_members(node, body)
 
 
-_FACTS: dict[str, tuple[tuple[str, AttributeValue], ...]] = {
+_ATTRIBUTES_BY_PREFIX: dict[str, tuple[tuple[str, AttributeValue], ...]] = {
     "in": (("direction", "in"),),
     "out": (("direction", "out"),),
     "inout": (("direction", "inout"),),
@@ -234,7 +235,7 @@ def apply_prefixes(tokens: Tokens, begin: int, prefixes: list[Prefix], node: Nod
         elif word == "member":
             node.membership = OWNING
         else:
-            node.attributes.update(_FACTS.get(word, ()))
+            node.attributes.update(_ATTRIBUTES_BY_PREFIX.get(word, ()))
     return prepend_members(node, [prefix for prefix in prefixes if isinstance(prefix, Node)])
 
 
@@ -268,10 +269,10 @@ def _adapt(
 ) -> Callable[_Parameters, Node]:
     """Return a builder of SysML, adapted to the element of KerML with the same notation."""
 
-    def built(*said: _Parameters.args, **named: _Parameters.kwargs) -> Node:
-        return change(build(*said, **named))
+    def build_adapted(*args: _Parameters.args, **kwargs: _Parameters.kwargs) -> Node:
+        return change(build(*args, **kwargs))
 
-    return built
+    return build_adapted
 
 
 def _make_sufficient(node: Node) -> Node:

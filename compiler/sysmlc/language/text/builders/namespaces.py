@@ -1,7 +1,7 @@
 """Packages, imports, aliases, dependencies, annotations (KerML 8.2.3, SysML 8.2.2.3 to 8.2.2.5)."""
 
 from sysmlc.language.metaclasses import is_composite
-from sysmlc.language.text.builders.names import Names, apply_names
+from sysmlc.language.text.builders.declarations import Names, apply_names
 from sysmlc.language.text.builders.nodes import OWNING, add_members, make_node
 from sysmlc.language.text.lexer import Tokens, strip_comment, unquote
 from sysmlc.language.tree import Node, Reference, Relation

@@ -2,12 +2,12 @@
 
 from sysmlc.language.text.builders.actions import make_parameter
 from sysmlc.language.text.builders.connections import Tail, apply_tail
-from sysmlc.language.text.builders.definitions import finish_usage
-from sysmlc.language.text.builders.features import (
+from sysmlc.language.text.builders.declarations import (
     SpecializationPart,
     apply_specializations,
     apply_value,
 )
+from sysmlc.language.text.builders.definitions import finish_usage
 from sysmlc.language.text.builders.nodes import FEATURE, make_node
 from sysmlc.language.text.builders.usages import Prefix, apply_prefixes
 from sysmlc.language.text.lexer import Tokens

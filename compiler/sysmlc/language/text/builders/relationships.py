@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 
-from sysmlc.language.text.builders.names import Names, apply_names
+from sysmlc.language.text.builders.declarations import Names, apply_names
 from sysmlc.language.text.builders.nodes import OWNING, add_members, make_node
 from sysmlc.language.text.lexer import Tokens
 from sysmlc.language.tree import Node, Reference, Relation

@@ -2,13 +2,14 @@
 
 from sysmlc.language.text.builders.actions import make_parameter
 from sysmlc.language.text.builders.connections import End, Tail, apply_tail, make_connector_end
-from sysmlc.language.text.builders.definitions import finish_usage
-from sysmlc.language.text.builders.features import (
+from sysmlc.language.text.builders.declarations import (
+    Names,
     SpecializationPart,
+    apply_names,
     apply_specializations,
     apply_value,
 )
-from sysmlc.language.text.builders.names import Names, apply_names
+from sysmlc.language.text.builders.definitions import finish_usage
 from sysmlc.language.text.builders.nodes import FEATURE, OWNING, add_members, make_node
 from sysmlc.language.text.lexer import Tokens
 from sysmlc.language.tree import Node, Reference, Relation

@@ -3,17 +3,18 @@
 from typing import NamedTuple
 
 from sysmlc.language.text.builders.connections import End, make_connector_end
+from sysmlc.language.text.builders.declarations import (
+    Names,
+    SpecializationPart,
+    apply_names,
+    apply_specializations,
+    make_multiplicity,
+)
 from sysmlc.language.text.builders.definitions import (
     build_keywordless_usage,
     finish_usage,
     prepend_members,
 )
-from sysmlc.language.text.builders.features import (
-    SpecializationPart,
-    apply_specializations,
-    make_multiplicity,
-)
-from sysmlc.language.text.builders.names import Names, apply_names
 from sysmlc.language.text.builders.namespaces import apply_visibility
 from sysmlc.language.text.builders.nodes import FEATURE, OWNING, add_members, make_node
 from sysmlc.language.text.lexer import BuildFault, Tokens
@@ -138,7 +139,7 @@ def _describe(node: Node) -> str:
 
 Prefix = int | Node
 
-_FACTS: dict[str, tuple[str, AttributeValue]] = {
+_ATTRIBUTES_BY_PREFIX: dict[str, tuple[str, AttributeValue]] = {
     "in": ("direction", "in"),
     "out": ("direction", "out"),
     "inout": ("direction", "inout"),
@@ -153,7 +154,7 @@ _FACTS: dict[str, tuple[str, AttributeValue]] = {
     "timeslice": ("portionKind", "timeslice"),
     "standard": ("isStandard", True),
 }
-_OCCURRENCE = ("individual", "snapshot", "timeslice")
+_OCCURRENCE_PREFIXES = ("individual", "snapshot", "timeslice")
 
 
 def apply_prefixes(tokens: Tokens, begin: int, prefixes: list[Prefix], node: Node) -> Node:
@@ -169,9 +170,9 @@ def apply_prefixes(tokens: Tokens, begin: int, prefixes: list[Prefix], node: Nod
             continue
         if word == "ref":
             tokens.ref_usages.append(node)
-        if word not in _FACTS:
+        if word not in _ATTRIBUTES_BY_PREFIX:
             continue
-        name, value = _FACTS[word]
+        name, value = _ATTRIBUTES_BY_PREFIX[word]
         node.attributes[name] = value
         if name == "portionKind":
             node.attributes["isPortion"] = True
@@ -195,7 +196,9 @@ def _build_prefixed_keywordless(
     tokens: Tokens, _stop: int, begin: int, prefixes: list[Prefix], node: Node
 ) -> Node:
     """Build a usage without keyword, whose kind depends on its prefixes."""
-    if any(isinstance(prefix, int) and tokens[prefix] in _OCCURRENCE for prefix in prefixes):
+    if any(
+        isinstance(prefix, int) and tokens[prefix] in _OCCURRENCE_PREFIXES for prefix in prefixes
+    ):
         node.kind = "OccurrenceUsage"
     elif any(isinstance(prefix, Node) for prefix in prefixes):
         node.kind = "Usage"
