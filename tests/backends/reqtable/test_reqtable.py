@@ -235,7 +235,7 @@ def test_a_faulty_template_is_reported_and_the_csv_is_written(tmp_path):
     (tmp_path / "requirements.md.j2").write_text(
         rules.BAD_TEMPLATE.read_page().right, encoding="utf-8"
     )
-    assert emitted(PLANT_MODEL, tmp_path)[0]["requirements/Plant.requirements.md"] == "Plant"
+    assert emitted(PLANT_MODEL, tmp_path)[0]["requirements/Plant.requirements.md"] == "Plant\n"
 
 
 def test_the_tables_of_an_example(golden):
