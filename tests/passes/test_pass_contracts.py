@@ -31,7 +31,11 @@ def formulas(contract, *classes):
     return [print_formula(c.formula) for c in contract.guarantees if c.class_ in classes]
 
 
-@pytest.mark.parametrize("rule", RULES, ids=lambda rule: rule.name)
+WITH_GRAPHS = [rule for rule in RULES if rule.read_page().language == "ir"]
+"""Rules whose examples are graphs; those in XMI or SysML v2 are compiled as files."""
+
+
+@pytest.mark.parametrize("rule", WITH_GRAPHS, ids=lambda rule: rule.name)
 def test_rule_reports_its_wrong_model_and_not_its_right_one(rule):
     assert rule.code in codes(derived(rule.read_page().wrong)[2])
     assert rule.code not in codes(derived(rule.read_page().right)[2])

@@ -45,11 +45,10 @@ def lines(conjuncts):
     return [f"{one.class_}: {print_formula(one.formula)}" for one in conjuncts]
 
 
-@pytest.mark.parametrize("code", ["SM522", "SM523"])
-def test_rules_report_their_wrong_model_and_not_their_right_one(code):
-    rule = catalogue()[code]
-    assert code in [one.rule.code for one in derived(rule.read_page().wrong)[1]]
-    assert code not in [one.rule.code for one in derived(rule.read_page().right)[1]]
+def test_rule_reports_its_wrong_model_and_not_its_right_one():
+    page = catalogue()["SM522"].read_page()
+    assert "SM522" in [one.rule.code for one in derived(page.wrong)[1]]
+    assert "SM522" not in [one.rule.code for one in derived(page.right)[1]]
 
 
 def test_assumptions_and_demands_of_a_requirement_are_a_contract():

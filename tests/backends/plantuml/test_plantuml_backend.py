@@ -6,7 +6,7 @@ from drawing import emitted, texts
 from sysmlc.backends.plantuml import partitioning
 from sysmlc.backends.plantuml.backend import BAD_TEMPLATE
 from sysmlc.backends.plantuml.partitioning import split_view
-from sysmlc.backends.plantuml.undrawn import NOT_DRAWN, OVERTAKEN
+from sysmlc.backends.plantuml.undrawn import OVERTAKEN
 from sysmlc.backends.plantuml.views import GraphView, Line, Node
 from sysmlc.ir.text import parse_text
 
@@ -76,12 +76,12 @@ def test_a_wrong_template_is_reported(tmp_path, text):
 
 
 def test_what_no_diagram_shows_is_reported():
-    _, sink = emitted(parse_text(NOT_DRAWN.read_page().wrong))
+    _, sink = emitted(parse_text('Package p "Plant"\n  Unit u "second"\n'))
     assert [found.message for found in sink] == ["1 Unit of 'Plant' in no diagram: second"]
 
 
 def test_what_a_diagram_shows_is_not_reported():
-    files, sink = emitted(parse_text(NOT_DRAWN.read_page().right))
+    files, sink = emitted(parse_text('Package p "Plant"\n  Class b "Line" role="block"\n'))
     assert len(files) == 1
     assert list(sink) == []
 
