@@ -7,8 +7,9 @@ from sysmlc.diagnostics import Severity, Sink
 from sysmlc.driver import load_full_catalogue
 from sysmlc.ir import Graph, parse_text, verify
 from sysmlc.ir.text import print_text
+from sysmlc.logic.expressions.expression import Binary, Literal, Unary
 from sysmlc.passes.recipe import Recipe
-from sysmlc.recipe.expression import Apply, Lit, Var
+from sysmlc.recipe.expression import make_variable
 from sysmlc.recipe.model import MaterialUse, Mode, Model, Range
 
 RULES = [
@@ -267,21 +268,21 @@ def test_results_are_variables_and_guards_are_trees():
     nodes, graph = graph_of()
     assert nodes["look"].assign == (("ok", "ok"),)
     guards = {edge.text: edge.guard for edge in graph.edges if edge.text}
-    assert guards == {"ok": Var("ok"), "else": None}
+    assert guards == {"ok": make_variable("ok"), "else": None}
     assert {edge.text for edge in graph.edges if edge.is_else} == {"else"}
 
 
 def test_a_decision_that_goes_back_is_a_loop_with_body_and_exit():
     nodes, graph = graph_of("s m", "m l", "l d", "d m ok", "d g else", "g a", "a b", "b e")
     loop = nodes["good?"]
-    assert (loop.kind, loop.expression, loop.max_iterations) == ("loop", Var("ok"), None)
+    assert (loop.kind, loop.expression, loop.max_iterations) == ("loop", make_variable("ok"), None)
     roles = {e.target.rpartition("::")[2]: e.role for e in graph.edges if e.source == loop.id}
     assert roles == {"after": "body", "grip": "exit"}
 
 
 def test_the_guard_of_the_way_out_says_when_a_loop_goes_on():
     nodes, _ = graph_of("s m", "m l", "l d", "d m else", "d g ok", "g a", "a b", "b e")
-    assert nodes["good?"].expression == Apply("not", (Var("ok"),))
+    assert nodes["good?"].expression == Unary("not", make_variable("ok"))
 
 
 def test_a_bound_stands_on_the_decision():
@@ -311,7 +312,7 @@ def test_several_assignments_are_a_chain():
         + '    Action x "count" subkind="opaque" body="n := n + 1; ok := true"\n',
     )
     assert nodes["count"].variable == "n"
-    assert nodes["count"].expression == Apply("+", (Var("n"), Lit(1)))
+    assert nodes["count"].expression == Binary("+", make_variable("n"), Literal(1))
     assert nodes["count#2"].variable == "ok"
     ends = {(e.source.rpartition("::")[2], e.target.rpartition("::")[2]) for e in graph.edges}
     assert {("grip", "count"), ("count", "count#2"), ("count#2", "look")} <= ends
@@ -326,7 +327,7 @@ def test_an_object_flow_orders_what_no_control_flow_orders():
         1,
     )
     found, graph = graph_of("s g", "g l", "a e", nodes=nodes + flow)
-    assert found["place"].bind == (("ok", Var("ok")),)
+    assert found["place"].bind == (("ok", make_variable("ok")),)
     items = {
         (e.source.rpartition("::")[2], e.target.rpartition("::")[2], e.item) for e in graph.edges
     }

@@ -6,8 +6,8 @@ import recipe_samples as samples
 from sysmlc.diagnostics import Sink
 from sysmlc.driver import load_full_catalogue
 from sysmlc.ir import Graph, parse_text
+from sysmlc.logic.expressions.expression import Literal
 from sysmlc.passes.recipe import Recipe
-from sysmlc.recipe.expression import Lit
 from sysmlc.recipe.model import Model
 
 
@@ -114,7 +114,7 @@ def _waiting(**parts: str) -> str:
 def test_a_behaviour_that_is_only_given_a_duration_is_a_pause():
     (graph,) = [one for one in model(_waiting()).service_graphs if one.id == "Plant::Mount"]
     (pause,) = [one for one in graph.nodes if one.kind == "delay"]
-    assert pause.expression == Lit(2000)
+    assert pause.expression == Literal(2000)
 
 
 def test_a_behaviour_that_is_given_something_else_is_none():

@@ -4,7 +4,7 @@ from random import Random
 
 import pytest
 
-from sysmlc.recipe.expression import Var
+from sysmlc.recipe.expression import make_variable
 from sysmlc.recipe.flow import compute_duration, find_cycles, forward_edges, sort_nodes
 from sysmlc.recipe.loops import with_loops
 from sysmlc.recipe.model import FlowEdge, FlowGraph, Node, Range
@@ -18,7 +18,7 @@ def graph(text: str, **bounds: int) -> FlowGraph:
     edges = [pair.split(">") for pair in text.split()]
     names = dict.fromkeys(name for edge in edges for name in edge)
     nodes = tuple(Node(name, kinds.get(name[0], "service")) for name in sorted(names))
-    flows = tuple(FlowEdge(a, b, guard=Var(f"{a}{b}")) for a, b in edges)
+    flows = tuple(FlowEdge(a, b, guard=make_variable(f"{a}{b}")) for a, b in edges)
     return with_loops(FlowGraph("g", nodes=nodes, edges=flows), bounds)
 
 

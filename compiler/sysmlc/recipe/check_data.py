@@ -4,9 +4,10 @@ from collections.abc import Iterator, Mapping
 
 from sysmlc.diagnostics import Severity, rule
 from sysmlc.ir.algorithms import sort_topologically
+from sysmlc.logic.expressions.expression import Expression
 from sysmlc.recipe.checks import Finding, declared_parameters, iter_graphs
 from sysmlc.recipe.derive import Tables
-from sysmlc.recipe.expression import Expr, iter_opaque_texts, iter_variables
+from sysmlc.recipe.expression import iter_opaque_texts, iter_variables
 from sysmlc.recipe.flow import forward_edges
 from sysmlc.recipe.guards import (
     UndecidedError,
@@ -91,7 +92,7 @@ def _iter_guard_problems(
 
 
 def _iter_conflicts(
-    guards: list[tuple[str, Expr]], types: Mapping[str, ValueType | None], *, has_else: bool
+    guards: list[tuple[str, Expression]], types: Mapping[str, ValueType | None], *, has_else: bool
 ) -> Iterator[str]:
     """Describe at most one overlap and one gap, each with values that show it."""
     expressions = [resolve_literals(guard, types) for _, guard in guards]
@@ -138,7 +139,7 @@ def _iter_name_problems(graph: FlowGraph) -> Iterator[tuple[str, str]]:
     yield from _iter_unset(graph)
 
 
-def _iter_uses(graph: FlowGraph) -> Iterator[tuple[str, str, Expr]]:
+def _iter_uses(graph: FlowGraph) -> Iterator[tuple[str, str, Expression]]:
     """Iterate over expressions with their element and the node that reads the variables.
 
     The prefix ``<`` of a node means that it reads them when it begins, else when it is done.
@@ -269,12 +270,12 @@ def _check_graph(graph: FlowGraph) -> Iterator[Finding]:
             yield from _check_expression(node.element, node.id, node.expression)
 
 
-def _check_expression(element: str, id: str, expression: Expr | None) -> Iterator[Finding]:
+def _check_expression(element: str, id: str, expression: Expression | None) -> Iterator[Finding]:
     for text in () if expression is None else iter_opaque_texts(expression):
         yield Finding(UNREADABLE, element, {"text": text, "element": id})
 
 
-def _iter_conditions(model: Model) -> Iterator[tuple[str, str, Expr | None]]:
+def _iter_conditions(model: Model) -> Iterator[tuple[str, str, Expression | None]]:
     """Iterate over the conditions of tasks and services: element, id of the owner, expression."""
     owners: tuple[Task | Service, ...] = (*model.recipe.tasks, *model.services)
     for owner in owners:

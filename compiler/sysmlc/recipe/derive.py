@@ -6,7 +6,7 @@ from functools import partial
 from msgspec import Struct, field
 from msgspec.structs import replace
 
-from sysmlc.recipe.expression import Lit
+from sysmlc.logic.expressions.expression import Literal
 from sysmlc.recipe.flow import compute_duration, find_reachable, forward_edges
 from sysmlc.recipe.model import (
     Derived,
@@ -287,7 +287,7 @@ def _wait_time(node: Node, tables: Tables, machines: tuple[str, ...]) -> Range |
 
 def _delay_time(node: Node, tables: Tables, machines: tuple[str, ...]) -> Range | None:
     match node.expression:
-        case Lit(int(value)):
+        case Literal(int(value)):
             return Range(value, value)
         case _:
             return None

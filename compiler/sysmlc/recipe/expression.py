@@ -1,95 +1,108 @@
-"""Conditions and arithmetic of recipes as typed trees, the form of the JSON schema."""
+"""Expressions of recipes: those of ``logic.expressions`` in the normal form of the JSON schema.
 
-from collections.abc import Iterator
+A name has one segment, which may contain dots (``belt.places``). The operators are
++ - * / mod == != < <= > >= and or not.
+"""
 
-from msgspec import Struct
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 
-
-class Lit(Struct, frozen=True):
-    """A literal value."""
-
-    value: bool | int | float | str
-
-
-class Var(Struct, frozen=True):
-    """A parameter or variable, or a feature of one by a dotted path."""
-
-    name: str
-
-
-class Apply(Struct, frozen=True):
-    """An operator: + - * / mod == != < <= > >= and or not."""
-
-    op: str
-    args: tuple["Expr", ...]
+from sysmlc.logic.expressions.expression import (
+    Binary,
+    Call,
+    Expression,
+    Index,
+    Literal,
+    Name,
+    Unary,
+)
 
 
-class Index(Struct, frozen=True):
-    """One value of a list."""
-
-    base: "Expr"
-    index: "Expr"
-
-
-class Call(Struct, frozen=True):
-    """A function that the executor knows by name, applied to arguments."""
-
-    function: str
-    args: tuple["Expr", ...]
-
-
-class Opaque(Struct, frozen=True):
+@dataclass(frozen=True, slots=True)
+class Opaque(Name):
     """Text outside the expression grammar, for people; executors cannot evaluate it."""
 
-    text: str
+
+def make_variable(name: str) -> Name:
+    """Return the expression for a parameter or variable, or for a feature of one."""
+    return Name((name,))
 
 
-Expr = Lit | Var | Apply | Index | Call | Opaque
+def make_opaque(text: str) -> Opaque:
+    """Return the expression for a text outside the grammar."""
+    return Opaque((text,))
 
 
-def negation(expression: Expr) -> Expr:
+def variable_name(expression: Expression) -> str | None:
+    """Return the name of a variable; None for any other expression."""
+    if isinstance(expression, Name) and not isinstance(expression, Opaque):
+        return expression.path[0]
+    return None
+
+
+def negation(expression: Expression) -> Expression:
     """Return the negation of a condition."""
     match expression:
-        case Apply("not", (operand,)):
+        case Unary("not", operand):
             return operand
-        case Lit(bool(value)):
-            return Lit(not value)
+        case Literal(bool(value)):
+            return Literal(not value)
         case _:
-            return Apply("not", (expression,))
+            return Unary("not", expression)
 
 
-def disjunction(expressions: tuple[Expr, ...]) -> Expr:
+def disjunction(expressions: tuple[Expression, ...]) -> Expression:
     """Return the disjunction of conditions; false for none."""
     if not expressions:
-        return Lit(False)
+        return Literal(False)
     result = expressions[0]
     for expression in expressions[1:]:
-        result = Apply("or", (result, expression))
+        result = Binary("or", result, expression)
     return result
 
 
-def operands(expression: Expr) -> tuple[Expr, ...]:
+def operands(expression: Expression) -> tuple[Expression, ...]:
     """Return the operands of an operator, an index or a call; none for other expressions."""
     match expression:
-        case Apply(_, args) | Call(_, args):
-            return args
+        case Unary(_, operand):
+            return (operand,)
+        case Binary(_, left, right):
+            return (left, right)
         case Index(base, index):
             return (base, index)
+        case Call(_, args):
+            return args
         case _:
             return ()
 
 
-def iter_variables(expression: Expr) -> Iterator[str]:
+def map_operands(expression: Expression, change: Callable[[Expression], Expression]) -> Expression:
+    """Return the expression with changed operands."""
+    match expression:
+        case Unary(op, operand):
+            return Unary(op, change(operand))
+        case Binary(op, left, right):
+            return Binary(op, change(left), change(right))
+        case Index(base, index):
+            return Index(change(base), change(index))
+        case Call(function, args):
+            return Call(function, tuple(map(change, args)))
+        case _:
+            return expression
+
+
+def iter_variables(expression: Expression) -> Iterator[str]:
     """Iterate over the names of the variables, with repetitions, from left to right."""
-    if isinstance(expression, Var):
-        yield expression.name
+    name = variable_name(expression)
+    if name is not None:
+        yield name
     for operand in operands(expression):
         yield from iter_variables(operand)
 
 
-def iter_opaque_texts(expression: Expr) -> Iterator[str]:
+def iter_opaque_texts(expression: Expression) -> Iterator[str]:
     """Iterate over the texts in an expression that the grammar does not cover."""
     if isinstance(expression, Opaque):
-        yield expression.text
+        yield expression.path[0]
     for operand in operands(expression):
         yield from iter_opaque_texts(operand)

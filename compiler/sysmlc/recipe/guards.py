@@ -8,7 +8,8 @@ import operator
 from collections.abc import Callable, Iterator, Mapping
 from itertools import product
 
-from sysmlc.recipe.expression import Apply, Expr, Lit, Var, iter_variables
+from sysmlc.logic.expressions.expression import Binary, Expression, Literal, Unary
+from sysmlc.recipe.expression import iter_variables, map_operands, operands, variable_name
 from sysmlc.recipe.model import EnumType, Scalar, ValueType
 
 _MOST_VALUATIONS = 5000
@@ -33,21 +34,22 @@ class UndecidedError(ValueError):
     """A part of the expression has no value in the valuation."""
 
 
-def is_condition(expression: Expr, types: Mapping[str, ValueType | None]) -> bool:
+def is_condition(expression: Expression, types: Mapping[str, ValueType | None]) -> bool:
     """Return whether the expression is Boolean; an unknown type counts as Boolean."""
+    name = variable_name(expression)
+    if name is not None:
+        return types.get(name) in ("boolean", None)
     match expression:
-        case Lit(value):
+        case Literal(value):
             return isinstance(value, bool)
-        case Var(name):
-            return types.get(name) in ("boolean", None)
-        case Apply(op, _):
+        case Unary(op, _) | Binary(op, _, _):
             return op in (*_COMPARISONS, "and", "or", "not")
         case _:
             return True
 
 
 def iter_valuations(
-    guards: list[Expr], types: Mapping[str, ValueType | None]
+    guards: list[Expression], types: Mapping[str, ValueType | None]
 ) -> Iterator[dict[str, Scalar]]:
     """Iterate over sample valuations of the guards' variables; over none if there are too many."""
     names = sorted({name for guard in guards for name in iter_variables(guard)})
@@ -60,28 +62,29 @@ def iter_valuations(
             yield dict(zip(names, values, strict=True))
 
 
-def is_satisfied(expression: Expr, values: Mapping[str, Scalar]) -> bool:
+def is_satisfied(expression: Expression, values: Mapping[str, Scalar]) -> bool:
     """Return whether a condition is true. Raise UndecidedError."""
     return bool(_evaluate(expression, values))
 
 
-def _evaluate(  # noqa: PLR0911 - one a kind
-    expression: Expr, values: Mapping[str, Scalar]
+def _evaluate(  # noqa: PLR0911 - one for each kind
+    expression: Expression, values: Mapping[str, Scalar]
 ) -> Scalar:
+    name = variable_name(expression)
+    if name is not None and name in values:
+        return values[name]
     match expression:
-        case Lit(value):
+        case Literal(value):
             return value
-        case Var(name) if name in values:
-            return values[name]
-        case Apply("and", (left, right)):
+        case Binary("and", left, right):
             return is_satisfied(left, values) and is_satisfied(right, values)
-        case Apply("or", (left, right)):
+        case Binary("or", left, right):
             return is_satisfied(left, values) or is_satisfied(right, values)
-        case Apply("not", (operand,)):
+        case Unary("not", operand):
             return not is_satisfied(operand, values)
-        case Apply("-", (operand,)):
+        case Unary("-", operand):
             return _calculate("-", 0, _evaluate(operand, values))
-        case Apply(op, (left, right)):
+        case Binary(op, left, right):
             return _calculate(op, _evaluate(left, values), _evaluate(right, values))
         case _:
             raise UndecidedError
@@ -94,7 +97,7 @@ def _calculate(op: str, *values: Scalar) -> Scalar:
         raise UndecidedError from None
 
 
-def _sample_domain(name: str, guards: list[Expr], type_: ValueType | None) -> list[Scalar]:
+def _sample_domain(name: str, guards: list[Expression], type_: ValueType | None) -> list[Scalar]:
     if isinstance(type_, EnumType):
         return [*type_.literals]
     constants = [value for guard in guards for value in _iter_constants(name, guard)]
@@ -111,30 +114,46 @@ def _sample_domain(name: str, guards: list[Expr], type_: ValueType | None) -> li
     return sorted({value + shift for value in numbers for shift in (-step, 0, step)})
 
 
-def _iter_constants(name: str, expression: Expr) -> Iterator[Scalar]:
+def _iter_constants(name: str, expression: Expression) -> Iterator[Scalar]:
     """Iterate over the constants that a variable is compared with."""
+    constant = _compared_constant(name, expression)
+    if constant is not None:
+        yield constant.value
+        return
+    for operand in _operands_of_operator(expression):
+        yield from _iter_constants(name, operand)
+
+
+def _compared_constant(name: str, expression: Expression) -> Literal | None:
     match expression:
-        case Apply(op, (Var(variable), Lit(value)) | (Lit(value), Var(variable))) if (
-            op in _COMPARISONS and variable == name
-        ):
-            yield value
-        case Apply(_, args):
-            for arg in args:
-                yield from _iter_constants(name, arg)
+        case Binary(op, left, right) if op in _COMPARISONS:
+            if variable_name(left) == name and isinstance(right, Literal):
+                return right
+            if variable_name(right) == name and isinstance(left, Literal):
+                return left
+    return None
 
 
-def _is_numeric(name: str, expression: Expr) -> bool:
-    match expression:
-        case Apply(op, args):
-            is_operand = op in _NUMERIC and Var(name) in args
-            has_number = any(isinstance(a, Lit) and type(a.value) in (int, float) for a in args)
-            is_compared = op in _COMPARISONS and Var(name) in args and has_number
-            return is_operand or is_compared or any(_is_numeric(name, arg) for arg in args)
-        case _:
-            return False
+def _operands_of_operator(expression: Expression) -> tuple[Expression, ...]:
+    return operands(expression) if isinstance(expression, Unary | Binary) else ()
 
 
-def resolve_literals(expression: Expr, types: Mapping[str, ValueType | None]) -> Expr:
+def _is_numeric(name: str, expression: Expression) -> bool:
+    """Return whether the variable is an operand of arithmetic or is compared with a number."""
+    if not isinstance(expression, Unary | Binary):
+        return False
+    inner = operands(expression)
+    if any(variable_name(operand) == name for operand in inner):
+        has_number = any(
+            isinstance(operand, Literal) and type(operand.value) in (int, float)
+            for operand in inner
+        )
+        if expression.op in _NUMERIC or (expression.op in _COMPARISONS and has_number):
+            return True
+    return any(_is_numeric(name, operand) for operand in inner)
+
+
+def resolve_literals(expression: Expression, types: Mapping[str, ValueType | None]) -> Expression:
     """Return the expression with values in place of names of enumeration literals."""
     literals = {
         literal
@@ -142,13 +161,12 @@ def resolve_literals(expression: Expr, types: Mapping[str, ValueType | None]) ->
         if isinstance(type_, EnumType)
         for literal in type_.literals
     }
-    match expression:
-        case Var(name) if name not in types and _local_name(name) in literals:
-            return Lit(_local_name(name))
-        case Apply(op, args):
-            return Apply(op, tuple(resolve_literals(arg, types) for arg in args))
-        case _:
-            return expression
+    name = variable_name(expression)
+    if name is not None and name not in types and _local_name(name) in literals:
+        return Literal(_local_name(name))
+    if isinstance(expression, Unary | Binary):
+        return map_operands(expression, lambda operand: resolve_literals(operand, types))
+    return expression
 
 
 def _local_name(name: str) -> str:

@@ -8,7 +8,8 @@ from collections.abc import Mapping
 
 from msgspec.structs import replace
 
-from sysmlc.recipe.expression import Expr, disjunction, negation
+from sysmlc.logic.expressions.expression import Expression
+from sysmlc.recipe.expression import disjunction, negation
 from sysmlc.recipe.flow import find_cycles, find_entries, find_reachable
 from sysmlc.recipe.model import FlowEdge, FlowGraph, Node
 
@@ -88,7 +89,7 @@ def _make_loop_node(
     )
 
 
-def _repeat_condition(outgoing: list[FlowEdge]) -> Expr:
+def _repeat_condition(outgoing: list[FlowEdge]) -> Expression:
     """Return the condition of another round, from the guards of the body edges or of the exits."""
     body = [edge for edge in outgoing if edge.role == "body"]
     if any(edge.is_else or edge.guard is None for edge in body):

@@ -8,7 +8,7 @@ from typing import Literal as OneOf
 
 from msgspec import Struct
 
-from sysmlc.recipe.expression import Expr
+from sysmlc.logic.expressions.expression import Expression
 
 Number = int | float
 Scalar = bool | int | float | str
@@ -62,7 +62,7 @@ class OpcUa(Struct, frozen=True):
     method: str = ""
     endpoint: str = ""
     namespace_uri: str = ""
-    done_when: Expr | None = None
+    done_when: Expression | None = None
     timeout: int | None = None
     element: str = ""
 
@@ -155,9 +155,9 @@ class Task(Struct, frozen=True):
     materials: tuple[MaterialUse, ...] = ()
     equipment: tuple[Mode, ...] = ()
     implementation: str = ""
-    pre: Expr | None = None
-    post: Expr | None = None
-    bind: tuple[tuple[str, Expr], ...] = ()
+    pre: Expression | None = None
+    post: Expression | None = None
+    bind: tuple[tuple[str, Expression], ...] = ()
     assign: tuple[tuple[str, str], ...] = ()
     interruptible: bool = False
     no_wait: bool = False
@@ -217,8 +217,8 @@ class Service(Struct, frozen=True):
     providers: tuple[Provider, ...] = ()
     duration: int | None = None
     implementation: str = ""
-    pre: Expr | None = None
-    post: Expr | None = None
+    pre: Expression | None = None
+    post: Expression | None = None
     interruptible: bool = False
     opcua: OpcUa | None = None
     element: str = ""
@@ -255,10 +255,10 @@ class Node(Struct, frozen=True):
     id: str
     kind: str
     ref: str = ""
-    bind: tuple[tuple[str, Expr], ...] = ()
+    bind: tuple[tuple[str, Expression], ...] = ()
     assign: tuple[tuple[str, str], ...] = ()
     variable: str = ""
-    expression: Expr | None = None
+    expression: Expression | None = None
     text: str = ""
     max_iterations: int | None = None
     element: str = ""
@@ -269,7 +269,7 @@ class FlowEdge(Struct, frozen=True):
 
     source: str
     target: str
-    guard: Expr | None = None
+    guard: Expression | None = None
     text: str = ""
     is_else: bool = False
     item: str = ""

@@ -2,7 +2,8 @@
 
 from reading_v2 import Reading
 
-from sysmlc.recipe.expression import Lit, Var
+from sysmlc.logic.expressions.expression import Literal
+from sysmlc.recipe.expression import make_variable
 from sysmlc.recipe.model import Model
 
 PASSES = ("resolve", "inherit", "classify", "ports", "behaviours", "recipe")
@@ -65,7 +66,11 @@ def test_a_for_loop_is_a_node_with_a_body_and_an_exit():
         "settle -> expansion",
     ]
     (each,) = [node for node in graph.nodes if node.kind == "forEach"]
-    assert (each.variable, each.expression, each.max_iterations) == ("p", Var("belt.places"), 4)
+    assert (each.variable, each.expression, each.max_iterations) == (
+        "p",
+        make_variable("belt.places"),
+        4,
+    )
 
 
 def test_a_for_loop_takes_as_long_as_its_list_is_long():
@@ -135,7 +140,7 @@ def test_a_helper_has_a_graph_of_its_own():
     names = [graph.id for graph in model.function_graphs]
     assert names == ["P::Serve", "P::Wait"]
     (call,) = [node for node in model.function_graphs[0].nodes if node.kind == "call"]
-    assert (call.ref, dict(call.bind)) == ("P::Wait", {"belt": Var("belt")})
+    assert (call.ref, dict(call.bind)) == ("P::Wait", {"belt": make_variable("belt")})
     assert model.functions == ()
     assert "SM614" not in codes
 
@@ -163,7 +168,7 @@ def test_variables_of_a_machine_are_those_that_are_spoken_of():
 def test_literals_of_numbers_are_numbers_where_numbers_are_meant():
     model, _ = recipe("first start; then action go : Move { in :>> to = Slot::right; } then done;")
     (go,) = [node for node in model.function_graphs[0].nodes if node.kind == "function"]
-    assert dict(go.bind) == {"to": Lit(2)}
+    assert dict(go.bind) == {"to": Literal(2)}
 
 
 def test_an_output_that_is_an_expression_is_assigned_before_the_end():
@@ -174,7 +179,7 @@ def test_an_output_that_is_an_expression_is_assigned_before_the_end():
     model, _ = recipe(text)
     graph = model.function_graphs[0]
     made = [(node.variable, node.expression) for node in graph.nodes if node.kind == "assign"]
-    assert made == [("at", Var("found"))]
+    assert made == [("at", make_variable("found"))]
     assert shown(graph) == ["start -> go", "go -> at", "at -> done"]
     assert [one.value for one in graph.variables] == [(1, 2)]
 

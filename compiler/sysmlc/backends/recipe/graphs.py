@@ -2,7 +2,17 @@
 
 from collections.abc import Callable, Iterable, Mapping
 
-from sysmlc.recipe.expression import Apply, Call, Expr, Index, Lit, Opaque, Var
+from sysmlc.logic.expressions.expression import (
+    Binary,
+    Call,
+    Expression,
+    Index,
+    Literal,
+    Name,
+    Unary,
+    print_expression,
+)
+from sysmlc.recipe.expression import Opaque, operands
 from sysmlc.recipe.model import (
     EnumType,
     FlowEdge,
@@ -156,7 +166,7 @@ def _edge(edge: FlowEdge) -> Json:
 # -- expressions -------------------------------------------------------------------------------
 
 
-def expression(value: Expr | None, text: str = "") -> Json | None:
+def expression(value: Expression | None, text: str = "") -> Json | None:
     """An expression as a tree, with its source text on top when it is given."""
     if value is None:
         return None
@@ -164,17 +174,19 @@ def expression(value: Expr | None, text: str = "") -> Json | None:
     return {**_tree(value), **beside}
 
 
-def _tree(value: Expr) -> Json:
+def _tree(value: Expression) -> Json:  # noqa: PLR0911 - one for each kind
     match value:
-        case Lit(literal):
+        case Literal(literal):
             return {"lit": literal}
-        case Var(name):
+        case Opaque((text,)):
+            return {"text": text}
+        case Name((name,)):
             return {"var": name}
-        case Apply(op, args):
-            return {"op": op, "args": [_tree(arg) for arg in args]}
+        case Unary(op, _) | Binary(op, _, _):
+            return {"op": op, "args": [_tree(operand) for operand in operands(value)]}
         case Index(base, index):
             return {"index": [_tree(base), _tree(index)]}
-        case Call(function, args):
+        case Call(Name((function,)), args):
             return {"call": function, "args": [_tree(arg) for arg in args]}
-        case Opaque(text):
-            return {"text": text}
+        case _:
+            return {"text": print_expression(value)}

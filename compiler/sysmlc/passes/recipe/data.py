@@ -7,11 +7,12 @@ from collections.abc import Iterator, Mapping
 from msgspec import Struct, field
 
 from sysmlc.ir import Edge, Element, Kind, query
+from sysmlc.logic.expressions.expression import Expression, Literal
 from sysmlc.passes.recipe.context import Context
 from sysmlc.passes.recipe.expressions import read_expression, read_time, resolve_literals
 from sysmlc.passes.recipe.features import build_parameter, find_feature, is_data, is_input
 from sysmlc.passes.recipe.regions import is_inlined
-from sysmlc.recipe.expression import Apply, Call, Expr, Index, Lit, Var
+from sysmlc.recipe.expression import make_variable, map_operands, variable_name
 from sysmlc.recipe.model import Parameter
 
 
@@ -46,7 +47,7 @@ class Data(Struct, frozen=True):
 
     # -- what an action reads and writes -------------------------------------------------------
 
-    def bind_inputs(self, node: Element) -> tuple[tuple[str, Expr], ...]:
+    def bind_inputs(self, node: Element) -> tuple[tuple[str, Expression], ...]:
         """Return the input pins of an action with the expressions that fill them, by name."""
         values = {
             self.context.label(pin): self._find_value(pin) for pin in self._list_pins(node, "in")
@@ -63,7 +64,7 @@ class Data(Struct, frozen=True):
         for pin in self._list_pins(node, "out"):
             yield self.context.label(pin), self.variable_of(pin)
 
-    def read(self, text: str) -> Expr:
+    def read(self, text: str) -> Expression:
         """Return an expression of the activity over the variables that output pins set."""
         expression = resolve_literals(self.context, self.activity, read_expression(text))
         if not self.dotted:
@@ -91,19 +92,14 @@ class Data(Struct, frozen=True):
         full = name if owner is None else f"{self.context.label(owner)}.{name}"
         return full if name in self.shared or full in self.dotted else name
 
-    def max_size(self, collection: Expr) -> int | None:
+    def max_size(self, collection: Expression) -> int | None:
         """Return the largest number of elements of a collection, if its multiplicity states it."""
-        match collection:
-            case Var(name):
-                feature = find_feature(self.context, self.activity, name)
-                limits = (
-                    None if feature is None else query.bounds(feature.attrs.get("multiplicity"))
-                )
-                return None if limits is None else limits[1]
-            case _:
-                return None
+        name = variable_name(collection)
+        feature = None if name is None else find_feature(self.context, self.activity, name)
+        limits = None if feature is None else query.bounds(feature.attrs.get("multiplicity"))
+        return None if limits is None else limits[1]
 
-    def source_of(self, flow: Element) -> Expr | None:
+    def source_of(self, flow: Element) -> Expression | None:
         """Return the value that an object flow carries: the variable of the pin or parameter it
         starts at.
         """
@@ -114,9 +110,9 @@ class Data(Struct, frozen=True):
             if end is None:
                 continue
             if end.kind is Kind.PIN and not self._is_passed_on(end):
-                return Var(self.variable_of(end))
+                return make_variable(self.variable_of(end))
             if end.kind is Kind.ACTIVITY_PARAMETER:
-                return Var(self._parameter_name(end))
+                return make_variable(self._parameter_name(end))
             incoming = [
                 previous for previous in query.incoming(graph, end) if previous.id not in seen
             ]
@@ -169,43 +165,36 @@ class Data(Struct, frozen=True):
             if fits and is_input(self.context, pin):
                 yield pin
 
-    def _find_value(self, pin: Element) -> Expr | None:
+    def _find_value(self, pin: Element) -> Expression | None:
         value = pin.attrs.get("value")
         if isinstance(value, str) and "value_instance" in pin.attrs:
-            return Lit(value)
+            return Literal(value)
         if isinstance(value, str):
             return self.read(value)
         unit = pin.attrs.get("value_unit")
         if isinstance(value, bool | int | float):
-            return read_time(f"{value} {unit}") if isinstance(unit, str) else Lit(value)
+            return read_time(f"{value} {unit}") if isinstance(unit, str) else Literal(value)
         for flow in query.incoming(self.context.graph, pin):
             carried = self.source_of(flow)
             if carried is not None:
                 return carried
         name = self.context.label(pin)
-        return Var(name) if name in self.declared else None
+        return make_variable(name) if name in self.declared else None
 
     def _parameter_name(self, node: Element) -> str:
         parameter = self.context.graph.target(node, Edge.REFERENCES)
         return self.context.label(node if parameter is None else parameter)
 
 
-def _first(pair: tuple[str, Expr | None]) -> str:
+def _first(pair: tuple[str, Expression | None]) -> str:
     return pair[0]
 
 
-def _rename_variables(expression: Expr, names: Mapping[str, str]) -> Expr:
-    match expression:
-        case Var(name):
-            return Var(names.get(name, name))
-        case Apply(op, args):
-            return Apply(op, tuple(_rename_variables(argument, names) for argument in args))
-        case Index(base, index):
-            return Index(_rename_variables(base, names), _rename_variables(index, names))
-        case Call(function, args):
-            return Call(function, tuple(_rename_variables(argument, names) for argument in args))
-        case _:
-            return expression
+def _rename_variables(expression: Expression, names: Mapping[str, str]) -> Expression:
+    name = variable_name(expression)
+    if name is not None:
+        return make_variable(names.get(name, name))
+    return map_operands(expression, lambda operand: _rename_variables(operand, names))
 
 
 def _find_dotted_names(context: Context, activity: Element) -> frozenset[str]:

@@ -7,6 +7,7 @@ from itertools import pairwise
 from msgspec.structs import replace
 
 from sysmlc.ir import Element, Kind, query
+from sysmlc.logic.expressions.expression import Binary, Expression, Literal, Unary
 from sysmlc.passes.recipe.context import Call, Context, Refinement
 from sysmlc.passes.recipe.data import Data
 from sysmlc.passes.recipe.nodes import (
@@ -23,7 +24,6 @@ from sysmlc.passes.recipe.regions import (
     is_inlined,
     list_steps,
 )
-from sysmlc.recipe.expression import Apply, Expr, Lit
 from sysmlc.recipe.flow import find_reachable, sort_nodes
 from sysmlc.recipe.loops import with_loops
 from sysmlc.recipe.model import FlowEdge, FlowGraph, Node
@@ -301,21 +301,21 @@ def _build_edge(
 
 def _read_guard(
     context: Context, flow: Element, source: Element, text: str, data: Data
-) -> Expr | None:
+) -> Expression | None:
     """Return a guard; a literal is compared with the decision's input as in fUML (1.5, 8.5.2.2)."""
     is_literal = bool(flow.attrs.get("guard_literal"))
     if not text or (is_literal and source.subkind != "decision"):
         return None
     expression = data.read(text)
     tested = _find_decision_input(context, source, data)
-    if not is_literal or tested is None or not isinstance(expression, Lit):
+    if not is_literal or tested is None or not isinstance(expression, Literal):
         return expression
     if isinstance(expression.value, bool):
-        return tested if expression.value else Apply("not", (tested,))
-    return Apply("==", (tested, expression))
+        return tested if expression.value else Unary("not", tested)
+    return Binary("==", tested, expression)
 
 
-def _find_decision_input(context: Context, decision: Element, data: Data) -> Expr | None:
+def _find_decision_input(context: Context, decision: Element, data: Data) -> Expression | None:
     chosen = context.graph.get(str(decision.attrs.get("decision_input_flow", "")))
     incoming = query.incoming(context.graph, decision, Kind.OBJECT_FLOW)
     flows = [chosen] if chosen is not None else incoming

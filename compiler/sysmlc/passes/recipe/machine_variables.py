@@ -6,11 +6,12 @@ from collections.abc import Iterable, Iterator
 from msgspec.structs import replace
 
 from sysmlc.ir import Element, Kind, query
+from sysmlc.logic.expressions.expression import Expression
 from sysmlc.passes.recipe.context import Context
 from sysmlc.passes.recipe.features import find_member, literal_default, value_type
 from sysmlc.passes.recipe.machines import find_opcua_node
 from sysmlc.recipe.checks import iter_graphs
-from sysmlc.recipe.expression import Expr, iter_variables
+from sysmlc.recipe.expression import iter_variables
 from sysmlc.recipe.model import (
     MachineVariable,
     Model,
@@ -50,7 +51,7 @@ def _machine_parameters(parameters: Iterable[Parameter]) -> Iterator[tuple[str, 
             yield parameter.name, parameter.type.name
 
 
-def _list_scopes(model: Model) -> Iterator[tuple[tuple[Parameter, ...], list[Expr]]]:
+def _list_scopes(model: Model) -> Iterator[tuple[tuple[Parameter, ...], list[Expression]]]:
     """Yield each scope of names: the declared parameters, and the expressions that use them."""
     recipe: Recipe = model.recipe
     bindings = [value for task in recipe.tasks for _, value in task.bind]
