@@ -293,7 +293,7 @@ def test_overlays_count_when_both_have_one(plants):
 
 def test_colours_on_a_terminal_only(plants, monkeypatch):
     plain = plants.sysmlc("diff", "old.aml", "new.aml").stdout
-    monkeypatch.setattr("sysmlc.cli.session.has_color", lambda stream: True)
+    monkeypatch.setattr("sysmlc.cli.reports.has_color", lambda stream: True)
     coloured = plants.sysmlc("diff", "old.aml", "new.aml").stdout
     assert "\x1b[" not in plain
     assert "\x1b[32m+ value width|mm: added\x1b[0m" in coloured

@@ -7,7 +7,7 @@ from jsonschema import Draft202012Validator
 from msgspec.structs import replace
 
 from json_documents import SARIF
-from sysmlc.cli.session import has_color
+from sysmlc.cli.reports import has_color
 from sysmlc.diagnostics import Place, Severity, Sink, Subject, rule
 from sysmlc.diagnostics.render import FORMATS, Report, make_report, render
 from sysmlc.sources import Source

@@ -61,7 +61,7 @@ def command(
     Without MODEL every [[model]] of sysmlc.toml is compiled. A file that comes from an element
     with an error is withheld; the others are written.
     """
-    from sysmlc.cli import session
+    from sysmlc.cli import reports, session
     from sysmlc.cli.units import open_units
     from sysmlc.driver import publish
 
@@ -70,7 +70,7 @@ def command(
     config = session.load_config(models, settings)
     units = open_units(models, config, settings, output)
     outcomes = session.compile_units(units, settings)
-    code = session.exit_code_of_all(units, outcomes, settings)
+    code = reports.exit_code_of_all(units, outcomes, settings)
     targets = [session.target_of(unit, is_forced=is_forced) for unit in units]
     written = [
         (outcome, target)
@@ -78,11 +78,11 @@ def command(
         if outcome.exit_code() < 2
     ]
     if check_only:
-        session.report(outcomes, settings)
+        reports.report_outcomes(outcomes, settings)
         differences = [_compare(outcome, target) for outcome, target in written]
         ctx.exit(max([code, _report_leftovers(units), *differences]))
     publications = [publish(outcome, target) for outcome, target in written]
-    session.report(outcomes, settings, publications)
+    reports.report_outcomes(outcomes, settings, publications)
     for (outcome, target), publication in zip(written, publications, strict=True):
         if publication.is_refused:
             code = 2
@@ -117,12 +117,12 @@ def _compare(outcome: "Outcome", target: "Target") -> int:
 def _print_changes(
     outcome: "Outcome", folder: Path, publication: "Publication", settings: "Settings"
 ) -> None:
-    from sysmlc.cli import session
+    from sysmlc.cli import reports
 
     if settings.verbose:
         for path in publication.changed:
             terminal.echo(f"changed {folder / path}", err=True)
-    if session.says_more(settings):
+    if reports.allows_sentences(settings):
         terminal.echo(_summarise(outcome, folder, len(publication.changed)))
 
 

@@ -30,14 +30,14 @@ def command(
     **given: Any,  # noqa: ANN401 - the fields of Settings
 ) -> None:
     """Compile MODEL... in memory and report what is wrong, as 'build' would."""
-    from sysmlc.cli import session
+    from sysmlc.cli import reports, session
     from sysmlc.cli.units import open_units
 
     settings = session.Settings(**given, uses_shipped_templates=True)
     config = session.load_config(models, settings)
     units = open_units(models, config, settings, None)
     made = session.compile_units(units, settings, has_files=False)
-    session.report(made, settings)
+    reports.report_outcomes(made, settings)
     if settings.form == "text" and not any(outcome.findings for outcome in made):
         click.echo("no findings", err=True)
-    ctx.exit(session.exit_code_of_all(units, made, settings))
+    ctx.exit(reports.exit_code_of_all(units, made, settings))

@@ -71,13 +71,13 @@ def read_contracts(
 
 
 def _of_model(file: Path, config: "Config", settings: "Settings") -> ContractFile:
-    from sysmlc.cli import session
+    from sysmlc.cli import reports, session
     from sysmlc.diagnostics import Sink
     from sysmlc.logic.composition.derivation import compose
     from sysmlc.logic.contract import Contract
 
     made = session.compile_unit((file,), config, settings)
-    findings = tuple(session.findings(made, only_errors=not settings.verbose))
+    findings = tuple(reports.list_findings(made, only_errors=not settings.verbose))
 
     def place(origin: str) -> "Subject":
         from sysmlc.diagnostics import Subject
@@ -153,10 +153,10 @@ def _from_text(origin: str) -> "Subject":
 
 def show(read: ContractFile, settings: "Settings", lines: "Iterable[str]") -> None:
     """Show the findings about a file and its contracts, then a line for each contract."""
-    from sysmlc.cli import session
+    from sysmlc.cli import reports
     from sysmlc.diagnostics.render import make_report
 
-    found = session.named(read.root, make_report(read.sink, read.sources).findings)
-    session.show([*read.findings, *found], settings)
+    found = reports.localize(read.root, make_report(read.sink, read.sources).findings)
+    reports.print_findings([*read.findings, *found], settings)
     for line in lines:
-        terminal.echo(line, err=not session.says_more(settings))
+        terminal.echo(line, err=not reports.allows_sentences(settings))

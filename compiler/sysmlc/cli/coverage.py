@@ -66,8 +66,8 @@ def command(
     units = open_units(models, loaded, settings, None)
     made = [measure_coverage(unit.request, unit.opened) for unit in units]
     code = max(_report_errors(one) for one in made)
-    reports = {file.file: file for one in made for file in _shown(one)}
-    files = [reports[name] for name in sorted(reports)]
+    file_reports = {file.file: file for one in made for file in _shown(one)}
+    files = [file_reports[name] for name in sorted(file_reports)]
     if code < 2 and (files or form != "text"):
         _print(files, form, every)
     ctx.exit(max(code, int(_is_below(files, fail_under))))
@@ -75,30 +75,30 @@ def command(
 
 def _report_errors(made: "UnitCoverage") -> int:
     """Show what could not be read, and say the exit code that this means."""
-    from sysmlc.cli import session
+    from sysmlc.cli import reports, session
     from sysmlc.diagnostics.render import make_report
     from sysmlc.driver import faults
 
     errors = [found for found in made.diagnostics if found.is_error]
     if errors:
-        shown = session.named(made.root, make_report(errors, made.sources).findings)
-        session.show(shown, session.Settings())
+        shown = reports.localize(made.root, make_report(errors, made.sources).findings)
+        reports.print_findings(shown, session.Settings())
     return faults.compute_exit_code(errors)
 
 
 def _shown(made: "UnitCoverage") -> "Iterable[FileReport]":
     """The reports with file names as the reader knows them."""
-    from sysmlc.cli.session import name_of
+    from sysmlc.cli.reports import localize_name
 
     for file in made.files:
-        name = name_of(made.root, file.file)
+        name = localize_name(made.root, file.file)
         yield replace(file, file=name, losses=tuple(replace(x, file=name) for x in file.losses))
 
 
 def _print(files: "Sequence[FileReport]", form: str, every: bool) -> None:
     import sys
 
-    from sysmlc.cli.session import has_color
+    from sysmlc.cli.reports import has_color
     from sysmlc.diagnostics.render import coverage
 
     if form == "text":

@@ -55,7 +55,7 @@ def command(
     Overlays count when both models have one.
     Exit code 0 when they are equal, 1 when they differ, 2 when one cannot be read.
     """
-    from sysmlc.cli import session
+    from sysmlc.cli import reports, session
     from sysmlc.ir import Graph
     from sysmlc.ir.compare import compare
 
@@ -64,7 +64,9 @@ def command(
     compilations = [compilation for side in sides for compilation in side.values()]
     unread = [compilation for compilation in compilations if _is_unread(compilation)]
     if unread:
-        session.show([found for one in unread for found in session.findings(one)], settings)
+        reports.print_findings(
+            [found for one in unread for found in reports.list_findings(one)], settings
+        )
         ctx.exit(2)
     _check(ignore, compilations)
     changes: list[Change] = []
@@ -132,7 +134,7 @@ def _refine(made: "Sequence[Compilation | None]") -> None:
 
 def _text(changes: "list[Change]", form: str, sides: "list[dict[str, Compilation]]") -> str:
     from sysmlc.cli import diff_forms
-    from sysmlc.cli.session import has_color
+    from sysmlc.cli.reports import has_color
 
     if form == "json":
         return diff_forms.json_text(changes, *(_places(changes, sides, i) for i in (0, 1)))

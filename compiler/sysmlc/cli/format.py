@@ -157,10 +157,10 @@ def _formatted(name: str, path: Path | None, data: bytes, language: str) -> _Tex
 
 
 def _show(findings: "list[Finding]") -> None:
-    from sysmlc.cli import session
+    from sysmlc.cli import reports, session
 
     if findings:
-        session.show(findings, session.Settings())
+        reports.print_findings(findings, session.Settings())
 
 
 def _diff(text: _Text) -> Iterator[str]:

@@ -86,7 +86,7 @@ def _studied(
     chosen: "Options",
     keeper: "CrewCache | None",
 ) -> int:
-    from sysmlc.cli import session
+    from sysmlc.cli import reports, session
     from sysmlc.cli.result_files import write_files
     from sysmlc.diagnostics import Severity, Sink, Subject
     from sysmlc.diagnostics.render import make_report
@@ -105,11 +105,11 @@ def _studied(
     outcomes = [studied(one, place, sink, chosen, has_relations, keeper) for one in known]
     if output is not None:
         write_files([file for one in outcomes for file in files(one)], output)
-    of_model = session.findings(made, only_errors=not settings.verbose)
-    found = session.named(made.root, make_report(sink, made.sources).findings)
-    session.show([*of_model, *found], settings)
+    of_model = reports.list_findings(made, only_errors=not settings.verbose)
+    found = reports.localize(made.root, make_report(sink, made.sources).findings)
+    reports.print_findings([*of_model, *found], settings)
     for one in outcomes:
-        terminal.echo(summary(one), err=not session.says_more(settings))
+        terminal.echo(summary(one), err=not reports.allows_sentences(settings))
     has_errors = any(one.severity is Severity.ERROR for one in sink)
     return max(code, _code(outcomes, has_errors))
 

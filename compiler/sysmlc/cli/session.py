@@ -1,6 +1,5 @@
 """What every compiling command does: configuration, compile units, findings, exit code."""
 
-import os
 import sys
 from collections.abc import Iterable, Sequence
 from pathlib import Path
@@ -12,23 +11,18 @@ from msgspec.structs import replace
 
 from sysmlc.cli import terminal
 from sysmlc.cli.limits import LIMITS
-from sysmlc.support.escapes import escape_undecodable
 
 if TYPE_CHECKING:
     from sysmlc.backends.base import Backend
     from sysmlc.cli.units import Unit
     from sysmlc.config import Config
     from sysmlc.diagnostics import Rule
-    from sysmlc.diagnostics.render import Finding
-    from sysmlc.driver import Compilation, OpenedUnit, Outcome, Publication, Request, Target
+    from sysmlc.driver import Compilation, OpenedUnit, Outcome, Request, Target
     from sysmlc.sources.schema import Schemas
     from sysmlc.support.cache import Cache
 
 _AS_WRITTEN = frozenset({"resolve", "kept"})
 """Passes that add nothing to what the authors wrote."""
-_SHOWN = 1_000
-"""Findings that a reader is shown unless all are asked for: nobody reads more at once."""
-_ON_STDOUT = frozenset({"json", "sarif", "github"})
 
 
 class Settings(Struct, frozen=True):
@@ -59,21 +53,6 @@ class Settings(Struct, frozen=True):
         if self.schema is not None:
             return False
         return self.has_cache and not (self.verify_each or self.print_after or self.verbose)
-
-
-class Selection(Struct, frozen=True):
-    """Files and folders that were named, or a ``[[model]]``, and where their outputs go.
-
-    ``name`` is that of the ``[[model]]``; without one the files may be several compile units.
-    Nothing is written outside ``boundary``: the project root, or what ``find_boundary`` returns for
-    a folder that the user named.
-    """
-
-    files: tuple[Path, ...]
-    output: Path
-    emit: tuple[str, ...]
-    boundary: Path
-    name: str = ""
 
 
 def fail(message: str, *details: str) -> NoReturn:
@@ -123,59 +102,6 @@ def _start(models: Sequence[Path]) -> Path:
         return Path.cwd()
     first = models[0].absolute()
     return first if first.is_dir() else first.parent
-
-
-def select(
-    models: Sequence[Path], config: "Config", output: Path | None, emit: tuple[str, ...]
-) -> list[Selection]:
-    """Return what was named, or every ``[[model]]``.
-
-    A named file that a ``[[model]]`` lists brings the whole unit with it, and so does a named
-    folder that such a file lies in. What else was named comes last.
-    """
-    from sysmlc.config import find_boundary
-
-    folder = config.folder or Path.cwd()
-    declared = [(unit, _expand(config, unit.files)) for unit in config.models]
-    chosen = [
-        Selection(
-            tuple(files),
-            output / unit.name if output and len(declared) > 1 else output or folder / unit.output,
-            emit or unit.emit or config.emit,
-            find_boundary(output) if output else config.root or Path.cwd(),
-            unit.name,
-        )
-        for unit, files in declared
-        if not models or any(_contains(model, file) for model in models for file in files)
-    ]
-    listed = [file for unit in chosen for file in unit.files]
-    rest = tuple(m for m in models if not any(_same(m, file) for file in listed))
-    if rest:
-        plain = output or (folder / config.output if config.folder else Path(config.output))
-        boundary = find_boundary(output) if output else config.root or Path.cwd()
-        chosen.append(Selection(rest, plain, emit or config.emit, boundary))
-    if not chosen:
-        raise click.UsageError("name a model, or list [[model]] units in sysmlc.toml")
-    return chosen
-
-
-def _expand(config: "Config", patterns: Iterable[str]) -> list[Path]:
-    """Return the files of a ``[[model]]``; ends with exit code 2 when one leads out of the root."""
-    from sysmlc.config import ConfigError, expand_files
-
-    try:
-        return expand_files(config, patterns)
-    except ConfigError as problem:
-        fail(str(problem))
-
-
-def _contains(model: Path, file: Path) -> bool:
-    """Whether *model* is the file, or a folder that the file lies in."""
-    return Path(os.path.realpath(file)).is_relative_to(os.path.realpath(model))
-
-
-def _same(left: Path, right: Path) -> bool:
-    return os.path.realpath(left) == os.path.realpath(right)
 
 
 def compile_unit(
@@ -351,91 +277,3 @@ def target_of(unit: "Unit", *, is_forced: bool = False) -> "Target":
 
     configurations = (unit.config.file,) if unit.config.file else ()
     return Target(unit.output, unit.boundary, configurations, is_forced)
-
-
-def report(
-    outcomes: "Iterable[Outcome]", settings: Settings, publications: "Iterable[Publication]" = ()
-) -> None:
-    """Show the findings of all outcomes, and those about their output folders, as one report.
-
-    A finding about a library is shown once, although several units use the library.
-    """
-    from sysmlc.diagnostics.render import make_report
-
-    found = [finding for made in outcomes for finding in named(made.root, made.findings)]
-    diagnostics = [one for publication in publications for one in publication.diagnostics]
-    found += named(Path.cwd(), make_report(diagnostics, ()).findings)
-    show(dict.fromkeys(found), settings)
-
-
-def findings(compilation: "Compilation", only_errors: bool = False) -> "list[Finding]":
-    """The findings of a compilation, with places as the reader knows them."""
-    from sysmlc.diagnostics.render import make_report
-
-    chosen = [found for found in compilation.diagnostics if found.is_error or not only_errors]
-    return named(compilation.root, make_report(chosen, compilation.sources).findings)
-
-
-def named(root: Path, found: "Iterable[Finding]") -> "list[Finding]":
-    found = list(found)
-    files = {one.file for one in found if one.file}
-    names = {file: name_of(root, file) for file in files} | {"": ""}
-    return [
-        one if names[one.file] == one.file else replace(one, file=names[one.file]) for one in found
-    ]
-
-
-def name_of(root: Path, name: str) -> str:
-    """Name of an input as the reader knows it: relative to the working folder."""
-    path, here = root / name, Path.cwd()
-    if not path.is_relative_to(here):
-        return name
-    return escape_undecodable(path.relative_to(here).as_posix())
-
-
-def show(found: "Iterable[Finding]", settings: Settings) -> None:
-    """Print findings in the form that was asked for."""
-    from sysmlc.diagnostics.render import XPATH_FORMATS, render, shortened
-
-    on_stdout = settings.form in _ON_STDOUT
-    stream = sys.stdout if on_stdout else sys.stderr
-    report = shortened(found, _most(settings))
-    if settings.form not in XPATH_FORMATS and not settings.verbose:
-        bare = tuple(replace(one, xpath="") if one.xpath else one for one in report.findings)
-        report = replace(report, findings=bare)
-    text = render(report, settings.form, color=has_color(stream))
-    click.echo(text, nl=False, err=not on_stdout, color=True)
-    if report.left:
-        click.echo(
-            f"{len(report.left)} more are not shown; --max-diagnostics 0 shows all", err=True
-        )
-
-
-def _most(settings: Settings) -> int:
-    """How many findings are shown; programs get all unless they ask for less. 0 means all."""
-    if settings.most is None:
-        return 0 if settings.form in ("json", "sarif") else _SHOWN
-    return settings.most
-
-
-def says_more(settings: Settings) -> bool:
-    """Whether sentences may be printed on standard output beside the findings."""
-    return settings.form not in ("json", "sarif")
-
-
-def exit_code(outcome: "Outcome | Compilation", config: "Config", settings: Settings) -> int:
-    """Return the exit code of an outcome, with ``--strict`` or ``strict`` of the configuration."""
-    return outcome.exit_code(settings.strict or config.strict)
-
-
-def exit_code_of_all(
-    units: "Sequence[Unit]", outcomes: "Sequence[Outcome]", settings: Settings
-) -> int:
-    """Return the highest exit code; each unit is judged by the configuration of its project."""
-    pairs = zip(units, outcomes, strict=True)
-    return max(exit_code(outcome, unit.config, settings) for unit, outcome in pairs)
-
-
-def has_color(stream: object) -> bool:
-    is_terminal = getattr(stream, "isatty", lambda: False)()
-    return bool(is_terminal) and not os.environ.get("NO_COLOR") and os.environ.get("TERM") != "dumb"

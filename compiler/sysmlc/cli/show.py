@@ -32,17 +32,17 @@ def command(
     **given: Any,  # noqa: ANN401 - the fields of Settings
 ) -> None:
     """Print the graph of MODEL... after all passes, in the text form of docs/ir.md."""
-    from sysmlc.cli import session
+    from sysmlc.cli import reports, session
     from sysmlc.ir.text import print_text
 
     settings = session.Settings(**given)
     config = session.load_config(models, settings)
     made = session.compile_unit(models, config, settings)
-    session.show(session.findings(made, only_errors=not settings.verbose), settings)
+    reports.print_findings(reports.list_findings(made, only_errors=not settings.verbose), settings)
     if made.exit_code() < 2:
         text = print_text(made.graph) if element is None else _one(made.graph, element)
         terminal.echo_text(text, nl=False)
-    ctx.exit(session.exit_code(made, config, settings))
+    ctx.exit(reports.exit_code_of(made, config, settings))
 
 
 def _one(graph: "Graph", wanted: str) -> str:

@@ -46,7 +46,7 @@ def command(
 
     Exit code 0 when they agree, 1 when they do not, 2 when the scenario cannot be run.
     """
-    from sysmlc.cli import session
+    from sysmlc.cli import reports, session
     from sysmlc.cli.result_files import write_files
     from sysmlc.diagnostics import Sink
     from sysmlc.diagnostics.render import make_report
@@ -58,16 +58,16 @@ def command(
     source = _read(scenario)
     sink = Sink(config.rules)
     result = run(made.graph, source, sink) if made.exit_code() < 2 else None
-    of_model = session.findings(made, only_errors=not settings.verbose)
-    session.show([*of_model, *make_report(sink, [source]).findings], settings)
+    of_model = reports.list_findings(made, only_errors=not settings.verbose)
+    reports.print_findings([*of_model, *make_report(sink, [source]).findings], settings)
     if result is not None:
-        terminal.echo_text(result.text(), nl=False, err=not session.says_more(settings))
+        terminal.echo_text(result.text(), nl=False, err=not reports.allows_sentences(settings))
         _save(junit, result.junit())
         diagram = result.sequence_diagram()
         if output is not None and diagram:
             write_files([(f"{scenario.stem}.seq.puml", diagram)], output)
     passed = result is not None and result.passed
-    code = session.exit_code(made, config, settings)
+    code = reports.exit_code_of(made, config, settings)
     ctx.exit(max(code, 0 if passed else 1))
 
 

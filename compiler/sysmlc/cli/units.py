@@ -8,7 +8,8 @@ from msgspec import Struct
 from msgspec.structs import replace
 
 if TYPE_CHECKING:
-    from sysmlc.cli.session import Selection, Settings
+    from sysmlc.cli.selection import Selection
+    from sysmlc.cli.session import Settings
     from sysmlc.config import Config
     from sysmlc.driver import OpenedUnit, Request
 
@@ -90,7 +91,7 @@ def open_named_units(models: Sequence[Path], config: "Config", settings: "Settin
 
     For commands that write no output folder.
     """
-    from sysmlc.cli.session import Selection
+    from sysmlc.cli.selection import Selection
 
     selection = Selection(tuple(models), Path(), (), Path())
     return list(_open_selection(selection, config, settings, ()))
@@ -98,11 +99,12 @@ def open_named_units(models: Sequence[Path], config: "Config", settings: "Settin
 
 def open_single_unit(models: Sequence[Path], config: "Config", settings: "Settings") -> Unit:
     """Read the files that were named, which must be one compile unit, else exit with code 2."""
-    from sysmlc.cli.session import fail, name_of
+    from sysmlc.cli.reports import localize_name
+    from sysmlc.cli.session import fail
 
     units = open_named_units(models, config, settings)
     if len(units) > 1:
-        files = [name_of(unit.opened.root, unit.opened.first_file()) for unit in units]
+        files = [localize_name(unit.opened.root, unit.opened.first_file()) for unit in units]
         listed = ", ".join(files[:_LISTED]) + (", ..." if len(files) > _LISTED else "")
         fail(f"the models are {len(units)} compile units; name the files of one, such as {listed}")
     return units[0]
@@ -112,7 +114,8 @@ def _open_project(
     models: Sequence[Path], config: "Config", settings: "Settings", output: Path | None
 ) -> list[Unit]:
     """Open the declared units first: the files that they read are no units of their own."""
-    from sysmlc.cli.session import make_request, select
+    from sysmlc.cli.selection import select
+    from sysmlc.cli.session import make_request
     from sysmlc.driver import open_unit
 
     selections = select(models, config, output, settings.emit)

@@ -215,16 +215,16 @@ def publish(made: Compiled, settings: "Settings", keep_going: bool = False) -> b
 
     Who keeps going gets those that no error concerns, as from ``build``.
     """
-    from sysmlc.cli import session
+    from sysmlc.cli import reports
     from sysmlc.driver import publish as write_outputs
 
     folder, code = made.unit.output, made.outcome.exit_code()
     if code > 1 or (code and not keep_going):
-        session.report([made.outcome], settings)
+        reports.report_outcomes([made.outcome], settings)
         terminal.echo(f"{folder}: not updated because the model has errors")
         return False
     publication = write_outputs(made.outcome, made.target)
-    session.report([made.outcome], settings, [publication])
+    reports.report_outcomes([made.outcome], settings, [publication])
     if publication.is_refused:
         terminal.echo(f"{folder}: not updated")
         return False
@@ -249,8 +249,8 @@ def _read_by(made: "Outcome") -> Iterator[Path]:
 def _unit_files(
     models: tuple[Path, ...], settings: "Settings"
 ) -> "tuple[Config, tuple[Path, ...]]":
-    from sysmlc.cli import session
+    from sysmlc.cli import selection, session
 
     config = session.load_config(models, settings)
-    selections = session.select(models, config, None, ())
+    selections = selection.select(models, config, None, ())
     return config, tuple(file for selection in selections for file in selection.files)

@@ -1,0 +1,120 @@
+"""Reports: print the findings of compilations, and compute exit codes."""
+
+import os
+import sys
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+from msgspec.structs import replace
+
+from sysmlc.support.escapes import escape_undecodable
+
+if TYPE_CHECKING:
+    from sysmlc.cli.session import Settings
+    from sysmlc.cli.units import Unit
+    from sysmlc.config import Config
+    from sysmlc.diagnostics.render import Finding
+    from sysmlc.driver import Compilation, Outcome, Publication
+
+_DEFAULT_LIMIT = 1_000
+"""Findings that a reader is shown unless all are asked for: nobody reads more at once."""
+_FORMS_ON_STDOUT = frozenset({"json", "sarif", "github"})
+
+
+def report_outcomes(
+    outcomes: "Iterable[Outcome]", settings: "Settings", publications: "Iterable[Publication]" = ()
+) -> None:
+    """Print the findings of all outcomes, and those about their output folders, as one report.
+
+    A finding about a library is printed once, although several units use the library.
+    """
+    from sysmlc.diagnostics.render import make_report
+
+    findings = [
+        finding for outcome in outcomes for finding in localize(outcome.root, outcome.findings)
+    ]
+    diagnostics = [d for publication in publications for d in publication.diagnostics]
+    findings += localize(Path.cwd(), make_report(diagnostics, ()).findings)
+    print_findings(dict.fromkeys(findings), settings)
+
+
+def list_findings(compilation: "Compilation", only_errors: bool = False) -> "list[Finding]":
+    """Return the findings of a compilation, with file names as the user knows them."""
+    from sysmlc.diagnostics.render import make_report
+
+    diagnostics = [d for d in compilation.diagnostics if d.is_error or not only_errors]
+    return localize(compilation.root, make_report(diagnostics, compilation.sources).findings)
+
+
+def localize(root: Path, findings: "Iterable[Finding]") -> "list[Finding]":
+    """Return findings whose files are named relative to the working folder."""
+    findings = list(findings)
+    files = {finding.file for finding in findings if finding.file}
+    names = {file: localize_name(root, file) for file in files} | {"": ""}
+    return [
+        finding
+        if names[finding.file] == finding.file
+        else replace(finding, file=names[finding.file])
+        for finding in findings
+    ]
+
+
+def localize_name(root: Path, name: str) -> str:
+    """Return the name of an input relative to the working folder, if the input lies below it."""
+    path, here = root / name, Path.cwd()
+    if not path.is_relative_to(here):
+        return name
+    return escape_undecodable(path.relative_to(here).as_posix())
+
+
+def print_findings(findings: "Iterable[Finding]", settings: "Settings") -> None:
+    """Print findings in the form that the user selected."""
+    from sysmlc.diagnostics.render import XPATH_FORMATS, render, shortened
+
+    on_stdout = settings.form in _FORMS_ON_STDOUT
+    stream = sys.stdout if on_stdout else sys.stderr
+    report = shortened(findings, _find_limit(settings))
+    if settings.form not in XPATH_FORMATS and not settings.verbose:
+        without_xpath = tuple(
+            replace(finding, xpath="") if finding.xpath else finding for finding in report.findings
+        )
+        report = replace(report, findings=without_xpath)
+    text = render(report, settings.form, color=has_color(stream))
+    click.echo(text, nl=False, err=not on_stdout, color=True)
+    if report.left:
+        click.echo(
+            f"{len(report.left)} more are not shown; --max-diagnostics 0 shows all", err=True
+        )
+
+
+def _find_limit(settings: "Settings") -> int:
+    """Return the largest number of findings to print; 0 means all, the default for programs."""
+    if settings.most is None:
+        return 0 if settings.form in ("json", "sarif") else _DEFAULT_LIMIT
+    return settings.most
+
+
+def allows_sentences(settings: "Settings") -> bool:
+    """Whether sentences may be printed on standard output beside the findings."""
+    return settings.form not in ("json", "sarif")
+
+
+def exit_code_of(outcome: "Outcome | Compilation", config: "Config", settings: "Settings") -> int:
+    """Return the exit code of an outcome, with ``--strict`` or ``strict`` of the configuration."""
+    return outcome.exit_code(settings.strict or config.strict)
+
+
+def exit_code_of_all(
+    units: "Sequence[Unit]", outcomes: "Sequence[Outcome]", settings: "Settings"
+) -> int:
+    """Return the highest exit code; each unit is judged by the configuration of its project."""
+    pairs = zip(units, outcomes, strict=True)
+    return max(exit_code_of(outcome, unit.config, settings) for unit, outcome in pairs)
+
+
+def has_color(stream: object) -> bool:
+    """Whether a stream is a terminal that shows colours."""
+    is_terminal = getattr(stream, "isatty", lambda: False)()
+    return bool(is_terminal) and not os.environ.get("NO_COLOR") and os.environ.get("TERM") != "dumb"
