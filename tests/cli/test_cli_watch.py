@@ -278,7 +278,7 @@ def test_the_configuration_is_watched_too(watch):
 def test_findings_that_were_told_before_are_not_waited_for(tmp_path, monkeypatch):
     """A model with known errors is compiled as soon as any other."""
     waited = []
-    real = settling.rested
+    real = settling.wait_until_stable
 
     def rested(paths, seconds):
         waited.append(seconds)
@@ -344,7 +344,7 @@ def test_what_was_compiled_is_let_go(saves, pauses, tmp_path, monkeypatch):
         path.write_text(f"package P {{ part def Cell{number} {{ part arm : Cell{number}; }} }}")
         watched.build()
     for _ in range(pauses):
-        watched.rest()
+        watched.clean_up()
     gc.unfreeze()
     assert gc.collect() < 50
 
@@ -396,7 +396,7 @@ def test_rest_begins_anew_with_each_save(tmp_path, monkeypatch):
     path.write_bytes(b"")
     clock = Clock(path, [0.2, 0.4, 0.6, 2.0])
     monkeypatch.setattr(settling, "time", clock)
-    seen = settling.rested([path], 0.3)
+    seen = settling.wait_until_stable([path], 0.3)
     assert seen[path][0] == 3
     assert 0.9 <= clock.now < 1.1
 
@@ -406,7 +406,7 @@ def test_files_that_never_rest_are_taken_as_they_are(tmp_path, monkeypatch):
     path.write_bytes(b"")
     clock = Clock(path, [n / 10 for n in range(1000)])
     monkeypatch.setattr(settling, "time", clock)
-    settling.rested([path], 0.3)
+    settling.wait_until_stable([path], 0.3)
     assert 30 <= clock.now < 31
 
 
@@ -414,14 +414,17 @@ def test_rest_is_told_by_size_and_time(tmp_path):
     path, missing = tmp_path / "a", tmp_path / "b"
     path.write_bytes(b"x")
     os.utime(path, (0, 0))
-    seen = settling.rested([path, missing, tmp_path], 0)
+    seen = settling.wait_until_stable([path, missing, tmp_path], 0)
     assert seen == {path: (1, 0), missing: None, tmp_path: (0, 0)}
     assert not settling.is_fresh({path: (1, 0)}, 1)
     assert settling.is_fresh({missing: None}, 1)
     path.write_bytes(b"xy")
-    assert settling.stamps([path]) != {path: (1, 0)}
-    assert settling.blank(seen) == {missing}
+    assert settling.read_stamps([path]) != {path: (1, 0)}
+    assert settling.find_empty_files(seen) == {missing}
     path.write_bytes(b"")
-    assert settling.blank(settling.stamps([path, missing, tmp_path])) == {path, missing}
+    assert settling.find_empty_files(settling.read_stamps([path, missing, tmp_path])) == {
+        path,
+        missing,
+    }
     path.write_bytes(b"xy")
-    assert settling.is_fresh(settling.stamps([path]), 3600)
+    assert settling.is_fresh(settling.read_stamps([path]), 3600)

@@ -1,4 +1,4 @@
-"""Contracts of a file, be it a model, one of our contracts or a specification of another tool."""
+"""Contracts of a file: a model, one of our contract files, or a specification of another tool."""
 
 import re
 from pathlib import Path
@@ -25,7 +25,7 @@ _PLACE = re.compile(r"(?P<file>.*):(?P<line>\d+):(?P<column>\d+)")
 
 
 class ContractFile(Struct, frozen=True):
-    """The contracts of a file, and how findings about them find their places."""
+    """The contracts of a file, with a function that locates diagnostics about them."""
 
     contracts: "tuple[Contract, ...]"
     composites: "tuple[Composite, ...]"
@@ -38,64 +38,69 @@ class ContractFile(Struct, frozen=True):
     """Whether every contract of the file could be read."""
 
 
-def chosen(
+def select_contracts(
     contracts: "tuple[Contract, ...]", component: str, composites: "Sequence[Composite]" = ()
 ) -> "tuple[Contract, ...]":
-    """The contracts of one component, or all when none is named; ends the process for another.
+    """Return the contracts of *component*, or all contracts if it is empty.
 
-    A block that only has parts (``composites``) is a component, too.
+    A composite is a valid name too, even if it has no contract of its own. Exits with code 2 if the
+    name is unknown.
     """
     from sysmlc.cli.session import fail
     from sysmlc.support.suggestions import did_you_mean
 
-    names = [one.component for one in contracts] + [one.component for one in composites]
-    found = tuple(one for one in contracts if component in ("", one.component))
-    if component and component not in names:
+    if not component:
+        return contracts
+    names = [contract.component for contract in (*contracts, *composites)]
+    if component not in names:
         fail(f"no component '{component}'; {did_you_mean(component, names)}")
-    return found
+    return tuple(contract for contract in contracts if contract.component == component)
 
 
 def read_contracts(
     file: Path, language: str, config: "Config", settings: "Settings"
 ) -> ContractFile:
-    """The contracts of a file, with what was found on the way; ends the process where it must.
-
-    ``language`` is the form of the text; empty takes it from name and content.
-    """
+    """Read the contracts of a file; exits with code 2 if the file has none."""
     from sysmlc.driver.inputs import SUFFIXES
 
     is_model = file.is_dir() or file.suffix.lower() in SUFFIXES
     if is_model and not language:
-        return _of_model(file, config, settings)
-    return _of_text(file, language, config)
+        return _read_model(file, config, settings)
+    return _read_specification(file, language, config)
 
 
-def _of_model(file: Path, config: "Config", settings: "Settings") -> ContractFile:
+def _read_model(file: Path, config: "Config", settings: "Settings") -> ContractFile:
     from sysmlc.cli import reports, session
     from sysmlc.diagnostics import Sink
     from sysmlc.logic.composition.derivation import compose
     from sysmlc.logic.contract import Contract
 
-    made = session.compile_unit((file,), config, settings)
-    findings = tuple(reports.list_findings(made, only_errors=not settings.verbose))
+    compilation = session.compile_unit((file,), config, settings)
+    findings = tuple(reports.list_findings(compilation, only_errors=not settings.verbose))
 
     def place(origin: str) -> "Subject":
         from sysmlc.diagnostics import Subject
 
-        element = made.graph.get(origin)
-        return Subject() if element is None else made.graph.subject(element)
+        element = compilation.graph.get(origin)
+        return Subject() if element is None else compilation.graph.subject(element)
 
-    contracts = made.graph.derived(Contract) if made.exit_code() < 2 else ()
-    if not contracts and not findings and made.exit_code() < 2:
+    contracts = compilation.graph.derived(Contract) if compilation.exit_code() < 2 else ()
+    if not contracts and not findings and compilation.exit_code() < 2:
         session.fail(f"'{file}' has no behaviour and no requirement that gives a contract")
     sink = Sink(config.rules)
-    composites = compose(made.graph, contracts, sink)
+    composites = compose(compilation.graph, contracts, sink)
     return ContractFile(
-        tuple(contracts), tuple(composites), sink, place, findings, made.sources, made.root
+        tuple(contracts),
+        tuple(composites),
+        sink,
+        place,
+        findings,
+        compilation.sources,
+        compilation.root,
     )
 
 
-def _of_text(file: Path, language: str, config: "Config") -> ContractFile:
+def _read_specification(file: Path, language: str, config: "Config") -> ContractFile:
     from sysmlc.cli.session import fail
     from sysmlc.diagnostics import Sink
     from sysmlc.logic import formats
@@ -104,12 +109,12 @@ def _of_text(file: Path, language: str, config: "Config") -> ContractFile:
     from sysmlc.sources.whole import read_whole
 
     if language and not (language in formats.FORMS and formats.FORMS[language].is_read):
-        known = ", ".join(name for name, form in formats.FORMS.items() if form.is_read)
-        fail(f"'{language}' is no form that is read; known are {known}")
+        readable = ", ".join(name for name, form in formats.FORMS.items() if form.is_read)
+        fail(f"'{language}' is no form that is read; known are {readable}")
     try:
         name = escape_undecodable(file.as_posix())
         source = Source(name, read_whole(file, name, DOCUMENT_LIMITS))
-        text = source.data.decode("utf-8-sig") + _parts_beside(file, source.data)
+        text = source.data.decode("utf-8-sig") + _read_part_file(file, source.data)
     except SourceError as problem:
         fail(f"cannot read '{problem.file}': {problem.message}")
     except UnicodeDecodeError:
@@ -117,16 +122,15 @@ def _of_text(file: Path, language: str, config: "Config") -> ContractFile:
     sink = Sink(config.rules)
     name = file.name.partition(".")[0]
     read = formats.read(text, source.name, sink, language)
-    contracts = tuple(one if one.component else replace(one, component=name) for one in read)
+    contracts = tuple(
+        contract if contract.component else replace(contract, component=name) for contract in read
+    )
     is_whole = not sink.has_errors()
-    return ContractFile(contracts, (), sink, _from_text, (), (source,), Path.cwd(), is_whole)
+    return ContractFile(contracts, (), sink, _locate_in_text, (), (source,), Path.cwd(), is_whole)
 
 
-def _parts_beside(file: Path, formula: bytes) -> str:
-    """What the ``.part`` file beside a formula says of who decides, unless the formula says it.
-
-    A link out of the project root is not followed. Raises SourceError and UnicodeDecodeError.
-    """
+def _read_part_file(file: Path, formula: bytes) -> str:
+    """Return the variables in the ``.part`` file beside a formula that lists none itself."""
     from sysmlc.config import find_project_root
     from sysmlc.sources import Roots
     from sysmlc.sources.limits import DOCUMENT_LIMITS
@@ -141,22 +145,22 @@ def _parts_beside(file: Path, formula: bytes) -> str:
     return "\n" + content.decode("utf-8-sig")
 
 
-def _from_text(origin: str) -> "Subject":
+def _locate_in_text(origin: str) -> "Subject":
     from sysmlc.diagnostics import Place, Subject
 
-    found = _PLACE.fullmatch(origin)
-    if found is None:
+    parsed = _PLACE.fullmatch(origin)
+    if parsed is None:
         return Subject()
-    place = Place(found["file"], line=int(found["line"]), column=int(found["column"]))
+    place = Place(parsed["file"], line=int(parsed["line"]), column=int(parsed["column"]))
     return Subject(place=place)
 
 
-def show(read: ContractFile, settings: "Settings", lines: "Iterable[str]") -> None:
-    """Show the findings about a file and its contracts, then a line for each contract."""
+def show_results(read: ContractFile, settings: "Settings", lines: "Iterable[str]") -> None:
+    """Print the findings about a file and its contracts, then a line for each contract."""
     from sysmlc.cli import reports
     from sysmlc.diagnostics.render import make_report
 
-    found = reports.localize(read.root, make_report(read.sink, read.sources).findings)
-    reports.print_findings([*read.findings, *found], settings)
+    findings = reports.localize(read.root, make_report(read.sink, read.sources).findings)
+    reports.print_findings([*read.findings, *findings], settings)
     for line in lines:
         terminal.echo(line, err=not reports.allows_sentences(settings))

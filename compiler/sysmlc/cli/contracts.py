@@ -70,44 +70,51 @@ def check_command(
     read = read_contracts(file, language, config, settings)
     limits = Limits(seconds=seconds)
     try:
-        ctx.exit(_checked(read, component, settings, Options("", limits, progress.note), output))
+        ctx.exit(_check(read, component, settings, Options("", limits, progress.note), output))
     except ImportError as problem:
         session.fail(f"the library of decision diagrams cannot be loaded: {problem}")
     finally:
         progress.clear()
 
 
-def _checked(
+def _check(
     read: "ContractFile",
     component: str,
     settings: "Settings",
     options: "Options",
     output: Path | None,
 ) -> int:
-    from sysmlc.cli.contract_files import chosen, show
+    from sysmlc.cli.contract_files import select_contracts, show_results
     from sysmlc.cli.result_files import write_files
     from sysmlc.diagnostics import Severity
     from sysmlc.synthesis.composition_check import check_compositions
     from sysmlc.synthesis.contract_checks import check
     from sysmlc.synthesis.witnesses import witness_files
 
-    contracts = chosen(read.contracts, component, read.composites) if read.contracts else ()
-    composites = [one for one in read.composites if component in ("", one.component)]
+    contracts = (
+        select_contracts(read.contracts, component, read.composites) if read.contracts else ()
+    )
+    composites = [contract for contract in read.composites if component in ("", contract.component)]
     alone = list(check(contracts, read.contracts, read.place, read.sink, options))
     together = list(check_compositions(composites, read.place, read.sink, options))
     if output is not None:
-        runs = [*(one.witnesses for one in alone), *(one.witnesses for one in together)]
+        runs = [
+            *(contract.witnesses for contract in alone),
+            *(contract.witnesses for contract in together),
+        ]
         write_files(witness_files(run for some in runs for run in some), output)
-    show(read, settings, (*map(_line, alone), *(one.text() for one in together)))
-    is_undecided = any(one.verdict.is_realizable is None for one in alone)
-    found = (*read.sink, *(one.diagnostic for one in read.findings))
-    has_errors = any(one.severity is Severity.ERROR for one in found)
+    show_results(
+        read, settings, (*map(_format_line, alone), *(result.text() for result in together))
+    )
+    is_undecided = any(result.verdict.is_realizable is None for result in alone)
+    diagnostics = (*read.sink, *(finding.diagnostic for finding in read.findings))
+    has_errors = any(diagnostic.severity is Severity.ERROR for diagnostic in diagnostics)
     is_done = read.is_whole and not is_undecided and bool(alone or together)
     return int(has_errors) if is_done else 2
 
 
-def _line(result: "Checked") -> str:
-    kept = {None: "", True: ", keeps its requirements", False: ", breaks its requirements"}
+def _format_line(result: "Checked") -> str:
+    additions = {None: "", True: ", keeps its requirements", False: ", breaks its requirements"}
     words = {None: "not decided", True: "realizable", False: "unrealizable"}
     verdict = result.verdict
-    return f"{verdict.component}: {words[verdict.is_realizable]}{kept[result.is_implemented]}"
+    return f"{verdict.component}: {words[verdict.is_realizable]}{additions[result.is_implemented]}"

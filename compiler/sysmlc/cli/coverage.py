@@ -64,34 +64,34 @@ def command(
     settings = session.Settings(config, isolated)
     loaded = session.load_config(models, settings)
     units = open_units(models, loaded, settings, None)
-    made = [measure_coverage(unit.request, unit.opened) for unit in units]
-    code = max(_report_errors(one) for one in made)
-    file_reports = {file.file: file for one in made for file in _shown(one)}
+    coverages = [measure_coverage(unit.request, unit.opened) for unit in units]
+    code = max(_report_errors(coverage) for coverage in coverages)
+    file_reports = {file.file: file for coverage in coverages for file in _localize_files(coverage)}
     files = [file_reports[name] for name in sorted(file_reports)]
     if code < 2 and (files or form != "text"):
         _print(files, form, every)
     ctx.exit(max(code, int(_is_below(files, fail_under))))
 
 
-def _report_errors(made: "UnitCoverage") -> int:
-    """Show what could not be read, and say the exit code that this means."""
+def _report_errors(coverage: "UnitCoverage") -> int:
+    """Print the errors of reading, and return the exit code."""
     from sysmlc.cli import reports, session
     from sysmlc.diagnostics.render import make_report
     from sysmlc.driver import faults
 
-    errors = [found for found in made.diagnostics if found.is_error]
+    errors = [errors_found for errors_found in coverage.diagnostics if errors_found.is_error]
     if errors:
-        shown = reports.localize(made.root, make_report(errors, made.sources).findings)
+        shown = reports.localize(coverage.root, make_report(errors, coverage.sources).findings)
         reports.print_findings(shown, session.Settings())
     return faults.compute_exit_code(errors)
 
 
-def _shown(made: "UnitCoverage") -> "Iterable[FileReport]":
-    """The reports with file names as the reader knows them."""
+def _localize_files(coverage: "UnitCoverage") -> "Iterable[FileReport]":
+    """Return the file reports with names relative to the working folder."""
     from sysmlc.cli.reports import localize_name
 
-    for file in made.files:
-        name = localize_name(made.root, file.file)
+    for file in coverage.files:
+        name = localize_name(coverage.root, file.file)
         yield replace(file, file=name, losses=tuple(replace(x, file=name) for x in file.losses))
 
 
@@ -102,10 +102,10 @@ def _print(files: "Sequence[FileReport]", form: str, every: bool) -> None:
     from sysmlc.diagnostics.render import coverage
 
     if form == "text":
-        made = coverage.text(files, color=has_color(sys.stdout), every=every)
+        text = coverage.text(files, color=has_color(sys.stdout), every=every)
     else:
-        made = coverage.FORMATS[form](files)
-    click.echo(made, nl=False, color=True)
+        text = coverage.FORMATS[form](files)
+    click.echo(text, nl=False, color=True)
 
 
 def _is_below(files: "Sequence[FileReport]", limit: float | None) -> bool:

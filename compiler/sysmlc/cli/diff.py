@@ -65,10 +65,11 @@ def command(
     unread = [compilation for compilation in compilations if _is_unread(compilation)]
     if unread:
         reports.print_findings(
-            [found for one in unread for found in reports.list_findings(one)], settings
+            [finding for compilation in unread for finding in reports.list_findings(compilation)],
+            settings,
         )
         ctx.exit(2)
-    _check(ignore, compilations)
+    _check_ignored(ignore, compilations)
     changes: list[Change] = []
     for pair in _pair_units(*sides):
         _refine(pair)
@@ -101,33 +102,35 @@ def _pair_units(
     return [(old.get(path), new.get(path)) for path in sorted(old.keys() | new.keys())]
 
 
-def _is_unread(made: "Compilation") -> bool:
-    """Whether an input gave nothing at all; what is wrong inside a file is no hindrance."""
-    read = {element.source.partition("!")[0] for element in made.graph}
-    return not made.is_complete and not (made.inputs and all(i.path in read for i in made.inputs))
+def _is_unread(compilation: "Compilation") -> bool:
+    """Whether an input gave no element at all; errors inside a file do not prevent a comparison."""
+    read = {element.source.partition("!")[0] for element in compilation.graph}
+    return not compilation.is_complete and not (
+        compilation.inputs and all(i.path in read for i in compilation.inputs)
+    )
 
 
-def _check(ignore: tuple[str, ...], made: "list[Compilation]") -> None:
-    """Refuse words that make no difference in any model: most likely they are misspelt."""
+def _check_ignored(ignore: tuple[str, ...], compilations: "list[Compilation]") -> None:
+    """Refuse words that match no element or attribute of any model; they are probably misspelt."""
     from sysmlc.ir.compare.content import ignorable_words
     from sysmlc.support.suggestions import did_you_mean
 
-    known = ignorable_words(one.graph for one in made) if ignore else ()
+    words = ignorable_words(compilation.graph for compilation in compilations) if ignore else ()
     for word in ignore:
-        if word not in known:
-            hint = did_you_mean(word, known)
-            found = hint if hint.startswith("did") else "it is no attribute of these models"
-            raise click.BadParameter(f"'{word}': {found}", param_hint="'--ignore'")
+        if word not in words:
+            hint = did_you_mean(word, words)
+            advice = hint if hint.startswith("did") else "it is no attribute of these models"
+            raise click.BadParameter(f"'{word}': {advice}", param_hint="'--ignore'")
 
 
-def _refine(made: "Sequence[Compilation | None]") -> None:
-    """Add what overlays say, when both models have one: else the overlay were the difference."""
+def _refine(compilations: "Sequence[Compilation | None]") -> None:
+    """Apply the overlays if both models have one; otherwise the overlay would be the difference."""
     from sysmlc.diagnostics import Sink
     from sysmlc.overlay import Refinement
     from sysmlc.passes.overlay import Overlay
 
-    graphs = [one.graph for one in made if one is not None]
-    if len(graphs) == len(made) and all(graph.derived(Refinement) for graph in graphs):
+    graphs = [compilation.graph for compilation in compilations if compilation is not None]
+    if len(graphs) == len(compilations) and all(graph.derived(Refinement) for graph in graphs):
         for graph in graphs:
             Overlay().run(graph, Sink())
 
@@ -137,16 +140,16 @@ def _text(changes: "list[Change]", form: str, sides: "list[dict[str, Compilation
     from sysmlc.cli.reports import has_color
 
     if form == "json":
-        return diff_forms.json_text(changes, *(_places(changes, sides, i) for i in (0, 1)))
+        return diff_forms.format_json(changes, *(_locate(changes, sides, i) for i in (0, 1)))
     if form == "markdown":
-        return diff_forms.markdown(changes)
-    return diff_forms.text(changes, color=has_color(sys.stdout))
+        return diff_forms.format_markdown(changes)
+    return diff_forms.format_text(changes, color=has_color(sys.stdout))
 
 
-def _places(
+def _locate(
     changes: "Iterable[Change]", sides: "list[dict[str, Compilation]]", side: int
 ) -> "Mapping[Place, Place]":
-    """Lines and columns of what changed, in the old model or in the new one."""
+    """Return lines and columns of the changes, in the old or in the new model."""
     from sysmlc.diagnostics import Place
     from sysmlc.driver.locations import Locator
 

@@ -1,4 +1,4 @@
-"""The forms in which ``sysmlc diff`` shows differences: text, Markdown, JSON."""
+"""The forms of ``sysmlc diff``: text, Markdown, JSON."""
 
 import json
 import re
@@ -20,21 +20,21 @@ _BEFORE = 40
 _NOWHERE = "(model)"
 
 
-def text(changes: Sequence[Change], *, color: bool = False) -> str:
-    """A block for each owner, then how many there are of each kind."""
+def format_text(changes: Sequence[Change], *, color: bool = False) -> str:
+    """Return a block for each owner, and then the number of changes of each kind."""
     blocks = [
-        "\n".join([_paint(owner, color, bold=True), *_lines(group, color=color)])
-        for owner, group in _by_owner(changes)
+        "\n".join([_paint(owner, color, bold=True), *_format_change(group, color=color)])
+        for owner, group in _group_by_owner(changes)
     ]
-    return "\n\n".join([*blocks, counts(changes)]) + "\n"
+    return "\n\n".join([*blocks, count_changes(changes)]) + "\n"
 
 
-def _by_owner(changes: Iterable[Change]) -> Iterator[tuple[str, list[Change]]]:
+def _group_by_owner(changes: Iterable[Change]) -> Iterator[tuple[str, list[Change]]]:
     for owner, group in groupby(changes, key=lambda change: change.owner):
         yield owner or _NOWHERE, list(group)
 
 
-def _lines(changes: Iterable[Change], *, color: bool) -> Iterator[str]:
+def _format_change(changes: Iterable[Change], *, color: bool) -> Iterator[str]:
     for change in changes:
         sign = _SIGNS.get(change.what, "~")
         line = f"{sign} {change.kind} {change.name}: {_phrase(change)}"
@@ -47,26 +47,26 @@ def _paint(line: str, color: bool, **style: Any) -> str:  # noqa: ANN401 - optio
 
 
 def _phrase(change: Change) -> str:
-    before, after = excerpts(change.before, change.after)
+    before, after = excerpt_pair(change.before, change.after)
     if change.what in (What.ADDED, What.REMOVED):
-        return f"{change.what}{_contents(change, ', with {} below it')}"
+        return f"{change.what}{_list_contents(change, ', with {} below it')}"
     if change.what is What.RENAMED:
         return f"renamed, was {before or '(none)'}"
     if change.what is What.MOVED:
         return f"moved, was in {before or _NOWHERE}"
-    told = f"{before or '(none)'} => {after or '(none)'}"
+    phrase = f"{before or '(none)'} => {after or '(none)'}"
     if change.what is What.REORDERED:
-        return f"reordered, {told}"
+        return f"reordered, {phrase}"
     lead = "" if change.what is What.CHANGED else f"{change.what}, "
-    return f"{lead}{change.aspect}: {told}"
+    return f"{lead}{change.aspect}: {phrase}"
 
 
-def _contents(change: Change, phrase: str) -> str:
+def _list_contents(change: Change, phrase: str) -> str:
     return phrase.format(change.contents) if change.contents else ""
 
 
-def excerpts(before: str, after: str) -> tuple[str, str]:
-    """Both texts; when they are long only what lies around their first difference."""
+def excerpt_pair(before: str, after: str) -> tuple[str, str]:
+    """Return both texts, or if they are long only the surroundings of their first difference."""
     if max(len(before), len(after)) <= _WIDEST:
         return before, after
     same = next((i for i, (a, b) in enumerate(zip(before, after, strict=False)) if a != b), 0)
@@ -80,42 +80,45 @@ def _cut(whole: str, start: int) -> str:
     return f"{head}{whole[start : start + _WIDEST]}{tail}"
 
 
-def counts(changes: Sequence[Change]) -> str:
-    """``1 added, 2 rewired``; ``no differences`` when there are none."""
-    found = Counter(change.what for change in changes)
-    return ", ".join(f"{found[what]} {what}" for what in What if found[what]) or "no differences"
+def count_changes(changes: Sequence[Change]) -> str:
+    """Return ``1 added, 2 rewired``, or ``no differences``."""
+    counts_by_kind = Counter(change.what for change in changes)
+    return (
+        ", ".join(f"{counts_by_kind[kind]} {kind}" for kind in What if counts_by_kind[kind])
+        or "no differences"
+    )
 
 
 # -- Markdown ----------------------------------------------------------------------------------
 
 
-def markdown(changes: Sequence[Change]) -> str:
-    """A summary, and a table for each owner."""
-    blocks = [f"**{counts(changes)}**"]
-    for owner, group in _by_owner(changes):
-        rows = [f"| {' | '.join(_cells(change))} |" for change in group]
+def format_markdown(changes: Sequence[Change]) -> str:
+    """Return a summary, and a table for each owner."""
+    blocks = [f"**{count_changes(changes)}**"]
+    for owner, group in _group_by_owner(changes):
+        rows = [f"| {' | '.join(_format_cells(change))} |" for change in group]
         head = ["| | element | change | before | after |", "|---|---|---|---|---|"]
-        blocks += [f"#### {_span(owner)}", "\n".join([*head, *rows])]
+        blocks += [f"#### {_format_code(owner)}", "\n".join([*head, *rows])]
     return "\n\n".join(blocks) + "\n"
 
 
-def _cells(change: Change) -> tuple[str, ...]:
+def _format_cells(change: Change) -> tuple[str, ...]:
     sign = _SIGNS.get(change.what, "~")
     is_telling = change.what in (What.CHANGED, What.RETYPED, What.REWIRED)
-    what = f"{change.what}: {escape_markdown(change.aspect)}" if is_telling else str(change.what)
-    what += _contents(change, ", with {} below it")
-    before, after = excerpts(change.before, change.after)
-    name = f"{escape_markdown(change.kind)} {_code(change.name)}"
-    return (f"`{sign}`", name, what, _code(before), _code(after))
+    content = f"{change.what}: {escape_markdown(change.aspect)}" if is_telling else str(change.what)
+    content += _list_contents(change, ", with {} below it")
+    before, after = excerpt_pair(change.before, change.after)
+    name = f"{escape_markdown(change.kind)} {_format_code_in_table(change.name)}"
+    return (f"`{sign}`", name, content, _format_code_in_table(before), _format_code_in_table(after))
 
 
-def _code(content: str) -> str:
-    """A code span in a table, where also a bar in it must be escaped (GitHub Flavored Markdown)."""
-    return _span(content).replace("|", "\\|")
+def _format_code_in_table(content: str) -> str:
+    """Return a code span for a table, where a bar must be escaped (GitHub Flavored Markdown)."""
+    return _format_code(content).replace("|", "\\|")
 
 
-def _span(content: str) -> str:
-    """A code span: its fence is longer than any run of such signs in it (CommonMark 6.1)."""
+def _format_code(content: str) -> str:
+    """Return a code span whose fence is longer than any run of backticks in it (CommonMark 6.1)."""
     if not content:
         return ""
     shown = escape_invisible(content.replace("\n", " "))
@@ -127,18 +130,18 @@ def _span(content: str) -> str:
 # -- JSON --------------------------------------------------------------------------------------
 
 
-def json_text(
+def format_json(
     changes: Sequence[Change], old: Mapping[Place, Place], new: Mapping[Place, Place]
 ) -> str:
-    """``sysmlc-diff/1`` (metamodels/sysmlc-diff.schema.json), with lines and columns."""
-    found = Counter(change.what for change in changes)
+    """Return ``sysmlc-diff/1`` (metamodels/sysmlc-diff.schema.json), with lines and columns."""
+    counts = Counter(change.what for change in changes)
     owners = [
         {"owner": owner, "changes": [_row(change, old, new) for change in group]}
         for owner, group in groupby(changes, key=lambda change: change.owner)
     ]
     whole = {
         "format": "sysmlc-diff/1",
-        "summary": {str(what): found[what] for what in What},
+        "summary": {str(kind): counts[kind] for kind in What},
         "owners": owners,
     }
     return json.dumps(whole, ensure_ascii=False, indent=1) + "\n"

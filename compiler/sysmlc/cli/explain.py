@@ -22,36 +22,36 @@ Examples:
 @click.argument("code", required=False, metavar="[CODE|NAME]")
 def command(code: str | None) -> None:
     """Explain the rule with this code or name; without one, list all rules."""
-    from sysmlc.cli.session import fail, known_rules
+    from sysmlc.cli.session import fail, load_rules
     from sysmlc.support.suggestions import did_you_mean
 
-    rules = known_rules()
+    rules = load_rules()
     if code is None:
         for rule in rules.values():
             click.echo(f"{rule.code}  {rule.severity.value:<7}  {rule.name}")
         return
-    found = {**rules, **{rule.name: rule for rule in rules.values()}}
-    key = code.upper() if code.upper() in found else code.lower()
-    if key not in found:
-        hint = did_you_mean(key, found)
+    rules_by_key = {**rules, **{rule.name: rule for rule in rules.values()}}
+    key = code.upper() if code.upper() in rules_by_key else code.lower()
+    if key not in rules_by_key:
+        hint = did_you_mean(key, rules_by_key)
         near = hint if hint.startswith("did") else "'sysmlc explain' lists all rules"
         fail(f"unknown rule '{code}'; {near}")
-    click.echo("\n".join(_explanation(found[key])))
+    click.echo("\n".join(_explanation(rules_by_key[key])))
 
 
-def _shown(template: str) -> str:
-    """``port '{port}'`` as ``port '<port>'``."""
+def _format_message(template: str) -> str:
+    """Return the message with ``port '<port>'`` for ``port '{port}'``."""
     return re.sub(r"\{(\w+)[^{}]*\}", r"<\1>", template)
 
 
 def _explanation(rule: "Rule") -> Iterator[str]:
     yield f"{rule.code} {rule.name} ({rule.severity.value})"
     yield ""
-    yield f"  {_shown(rule.phrase)}"
+    yield f"  {_format_message(rule.phrase)}"
     page = rule.read_page()
     for title, text in (
         ("Why", page.why),
-        ("What to do", _shown(rule.help)),
+        ("What to do", _format_message(rule.help)),
         ("Wrong", page.wrong),
         ("Right", page.right),
         ("In Papyrus", page.papyrus),

@@ -20,7 +20,10 @@ _WRITABLE = 0o222
 
 
 class _Text(Struct, frozen=True):
-    """A file, or standard input (no path), as it is and as it is to be; None with errors in it."""
+    """A file, or standard input (no path), with its text and its formatted text.
+
+    The formatted text is None if the text has syntax errors.
+    """
 
     name: str
     path: Path | None
@@ -72,7 +75,7 @@ def command(
     errors are left alone. Exit code 0 when all is well, 1 for syntax errors and, with --check or
     --diff, for files that would change, 2 when a file cannot be read or written.
     """
-    texts = [_read(path, language) for path in _expanded(files)]
+    texts = [_read(path, language) for path in _expand(files)]
     _show([finding for text in texts for finding in text.findings])
     changed = [text for text in texts if text.is_changed]
     if shows_diff:
@@ -85,7 +88,7 @@ def command(
     ctx.exit(1 if has_errors or (changed and (check or shows_diff)) else 0)
 
 
-def _expanded(files: tuple[Path, ...]) -> Iterator[Path]:
+def _expand(files: tuple[Path, ...]) -> Iterator[Path]:
     for path in files:
         if str(path) != "-" and path.is_dir():
             yield from _list_folder(path)
@@ -123,25 +126,27 @@ def _read(path: Path, language: str | None) -> _Text:
             content = sys.stdin.buffer.read(limit + 1)
             if len(content) > limit:
                 fail(f"standard input has more than {limit} bytes")
-            return _formatted("-", None, content, language or "sysml")
-        return _formatted(name, path, read_whole(path, name, DEFAULT_LIMITS), _of(path, language))
+            return _format("-", None, content, language or "sysml")
+        return _format(
+            name, path, read_whole(path, name, DEFAULT_LIMITS), _find_language(path, language)
+        )
     except SourceError as problem:
         fail(f"{name} {problem.message}")
     except UnicodeDecodeError as problem:
         fail(f"{name} is no text in UTF-8: byte {problem.start} begins no character")
 
 
-def _of(path: Path, language: str | None) -> str:
+def _find_language(path: Path, language: str | None) -> str:
     from sysmlc.cli.session import fail
 
-    found = language or path.suffix[1:].lower()
-    if found not in _LANGUAGES:
+    name = language or path.suffix[1:].lower()
+    if name not in _LANGUAGES:
         fail(f"{path.as_posix()} ends neither in .sysml nor in .kerml: say --language")
-    return found
+    return name
 
 
-def _formatted(name: str, path: Path | None, data: bytes, language: str) -> _Text:
-    """The text laid out, or the findings of the parser."""
+def _format(name: str, path: Path | None, data: bytes, language: str) -> _Text:
+    """Return the formatted text, or the findings of the parser."""
     from sysmlc.diagnostics import Sink
     from sysmlc.diagnostics.render import make_report
     from sysmlc.language.formatter import format_text
@@ -182,7 +187,7 @@ def _write(texts: list[_Text]) -> None:
 
 
 def _replace(target: Path, name: str, content: str) -> None:
-    """Write a file anew, with the rights that it has: nobody may write means not we either."""
+    """Write a file with the permissions that it has; a read-only file is an error."""
     from sysmlc.cli.session import fail
     from sysmlc.support.atomic_files import write
 

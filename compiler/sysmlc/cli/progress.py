@@ -1,4 +1,4 @@
-"""How far a compilation is, on terminals and only when it takes a second."""
+"""The progress of a compilation, shown on terminals when it takes more than a second."""
 
 import sys
 import time
@@ -19,7 +19,7 @@ _WIDTH = 24
 
 
 class Progress(Observer):
-    """Draws a bar on standard error, prints graphs that were asked for, keeps tracebacks."""
+    """Draws a bar on standard error, prints the graphs of ``--print-after``, stores tracebacks."""
 
     def __init__(
         self,
@@ -34,33 +34,33 @@ class Progress(Observer):
         self._on_terminal = sys.stderr.isatty()
         self._drawn = False
 
-    def step(self, what: str, number: int, total: int) -> None:
-        """Draw the bar, or with ``-v`` say the step."""
+    def step(self, description: str, number: int, total: int) -> None:
+        """Draw the bar, or with ``-v`` print the step."""
         passed = self._clock() - self._start
         if self._verbose:
-            terminal.echo(f"{passed:7.2f} s  {what}", err=True)
+            terminal.echo(f"{passed:7.2f} s  {description}", err=True)
         elif self._on_terminal and passed > _PATIENCE:
             filled = _WIDTH * number // max(total, 1)
             bar = "#" * filled + "-" * (_WIDTH - filled)
-            click.echo(f"\r[{bar}] {what:<30}", nl=False, err=True)
+            click.echo(f"\r[{bar}] {description:<30}", nl=False, err=True)
             self._drawn = True
 
-    def note(self, what: str) -> None:
-        """Say what is being done of a work whose length nobody knows."""
+    def note(self, description: str) -> None:
+        """Show a step of work of unknown length."""
         passed = self._clock() - self._start
         if self._on_terminal and passed > _PATIENCE:
-            click.echo(f"\r{passed:7.0f} s  {what:<50}", nl=False, err=True)
+            click.echo(f"\r{passed:7.0f} s  {description:<50}", nl=False, err=True)
             self._drawn = True
 
-    def after(self, what: str, graph: "Graph") -> None:
+    def after(self, step: str, graph: "Graph") -> None:
         """Print the graph after the passes of ``--print-after``; with ``-v`` name the library."""
-        if what == "read" and self._verbose:
+        if step == "read" and self._verbose:
             self._show_libraries(graph)
-        if what in self._print_after:
+        if step in self._print_after:
             from sysmlc.ir.text import print_text
 
             self.clear()
-            terminal.echo_text(f"// after {what}\n{print_text(graph)}", nl=False)
+            terminal.echo_text(f"// after {step}\n{print_text(graph)}", nl=False)
 
     def _show_libraries(self, graph: "Graph") -> None:
         from sysmlc.language.names import Model
@@ -71,12 +71,12 @@ class Progress(Observer):
             click.echo(f"{'':9} {text}", err=True)
 
     def fault(self, where: str, trace: str) -> None:
-        """With ``-v`` show where a fault of ours happened."""
+        """With ``-v``, print the traceback of an internal fault."""
         if self._verbose:
             terminal.echo_text(f"{where}:\n{trace}", err=True, nl=False)
 
     def clear(self) -> None:
-        """Take the bar away before anything else is printed."""
+        """Remove the bar before other text is printed."""
         if self._drawn:
             click.echo("\r\x1b[K", nl=False, err=True)
             self._drawn = False

@@ -1,13 +1,12 @@
-"""Files that a command writes to the folder that ``-o`` names, besides its report."""
+"""The files that a command with ``-o`` writes besides its report."""
 
 from collections.abc import Iterable
 from pathlib import Path
 
 
 def write_files(files: Iterable[tuple[str, str]], folder: Path) -> None:
-    """Write files, each a path in *folder* and a text. Ends with exit code 2 when one fails.
-
-    A symbolic link in *folder* is never followed: whoever made it could choose what is replaced.
+    """Write files, each a path in *folder* and a text. Exits with code 2 if one cannot be
+    written.
     """
     from sysmlc.cli.session import fail
     from sysmlc.support.atomic_files import write_if_changed

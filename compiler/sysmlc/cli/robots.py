@@ -65,20 +65,20 @@ def command(
 
     settings = session.Settings(**given)
     config = session.load_config(models, settings)
-    made = session.compile_unit(models, config, settings)
+    compilation = session.compile_unit(models, config, settings)
     progress = Progress(settings.verbose)
     chosen = Options("", Limits(seconds=seconds), progress.note, is_explained=True)
     try:
         keeper = _open_keeper(models, config) if settings.has_cache else None
-        ctx.exit(_studied(made, config.rules, settings, output, has_relations, chosen, keeper))
+        ctx.exit(_study(compilation, config.rules, settings, output, has_relations, chosen, keeper))
     except ImportError as problem:
         session.fail(f"the library of decision diagrams cannot be loaded: {problem}")
     finally:
         progress.clear()
 
 
-def _studied(
-    made: "Compilation",
+def _study(
+    compilation: "Compilation",
     rules: Any,  # noqa: ANN401 - as the configuration has them
     settings: Any,  # noqa: ANN401 - Settings
     output: Path | None,
@@ -95,23 +95,23 @@ def _studied(
     from sysmlc.robots.study import Study
 
     def place(origin: str) -> Subject:
-        element = made.graph.get(origin)
-        return Subject() if element is None else made.graph.subject(element)
+        element = compilation.graph.get(origin)
+        return Subject() if element is None else compilation.graph.subject(element)
 
-    sink, code = Sink(rules), made.exit_code()
-    known = made.graph.derived(Study) if code < 2 else ()
-    if not known and not code:
+    sink, code = Sink(rules), compilation.exit_code()
+    studies = compilation.graph.derived(Study) if code < 2 else ()
+    if not studies and not code:
         session.fail("the model has no floor with robots: nothing specialises 'Floors::Floor'")
-    outcomes = [studied(one, place, sink, chosen, has_relations, keeper) for one in known]
+    outcomes = [studied(study, place, sink, chosen, has_relations, keeper) for study in studies]
     if output is not None:
-        write_files([file for one in outcomes for file in files(one)], output)
-    of_model = reports.list_findings(made, only_errors=not settings.verbose)
-    found = reports.localize(made.root, make_report(sink, made.sources).findings)
-    reports.print_findings([*of_model, *found], settings)
-    for one in outcomes:
-        terminal.echo(summary(one), err=not reports.allows_sentences(settings))
-    has_errors = any(one.severity is Severity.ERROR for one in sink)
-    return max(code, _code(outcomes, has_errors))
+        write_files([file for outcome in outcomes for file in files(outcome)], output)
+    of_model = reports.list_findings(compilation, only_errors=not settings.verbose)
+    findings = reports.localize(compilation.root, make_report(sink, compilation.sources).findings)
+    reports.print_findings([*of_model, *findings], settings)
+    for outcome in outcomes:
+        terminal.echo(summary(outcome), err=not reports.allows_sentences(settings))
+    has_errors = any(d.severity is Severity.ERROR for d in sink)
+    return max(code, _compute_exit_code(outcomes, has_errors))
 
 
 def _open_keeper(models: "Sequence[Path]", config: "Config") -> "CrewCache | None":
@@ -124,8 +124,8 @@ def _open_keeper(models: "Sequence[Path]", config: "Config") -> "CrewCache | Non
     return None if cache is None else CrewCache(cache, compute_tool_digest())
 
 
-def _code(outcomes: "Sequence[Outcome]", has_errors: bool) -> int:
-    """0 when every mission is done, 1 when one is not, 2 without a controller."""
-    if any(one.controller.verdict.is_realizable is None for one in outcomes):
+def _compute_exit_code(outcomes: "Sequence[Outcome]", has_errors: bool) -> int:
+    """Return 0 if every mission is accomplished, 1 if one is not, 2 without a controller."""
+    if any(outcome.controller.verdict.is_realizable is None for outcome in outcomes):
         return 2
-    return int(has_errors or not all(one.is_good for one in outcomes))
+    return int(has_errors or not all(outcome.is_good for outcome in outcomes))

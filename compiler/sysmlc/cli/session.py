@@ -1,4 +1,4 @@
-"""What every compiling command does: configuration, compile units, findings, exit code."""
+"""Compile the units of a command: options, configuration, cache, requests."""
 
 import sys
 from collections.abc import Iterable, Sequence
@@ -49,7 +49,9 @@ class Settings(Struct, frozen=True):
 
     @property
     def is_plain(self) -> bool:
-        """Whether nothing was asked for that only a compilation that really runs can show."""
+        """Whether a cached outcome can answer the command: no option needs a compilation that
+        really runs.
+        """
         if self.schema is not None:
             return False
         return self.has_cache and not (self.verify_each or self.print_after or self.verbose)
@@ -63,15 +65,15 @@ def fail(message: str, *details: str) -> NoReturn:
     sys.exit(2)
 
 
-def known_rules() -> "dict[str, Rule]":
-    """Every rule by its code; those of a module that cannot be imported are noted as missing."""
+def load_rules() -> "dict[str, Rule]":
+    """Return all rules by code; print a note for each module that cannot be imported."""
     from sysmlc.driver import load_full_catalogue
 
     return load_full_catalogue(lambda note: terminal.echo(f"sysmlc: note: {note}", err=True))
 
 
 def load_config(models: Sequence[Path], settings: Settings) -> "Config":
-    """Return the configuration for these models; end with exit code 2 if it is wrong.
+    """Return the configuration for these models; exit with code 2 if it is wrong.
 
     An isolated command reads no configuration file.
     """
@@ -83,21 +85,21 @@ def load_config(models: Sequence[Path], settings: Settings) -> "Config":
             raise click.UsageError("--isolated and --config exclude each other")
         return config.Config()
     try:
-        loaded = config.load(settings.config or config.find(_start(models)))
+        loaded = config.load(settings.config or config.find(_find_start(models)))
     except config.ConfigError as problem:
         fail(str(problem))
     chosen = [*loaded.rules, *(entry.rule for entry in loaded.suppress)]
     if chosen:
-        rules = known_rules().values()
-        known = {rule.code for rule in rules} | {rule.name for rule in rules}
+        rules = load_rules().values()
+        rule_names = {rule.code for rule in rules} | {rule.name for rule in rules}
         for name in chosen:
-            if name not in known:
-                fail(f"{loaded.file}: unknown rule '{name}'; {did_you_mean(name, known)}")
+            if name not in rule_names:
+                fail(f"{loaded.file}: unknown rule '{name}'; {did_you_mean(name, rule_names)}")
     LIMITS.lower(loaded.time_limit, loaded.memory_limit)
     return loaded
 
 
-def _start(models: Sequence[Path]) -> Path:
+def _find_start(models: Sequence[Path]) -> Path:
     if not models:
         return Path.cwd()
     first = models[0].absolute()
@@ -110,7 +112,7 @@ def compile_unit(
     settings: Settings,
     emit: tuple[str, ...] | None = None,
 ) -> "Compilation":
-    """Compile files, which must be one unit, with the back ends of ``emit`` (None: with none).
+    """Compile files, which must be one unit, with the back ends of *emit* (None for no back end).
 
     Findings about the configuration are dropped unless the files are the whole project.
     """
@@ -119,17 +121,18 @@ def compile_unit(
 
     unit = open_single_unit(files, config, settings)
     compilation = compile_opened(unit, settings, emit)
-    kept = select_project_findings(config, [unit.opened], [compilation.diagnostics])
+    project_findings = select_project_findings(config, [unit.opened], [compilation.diagnostics])
     return replace(
-        compilation, diagnostics=tuple(without_project_findings(compilation.diagnostics, kept))
+        compilation,
+        diagnostics=tuple(without_project_findings(compilation.diagnostics, project_findings)),
     )
 
 
 def compile_opened(
     unit: "Unit", settings: Settings, emit: tuple[str, ...] | None = None
 ) -> "Compilation":
-    """Compile a unit with the back ends of ``emit`` (None: with none)."""
-    return _compile(_with_backends(unit.request, emit), settings, unit.opened)
+    """Compile a unit with the back ends of *emit* (None for no back end)."""
+    return _compile(_set_backends(unit.request, emit), settings, unit.opened)
 
 
 def read_as_written(unit: "Unit", settings: Settings) -> "Compilation":
@@ -200,18 +203,18 @@ def make_request(files: tuple[Path, ...], config: "Config", settings: Settings) 
     return Request(
         inputs=files,
         config=config,
-        templates=_templates(config, settings),
+        templates=_find_templates(config, settings),
         strict_input=settings.strict_input or config.strict_input,
         diagrams=settings.diagrams or config.diagrams,
         overlays=settings.overlay,
         verify_each=settings.verify_each,
-        schemas=_schemas(settings),
+        schemas=_load_schemas(settings),
         library=settings.library,
     )
 
 
-def _schemas(settings: Settings) -> "Schemas | None":
-    """The schemas that the user gives; ends with exit code 2 when they cannot be used."""
+def _load_schemas(settings: Settings) -> "Schemas | None":
+    """Load the schemas of ``--schema``; exit with code 2 if they cannot be used."""
     if settings.schema is None:
         return None
     from sysmlc.sources.schema import SchemaError, load_schemas
@@ -222,8 +225,8 @@ def _schemas(settings: Settings) -> "Schemas | None":
         fail(str(problem))
 
 
-def _with_backends(request: "Request", emit: tuple[str, ...] | None) -> "Request":
-    return request if emit is None else replace(request, backends=_backends(emit))
+def _set_backends(request: "Request", emit: tuple[str, ...] | None) -> "Request":
+    return request if emit is None else replace(request, backends=_select_backends(emit))
 
 
 def _compile(
@@ -243,7 +246,7 @@ def _compile(
         progress.clear()
 
 
-def _backends(emit: tuple[str, ...]) -> "tuple[Backend, ...]":
+def _select_backends(emit: tuple[str, ...]) -> "tuple[Backend, ...]":
     from sysmlc.driver import BackendError, select_backends
 
     try:
@@ -252,7 +255,7 @@ def _backends(emit: tuple[str, ...]) -> "tuple[Backend, ...]":
         fail(str(problem))
 
 
-def _templates(config: "Config", settings: Settings) -> Path | None:
+def _find_templates(config: "Config", settings: Settings) -> Path | None:
     if settings.uses_shipped_templates:
         return None
     folder = settings.templates
@@ -263,16 +266,16 @@ def _templates(config: "Config", settings: Settings) -> Path | None:
     return folder
 
 
-def _check_pass_names(known: Sequence[str], asked: Iterable[str]) -> None:
+def _check_pass_names(names: Sequence[str], asked: Iterable[str]) -> None:
     from sysmlc.support.suggestions import did_you_mean
 
     for name in asked:
-        if name not in ("read", *known):
-            fail(f"unknown pass '{name}'; {did_you_mean(name, ['read', *known])}")
+        if name not in ("read", *names):
+            fail(f"unknown pass '{name}'; {did_you_mean(name, ['read', *names])}")
 
 
 def target_of(unit: "Unit", *, is_forced: bool = False) -> "Target":
-    """Return the output folder of the unit, with what bounds it."""
+    """Return the output folder of the unit, with its boundary and protected files."""
     from sysmlc.driver import Target
 
     configurations = (unit.config.file,) if unit.config.file else ()

@@ -1,4 +1,4 @@
-"""Whether files are still being saved: told by their sizes and times, as tools save in pieces."""
+"""Whether files are still being saved, judged by size and time, because tools save in pieces."""
 
 import stat
 import time
@@ -17,32 +17,36 @@ Stamps = Mapping[Path, tuple[int, int] | None]
 """Size and time of change of each file; None for one that is not there."""
 
 
-def stamps(paths: Iterable[Path]) -> Stamps:
-    """How the files look now."""
-    return {path: _stamp(path) for path in paths}
+def read_stamps(paths: Iterable[Path]) -> Stamps:
+    """Return size and time of each file."""
+    return {path: _read_stamp(path) for path in paths}
 
 
-def rested(paths: Iterable[Path], seconds: float) -> Stamps:
-    """Wait until no file changed for so many seconds; how they look then."""
+def wait_until_stable(paths: Iterable[Path], seconds: float) -> Stamps:
+    """Wait until no file has changed for so many seconds; return size and time of each."""
     paths = list(paths)
     start = since = time.monotonic()
-    last = stamps(paths)
+    last = read_stamps(paths)
     while time.monotonic() - since < seconds and time.monotonic() - start < _LONGEST:
         time.sleep(min(_STEP, seconds))
-        current = stamps(paths)
+        current = read_stamps(paths)
         if current != last:
             last, since = current, time.monotonic()
     return last
 
 
 def is_fresh(seen: Stamps, seconds: float) -> bool:
-    """Whether a file is not there or was changed in the last seconds: it may be half saved."""
-    now = time.time()
-    return any(stamp is None or abs(now - stamp[1] / 1e9) < seconds for stamp in seen.values())
+    """Whether a file is missing or was changed in the last seconds, so that it may be half
+    saved.
+    """
+    current_time = time.time()
+    return any(
+        stamp is None or abs(current_time - stamp[1] / 1e9) < seconds for stamp in seen.values()
+    )
 
 
-def blank(seen: Stamps) -> frozenset[Path]:
-    """Files that are empty or not there."""
+def find_empty_files(seen: Stamps) -> frozenset[Path]:
+    """Return the files that are empty or missing."""
     return frozenset(
         path
         for path, stamp in seen.items()
@@ -50,9 +54,9 @@ def blank(seen: Stamps) -> frozenset[Path]:
     )
 
 
-def _stamp(path: Path) -> tuple[int, int] | None:
+def _read_stamp(path: Path) -> tuple[int, int] | None:
     try:
-        found = path.stat()
+        status = path.stat()
     except OSError:
         return None
-    return _FOLDER if stat.S_ISDIR(found.st_mode) else (found.st_size, found.st_mtime_ns)
+    return _FOLDER if stat.S_ISDIR(status.st_mode) else (status.st_size, status.st_mtime_ns)

@@ -37,22 +37,28 @@ def command(
 
     settings = session.Settings(**given)
     config = session.load_config(models, settings)
-    made = session.compile_unit(models, config, settings)
-    reports.print_findings(reports.list_findings(made, only_errors=not settings.verbose), settings)
-    if made.exit_code() < 2:
-        text = print_text(made.graph) if element is None else _one(made.graph, element)
+    compilation = session.compile_unit(models, config, settings)
+    reports.print_findings(
+        reports.list_findings(compilation, only_errors=not settings.verbose), settings
+    )
+    if compilation.exit_code() < 2:
+        text = (
+            print_text(compilation.graph)
+            if element is None
+            else _print_element(compilation.graph, element)
+        )
         terminal.echo_text(text, nl=False)
-    ctx.exit(reports.exit_code_of(made, config, settings))
+    ctx.exit(reports.exit_code_of(compilation, config, settings))
 
 
-def _one(graph: "Graph", wanted: str) -> str:
+def _print_element(graph: "Graph", wanted: str) -> str:
     from sysmlc.ir.text import print_element
 
-    element = _found(graph, wanted)
-    return print_element(graph, element) + _incoming(graph, element)
+    element = _find_element(graph, wanted)
+    return print_element(graph, element) + _list_incoming(graph, element)
 
 
-def _found(graph: "Graph", wanted: str) -> "Element":
+def _find_element(graph: "Graph", wanted: str) -> "Element":
     from sysmlc.cli.session import fail
     from sysmlc.support.suggestions import did_you_mean
 
@@ -61,21 +67,21 @@ def _found(graph: "Graph", wanted: str) -> "Element":
         return by_id
     names = {element.id: graph.qualified_name(element) for element in graph}
     exact = [graph[id] for id, name in names.items() if name == wanted]
-    found = exact or [element for element in graph if element.name == wanted]
-    if not found:
-        fail(f"no element '{wanted}'; {did_you_mean(wanted, _spellings(graph, names))}")
-    if len(found) > 1:
-        details = [f"{names[e.id]} ({e.kind}, id {e.id})" for e in found[:20]]
-        fail(f"{len(found)} elements are called '{wanted}', name one:", *details)
-    return found[0]
+    matches = exact or [element for element in graph if element.name == wanted]
+    if not matches:
+        fail(f"no element '{wanted}'; {did_you_mean(wanted, _list_names(graph, names))}")
+    if len(matches) > 1:
+        details = [f"{names[e.id]} ({e.kind}, id {e.id})" for e in matches[:20]]
+        fail(f"{len(matches)} elements are called '{wanted}', name one:", *details)
+    return matches[0]
 
 
-def _spellings(graph: "Graph", names: dict[str, str]) -> list[str]:
+def _list_names(graph: "Graph", names: dict[str, str]) -> list[str]:
     every = [*names.values(), *(element.name for element in graph if element.name)]
     return every if len(every) < 20_000 else []
 
 
-def _incoming(graph: "Graph", element: "Element") -> str:
+def _list_incoming(graph: "Graph", element: "Element") -> str:
     lines = [
         f"  <- {edge} {graph.qualified_name(graph[source])}"
         for edge, source, target in graph.edges()

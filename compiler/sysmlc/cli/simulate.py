@@ -54,11 +54,11 @@ def command(
 
     settings = session.Settings(**given)
     config = session.load_config(models, settings)
-    made = session.compile_unit(models, config, settings)
+    compilation = session.compile_unit(models, config, settings)
     source = _read(scenario)
     sink = Sink(config.rules)
-    result = run(made.graph, source, sink) if made.exit_code() < 2 else None
-    of_model = reports.list_findings(made, only_errors=not settings.verbose)
+    result = run(compilation.graph, source, sink) if compilation.exit_code() < 2 else None
+    of_model = reports.list_findings(compilation, only_errors=not settings.verbose)
     reports.print_findings([*of_model, *make_report(sink, [source]).findings], settings)
     if result is not None:
         terminal.echo_text(result.text(), nl=False, err=not reports.allows_sentences(settings))
@@ -67,7 +67,7 @@ def command(
         if output is not None and diagram:
             write_files([(f"{scenario.stem}.seq.puml", diagram)], output)
     passed = result is not None and result.passed
-    code = reports.exit_code_of(made, config, settings)
+    code = reports.exit_code_of(compilation, config, settings)
     ctx.exit(max(code, 0 if passed else 1))
 
 

@@ -116,42 +116,44 @@ def command(
     options = Options(engine or "", limits, progress.note, is_explained=not is_decided_only)
     try:
         if is_played:
-            ctx.exit(_played(read, component, options))
+            ctx.exit(_play(read, component, options))
         if timers:
-            ctx.exit(_bounded(read, component, timers, settings, options))
+            ctx.exit(_find_deadlines(read, component, timers, settings, options))
         if is_decided_only:
-            ctx.exit(_decided(read, component, settings, options))
-        ctx.exit(_synthesised(read, component, settings, options, output, machine_form))
+            ctx.exit(_decide(read, component, settings, options))
+        ctx.exit(_synthesize(read, component, settings, options, output, machine_form))
     except ImportError as problem:
         session.fail(f"the library of decision diagrams cannot be loaded: {problem}")
     finally:
         progress.clear()
 
 
-def _decided(read: "ContractFile", component: str, settings: "Settings", options: "Options") -> int:
-    from sysmlc.cli.contract_files import chosen
+def _decide(read: "ContractFile", component: str, settings: "Settings", options: "Options") -> int:
+    from sysmlc.cli.contract_files import select_contracts
     from sysmlc.synthesis.decision import decide
 
-    contracts = chosen(read.contracts, component) if read.contracts else ()
-    return _told(read, settings, [decide(one, read.place, read.sink, options) for one in contracts])
+    contracts = select_contracts(read.contracts, component) if read.contracts else ()
+    return _report(
+        read, settings, [decide(contract, read.place, read.sink, options) for contract in contracts]
+    )
 
 
-def _bounded(
+def _find_deadlines(
     read: "ContractFile",
     component: str,
     timers: tuple[str, ...],
     settings: "Settings",
     options: "Options",
 ) -> int:
-    from sysmlc.cli.contract_files import chosen
+    from sysmlc.cli.contract_files import select_contracts
     from sysmlc.synthesis.deadline import deadline
 
-    contracts = chosen(read.contracts, component) if read.contracts else ()
-    made = [deadline(one, timers, read.place, read.sink, options) for one in contracts]
-    return _told(read, settings, made)
+    contracts = select_contracts(read.contracts, component) if read.contracts else ()
+    results = [deadline(c, timers, read.place, read.sink, options) for c in contracts]
+    return _report(read, settings, results)
 
 
-def _synthesised(
+def _synthesize(
     read: "ContractFile",
     component: str,
     settings: "Settings",
@@ -159,36 +161,38 @@ def _synthesised(
     output: Path | None,
     form: str,
 ) -> int:
-    from sysmlc.cli.contract_files import chosen
+    from sysmlc.cli.contract_files import select_contracts
     from sysmlc.cli.result_files import write_files
     from sysmlc.synthesis.controller_files import TABLE, write_controllers
     from sysmlc.synthesis.controller_synthesis import Form, synthesised
 
-    contracts = chosen(read.contracts, component) if read.contracts else ()
+    contracts = select_contracts(read.contracts, component) if read.contracts else ()
     kind = Form.TABLE if form == TABLE else Form.ANY
-    made = [synthesised(one, read.place, read.sink, options, kind) for one in contracts]
-    told = write_controllers(made, read.place, read.sink, form)
+    controllers = [
+        synthesised(contract, read.place, read.sink, options, kind) for contract in contracts
+    ]
+    written = write_controllers(controllers, read.place, read.sink, form)
     if output is not None:
-        write_files((*told.files, *_counters(read, made, options)), output)
-    return _told(read, settings, told.made)
+        write_files((*written.files, *_find_counter_strategies(read, controllers, options)), output)
+    return _report(read, settings, written.made)
 
 
-def _counters(
-    read: "ContractFile", made: "Sequence[Synthesis]", options: "Options"
+def _find_counter_strategies(
+    read: "ContractFile", counters: "Sequence[Synthesis]", options: "Options"
 ) -> "Iterable[tuple[str, str]]":
-    """What defeats the contracts that cannot be kept; of what is beyond the limits nothing."""
+    """Return counter-strategies for the unrealizable contracts, except those beyond the limits."""
     from sysmlc.synthesis.counterstrategy.counter_files import counterstrategy_files
     from sysmlc.synthesis.counterstrategy.counter_machine import find_counterstrategies
 
-    lost = [one.contract for one in made if one.verdict.is_realizable is False]
+    lost = [contract.contract for contract in counters if contract.verdict.is_realizable is False]
     return counterstrategy_files(
         find_counterstrategies(lost, read.place, read.sink, options), lambda id: read.place(id).name
     )
 
 
-def _played(read: "ContractFile", component: str, options: "Options") -> int:
-    """Play against what defeats the one contract that is chosen."""
-    from sysmlc.cli.contract_files import chosen
+def _play(read: "ContractFile", component: str, options: "Options") -> int:
+    """Let the user play against the counter-strategy of the selected contract."""
+    from sysmlc.cli.contract_files import select_contracts
     from sysmlc.cli.session import fail
     from sysmlc.synthesis import LimitError
     from sysmlc.synthesis.counterstrategy.counter_machine import find_environment_strategy
@@ -196,7 +200,7 @@ def _played(read: "ContractFile", component: str, options: "Options") -> int:
     from sysmlc.synthesis.counterstrategy.play import Player
     from sysmlc.synthesis.games.game import OutsideGr1Error
 
-    contracts = chosen(read.contracts, component)
+    contracts = select_contracts(read.contracts, component)
     if len(contracts) != 1:
         fail(f"{len(contracts)} contracts are in the file: choose one with -c")
     try:
@@ -211,13 +215,13 @@ def _played(read: "ContractFile", component: str, options: "Options") -> int:
     return 1
 
 
-def _told(
+def _report(
     read: "ContractFile", settings: "Settings", verdicts: "Sequence[Verdict | Synthesis | Deadline]"
 ) -> int:
-    """Show findings and verdicts; the exit code."""
-    from sysmlc.cli.contract_files import show
+    """Print findings and verdicts; return the exit code."""
+    from sysmlc.cli.contract_files import show_results
 
-    show(read, settings, (verdict.text() for verdict in verdicts))
+    show_results(read, settings, (verdict.text() for verdict in verdicts))
     code = max((verdict.exit_code for verdict in verdicts), default=2)
-    has_errors = any(one.diagnostic.is_error for one in read.findings)
+    has_errors = any(finding.diagnostic.is_error for finding in read.findings)
     return max(code, int(has_errors)) if read.is_whole else 2

@@ -62,7 +62,7 @@ def command(
     from sysmlc.cli.watching import Watch
 
     watched = Watch(models, output, session.Settings(**given), settle / 1000, keep_going)
-    saves = _saves(watched.folders())
+    saves = _iter_saves(watched.list_folders())
     LIMITS.stop_timer()
     watched.start()
     for saved in saves:
@@ -70,15 +70,19 @@ def command(
 
 
 def rebuild(models: tuple[Path, ...], output: Path | None, settings: "Settings") -> bool:
-    """Compile each unit once; write those that have no error. Say whether all were written."""
-    from sysmlc.cli.watching import compiled, publish
+    """Compile each unit once and write the units without errors; return whether all were
+    written.
+    """
+    from sysmlc.cli.watching import compile_all, publish
 
-    written = [publish(one, settings) for one in compiled(models, output, settings)]
+    written = [publish(result, settings) for result in compile_all(models, output, settings)]
     return all(written)
 
 
-def _saves(folders: Sequence[Path]) -> Iterator[list[Path]]:
-    """The files of each group of changes; none now and then, for systems that tell nothing."""
+def _iter_saves(folders: Sequence[Path]) -> Iterator[list[Path]]:
+    """Yield the files of each group of changes; None now and then, for systems without
+    notifications.
+    """
     from watchfiles import watch
 
     changes = watch(
@@ -93,11 +97,7 @@ def _saves(folders: Sequence[Path]) -> Iterator[list[Path]]:
 
 
 def _is_input(_change: object, path: str) -> bool:
-    """Whether a saved file may be an input; our own outputs must not start the next run.
-
-    Papyrus saves ``.notation`` and ``.di`` beside the model; where outputs depend on the first
-    (``--diagrams author``) it is looked at now and then, as everything is that was read.
-    """
+    """Whether a saved file may be an input; our own outputs must not start the next build."""
     from sysmlc.config import FILE_NAME
     from sysmlc.driver.inputs import SUFFIXES
     from sysmlc.overlay import SUFFIX

@@ -1,4 +1,4 @@
-"""What ``sysmlc watch`` watches, and when it compiles: files that have come to rest."""
+"""The builds of ``sysmlc watch``: compile when the inputs have changed and are completely saved."""
 
 import gc
 from collections.abc import Iterable, Iterator, Sequence
@@ -28,8 +28,8 @@ _MOST = 8
 """Compilations without a pause, after which what they left is collected all the same."""
 
 
-class Compiled(Struct, frozen=True):
-    """A unit and the outcome of compiling it."""
+class CompiledUnit(Struct, frozen=True):
+    """A unit with the outcome of its compilation."""
 
     unit: "Unit"
     target: "Target"
@@ -37,7 +37,7 @@ class Compiled(Struct, frozen=True):
 
 
 class Watch:
-    """What is watched, and how it looked when it was compiled last."""
+    """The watched inputs, and their state at the last build."""
 
     def __init__(
         self,
@@ -62,140 +62,131 @@ class Watch:
         """Files that were empty or not there then."""
         self._left = 0
         """Compilations whose graphs and trees are still in memory."""
-        self._early: Sequence[Compiled] = ()
+        self._early: Sequence[CompiledUnit] = ()
         """What was compiled before anybody told of saves."""
 
-    def folders(self) -> list[Path]:
-        """Folders whose files are inputs; ends with exit code 2 when one is not there."""
+    def list_folders(self) -> list[Path]:
+        """Return the folders of the inputs; exit with code 2 if one is missing."""
         from sysmlc.cli.session import fail
 
-        found = {path if path.is_dir() else path.parent for path in self._named}
-        missing = sorted(str(folder) for folder in found if not folder.exists())
+        folders_found = {path if path.is_dir() else path.parent for path in self._named}
+        missing = sorted(str(folder) for folder in folders_found if not folder.exists())
         if missing:
             fail(f"there is no folder '{missing[0]}' to watch")
-        return sorted({*found, *([self._config] if self._config else [])})
+        return sorted({*folders_found, *([self._config] if self._config else [])})
 
     def build_if_changed(self, saved: Iterable[Path]) -> None:
-        """Compile when one of the inputs, or of the files saved now, is not as it was.
-
-        The first time it is looked for files that came before the system told of saves.
-        """
-        from sysmlc.cli.settling import stamps
+        """Compile if the inputs, or the files saved meanwhile, differ from the last build."""
+        from sysmlc.cli.settling import read_stamps
 
         self._paths |= dict.fromkeys(saved)
-        now, (early, self._early) = stamps(self._paths), (self._early, ())
+        state, (early, self._early) = read_stamps(self._paths), (self._early, ())
         with suppress(SystemExit):
-            if now != self._built or not self._is_of_now(early):
-                self._built = now
+            if state != self._built or not self._is_current(early):
+                self._built = state
                 self.build()
             else:
-                self.rest()
+                self.clean_up()
 
     def start(self) -> None:
-        """Compile, unless a limit has just ended that; then wait for the next save."""
-        from sysmlc.cli.settling import stamps
+        """Compile, unless a limit has just ended a build of this state; then wait for the next
+        save.
+        """
+        from sysmlc.cli.settling import read_stamps
 
         if LIMITS.has_ended_build(self._digest_inputs()):
-            self._built = stamps(self._paths)
+            self._built = read_stamps(self._paths)
         else:
             self.build()
 
     def _digest_inputs(self) -> int:
         """Return a digest of size and time of the named inputs."""
-        from sysmlc.cli.settling import stamps
+        from sysmlc.cli.settling import read_stamps
 
-        return crc32(repr(sorted(stamps(self._named).items())).encode("utf-8", "surrogatepass"))
+        return crc32(
+            repr(sorted(read_stamps(self._named).items())).encode("utf-8", "surrogatepass")
+        )
 
     def build(self) -> None:
-        """Compile what has come to rest, show it, and write it when it has no errors."""
+        """Compile the saved inputs, print the findings, and write the outputs if there are no
+        errors.
+        """
         is_first = not self._built
-        made = self._settled()
-        self._early = made if is_first else ()
+        units = self._compile_stable_inputs()
+        self._early = units if is_first else ()
         for path, stamp in list(self._built.items()):
             if stamp is None and path not in self._named:
                 del self._paths[path]
         self._built = {path: self._built.get(path) for path in self._paths}
         with LIMITS.timed():
-            for one in made:
-                publish(one, self._settings, self._keep_going)
+            for unit in units:
+                publish(unit, self._settings, self._keep_going)
         self._left += 1
         if self._left >= _MOST:
-            self._collect()
+            self._collect_garbage()
 
-    def rest(self) -> None:
-        """Do what nobody has to wait for: nothing is saved just now."""
+    def clean_up(self) -> None:
+        """Do work that nobody waits for while no file is being saved."""
         if self._left:
-            self._collect()
+            self._collect_garbage()
 
-    def _collect(self) -> None:
-        """Let trees go whose nodes name one another.
-
-        What front ends freeze no other collection looks at: each edit of the ICE laboratory left
-        14 MB.
-        """
+    def _collect_garbage(self) -> None:
+        """Free syntax trees, whose nodes refer to one another."""
         gc.unfreeze()
         gc.collect()
         self._left = 0
 
-    def _settled(self) -> "list[Compiled]":
-        """What the inputs come to when they have come to rest.
-
-        What was saved while it was compiled is compiled again, and so is what was saved just now
-        and has findings that were not there before, or a file that is empty or gone: the tool
-        may be about to write the rest, or the next file.
-        """
+    def _compile_stable_inputs(self) -> "list[CompiledUnit]":
+        """Return the units compiled from completely saved inputs."""
         from sysmlc.cli import settling
 
         for _ in range(_ROUNDS):
-            before = settling.rested(self._paths, self._rest())
+            before = settling.wait_until_stable(self._paths, self._find_delay())
             with LIMITS.limit_build(self._digest_inputs()):
-                made = compiled(self._models, self._output, self._settings)
-            if settling.stamps(before) != before:
+                units = compile_all(self._models, self._output, self._settings)
+            if settling.read_stamps(before) != before:
                 continue
-            new = dict.fromkeys(path for one in made for path in _read_by(one.outcome))
+            new = dict.fromkeys(path for unit in units for path in _list_inputs(unit.outcome))
             self._paths |= new
-            self._built = {**settling.stamps(new), **before}
-            if not new.keys() <= before.keys() and not self._is_of_now(made):
+            self._built = {**settling.read_stamps(new), **before}
+            if not new.keys() <= before.keys() and not self._is_current(units):
                 continue
-            told, blank = _findings(made), settling.blank(before)
-            is_known = told <= self._told and blank <= self._blank
+            is_reported, blank = _list_messages(units), settling.find_empty_files(before)
+            is_known = is_reported <= self._told and blank <= self._blank
             if is_known or not settling.is_fresh(before, self._patience):
                 break
-            if settling.rested(before, self._patience) == before:
+            if settling.wait_until_stable(before, self._patience) == before:
                 break
-        self._told, self._blank = _findings(made), settling.blank(before)
-        return made
+        self._told, self._blank = _list_messages(units), settling.find_empty_files(before)
+        return units
 
-    def _is_of_now(self, made: "Sequence[Compiled]") -> bool:
-        """Whether these are made of what the inputs are now, new files included."""
+    def _is_current(self, units: "Sequence[CompiledUnit]") -> bool:
+        """Whether the units were compiled from the present inputs, new files included."""
         from sysmlc.cli import session
         from sysmlc.cli.units import open_units
 
-        if not made:
+        if not units:
             return True
         with LIMITS.timed():
             config = session.load_config(self._models, self._settings)
-            units = open_units(self._models, config, self._settings, self._output)
-        return [unit.opened.inputs() for unit in units] == [one.outcome.inputs for one in made]
+            opened_units = open_units(self._models, config, self._settings, self._output)
+        current = [unit.opened.inputs() for unit in opened_units]
+        return current == [unit.outcome.inputs for unit in units]
 
-    def _rest(self) -> float:
-        """How long files must rest: faults of a configuration are told at once, when it is read."""
+    def _find_delay(self) -> float:
+        """Return how long files must be unchanged; configuration errors are reported at once."""
         from sysmlc.cli import settling
         from sysmlc.config import FILE_NAME
 
         named = [path for path in self._paths if path.name in (FILE_NAME, "pyproject.toml")]
-        is_new = bool(named) and settling.is_fresh(settling.stamps(named), self._patience)
+        is_new = bool(named) and settling.is_fresh(settling.read_stamps(named), self._patience)
         return self._patience if is_new else self._settle
 
 
-def compiled(
+def compile_all(
     models: tuple[Path, ...], output: Path | None, settings: "Settings"
-) -> "list[Compiled]":
-    """Compile every unit in this process.
-
-    The cache is not used: after an edit it has no entry, and a first outcome from the cache would
-    leave the standard library unread when the first edit comes.
-    """
+) -> "list[CompiledUnit]":
+    """Compile every unit in this process."""
     from sysmlc.cli import session
     from sysmlc.cli.units import open_units
 
@@ -205,45 +196,42 @@ def compiled(
     units = open_units(models, config, settings, output)
     outcomes = session.compile_units(units, settings, uses_cache=False)
     return [
-        Compiled(unit, session.target_of(unit), outcome)
+        CompiledUnit(unit, session.target_of(unit), outcome)
         for unit, outcome in zip(units, outcomes, strict=True)
     ]
 
 
-def publish(made: Compiled, settings: "Settings", keep_going: bool = False) -> bool:
-    """Show the findings; write the outputs unless there are errors.
-
-    Who keeps going gets those that no error concerns, as from ``build``.
-    """
+def publish(unit: CompiledUnit, settings: "Settings", keep_going: bool = False) -> bool:
+    """Print the findings; write the outputs unless there are errors."""
     from sysmlc.cli import reports
     from sysmlc.driver import publish as write_outputs
 
-    folder, code = made.unit.output, made.outcome.exit_code()
+    folder, code = unit.unit.output, unit.outcome.exit_code()
     if code > 1 or (code and not keep_going):
-        reports.report_outcomes([made.outcome], settings)
+        reports.report_outcomes([unit.outcome], settings)
         terminal.echo(f"{folder}: not updated because the model has errors")
         return False
-    publication = write_outputs(made.outcome, made.target)
-    reports.report_outcomes([made.outcome], settings, [publication])
+    publication = write_outputs(unit.outcome, unit.target)
+    reports.report_outcomes([unit.outcome], settings, [publication])
     if publication.is_refused:
         terminal.echo(f"{folder}: not updated")
         return False
-    withheld = len(made.outcome.withheld)
+    withheld = len(unit.outcome.withheld)
     held = f", {withheld} withheld because of errors" if withheld else ""
     terminal.echo(f"{folder}: {len(publication.changed)} changed{held}")
     return True
 
 
-def _findings(made: "list[Compiled]") -> frozenset[tuple[str, str]]:
-    """Rules and messages; lines may move without anything being new."""
-    found = (finding.diagnostic for one in made for finding in one.outcome.findings)
-    return frozenset((one.rule.code, one.message) for one in found)
+def _list_messages(units: "list[CompiledUnit]") -> frozenset[tuple[str, str]]:
+    """Return rules and messages without lines, which may move although no finding is new."""
+    diagnostics = (finding.diagnostic for unit in units for finding in unit.outcome.findings)
+    return frozenset((d.rule.code, d.message) for d in diagnostics)
 
 
-def _read_by(made: "Outcome") -> Iterator[Path]:
-    """Files that a compilation read."""
-    for file in made.inputs:
-        yield made.root / file.path.partition("!")[0]
+def _list_inputs(compilation: "Outcome") -> Iterator[Path]:
+    """Return the files that a compilation read."""
+    for file in compilation.inputs:
+        yield compilation.root / file.path.partition("!")[0]
 
 
 def _unit_files(
