@@ -284,7 +284,7 @@ def test_findings_that_were_told_before_are_not_waited_for(tmp_path, monkeypatch
         waited.append(seconds)
         return real(paths, 0)
 
-    monkeypatch.setattr(settling, "rested", rested)
+    monkeypatch.setattr(settling, "wait_until_stable", rested)
     path = tmp_path / "plant.uml"
     path.write_bytes(model("Old")[:-20])
     watched = Watch((path,), tmp_path / "out", Settings(has_cache=False), 0.05)

@@ -51,7 +51,8 @@ def select_contracts(
 
     if not component:
         return contracts
-    names = [contract.component for contract in (*contracts, *composites)]
+    names = [contract.component for contract in contracts]
+    names += [composite.component for composite in composites]
     if component not in names:
         fail(f"no component '{component}'; {did_you_mean(component, names)}")
     return tuple(contract for contract in contracts if contract.component == component)
