@@ -1,4 +1,4 @@
-"""What can be wrong with an overlay before a model is looked at."""
+"""Rules about the text of an overlay, whatever its model."""
 
 from sysmlc.diagnostics import Severity, rule
 

@@ -86,7 +86,7 @@ class _Hierarchy:
         self._component: dict[str, int] = {}
         self.circles: list[list[Element]] = []
         self._features: dict[str, dict[Element, None]] = {}
-        # Components come out general before specific: each is ready when it is needed.
+        # Components are in topological order, so that generals are complete before specifics.
         for number, ids in enumerate(strongly_connected_components(_index_generals(graph))):
             self._component.update(dict.fromkeys(ids, number))
             self._add_component(ids)
@@ -152,7 +152,7 @@ def _index_generals(graph: Graph) -> dict[str, dict[str, None]]:
 
 
 def _own_features(graph: Graph, classifier: Element) -> list[Element]:
-    # The ends that an association owns are no features of it that its instances hold.
+    # Instances of an association hold no values of its ends, so the ends are no features.
     if classifier.kind is Kind.ASSOCIATION:
         ends = graph.targets(classifier, Edge.END)
         return [
@@ -259,7 +259,7 @@ def _can_relate(
         graph, owner, other_owner, hierarchy
     ):
         return True
-    # Association ends relate through the classifiers at the other side; that is not followed.
+    # Association ends relate through the classifiers at the other side, which is not checked.
     if Kind.ASSOCIATION in (owner.kind, other_owner.kind) or owner.kind not in CLASSIFIERS:
         return True
     return edge is Edge.SUBSETS and owner is other_owner
@@ -278,7 +278,7 @@ def _is_feature_of_role(
 
 def _is_narrower(graph: Graph, narrow: Element, wide: Element) -> bool:
     above = [narrow, *generals(graph, narrow), wide]
-    # What a stand-in specialises is unknown, so nothing is held against it.
+    # The generals of an external stub are unknown, so that any type may conform.
     return any(classifier.attrs.get("external") for classifier in above) or conforms(
         graph, narrow, wide
     )

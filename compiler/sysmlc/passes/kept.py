@@ -50,8 +50,7 @@ class Kept(Struct, frozen=True):
     def run(self, graph: Graph, sink: Sink) -> None:
         """Restore the elements and remove the comment."""
         for comment in graph.of_kind(Kind.COMMENT):
-            # Whether a text begins so is no secret: one that does is never watched.
-            body = dict.get(comment.attrs, "body")
+            body = comment.attrs.get("body")
             if isinstance(body, str) and body.startswith(PREFIX):
                 try:
                     record = _read_record(json.loads(body.removeprefix(PREFIX)))

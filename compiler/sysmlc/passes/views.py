@@ -39,11 +39,11 @@ class Views(Struct, frozen=True):
         drawings = graph.derived(Drawing)
         if not drawings:
             return
-        known = _DiagramIndex(graph)
+        index = _DiagramIndex(graph)
         for drawing in drawings:
             id = _choose_id(graph, drawing)
             if id not in graph:
-                _add_view(graph, sink, drawing, id, known)
+                _add_view(graph, sink, drawing, id, index)
         graph.store(Drawing, ())
 
 

@@ -78,7 +78,7 @@ class Activities(Struct, frozen=True):
         try:
             if drawn is activity:
                 return self._build(graph, activity, context, sink)
-            # What is odd in a drawing is told where it is drawn.
+            # Faults of the drawing are reported once, for the activity that is drawn.
             tokens = self._build(graph, drawn, context, Sink())
         except activity_drawing.CannotPlayError:
             return None

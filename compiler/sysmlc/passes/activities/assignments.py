@@ -129,7 +129,7 @@ def report_unknown_targets(
     """Report assigned names that the activity does not know (SM545) or another object owns
     (SM544).
     """
-    # What a write action writes is a reference, no name.
+    # A write action refers to its target by id, so that the name cannot be wrong.
     unresolved = (
         resolved.assignment for row in written for resolved in row if resolved.feature is None
     )
@@ -144,7 +144,7 @@ def report_unknown_targets(
             unfollowed = UntrackedFeature(target, ELSEWHERE, (f"action '{label}'",))
             report_untracked(graph, activity, [unfollowed], sink)
         elif assignment.name.partition(".")[0] not in (
-            known := set(_list_known_names(graph, activity))
+            known_names := set(_list_known_names(graph, activity))
         ):
             sink.report(
                 UNKNOWN_TARGET,
@@ -152,7 +152,7 @@ def report_unknown_targets(
                 action=assignment.action.name,
                 activity=activity.name,
                 name=assignment.name,
-                suggestion=did_you_mean(assignment.name, known),
+                suggestion=did_you_mean(assignment.name, known_names),
             )
 
 

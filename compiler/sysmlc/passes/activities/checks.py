@@ -75,7 +75,7 @@ class _Checker:
             return node
         guarded = [branch for branch in branches if not branch.is_else]
         has_else = len(guarded) < len(branches)
-        # One guard beside an else is neither too few nor too many: most decisions are such.
+        # One guard and an else, as in most decisions, are exclusive and exhaustive.
         is_trivial = has_else and len(guarded) == 1
         open_sets = None if is_trivial else self._list_open_branches(guarded)
         is_exhaustive = has_else or (open_sets is not None and all(open_sets))

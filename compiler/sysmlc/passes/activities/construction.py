@@ -35,9 +35,11 @@ def build(
 ) -> TokenGraph:
     """Return the token graph of a drawing. Reports shapes that UML asks to be drawn otherwise."""
     draft = Draft(graph, drawing, inputs, raising, sink)
+    # Before the nodes: pins of chained nodes are not reported as open.
     chain_handler_bodies(draft)
     for node in drawing.nodes:
         add_node(draft, node)
+    # Before the flows: flows after a protected node leave its outcome.
     add_exceptions(draft)
     for node in drawing.nodes:
         chain_sequence_node(draft, node)

@@ -102,6 +102,7 @@ def read_drawing(graph: Graph, activity: Element, sink: Sink) -> Drawing:
     reason.
     """
     drawing = Drawing(activity, list(graph.subtree(activity)))
+    # Groups and borders are no regions: their nodes belong to the region around them.
     groups = find_groups(graph, drawing.inside)
     borders = find_expansion_nodes(graph, drawing.inside)
     _collect_nodes(graph, drawing, activity, ACTIVITY_REGION, frozenset([*groups, *borders]))
@@ -223,7 +224,7 @@ class _Reader:
         if source is None or target is None:
             return None
         weight = element.attrs.get("weight", 1)
-        # Papyrus writes weight 0, which UML forbids, where nobody set one.
+        # Papyrus writes weight 0, which UML forbids, if the author sets none.
         if weight not in (0, 1, "0", "1"):
             self.sink.report(
                 rules.WEIGHT, self._fail(element), flow=self._label_flow(element), weight=weight

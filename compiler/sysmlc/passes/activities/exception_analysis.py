@@ -39,6 +39,7 @@ def find_raising(graph: Graph) -> Raising:
         for called in _called_by(graph, action)
         if _is_external(called) or _is_abstract(graph, called)
     }
+    # Calls inside a protected node raise no exception out of their behaviour.
     callers = _index_callers(graph, unprotected)
     return Raising(
         _close_over_callers(raised, callers), _close_over_callers(raised | unknown, callers)

@@ -17,7 +17,10 @@ from sysmlc.passes.activities.regions import Part
 ACCEPTS = ("accept", "accept-call")
 """Actions that wait for an event."""
 ROUND = "round"
-"""Role of the node that gives the values of loop variables to what no part of the loop lists."""
+"""Role of the fork that passes loop variables to nodes that no part of the loop lists.
+
+Roles become ids and contract variables, so that renaming one would change outputs.
+"""
 
 
 def expand_structured_node(draft: Draft, node: Element) -> None:
@@ -109,13 +112,12 @@ def _connect_loop(draft: Draft, node: Element, parts: dict[str, Part]) -> None:
     )
     is_tested_first = node.attrs.get("tested_first") is not False
     draft.add_path(node, begin, *setup, merge, marked=True)
-    draft.add_path(
-        node, merge, *loop_variables, *(test if is_tested_first else [*body, *test]), decision
-    )
-    back_edges = draft.add_path(
-        node, decision, *(body if is_tested_first else []), merge, guard=guard
-    )
+    before_decision = test if is_tested_first else [*body, *test]
+    after_decision = body if is_tested_first else []
+    draft.add_path(node, merge, *loop_variables, *before_decision, decision)
+    back_edges = draft.add_path(node, decision, *after_decision, merge, guard=guard)
     draft.rounds[node.id] = [back_edges[-1].id]
+    # Without this test a loop `while (true)` would have an exit that is never taken.
     if guard.condition != f.TRUE:
         draft.add_path(node, decision, end, guard=Guard("else", None))
 
@@ -179,6 +181,7 @@ def add_implied_start(draft: Draft, node: Element) -> None:
     is_started = any(edge.region == token_node.region and not edge.keeps for edge in incoming)
     if is_started or node.id in draft.chained or not (is_executable or (needs_token and incoming)):
         return
+    # An accept action without incoming flows listens again after each event (UML 2.5.1, 16.10.3).
     if node.subkind in ACCEPTS and not incoming:
         region = draft.listening.get(node.id, "")
         draft.add_edge(node.id, node.id, node, token_node.region, marked=not region, listens=region)

@@ -85,7 +85,7 @@ def _add_action_variables(draft: Draft, node: Element, token_node: TokenNode) ->
     called_name = _find_called_name(draft, node) if prefix != "run" else ""
     run = draft.inputs.names.new(f"{prefix}_{identifier(called_name) if called_name else short}")
     if node.subkind in _PULSES or node.attrs.get("synchronous") is False:
-        # Nobody waits for what is called asynchronously (UML 2.5.1, 16.3.3).
+        # The caller does not wait for the end of an asynchronous call (UML 2.5.1, 16.3.3).
         return replace(token_node, duration=Duration.PULSE, run=run)
     if node.subkind in ACCEPTS:
         end_condition, names = read_events(draft.inputs, node)

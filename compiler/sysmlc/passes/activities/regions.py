@@ -65,6 +65,7 @@ def _assign_unlisted(graph: Graph, node: Element, parts: list[Part]) -> list[Par
     unlisted = [
         member for member in graph.owned(node) if member.kind in NODES and member.id not in home
     ]
+    # Sources first: a buffer belongs to the part that fills it.
     for neighbours in (_sources, _targets):
         while any(_assign_to_part(graph, node, member, home, neighbours) for member in unlisted):
             unlisted = [member for member in unlisted if member.id not in home]

@@ -1,6 +1,4 @@
-"""Rules about activities (SM450 to SM479), each with a small model that has it and one that nearly
-has it.
-"""
+"""Rules about activities (SM450 to SM479)."""
 
 from sysmlc.diagnostics import Severity, rule
 

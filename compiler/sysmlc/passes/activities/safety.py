@@ -24,9 +24,9 @@ from sysmlc.logic.activities.token_graph import (
 from sysmlc.logic.names import Names
 
 _NAMED_FROM = 50
-"""The parts of a condition times its uses; from here on it gets a name."""
+"""Conditions whose size times uses reaches this number get a name, else formulas explode."""
 _REMEMBERED = 256
-"""Answers that are kept: a process that compiles again finds those of what was not edited."""
+"""Size of the caches: a process that compiles again reuses the results of unedited activities."""
 
 
 class SafetyResult(Struct, frozen=True):

@@ -74,7 +74,9 @@ class Scope:
             self._feature(name) for name, known in self._variables.items() if known == variable
         )
         domains = (
-            known.domain for known in features if known is not None and known.domain is not None
+            feature.domain
+            for feature in features
+            if feature is not None and feature.domain is not None
         )
         return next(domains, BooleanDomain())
 
@@ -141,7 +143,7 @@ class Scope:
 
     def _make_input(self, name: str) -> Variable | None:
         for feature in (
-            self._feature(known) for known, variable in self._variables.items() if variable == name
+            self._feature(label) for label, variable in self._variables.items() if variable == name
         ):
             if feature is not None and feature.domain is not None:
                 note_range(self._graph, feature, self._sink)

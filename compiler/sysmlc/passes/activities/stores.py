@@ -48,7 +48,7 @@ def track_stores(
 ) -> tuple[TokenGraph, list[UntrackedFeature]]:
     """Return the token graph with the variables that its nodes assign, and the untracked features.
 
-    *written* holds the assignments of each action.
+    *assignments* holds the assignments of each action.
     """
     tracker = _StoreTracker(graph, activity, tokens, scope, writers)
     for statements in assignments:
@@ -258,7 +258,7 @@ class _StoreTracker:
             name
         ):
             return False
-        # That a constant is assigned to is told by a rule of its own.
+        # Assignments to constants are reported by SM415.
         is_seen = self._is_visible(name) and not self.features[name].constant
         return name in self.read or is_seen or self.scope.belongs_to_another_object(name)
 
@@ -271,7 +271,7 @@ def _is_outside(domain: Domain, spread: Domain) -> bool:
 
 def _saturate(case: Formula, value: Formula, domain: Domain, spread: Domain) -> Iterator[_Way]:
     if isinstance(domain, IntegerDomain) and isinstance(spread, IntegerDomain):
-        # What is always outside is an error of its own.
+        # Values that are always outside are reported by SM414.
         is_outside = _is_outside(domain, spread)
         for when, bounded, is_bound in split_by_range(case, value, domain, spread):
             yield when, bounded, is_bound and not is_outside

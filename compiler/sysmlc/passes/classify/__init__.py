@@ -5,7 +5,7 @@ from typing import ClassVar
 
 from msgspec import Struct
 
-from sysmlc.diagnostics import Sink
+from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind
 from sysmlc.ir.query import CLASSIFIERS, tag
 from sysmlc.passes.classify.allocations import add_allocations
@@ -22,10 +22,31 @@ from sysmlc.passes.classify.literals import check_literals
 from sysmlc.passes.classify.relations import add_relations
 from sysmlc.passes.classify.requirements import check_requirements, complete_requirement
 from sysmlc.passes.classify.roles import STRUCTURED, role_by_stereotype, role_by_structure
-from sysmlc.passes.classify.rules import LOOK_ALIKE, OPTIONAL_WITH_VALUE, UNKNOWN_STEREOTYPE
 from sysmlc.passes.classify.tags import HANDLERS, apply_tags, check_tags, find_optional_with_value
 from sysmlc.passes.classify.units import link_units
 from sysmlc.passes.classify.vocabulary import LEVELS, Family, is_known, mangle
+
+LOOK_ALIKE = rule(
+    "SM210",
+    "stereotype-by-name",
+    Severity.INFO,
+    "stereotype {stereotype} is taken for SysML's {known} because of its name (applied: {count})",
+    help="give the profile as a further input, and let the stereotype specialise SysML's {known}",
+)
+UNKNOWN_STEREOTYPE = rule(
+    "SM211",
+    "unknown-stereotype",
+    Severity.INFO,
+    "no profile of the compile unit defines stereotype {stereotype} (applied: {count})",
+    help="give the file of the profile as a further input",
+)
+OPTIONAL_WITH_VALUE = rule(
+    "SM216",
+    "optional-with-value",
+    Severity.WARNING,
+    "parameter '{parameter}' is «optional», but its multiplicity asks for a value",
+    help="give the parameter the multiplicity 0..1, or remove «optional»",
+)
 
 _Meanings = dict[str, tuple[str, ...]]
 
@@ -55,6 +76,7 @@ class Classify(Struct, frozen=True):
         _give_levels(graph, lineages)
         _complete_attributes(graph)
         check_literals(graph, sink)
+        # After the roles, which decide which connectors and dependencies mean edges.
         add_bindings(graph)
         add_allocations(graph)
         add_relations(graph, sink)
@@ -158,7 +180,7 @@ def _give_roles(graph: Graph, meanings: _Meanings) -> None:
         role = role_by_stereotype(graph[id], names)
         if role:
             graph.set(graph[id], role=role)
-    # Most elements of a large model are of behaviour, to which structure gives no role.
+    # Only these kinds: most elements of a large model belong to behaviours.
     for element in graph.of_kind(*STRUCTURED):
         if not element.role:
             graph.set(element, role=role_by_structure(graph, element) or None)
@@ -170,7 +192,7 @@ def _give_levels(graph: Graph, lineages: dict[str, tuple[Ancestor, ...]]) -> Non
         for subject in graph.targets(graph[id], Edge.SUBJECT):
             levels_by_subject.setdefault(subject.id, set()).update(_list_levels(lineage))
     for id, levels in levels_by_subject.items():
-        # An OPC UA call is often said of a service too: the first of the table is the level.
+        # Services often have the stereotype OpcUaCall too; the first level of the table counts.
         level = next((name for name in LEVELS.values() if name in levels), None)
         graph.set(graph[id], level=level or graph[id].attrs.get("level"))
     _inherit_levels(graph)
@@ -184,7 +206,7 @@ def _inherit_levels(graph: Graph) -> None:
             special for element in layer for special in graph.sources(element, Edge.SPECIALIZES)
         )
         layer = [special for special in dict.fromkeys(specials) if "level" not in special.attrs]
-        # A layer is looked at as a whole before it changes: the order must not matter.
+        # Compute the whole layer before changing it, so that the order of elements has no effect.
         for special, level in [(special, _level_of_general(graph, special)) for special in layer]:
             graph.set(special, level=level)
 

@@ -12,7 +12,7 @@ from sysmlc.ir.query import tag
 from sysmlc.passes.classify.vocabulary import MEANINGFUL, Family, find_family, find_generals, mangle
 
 _REMEMBERED = 1 << 10
-"""Stereotypes whose lineage is kept: a model applies a few of them thousands of times."""
+"""Size of the cache of lineages: a model applies a few stereotypes thousands of times."""
 
 
 class Ancestor(Struct, frozen=True):
@@ -92,7 +92,7 @@ class Profiles:
         owner_family = find_family(namespace)
         candidates = sorted(self._named.get(name, ()), key=lambda candidate: candidate.id)
         if owner_family is not Family.CUSTOM:
-            # What SysML says of its own stereotypes is known without any library.
+            # The vocabulary knows SysML's own stereotypes, so that stubs are not needed.
             candidates = [
                 candidate for candidate in candidates if not candidate.attrs.get("external")
             ]
@@ -156,7 +156,8 @@ class Profiles:
         return any(self._uri_of(profile) == namespace for profile in self._profiles_of(stereotype))
 
     def _has_name(self, stereotype: Element, namespace: str) -> bool:
-        # MagicDraw: http://www.magicdraw.com/schemas/Arrowhead.xmi of the profile "Arrowhead".
+        # MagicDraw derives the namespace from the name of the profile:
+        # http://www.magicdraw.com/schemas/Arrowhead.xmi of the profile "Arrowhead".
         last = re.sub(r"\.xmi$", "", namespace.rpartition("/")[2])
         return any(mangle(profile.name) == last for profile in self._profiles_of(stereotype))
 

@@ -1,9 +1,16 @@
 """Edges that dependencies mean: satisfies, derives, allocated-to and so on."""
 
-from sysmlc.diagnostics import Sink
+from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Edge, Element, Graph, Kind
-from sysmlc.passes.classify.rules import NO_REQUIREMENT
 from sysmlc.passes.classify.vocabulary import DEPENDENCY_ROLES
+
+NO_REQUIREMENT = rule(
+    "SM212",
+    "no-requirement",
+    Severity.WARNING,
+    "a «{relation}» relation leads to '{element}', which is no requirement",
+    help="turn the arrow round, or apply «Requirement» to '{element}'",
+)
 
 _EDGES = dict(DEPENDENCY_ROLES.values())
 _EDGES_OF_SUBKINDS = {"realization": Edge.REALIZES, "role-binding": Edge.BINDS}

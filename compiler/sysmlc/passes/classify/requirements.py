@@ -93,7 +93,7 @@ def _check_copy(graph: Graph, sink: Sink, dependency: Element) -> None:
     for copy in graph.targets(dependency, Edge.CLIENT):
         for master in graph.targets(dependency, Edge.SUPPLIER):
             copy_text, master_text = _normalise_text(copy), _normalise_text(master)
-            # A copy without a text of its own takes its master's: MagicDraw leaves it empty.
+            # MagicDraw leaves the text of a copy empty; it then has the text of its master.
             if copy_text and master_text and copy_text != master_text:
                 names = graph.qualified_name(copy), graph.qualified_name(master)
                 subject = graph.subject(dependency)

@@ -117,9 +117,9 @@ def _add_edges(edge: Edge, *tag_names: str) -> _Handler:
 
 def _set_ids(attribute: str, tag_name: str) -> _Handler:
     def give(graph: Graph, application: Element, subject: Element) -> None:
-        found = tuple(one.id for one in tag_elements(graph, application, tag_name))
-        if found:
-            graph.set(subject, **{attribute: found})
+        ids = tuple(element.id for element in tag_elements(graph, application, tag_name))
+        if ids:
+            graph.set(subject, **{attribute: ids})
 
     return give
 

@@ -150,7 +150,7 @@ def _add_formula(graph: Graph, contract: Contract, constraint: Element, sink: Si
         Conjunct(part, class_, constraint.id, f"'{name}' demands it.")
         for class_, part in classified(formula)
     ]
-    if any(one.class_ is Class.OTHER and not is_reducible(one.formula) for one in conjuncts):
+    if any(part.class_ is Class.OTHER and not is_reducible(part.formula) for part in conjuncts):
         sink.report(OUTSIDE_GR1, subject, constraint=name)
     return remembering(_extend(contract, conjuncts))
 

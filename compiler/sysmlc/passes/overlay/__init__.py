@@ -41,6 +41,7 @@ def apply_overlays(refinements: Sequence[Refinement], graph: Graph, sink: Sink) 
     roots = graph.roots()
     in_file_order = sorted(refinements, key=lambda refinement: refinement.file)
     finders = [Finder(graph, sink, refinement, roots) for refinement in in_file_order]
+    # Items first: flows and types of later entries name them.
     for finder in finders:
         add_items(finder)
     for finder in finders:
@@ -52,6 +53,7 @@ def apply_overlays(refinements: Sequence[Refinement], graph: Graph, sink: Sink) 
         for block in finder.refinement.blocks:
             refine_block(finder, block)
             find_behaviors(finder, block)
+    # Only now: a behaviour that moves to a block is no longer found at its path in the model.
     for finder in finders:
         for block in finder.refinement.blocks:
             add_behaviors(finder, block)

@@ -163,7 +163,7 @@ def fits_type(graph: Graph, value: AttrValue, type_: Element) -> bool:
 
 
 def _literals(graph: Graph, enumeration: Element) -> list[Element]:
-    return [one for one in graph.owned(enumeration) if one.kind is Kind.ENUMERATION_LITERAL]
+    return [part for part in graph.owned(enumeration) if part.kind is Kind.ENUMERATION_LITERAL]
 
 
 def _agrees_on_boolean(value: AttrValue, type_: Element) -> bool:

@@ -50,9 +50,9 @@ def name_in_unit(file: str, name: str) -> str:
 _GUID = re.compile(r"\{?([0-9A-Fa-f]{8}(?:-[0-9A-Fa-f]{4}){3}-[0-9A-Fa-f]{12})\}?")
 _PRIMITIVES = frozenset({"Boolean", "Integer", "Real", "String", "UnlimitedNatural"})
 _TELLING = 2_000
-"""Names among which the nearest is looked for; comparing more takes seconds."""
+"""Names that are compared for a suggestion; comparing more takes seconds."""
 _ADVISED = 20
-"""Words of an overlay that are answered with the nearest name: an export may lose thousands."""
+"""Unknown words that get a suggestion; a new export may invalidate thousands of them."""
 _LISTED = 5
 
 

@@ -1,4 +1,4 @@
-"""What can be wrong between an overlay and its model.
+"""Rules about overlays that do not fit their model.
 
 The small overlays below are about a plant in which block Gate has the parts st (a Stopper with
 the ports p_sIn and p_sOut) and sw (a Switch with p_swIn); the connector l1 joins st.p_sOut and

@@ -66,7 +66,7 @@ def is_structure(element: Element) -> bool:
 
 
 _TELLING = 5_000
-"""Names among which the nearest is looked for; comparing more takes seconds."""
+"""Names that are compared for a suggestion; comparing more takes seconds."""
 
 
 @dataclass

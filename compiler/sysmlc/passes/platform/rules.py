@@ -1,4 +1,4 @@
-"""What can be wrong between recipes and the plant that shall run them."""
+"""Rules about recipes and the plant that runs them."""
 
 from sysmlc.diagnostics import Severity, rule
 

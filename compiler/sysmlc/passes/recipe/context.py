@@ -113,6 +113,7 @@ class Context(Struct, frozen=True):
             return ""
         level = self._levels.get(element.id)
         if level is None:
+            # The entry ends the recursion if types or generals form a cycle.
             self._levels[element.id] = ""
             level = self._levels[element.id] = self._find_level(element)
         return level

@@ -34,7 +34,7 @@ def find_member(context: Context, type_: Element, name: str) -> Element | None:
     """Return the feature with this name of a type or of one of its generals."""
     by_name = context.members.get(type_.id)
     if by_name is None:
-        # The first of several that have one name.
+        # In reverse, so that the first of several features with one name remains.
         features = reversed(query.features(context.graph, type_))
         by_name = context.members[type_.id] = {feature.name: feature for feature in features}
     return by_name.get(name)

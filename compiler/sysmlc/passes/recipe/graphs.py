@@ -192,6 +192,7 @@ def build_flow_graph(context: Context, activity: Element, inside: str) -> FlowGr
     for region in regions:
         open_region(context, region, draft)
     draft.edges.extend(_list_control_edges(context, activity, data, draft))
+    # After the control edges: only object flows that no control flow already orders count.
     draft.edges.extend(_list_object_edges(context, activity, data, draft))
     for region in regions:
         close_region(context, region, draft)

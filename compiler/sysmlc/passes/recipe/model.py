@@ -121,7 +121,7 @@ def _build_named(
     context: Context, names: set[str], make: Callable[[Context, Element], _T], level: str
 ) -> tuple[_T, ...]:
     """Return values for the names that belong to elements of the level, sorted by name."""
-    # A name has the word that an element is called by: few elements have one of these.
+    # Computing a qualified name is slow, so skip elements whose own word occurs in no name.
     all_names = "\n".join(names)
     candidates = (
         element

@@ -59,7 +59,7 @@ class Libraries:
 
     def __init__(self, content: str) -> None:
         data = json.loads(content)
-        self._libraries = {one["name"]: _read_library(one) for one in data["libraries"]}
+        self._libraries = {entry["name"]: _read_library(entry) for entry in data["libraries"]}
         self._entries: dict[str, dict[str, Any]] = data["elements"]
         self._by_id: dict[str, str] = {}
         self._by_name: dict[tuple[str, str], list[str]] = {}

@@ -2,19 +2,58 @@
 unit.
 """
 
-from sysmlc.diagnostics import Place, Rule, Sink, Subject
+from sysmlc.diagnostics import Place, Rule, Severity, Sink, Subject, rule
 from sysmlc.ir import Graph, Kind
 from sysmlc.ir.identity import is_generated
 from sysmlc.passes.resolve.hrefs import PRIMITIVES, has_primitives_only, is_standard, split_href
 from sysmlc.passes.resolve.references import Need, Use
 from sysmlc.passes.resolve.resolver import stub_id
-from sysmlc.passes.resolve.rules import (
-    BROKEN_ID,
-    BROKEN_REFERENCE,
-    MANY_BROKEN,
-    MISSING_LIBRARY,
-    UNKNOWN_IN_LIBRARY,
+
+BROKEN_REFERENCE = rule(
+    "SM150",
+    "broken-reference",
+    Severity.ERROR,
+    "'{relation}' of '{element}' leads to '{target}', which does not exist",
+    help="restore the element in the modelling tool, or remove what refers to it",
 )
+BROKEN_ID = rule(
+    "SM151",
+    "broken-id",
+    Severity.ERROR,
+    "'{relation}' of '{element}' names '{target}', which does not exist",
+    help="restore the element in the modelling tool, or remove what refers to it",
+)
+MANY_BROKEN = rule(
+    "SM166",
+    "broken-references",
+    Severity.ERROR,
+    "'{relation}' of '{element}' leads to '{target}' and {others} more that do not exist",
+    help="restore the elements in the modelling tool, or remove what refers to them",
+)
+SEVERAL_TARGETS = rule(
+    "SM167",
+    "several-targets",
+    Severity.ERROR,
+    "'{relation}' of '{element}' leads to {count} elements, but a flow has only one; "
+    "the first counts",
+    help="draw one flow for each, with a fork or a decision before them",
+)
+MISSING_LIBRARY = rule(
+    "SM152",
+    "missing-library",
+    Severity.WARNING,
+    "'{library}' is not part of the compile unit; what it holds ({count}) is known by name only",
+    help="give the file '{library}' as a further input",
+)
+UNKNOWN_IN_LIBRARY = rule(
+    "SM153",
+    "unknown-in-library",
+    Severity.WARNING,
+    "'{library}' is known to sysmlc without reading it, but {count} of what the model takes from "
+    "it is not",
+    help="choose the type again in the modelling tool, or give the file as a further input",
+)
+
 
 _SINGLY = 4
 """References of one element and relation that lead nowhere and are reported one by one."""

@@ -88,7 +88,7 @@ def _basename(file: str) -> str:
 
 
 def _smallest_id(elements: Iterable[Element]) -> Element | None:
-    # The smallest id, not the first that was read: the order of the files must not matter.
+    # The smallest id, not the first one read, because the order of files must have no effect.
     return min(elements, key=lambda element: element.id, default=None)
 
 

@@ -5,10 +5,68 @@ from typing import ClassVar
 
 from msgspec import Struct
 
-from sysmlc.diagnostics import Rule, Sink
+from sysmlc.diagnostics import Rule, Severity, Sink, rule
 from sysmlc.ir import Edge, Element, Graph, Kind, query
 from sysmlc.ir.query import interactions
-from sysmlc.passes.interactions import rules
+
+MESSAGE_WITHOUT_LIFELINE = rule(
+    "SM440",
+    "message-without-lifeline",
+    Severity.WARNING,
+    "message '{message}' of '{interaction}' {problem}",
+    help="tie the ends of the message to lifelines again, or delete it",
+)
+OPERANDS = rule(
+    "SM441",
+    "wrong-number-of-operands",
+    Severity.WARNING,
+    "fragment '{operator}' of '{interaction}' has {count} operands, but {wanted}",
+    help="move the contents into one operand, or choose another operator",
+)
+ACROSS_OPERANDS = rule(
+    "SM442",
+    "message-across-fragments",
+    Severity.WARNING,
+    "message '{message}' of '{interaction}' is sent in one operand and received in another",
+    help="move both ends of the message into the same operand",
+)
+AFTER_DESTRUCTION = rule(
+    "SM443",
+    "occurrence-after-destruction",
+    Severity.WARNING,
+    "something happens on lifeline '{lifeline}' of '{interaction}' after it was destroyed",
+    help="move the destruction to the end of the lifeline",
+)
+RECEIVED_FIRST = rule(
+    "SM444",
+    "received-before-sent",
+    Severity.WARNING,
+    "message '{message}' of '{interaction}' is received before it is sent",
+    help="move the message in the modelling tool, so that it orders the ends anew",
+)
+EXECUTION_BACKWARDS = rule(
+    "SM445",
+    "execution-ends-before-it-starts",
+    Severity.WARNING,
+    "execution '{execution}' of '{interaction}' ends before it starts",
+    help="draw the execution again in the modelling tool",
+)
+NOT_OFFERED = rule(
+    "SM446",
+    "operation-not-offered",
+    Severity.WARNING,
+    "message '{message}' of '{interaction}' calls '{operation}', which '{type}' does not offer",
+    help="add the operation to '{type}', or choose one of its operations for the message",
+)
+CREATED_LATE = rule(
+    "SM447",
+    "created-after-its-first-occurrence",
+    Severity.WARNING,
+    "message '{message}' of '{interaction}' creates lifeline '{lifeline}', on which something has "
+    "happened before",
+    help="move the message up, or choose another sort of message",
+)
+
 
 _ONE_OPERAND = frozenset({"opt", "loop", "break", "assert", "neg"})
 _Place = tuple[str, int]
@@ -55,15 +113,15 @@ def _check_message(
 ) -> None:
     problem = _find_missing_end(graph, message)
     if problem and not message.attrs.get("unresolved"):
-        _report(graph, sink, rules.MESSAGE_WITHOUT_LIFELINE, interaction, message, problem=problem)
+        _report(graph, sink, MESSAGE_WITHOUT_LIFELINE, interaction, message, problem=problem)
     ends = (graph.target(message, Edge.SEND_EVENT), graph.target(message, Edge.RECEIVE_EVENT))
     positions = [places.get(end.id) for end in ends if end is not None]
     if len(positions) == 2 and positions[0] is not None and positions[1] is not None:
         (sent_in, sent_at), (received_in, received_at) = positions[0], positions[1]
         if sent_in != received_in:
-            _report(graph, sink, rules.ACROSS_OPERANDS, interaction, message)
+            _report(graph, sink, ACROSS_OPERANDS, interaction, message)
         elif received_at < sent_at:
-            _report(graph, sink, rules.RECEIVED_FIRST, interaction, message)
+            _report(graph, sink, RECEIVED_FIRST, interaction, message)
     _check_operation(graph, sink, interaction, message)
 
 
@@ -95,7 +153,7 @@ def _check_operation(graph: Graph, sink: Sink, interaction: Element, message: El
         return
     if type_ is not None and not _has_operation(graph, type_, operation):
         names = {"operation": operation.name, "type": type_.name}
-        _report(graph, sink, rules.NOT_OFFERED, interaction, message, **names)
+        _report(graph, sink, NOT_OFFERED, interaction, message, **names)
 
 
 def _has_operation(graph: Graph, type_: Element, operation: Element) -> bool:
@@ -135,7 +193,7 @@ def _check_operands(graph: Graph, sink: Sink, interaction: Element, fragment: El
     is_single = fragment.subkind in _ONE_OPERAND
     if count == 0 or (is_single and count != 1):
         sink.report(
-            rules.OPERANDS,
+            OPERANDS,
             graph.subject(fragment),
             operator=fragment.subkind,
             interaction=graph.qualified_name(interaction),
@@ -153,7 +211,7 @@ def _check_execution(
         is_same = positions[0][0] == positions[1][0]
         if is_same and positions[1][1] < positions[0][1]:
             sink.report(
-                rules.EXECUTION_BACKWARDS,
+                EXECUTION_BACKWARDS,
                 graph.subject(execution),
                 execution=execution.name or "without name",
                 interaction=graph.qualified_name(interaction),
@@ -183,7 +241,7 @@ def _check_creations(graph: Graph, sink: Sink, interaction: Element) -> None:
             is_created = message is not None and message.subkind == "create-message"
             if message is not None and is_created and lifeline.id in started:
                 name = lifeline.name or "without name"
-                _report(graph, sink, rules.CREATED_LATE, interaction, message, lifeline=name)
+                _report(graph, sink, CREATED_LATE, interaction, message, lifeline=name)
             started.add(lifeline.id)
 
 
@@ -191,7 +249,7 @@ def _report_destroyed(
     graph: Graph, sink: Sink, interaction: Element, item: Element, lifeline: Element
 ) -> None:
     sink.report(
-        rules.AFTER_DESTRUCTION,
+        AFTER_DESTRUCTION,
         graph.subject(item),
         lifeline=lifeline.name or "without name",
         interaction=graph.qualified_name(interaction),
