@@ -6,7 +6,7 @@ from activity_models import activity, tokens_of
 from activity_sketch import sketch
 from sysmlc.diagnostics import Sink
 from sysmlc.ir.text import parse_text
-from sysmlc.logic.activities.derivation import derive
+from sysmlc.logic.activities.derivation import derive_contract
 from sysmlc.logic.activities.token_graph import TokenGraph
 from sysmlc.logic.contract import Class, Contract
 from sysmlc.logic.evaluate import is_true
@@ -22,7 +22,7 @@ def contract(text: str) -> Contract:
     graph = parse_text(text)
     Activities().run(graph, Sink())
     (tokens,) = graph.derived(TokenGraph)
-    return derive(tokens)
+    return derive_contract(tokens)
 
 
 # -- reading -----------------------------------------------------------------------------------
@@ -210,7 +210,7 @@ def test_an_exit_guard_that_holds_again_and_again_is_not_enough_to_leave_a_loop(
 
 
 def test_a_choice_that_the_diagram_leaves_open_stays_open():
-    found = derive(tokens_of(activity(("choose", ("act",), ("act",)))))
+    found = derive_contract(tokens_of(activity(("choose", ("act",), ("act",)))))
     first, second = (v.name for v in found.variables if v.name.startswith("run_"))
     both = f"{joined(found.guarantees)} & (F {{}}) & G !{{}}"
     assert holds_somewhere(both.format(first, second))

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from sysmlc.logic import evaluate
 from sysmlc.logic.activities import interpreter as token_game
-from sysmlc.logic.activities.derivation import derive
+from sysmlc.logic.activities.derivation import derive_contract
 from sysmlc.logic.activities.token_graph import TokenGraph
 from sysmlc.logic.contract import Class, Contract, Owner
 from sysmlc.logic.domains import values
@@ -21,11 +21,11 @@ Trace = list[dict[str, Literal]]
 def play(graph: TokenGraph, seed: int, steps: int) -> Trace:
     """A run with random inputs, and random choices where the diagram leaves one."""
     dice = random.Random(seed)
-    state, trace = token_game.start(graph), []
+    state, trace = token_game.initial_state(graph), []
     for _ in range(steps):
         inputs = {v.name: dice.choice(values(v.domain)) for v in graph.inputs}
-        trace.append({**inputs, **token_game.values(graph, state)})
-        state = token_game.step(
+        trace.append({**inputs, **token_game.values_of(graph, state)})
+        state = token_game.next_state(
             graph, state, inputs, evaluate.is_true, lambda _, open_: dice.choice(open_)
         )
     return trace
@@ -41,7 +41,7 @@ def violated(contract: Contract, trace: Trace) -> list[str]:
 @given(blocks(), st.booleans(), st.integers(0, 2**16))
 def test_every_run_of_the_diagram_satisfies_the_guarantees(block, has_final, seed):
     tokens = tokens_of(activity(block, has_final))
-    assert violated(derive(tokens), play(tokens, seed, 60)) == []
+    assert violated(derive_contract(tokens), play(tokens, seed, 60)) == []
 
 
 @settings(max_examples=100, deadline=None)
@@ -49,7 +49,7 @@ def test_every_run_of_the_diagram_satisfies_the_guarantees(block, has_final, see
 def test_a_run_with_one_changed_system_value_is_detected(block, seed, data):
     """Any token put somewhere or taken away, any action run or stopped, at any step."""
     tokens = tokens_of(activity(block))
-    contract, trace = derive(tokens), play(tokens, seed, 30)
+    contract, trace = derive_contract(tokens), play(tokens, seed, 30)
     system = [v.name for v in contract.variables if v.owner is Owner.SYSTEM]
     name = data.draw(st.sampled_from(system))
     at = data.draw(st.integers(0, len(trace) - 1))
@@ -62,7 +62,7 @@ def test_a_run_with_one_changed_system_value_is_detected(block, seed, data):
 def test_a_changed_input_is_detected_when_it_matters(block, seed, data):
     """A run that goes on as if an action had ended, or a guard had held, that did not."""
     tokens = tokens_of(activity(block))
-    contract, trace = derive(tokens), play(tokens, seed, 30)
+    contract, trace = derive_contract(tokens), play(tokens, seed, 30)
     if not tokens.inputs:
         return
     at = data.draw(st.integers(0, len(trace) - 2))
@@ -79,10 +79,10 @@ def successors(tokens: TokenGraph, step: dict[str, Literal]) -> list[dict[str, L
     found = []
     for seed in range(64):
         dice = random.Random(seed)
-        after = token_game.step(
+        after = token_game.next_state(
             tokens, state, step, evaluate.is_true, lambda _, o, dice=dice: dice.choice(o)
         )
-        found.append(token_game.values(tokens, after))
+        found.append(token_game.values_of(tokens, after))
     return found
 
 
@@ -91,7 +91,7 @@ def successors(tokens: TokenGraph, step: dict[str, Literal]) -> list[dict[str, L
 def test_a_well_formed_activity_finishes_when_the_environment_is_fair(block, has_final, seed):
     tokens = tokens_of(activity(block, has_final))
     assert tokens.finishes
-    (finish,) = [p for p in derive(tokens).guarantees if p.class_ is Class.LIVENESS]
+    (finish,) = [p for p in derive_contract(tokens).guarantees if p.class_ is Class.LIVENESS]
     trace = play(tokens, seed, 1500)
     assert any(evaluate.is_true(finish.formula, step) for step in trace)
 
@@ -103,4 +103,4 @@ def test_collapsed_activities_satisfy_their_contracts_with_fewer_edges(block, ha
     small = tokens_of(activity(block, has_final), lambda: Activities(collapse_over=0))
     assert len(small.edges) <= len(whole.edges)
     assert [n.run for n in small.workers()] == [n.run for n in whole.workers()]
-    assert violated(derive(small), play(small, seed, 60)) == []
+    assert violated(derive_contract(small), play(small, seed, 60)) == []

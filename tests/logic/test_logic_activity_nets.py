@@ -12,8 +12,8 @@ from sysmlc.ir.text import parse_text, print_text
 from sysmlc.logic import evaluate
 from sysmlc.logic.activities import interpreter as token_game
 from sysmlc.logic.activities import net_safety as token_net
-from sysmlc.logic.activities.derivation import derive
-from sysmlc.logic.activities.petri_net import reduce
+from sysmlc.logic.activities.derivation import derive_contract
+from sysmlc.logic.activities.petri_net import reduce_net
 from sysmlc.logic.activities.token_graph import ACTIVITY_REGION, TokenGraph
 from sysmlc.passes.activities import Activities
 from sysmlc.passes.activities import construction as activity_tokens
@@ -79,10 +79,10 @@ def lines(draw) -> TokenGraph:
 @given(scribbles())
 def test_reductions_keep_the_answer(tokens):
     """Only an end that forestalls the next firing may make the reduced net more careful."""
-    whole = token_net.search(token_net.net_of(tokens, ACTIVITY_REGION), 100_000)
-    net = token_net.net_of(tokens, ACTIVITY_REGION)
-    reduce(net)
-    quick = token_net.search(net, 100_000)
+    whole = token_net.search_markings(token_net.build_net(tokens, ACTIVITY_REGION), 100_000)
+    net = token_net.build_net(tokens, ACTIVITY_REGION)
+    reduce_net(net)
+    quick = token_net.search_markings(net, 100_000)
     ends = {edge.source for edge in tokens.ends(ACTIVITY_REGION)}
     if whole.unsafe or not ends:
         assert bool(whole.unsafe) == bool(quick.unsafe)
@@ -94,13 +94,13 @@ def test_reductions_keep_the_answer(tokens):
 @settings(max_examples=300, deadline=None)
 @given(scribbles(), st.integers(0, 2**16))
 def test_no_run_of_a_safe_activity_brings_a_second_token(tokens, seed):
-    if token_net.check(tokens, ACTIVITY_REGION, 100_000).unsafe:
+    if token_net.check_safety(tokens, ACTIVITY_REGION, 100_000).unsafe:
         return
     dice = random.Random(seed)
-    state = token_game.start(tokens)
+    state = token_game.initial_state(tokens)
     for _ in range(60):
         inputs = {v.name: dice.random() < 0.5 for v in tokens.inputs}
-        state = token_game.step(
+        state = token_game.next_state(
             tokens, state, inputs, evaluate.is_true, lambda _, open_: dice.choice(open_)
         )
 
@@ -108,16 +108,16 @@ def test_no_run_of_a_safe_activity_brings_a_second_token(tokens, seed):
 @settings(max_examples=300, deadline=None)
 @given(scribbles())
 def test_a_single_token_is_followed_as_all_markings_are_searched(tokens):
-    found = token_net.walk(tokens, ACTIVITY_REGION)
-    whole = token_net.search(token_net.net_of(tokens, ACTIVITY_REGION), 100_000)
+    found = token_net.check_single_token(tokens, ACTIVITY_REGION)
+    whole = token_net.search_markings(token_net.build_net(tokens, ACTIVITY_REGION), 100_000)
     assert found in (None, whole)
 
 
 @settings(max_examples=100, deadline=None)
 @given(lines())
 def test_where_nothing_forks_or_joins_no_marking_is_built(tokens):
-    whole = token_net.search(token_net.net_of(tokens, ACTIVITY_REGION), 100_000)
-    assert token_net.walk(tokens, ACTIVITY_REGION) == whole
+    whole = token_net.search_markings(token_net.build_net(tokens, ACTIVITY_REGION), 100_000)
+    assert token_net.check_single_token(tokens, ACTIVITY_REGION) == whole
 
 
 def test_two_tokens_that_meet_at_a_merge_before_a_sink_are_found():
@@ -126,7 +126,7 @@ def test_two_tokens_that_meet_at_a_merge_before_a_sink_are_found():
     work = canvas.node(Kind.ACTION, "opaque", "work")
     for source, target in ((start, work), (work, merge), (work, merge), (merge, sink)):
         canvas.flow(source, target)
-    assert token_net.check(drawn(canvas), ACTIVITY_REGION, 1000).unsafe
+    assert token_net.check_safety(drawn(canvas), ACTIVITY_REGION, 1000).unsafe
 
 
 @settings(max_examples=100, deadline=None)
@@ -135,10 +135,10 @@ def test_series_and_parallel_parts_leave_next_to_nothing_to_search(block):
     canvas = Canvas()
     canvas.graph = activity(block)
     tokens = drawn(canvas)
-    net = token_net.net_of(tokens, ACTIVITY_REGION)
-    reduce(net)
+    net = token_net.build_net(tokens, ACTIVITY_REGION)
+    reduce_net(net)
     assert len(net.places) <= 3
-    assert not token_net.search(net, 10).unsafe
+    assert not token_net.search_markings(net, 10).unsafe
 
 
 def test_many_parallel_branches_are_checked_without_building_their_markings():
@@ -150,7 +150,7 @@ def test_many_parallel_branches_are_checked_without_building_their_markings():
         canvas.flow(fork, first)
         canvas.flow(last, join)
     canvas.flow(join, canvas.control("final"))
-    safety = token_net.check(drawn(canvas), ACTIVITY_REGION, 10)
+    safety = token_net.check_safety(drawn(canvas), ACTIVITY_REGION, 10)
     assert safety.is_complete
     assert not safety.unsafe
 
@@ -217,14 +217,14 @@ def test_whatever_is_drawn_is_played_as_its_contract_says_or_has_a_rule(canvas, 
 
 def play_as_its_contract_says(tokens, seed):
     dice = random.Random(seed)
-    state, trace = token_game.start(tokens), []
+    state, trace = token_game.initial_state(tokens), []
     for _ in range(40):
         inputs = {v.name: dice.random() < 0.5 for v in tokens.inputs}
-        trace.append({**inputs, **token_game.values(tokens, state)})
-        state = token_game.step(
+        trace.append({**inputs, **token_game.values_of(tokens, state)})
+        state = token_game.next_state(
             tokens, state, inputs, evaluate.is_true, lambda _, o, dice=dice: dice.choice(o)
         )
-    for conjunct in derive(tokens).guarantees:
+    for conjunct in derive_contract(tokens).guarantees:
         assert evaluate.violation(conjunct, trace) is None, conjunct.text
 
 

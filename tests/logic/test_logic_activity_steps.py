@@ -12,7 +12,7 @@ from sysmlc.ir.text import print_text
 from sysmlc.logic import domains, evaluate
 from sysmlc.logic.activities import interpreter as token_game
 from sysmlc.logic.activities import reachability as token_search
-from sysmlc.logic.activities.derivation import derive
+from sysmlc.logic.activities.derivation import derive_contract
 from sysmlc.logic.activities.token_graph import TokenGraph
 from sysmlc.logic.contract import Class, Contract, Owner
 from sysmlc.logic.domains import values
@@ -35,14 +35,14 @@ def tokens_of(block, **options) -> TokenGraph | None:
 def steps(tokens: TokenGraph, seed: int, length: int) -> Iterator[tuple[Valuation, Valuation]]:
     """A random run as steps, each with the inputs that follow."""
     dice = random.Random(seed)
-    state, inputs = token_game.start(tokens), drawn(tokens, dice)
+    state, inputs = token_game.initial_state(tokens), drawn(tokens, dice)
     for _ in range(length):
-        now = {**inputs, **token_game.values(tokens, state)}
-        state = token_game.step(
+        now = {**inputs, **token_game.values_of(tokens, state)}
+        state = token_game.next_state(
             tokens, state, inputs, evaluate.is_true, lambda _, open_: dice.choice(open_)
         )
         inputs = drawn(tokens, dice)
-        yield now, {**inputs, **token_game.values(tokens, state)}
+        yield now, {**inputs, **token_game.values_of(tokens, state)}
 
 
 def drawn(tokens: TokenGraph, dice: random.Random) -> Valuation:
@@ -69,8 +69,8 @@ def following(tokens: TokenGraph, now: Valuation) -> list[Valuation]:
             counts.append(len(open_))
             return open_[plan[len(counts) - 1] if len(counts) <= len(plan) else 0]
 
-        after = token_game.step(tokens, state, now, evaluate.is_true, choose)
-        found.append(token_game.values(tokens, after))
+        after = token_game.next_state(tokens, state, now, evaluate.is_true, choose)
+        found.append(token_game.values_of(tokens, after))
         for place in range(len(plan), len(counts)):
             head = plan + [0] * (place - len(plan))
             waiting += [[*head, other] for other in range(1, counts[place])]
@@ -83,7 +83,7 @@ def test_each_step_is_allowed_and_no_step_that_differs_in_one_variable(block, se
     tokens = tokens_of(block)
     if tokens is None:
         return
-    contract = derive(tokens)
+    contract = derive_contract(tokens)
     system = [v.name for v in contract.variables if v.owner is Owner.SYSTEM]
     for now, then in steps(tokens, seed, 9):
         allowed = following(tokens, now)
@@ -100,7 +100,7 @@ def test_every_choice_that_the_interpreter_has_is_allowed(block, seed):
     tokens = tokens_of(block)
     if tokens is None:
         return
-    contract = derive(tokens)
+    contract = derive_contract(tokens)
     for now, then in steps(tokens, seed, 25):
         assert all(is_allowed(contract, now, {**then, **after}) for after in following(tokens, now))
 
@@ -111,14 +111,14 @@ def test_the_search_finds_the_states_that_the_interpreter_reaches(block):
     tokens = tokens_of(block)
     if tokens is None or domains.count({v.name: v.domain for v in tokens.inputs}) > 32:
         return
-    reached = token_search.explore(tokens, 3000)
+    reached = token_search.explore_states(tokens, 3000)
     if not reached.is_complete:
         return
-    first = token_game.start(tokens)
+    first = token_game.initial_state(tokens)
     seen, waiting = {first}, [first]
     for state in waiting:
         for inputs in domains.valuations({v.name: v.domain for v in tokens.inputs}):
-            now = {**inputs, **token_game.values(tokens, state)}
+            now = {**inputs, **token_game.values_of(tokens, state)}
             for after in following(tokens, now):
                 found = token_game.state_of(tokens, after)
                 if found not in seen:
@@ -126,7 +126,7 @@ def test_the_search_finds_the_states_that_the_interpreter_reaches(block):
                     waiting.append(found)
     # Events and guards that depend on one another make the search see more, never less.
     assert len(seen) <= reached.states
-    assert tokens.finishes or not any(token_game.finishes(tokens, state) for state in seen)
+    assert tokens.finishes or not any(token_game.is_finished(tokens, state) for state in seen)
     resting = {r for r in tokens.regions() if tokens.can_rest(r)}
     assert resting >= {r for r in tokens.regions() if _rests(tokens, r, seen)}
 
@@ -136,7 +136,7 @@ def _rests(tokens: TokenGraph, region: str, states) -> bool:
         token_game.is_complete(tokens, state, region)
         and not any(edge.id in state.tokens for edge in tokens.ends(region))
         and (not region or region in state.running)
-        and (not region or not token_game.finishes(tokens, state))
+        and (not region or not token_game.is_finished(tokens, state))
         for state in states
     )
 
@@ -147,7 +147,7 @@ def test_collapsed_rich_activities_keep_their_contracts(block, seed):
     tokens = tokens_of(block, collapse_over=0)
     if tokens is None:
         return
-    contract = derive(tokens)
+    contract = derive_contract(tokens)
     assert all(is_allowed(contract, now, then) for now, then in steps(tokens, seed, 60))
 
 
@@ -159,7 +159,7 @@ def test_a_rich_activity_finishes_when_the_environment_is_fair(block, seed):
     if tokens is None or "accept" in words(block):
         return
     assert tokens.finishes
-    (finish,) = [p for p in derive(tokens).guarantees if p.class_ is Class.LIVENESS]
+    (finish,) = [p for p in derive_contract(tokens).guarantees if p.class_ is Class.LIVENESS]
     assert any(evaluate.is_true(finish.formula, now) for now, _ in steps(tokens, seed, 1500))
 
 

@@ -10,10 +10,10 @@ from msgspec.structs import replace
 from sysmlc.logic import evaluate
 from sysmlc.logic import formula as f
 from sysmlc.logic.activities import interpreter as token_game
-from sysmlc.logic.activities.concurrency import Together
-from sysmlc.logic.activities.step_formulas import Game
+from sysmlc.logic.activities.concurrency import ConcurrencyRelation
+from sysmlc.logic.activities.step_formulas import StepFormulas
 from sysmlc.logic.activities.token_graph import NodeKind, Store, Write
-from sysmlc.logic.activities.value_analysis import Spread
+from sysmlc.logic.activities.value_analysis import ValueAnalysis
 from sysmlc.logic.contract import IntegerDomain, Owner, Variable
 from sysmlc.logic.domains import values
 from sysmlc.logic.formula import Const, Op
@@ -47,11 +47,11 @@ def written(tokens, dice):
 
 def played(tokens, dice, steps=80):
     """States of a run with the inputs that they are met with."""
-    state = token_game.start(tokens)
+    state = token_game.initial_state(tokens)
     for _ in range(steps):
         inputs = {one.name: dice.choice(values(one.domain)) for one in tokens.inputs}
-        yield state, {**inputs, **token_game.values(tokens, state)}
-        state = token_game.step(
+        yield state, {**inputs, **token_game.values_of(tokens, state)}
+        state = token_game.next_state(
             tokens, state, inputs, evaluate.is_true, lambda _, open_: dice.choice(open_)
         )
 
@@ -62,13 +62,13 @@ def test_what_has_tokens_together_in_a_run_is_known_to(block, has_final, seed):
     tokens = drawn(block, has_final)
     if tokens is None:
         return
-    together = Together(tokens)
+    together = ConcurrencyRelation(tokens)
     for state, _ in played(tokens, random.Random(seed)):
         places = sorted(state.tokens | state.running)
         for one in places:
-            beside = {*together.beside(one)}
+            beside = {*together.list_concurrent_places(one)}
             assert {*places} - {one} <= beside
-            assert all(together.are(one, other) for other in beside)
+            assert all(together.are_concurrent(one, other) for other in beside)
 
 
 @settings(max_examples=300, deadline=None)
@@ -78,10 +78,10 @@ def test_a_value_that_stops_in_a_run_is_one_that_may(block, has_final, seed):
     if tokens is None:
         return
     tokens = written(tokens, dice)
-    (store,), game = tokens.stores, Game(tokens)
-    spread = Spread(tokens, Together(tokens), store)
+    (store,), game = tokens.stores, StepFormulas(tokens)
+    spread = ValueAnalysis(tokens, ConcurrencyRelation(tokens), store)
     for state, now in played(tokens, dice):
-        for write in store.writes if not token_game.finishes(tokens, state) else ():
-            ends = f.both(game.finishes(tokens.node(write.node)), *write.stops)
+        for write in store.writes if not token_game.is_finished(tokens, state) else ():
+            ends = f.both(game.finish_formula(tokens.node(write.node)), *write.stops)
             if write.stops and evaluate.is_true(ends, now):
                 assert spread.may_stop(write)

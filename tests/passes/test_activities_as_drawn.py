@@ -155,14 +155,14 @@ def test_the_reference_interpreter_does_what_these_contracts_admit(part):
 
 
 def played(tokens, contract, dice):
-    state, inputs = token_game.start(tokens), [v for v in contract.variables if is_input(v)]
+    state, inputs = token_game.initial_state(tokens), [v for v in contract.variables if is_input(v)]
     for _ in range(STEPS):
         now = {one.name: dice.choice(domains.values(one.domain)) for one in inputs}
-        now |= token_game.values(tokens, state)
-        state = token_game.step(
+        now |= token_game.values_of(tokens, state)
+        state = token_game.next_state(
             tokens, state, now, evaluate.is_true, lambda _, ways: dice.choice(ways)
         )
-        then = {**now, **token_game.values(tokens, state)}
+        then = {**now, **token_game.values_of(tokens, state)}
         for one in contract.guarantees:
             if one.class_ is Class.SAFETY:
                 assert evaluate.is_true(one.formula, now, then), one.text

@@ -66,7 +66,7 @@ def told(text):
     graph, sink = parse_text(text), Sink()
     pipeline.run(graph, sink)
     for tokens in graph.derived(TokenGraph):
-        if "x" in tokens.own and "y" not in {one.name for one in tokens.inputs}:
+        if "x" in tokens.written_variables and "y" not in {one.name for one in tokens.inputs}:
             found = (one for one in sink if one.rule.code == "SM428")
             return {one.subject.id: said(one.message) for one in found}
     return None
@@ -107,10 +107,10 @@ def test_told_is_what_can_stop_and_nothing_else(part, is_known):
 @pytest.mark.parametrize("part", range(4))
 @pytest.mark.parametrize("is_known", [True, False])
 def test_without_a_search_nothing_that_can_stop_is_left_out(part, is_known, monkeypatch):
-    monkeypatch.setattr(bound_search, "_MOST_MOVES", 0)
-    saturation.leaving.cache_clear()
+    monkeypatch.setattr(bound_search, "_MAX_MOVES", 0)
+    saturation.find_saturating_writes.cache_clear()
     pairs = all_compared(part, is_known)
-    saturation.leaving.cache_clear()
+    saturation.find_saturating_writes.cache_clear()
     for wanted, found in pairs:
         assert {one for one, can in found.items() if can == "can"} <= wanted <= {*found}
     assert any(MANY in found.values() for _, found in pairs)

@@ -13,7 +13,7 @@ from sysmlc.ir import Element, Graph, Kind
 from sysmlc.ir.text import print_text
 from sysmlc.logic import evaluate
 from sysmlc.logic.activities import interpreter as token_game
-from sysmlc.logic.activities.derivation import derive
+from sysmlc.logic.activities.derivation import derive_contract
 from sysmlc.logic.activities.token_graph import TokenGraph
 from sysmlc.logic.domains import values
 from sysmlc.logic.printing import print_formula
@@ -89,18 +89,18 @@ def test_real_activities_keep_their_contracts_when_they_are_played(corpus, name)
     made = graph.derived(TokenGraph)
     for tokens in made[:: len(made) // _SAMPLE + 1]:
         dice = random.Random(7)
-        state, trace = token_game.start(tokens), []
+        state, trace = token_game.initial_state(tokens), []
         for _ in range(60):
             inputs = {v.name: dice.choice(values(v.domain)) for v in tokens.inputs}
-            trace.append({**inputs, **token_game.values(tokens, state)})
-            state = token_game.step(
+            trace.append({**inputs, **token_game.values_of(tokens, state)})
+            state = token_game.next_state(
                 tokens,
                 state,
                 inputs,
                 evaluate.is_true,
                 lambda _, open_, dice=dice: dice.choice(open_),
             )
-        for conjunct in derive(tokens).guarantees:
+        for conjunct in derive_contract(tokens).guarantees:
             assert evaluate.violation(conjunct, trace) is None, conjunct.text
 
 
@@ -119,7 +119,7 @@ def contracts(graph: Graph, _: Sink) -> dict[str, list[list[str]]]:
     """The conjuncts of each activity; what the file is called is left out of the names."""
     found: dict[str, list[list[str]]] = {}
     for tokens in graph.derived(TokenGraph):
-        contract = derive(tokens)
+        contract = derive_contract(tokens)
         parts = (*contract.assumptions, *contract.guarantees)
         name = graph.qualified_name(graph[tokens.activity]).split("::", 1)[-1]
         found.setdefault(name, []).append(sorted(print_formula(one.formula) for one in parts))
@@ -130,7 +130,7 @@ def test_contracts_grow_with_the_activity_and_not_with_its_square(corpus):
     """No conjunct of any real activity has more than a few parts a flow."""
     for name in FILES:
         for tokens in refined(corpus, name)[0].derived(TokenGraph):
-            sizes = [size(one.formula) for one in derive(tokens).guarantees]
+            sizes = [size(one.formula) for one in derive_contract(tokens).guarantees]
             assert sum(sizes) < 200 + 75 * len(tokens.edges), tokens.label
 
 

@@ -112,10 +112,12 @@ class ActivityPlayer(Struct, frozen=True, dict=True):
 
     @property
     def variables(self) -> tuple[Variable, ...]:
-        return activity_contract.variables(self.tokens)
+        return activity_contract.list_variables(self.tokens)
 
     def initial(self, inputs: Mapping[str, Literal]) -> list[Valuation]:
-        return [{**inputs, **token_game.values(self.tokens, token_game.start(self.tokens))}]
+        return [
+            {**inputs, **token_game.values_of(self.tokens, token_game.initial_state(self.tokens))}
+        ]
 
     def successors(
         self, now: Mapping[str, Literal], inputs: Mapping[str, Literal]
@@ -125,9 +127,11 @@ class ActivityPlayer(Struct, frozen=True, dict=True):
         waiting: list[list[int]] = [[]]
         while waiting:
             chooser = _Chooser(waiting.pop())
-            found[token_game.step(self.tokens, state, now, evaluate.is_true, chooser.choose)] = None
+            found[
+                token_game.next_state(self.tokens, state, now, evaluate.is_true, chooser.choose)
+            ] = None
             waiting += chooser.others()
-        return [{**inputs, **token_game.values(self.tokens, after)} for after in found]
+        return [{**inputs, **token_game.values_of(self.tokens, after)} for after in found]
 
 
 class _Chooser:

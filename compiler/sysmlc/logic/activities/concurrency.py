@@ -1,9 +1,9 @@
-"""Which flows and running actions of a token graph may have tokens at the same time.
+"""Concurrency relation of a token graph: which places may hold tokens at the same time.
 
-Pairs are looked at and not markings, so that it takes little time for any graph (A. Kovalyov,
-"Concurrency relations and the safety problem for Petri nets", 1992). Guards, the pace of the game
-and what interruptions take away are not looked at: of two places that are never marked together
-it may say that they are, of two that are it never says that they are not.
+The relation is computed from pairs of places instead of markings, so that it takes polynomial time
+(A. Kovalyov, "Concurrency relations and the safety problem for Petri nets", 1992). Guards, the
+synchronous steps of the game, and interruptions are ignored: the relation may contain pairs that
+are never marked together, but it never misses a pair.
 """
 
 from collections.abc import Callable, Iterable, Iterator
@@ -22,10 +22,10 @@ from sysmlc.logic.activities.token_graph import (
 
 
 class Move(Struct, frozen=True, eq=False):
-    """A node takes tokens and gives some; places are ids of edges and of running nodes.
+    """A node takes tokens and gives tokens; places are ids of edges and of running nodes.
 
-    ``branch`` is the edge that a decision chooses, ``is_end`` says that a running node is done.
-    ``clears`` are the places of a region that is over.
+    ``branch`` is the edge that a decision chooses; ``is_end`` is true if a running node is done.
+    ``clears`` are the places of a region that ends with the move.
     """
 
     node: TokenNode
@@ -36,38 +36,40 @@ class Move(Struct, frozen=True, eq=False):
     clears: tuple[str, ...] = ()
 
 
-def gone(node: TokenNode) -> str:
-    """The place of tokens that a node takes and gives to no flow of its region."""
+def consumed_place(node: TokenNode) -> str:
+    """Return the place that stands for tokens which the node takes and gives to no edge of its
+    region.
+    """
     return f"{node.id} gone"
 
 
-class Together:
-    """The moves of a token graph, and the places that may be marked together."""
+class ConcurrencyRelation:
+    """The moves of a token graph, and the pairs of places that may be marked together."""
 
     def __init__(self, graph: TokenGraph) -> None:
         self.graph = graph
         self.moves = [move for node in graph.nodes for move in self._moves(node)]
         places = (place for move in self.moves for place in (*move.takes, *move.gives))
-        known = dict.fromkeys([*(edge.id for edge in graph.edges), *places])
-        self._bits = {place: 1 << number for number, place in enumerate(known)}
+        ordered = dict.fromkeys([*(edge.id for edge in graph.edges), *places])
+        self._bits = {place: 1 << number for number, place in enumerate(ordered)}
 
-    def started(self, region: str) -> list[str]:
-        """The edges that hold a token when a region starts."""
+    def list_start_edges(self, region: str) -> list[str]:
+        """List the edges that hold a token when a region starts."""
         return [edge.id for edge in self.graph.inside(region)[0] if edge.marked]
 
-    def are(self, one: str, other: str) -> bool:
-        """Whether both places may hold a token at the same time."""
-        return bool(self._beside[one] & self._bits[other])
+    def are_concurrent(self, one: str, other: str) -> bool:
+        """Return whether both places may hold a token at the same time."""
+        return bool(self._concurrent[one] & self._bits[other])
 
     @cached_property
-    def are_none(self) -> bool:
-        """Whether no two places are ever marked together: there is one token."""
-        return not any(self._beside.values())
+    def is_sequential(self) -> bool:
+        """Whether no two places are ever marked together, so that there is only one token."""
+        return not any(self._concurrent.values())
 
-    def beside(self, place: str) -> Iterator[str]:
-        """The places that may hold a token while this one does."""
-        found = self._beside[place]
-        return (other for other, bit in self._bits.items() if bit & found)
+    def list_concurrent_places(self, place: str) -> Iterator[str]:
+        """Yield the places that may hold a token while this one does."""
+        mask = self._concurrent[place]
+        return (other for other, bit in self._bits.items() if bit & mask)
 
     # -- moves ---------------------------------------------------------------------------------
 
@@ -76,131 +78,135 @@ class Together:
         match node.firing:
             case Firing.ANY:
                 for edge in incoming:
-                    yield self._move(node, [edge], outgoing)
+                    yield self._make_move(node, [edge], outgoing)
             case Firing.ALL if incoming:
-                yield self._move(node, incoming, outgoing)
+                yield self._make_move(node, incoming, outgoing)
             case Firing.CHOICE if incoming:
                 for edge in outgoing:
-                    yield self._move(node, incoming, [edge], edge)
+                    yield self._make_move(node, incoming, [edge], edge)
                 if not outgoing:
-                    yield self._move(node, incoming, [])
+                    yield self._make_move(node, incoming, [])
             case Firing.WORK:
-                yield from self._work(node, incoming, outgoing)
+                yield from self._work_moves(node, incoming, outgoing)
 
-    def _move(
+    def _make_move(
         self,
         node: TokenNode,
         taken: list[TokenEdge],
         given: list[TokenEdge],
         branch: TokenEdge | None = None,
     ) -> Move:
-        stays = [edge.id for edge in taken if edge.keeps]
-        gives = [*self._given(node, given), *stays, *self._heard(taken)]
-        return Move(node, _ids(taken), tuple(gives), branch)
+        retained = [edge.id for edge in taken if edge.keeps]
+        gives = [*self._given_places(node, given), *retained, *self._listening_places(taken)]
+        return Move(node, _edge_ids(taken), tuple(gives), branch)
 
-    def _work(
+    def _work_moves(
         self, node: TokenNode, incoming: list[TokenEdge], outgoing: list[TokenEdge]
     ) -> Iterator[Move]:
         is_region = node.kind is NodeKind.STRUCTURED
         if incoming:
-            more = self.started(node.id) if is_region else []
-            stays = [edge.id for edge in incoming if edge.keeps]
-            gives = (node.id, *more, *stays, *self._heard(incoming))
-            yield Move(node, _ids(incoming), gives)
-        clears = tuple(self._content(node.id)) if is_region else ()
-        yield Move(node, (node.id,), (*self._given(node, outgoing),), None, True, clears)
+            start_edges = self.list_start_edges(node.id) if is_region else []
+            retained = [edge.id for edge in incoming if edge.keeps]
+            gives = (node.id, *start_edges, *retained, *self._listening_places(incoming))
+            yield Move(node, _edge_ids(incoming), gives)
+        clears = tuple(self._content_places(node.id)) if is_region else ()
+        yield Move(node, (node.id,), (*self._given_places(node, outgoing),), None, True, clears)
 
-    def _given(self, node: TokenNode, edges: list[TokenEdge]) -> list[str]:
-        found = [edge.id for edge in edges]
-        is_left = any(edge.region == node.region for edge in edges)
-        return found if is_left else [*found, gone(node)]
+    def _given_places(self, node: TokenNode, edges: list[TokenEdge]) -> list[str]:
+        places = [edge.id for edge in edges]
+        stays_in_region = any(edge.region == node.region for edge in edges)
+        return places if stays_in_region else [*places, consumed_place(node)]
 
-    def _heard(self, taken: list[TokenEdge]) -> list[str]:
-        """The edges that get a token when these are taken, because they listen."""
+    def _listening_places(self, taken: list[TokenEdge]) -> list[str]:
+        """List the listening edges that get a token when these edges are taken."""
         return [edge.id for edge in self._listening if self._is_heard(edge, taken)]
 
     def _is_heard(self, edge: TokenEdge, taken: list[TokenEdge]) -> bool:
-        return any(one in taken for one in self.graph.entering(edge.listens))
+        return any(
+            edge_into_region in taken for edge_into_region in self.graph.entering(edge.listens)
+        )
 
     @cached_property
     def _listening(self) -> list[TokenEdge]:
         return [edge for edge in self.graph.edges if edge.listens]
 
-    def _content(self, region: str) -> Iterator[str]:
-        """The places in a region and in those inside it."""
+    def _content_places(self, region: str) -> Iterator[str]:
+        """Yield the places in a region and in the regions inside it."""
         edges, workers = self.graph.inside(region)
         yield from (edge.id for edge in edges)
-        yield from map(gone, self.graph.members(region))
+        yield from map(consumed_place, self.graph.members(region))
         for node in workers:
             yield node.id
             if node.kind is NodeKind.STRUCTURED:
-                yield from self._content(node.id)
+                yield from self._content_places(node.id)
 
     # -- pairs ---------------------------------------------------------------------------------
 
     @cached_property
-    def _beside(self) -> dict[str, int]:
-        """For each place those that may be marked with it, as bits."""
-        return _Pairs(self._bits, self.moves, self.started(ACTIVITY_REGION)).found
+    def _concurrent(self) -> dict[str, int]:
+        """For each place the places that may be marked with it, as a bit mask."""
+        return _PairSearch(
+            self._bits, self.moves, self.list_start_edges(ACTIVITY_REGION)
+        ).concurrent
 
 
-class _Pairs:
-    """The search for pairs: each move is tried again when what it takes is marked with more."""
+class _PairSearch:
+    """A worklist search for pairs: a move is tried again when its input places gain partners."""
 
     def __init__(self, bits: dict[str, int], moves: list[Move], marked: list[str]) -> None:
         self._bits, self._names = bits, list(bits)
-        self._reached = self._mask(marked)
-        self.found = {place: self._reached & ~bits[place] for place in marked}
-        self.found = {place: self.found.get(place, 0) for place in bits}
-        self._takers = takers(moves)
-        self._waiting = dict.fromkeys(one for place in marked for one in self._takers(place))
+        self._reached = self._mask_of(marked)
+        self.concurrent = {place: self._reached & ~bits[place] for place in marked}
+        self.concurrent = {place: self.concurrent.get(place, 0) for place in bits}
+        self._takers = index_takers(moves)
+        self._waiting = dict.fromkeys(move for place in marked for move in self._takers(place))
         while self._waiting:
             move = next(iter(self._waiting))
             del self._waiting[move]
-            self._make(move)
+            self._apply_move(move)
 
-    def _make(self, move: Move) -> None:
-        """Note what the tokens that a move gives are marked with, if it can be made."""
-        takes = self._mask(move.takes)
-        others = self._reached & ~takes & ~self._mask(move.clears)
+    def _apply_move(self, move: Move) -> None:
+        """Record what the places that a move marks are marked with, if the move is possible."""
+        takes = self._mask_of(move.takes)
+        others = self._reached & ~takes & ~self._mask_of(move.clears)
         for place in move.takes:
-            beside = self.found[place] | self._bits[place]
-            if takes & ~(beside & self._reached):
+            concurrent = self.concurrent[place] | self._bits[place]
+            if takes & ~(concurrent & self._reached):
                 return
-            others &= beside
-        gives = self._mask(move.gives)
+            others &= concurrent
+        gives = self._mask_of(move.gives)
         for place in move.gives:
-            self._mark(place, (others | gives) & ~self._bits[place])
+            self._mark_place(place, (others | gives) & ~self._bits[place])
 
-    def _mark(self, place: str, beside: int) -> None:
-        own = self._bits[place]
-        new = beside & ~self.found[place]
-        if not new and self._reached & own:
+    def _mark_place(self, place: str, concurrent: int) -> None:
+        bit = self._bits[place]
+        added = concurrent & ~self.concurrent[place]
+        if not added and self._reached & bit:
             return
-        self._reached |= own
-        self.found[place] |= new
+        self._reached |= bit
+        self.concurrent[place] |= added
         self._waiting.update(dict.fromkeys(self._takers(place)))
-        for other in _places(new, self._names):
-            self.found[other] |= own
+        for other in _places(added, self._names):
+            self.concurrent[other] |= bit
             self._waiting.update(dict.fromkeys(self._takers(other)))
 
-    def _mask(self, places: Iterable[str]) -> int:
+    def _mask_of(self, places: Iterable[str]) -> int:
         mask = 0
         for place in places:
             mask |= self._bits.get(place, 0)
         return mask
 
 
-def takers(moves: Iterable[Move]) -> Callable[[str], list[Move]]:
-    """The moves that take a token from a place."""
-    found: dict[str, list[Move]] = {}
+def index_takers(moves: Iterable[Move]) -> Callable[[str], list[Move]]:
+    """Return a function that lists the moves which take a token from a place."""
+    takers_by_place: dict[str, list[Move]] = {}
     for move in moves:
         for place in move.takes:
-            found.setdefault(place, []).append(move)
-    return lambda place: found.get(place, [])
+            takers_by_place.setdefault(place, []).append(move)
+    return lambda place: takers_by_place.get(place, [])
 
 
-def _ids(edges: list[TokenEdge]) -> tuple[str, ...]:
+def _edge_ids(edges: list[TokenEdge]) -> tuple[str, ...]:
     return tuple(edge.id for edge in edges)
 
 

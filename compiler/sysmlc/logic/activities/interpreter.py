@@ -1,11 +1,11 @@
-"""Reference interpreter of token graphs: plays the game on the diagram, not on formulas.
+"""Reference interpreter of token graphs; it executes the diagram and reads no derived formulas.
 
-First the regions that are complete are ended; what is in them does nothing more. All other nodes
-then move what they can move, interrupted nodes lose their tokens, and what has been started gets
-its first ones.
+A step first ends the regions that are complete; nodes in them do nothing more. All other nodes then
+move the tokens that they can move, interrupted nodes lose their tokens, and regions that start get
+their first ones.
 
-The interpreter is the judge of the contracts that ``activity_contract`` derives: a run that it
-plays must satisfy every conjunct, and a changed run must not.
+Tests compare the contracts of ``derivation`` with the interpreter: every conjunct must hold in each
+of its runs, and must fail in a run that was changed.
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -31,7 +31,7 @@ _T = TypeVar("_T")
 
 
 class Choose(Protocol):
-    """Picks one of several branches of a node, or of the writes of one variable in one step."""
+    """Selects one of several branches of a node, or one of the writes of a variable in one step."""
 
     def __call__(self, node: TokenNode, options: Sequence[_T], /) -> _T:
         """One of the options."""
@@ -42,8 +42,8 @@ class NotSafeError(RuntimeError):
 
 
 class State(Struct, frozen=True):
-    """Where the tokens are: ids of the edges that hold one and of the nodes that run; and what
-    the variables are that nodes write.
+    """Ids of the edges that hold a token and of the nodes that run, and the values of written
+    variables.
     """
 
     tokens: frozenset[str]
@@ -51,35 +51,39 @@ class State(Struct, frozen=True):
     stored: tuple[tuple[str, Literal], ...] = ()
 
 
-def first(node: TokenNode, options: Sequence[_T]) -> _T:
-    """The first of several open branches."""
+def choose_first(node: TokenNode, options: Sequence[_T]) -> _T:
+    """Return the first option."""
     del node
     return options[0]
 
 
-def start(graph: TokenGraph) -> State:
-    """The state in which the activity starts; what nothing gives a value has the least."""
+def initial_state(graph: TokenGraph) -> State:
+    """Return the state in which the activity starts; a variable without an initial value has its
+    least value.
+    """
     stored = (
         (
-            one.variable.name,
-            domains.values(one.variable.domain)[0] if one.first is None else one.first,
+            store.variable.name,
+            domains.values(store.variable.domain)[0] if store.first is None else store.first,
         )
-        for one in graph.stores
+        for store in graph.stores
     )
-    return State(frozenset(_marked(graph, ACTIVITY_REGION)), frozenset(), tuple(stored))
+    return State(frozenset(_marked_edges(graph, ACTIVITY_REGION)), frozenset(), tuple(stored))
 
 
-def _start_again(graph: TokenGraph, old: State) -> State:
-    """The state in which the activity starts once more."""
-    afresh = {
-        one.variable.name: one.first for one in graph.stores if one.local and one.first is not None
+def _restarted_state(graph: TokenGraph, state_before: State) -> State:
+    """Return the state in which the activity starts again."""
+    reset_values = {
+        store.variable.name: store.first
+        for store in graph.stores
+        if store.local and store.first is not None
     }
-    stored = tuple((name, afresh.get(name, value)) for name, value in old.stored)
-    return State(frozenset(_marked(graph, ACTIVITY_REGION)), frozenset(), stored)
+    stored = tuple((name, reset_values.get(name, value)) for name, value in state_before.stored)
+    return State(frozenset(_marked_edges(graph, ACTIVITY_REGION)), frozenset(), stored)
 
 
-def values(graph: TokenGraph, state: State) -> dict[str, Literal]:
-    """The value of every variable that the state decides."""
+def values_of(graph: TokenGraph, state: State) -> dict[str, Literal]:
+    """Return the value of every variable that the state decides."""
     runs: dict[str, Literal] = {node.run: node.id in state.running for node in graph.workers()}
     quiet = {name: is_complete(graph, state, region) for region, name in graph.quiets}
     tokens = {edge.variable: edge.id in state.tokens for edge in graph.edges}
@@ -87,42 +91,44 @@ def values(graph: TokenGraph, state: State) -> dict[str, Literal]:
 
 
 def state_of(graph: TokenGraph, valuation: Inputs) -> State:
-    """The state that decides these values: the inverse of ``values``."""
+    """Return the state that decides these values, the inverse of ``values_of``."""
     return State(
         frozenset(edge.id for edge in graph.edges if valuation[edge.variable]),
         frozenset(node.id for node in graph.workers() if valuation[node.run]),
-        tuple((one.variable.name, valuation[one.variable.name]) for one in graph.stores),
+        tuple((store.variable.name, valuation[store.variable.name]) for store in graph.stores),
     )
 
 
-def step(
+def next_state(
     graph: TokenGraph,
     state: State,
     inputs: Inputs,
     holds: Callable[[Formula, Inputs], bool],
-    choose: Choose = first,
+    choose: Choose = choose_first,
 ) -> State:
-    """The state after one step; ``holds`` evaluates a condition on the inputs.
+    """Return the state after one step; *holds* evaluates a condition over the inputs.
 
-    Raises NotSafeError when the graph is not 1-safe.
+    Raises NotSafeError if the graph is not 1-safe.
     """
-    return _Step(graph, state, inputs, holds, choose).play()
+    return _Step(graph, state, inputs, holds, choose).compute_next()
 
 
-def finishes(graph: TokenGraph, state: State) -> bool:
-    """Whether the activity ends in this state, so that the next step starts it anew."""
+def is_finished(graph: TokenGraph, state: State) -> bool:
+    """Return whether the activity ends in this state, so that the next step restarts it."""
     return is_complete(graph, state, ACTIVITY_REGION)
 
 
 def is_complete(graph: TokenGraph, state: State, region: str) -> bool:
-    """A token is at a final node of the region, or nothing in the region can move."""
+    """Return whether a token is at a final node of the region, or nothing in the region can
+    move.
+    """
     if any(edge.id in state.tokens for edge in graph.ends(region)):
         return True
     return not any(_is_active(graph, state, node) for node in graph.members(region))
 
 
 def _is_active(graph: TokenGraph, state: State, node: TokenNode) -> bool:
-    """The node runs, or it has all tokens that it can get from inside its region."""
+    """Return whether the node runs or has all tokens that it can get from inside its region."""
     if node.id in state.running:
         return True
     if node.firing is Firing.NEVER:
@@ -133,12 +139,12 @@ def _is_active(graph: TokenGraph, state: State, node: TokenNode) -> bool:
     return bool(triggers) and all(edge.id in state.tokens for edge in triggers)
 
 
-def _marked(graph: TokenGraph, region: str) -> list[str]:
+def _marked_edges(graph: TokenGraph, region: str) -> list[str]:
     return [edge.id for edge in graph.edges if edge.marked and edge.region == region]
 
 
 class _Step:
-    """One step: everything looks at ``old``; ``tokens`` and ``running`` become the new state."""
+    """One step: all reads use ``old``; ``tokens`` and ``running`` become the new state."""
 
     def __init__(
         self,
@@ -161,69 +167,78 @@ class _Step:
         self.finished: set[str] = set()
         self.taken: set[str] = set()
 
-    def play(self) -> State:
-        if finishes(self.graph, self.old):
-            return _start_again(self.graph, self.old)
+    def compute_next(self) -> State:
+        if is_finished(self.graph, self.old):
+            return _restarted_state(self.graph, self.old)
         self.ended = [node for node in self.graph.workers() if self._ends(node)]
         alive = [node for node in self.graph.nodes if self._is_alive(node)]
         # Taking comes before giving: a token may arrive where another has just left.
-        gifts = [edge for node in alive for edge in self._fire(node)]
+        gifts = [edge for node in alive for edge in self._fire_node(node)]
         for edge in gifts:
-            self._give(edge)
+            self._give_token(edge)
         for edge in self.graph.edges:
-            if edge.listens and self._hears(edge):
-                self._give(edge)
+            if edge.listens and self._is_listening_triggered(edge):
+                self._give_token(edge)
         for node in self.ended:
             self._clear_region(node.id)
         for region in self.interrupted:
             self._interrupt(region)
         for node in self.started:
-            self._open(node)
-        return State(frozenset(self.tokens), frozenset(self.running), tuple(self._stored()))
+            self._start_region(node)
+        return State(frozenset(self.tokens), frozenset(self.running), tuple(self._stored_values()))
 
-    def _hears(self, edge: TokenEdge) -> bool:
-        """A token enters the region that the edge listens to, and its target does not wait yet."""
+    def _is_listening_triggered(self, edge: TokenEdge) -> bool:
+        """Return whether a token enters the region to which the edge listens while its target is
+        idle.
+        """
         target = self.graph.node(edge.target)
-        waits = edge.id in self.old.tokens or edge.target in self.old.running
-        coming = any(one.id in self.taken for one in self.graph.entering(edge.listens))
-        return coming and not waits and self._is_alive(target)
+        is_waiting = edge.id in self.old.tokens or edge.target in self.old.running
+        is_entered = any(
+            entering_edge.id in self.taken for entering_edge in self.graph.entering(edge.listens)
+        )
+        return is_entered and not is_waiting and self._is_alive(target)
 
-    def _stored(self) -> Iterator[tuple[str, Literal]]:
-        """What the variables are when all nodes that are done have written."""
+    def _stored_values(self) -> Iterator[tuple[str, Literal]]:
+        """Yield the values of the variables after the writes of all finished nodes."""
         for store, (name, value) in zip(self.graph.stores, self.old.stored, strict=True):
-            writes = [one for one in store.writes if one.node in self.finished]
+            writes = [write for write in store.writes if write.node in self.finished]
             if len(writes) > 1:
                 writes = [self.choose(self.graph.node(writes[0].node), writes)]
-            yield name, self._written(writes[0]) if writes else value
+            yield name, self._written_value(writes[0]) if writes else value
 
-    def _written(self, write: Write) -> Literal:
-        held = (value for when, value in write.values if self.holds(when, self.inputs))
-        return evaluate.value_of(next(held), self.inputs)
+    def _written_value(self, write: Write) -> Literal:
+        enabled_values = (
+            value for condition, value in write.values if self.holds(condition, self.inputs)
+        )
+        return evaluate.value_of(next(enabled_values), self.inputs)
 
     def _ends(self, node: TokenNode) -> bool:
-        runs = node.kind is NodeKind.STRUCTURED and node.id in self.old.running
-        return runs and is_complete(self.graph, self.old, node.id)
+        is_running = node.kind is NodeKind.STRUCTURED and node.id in self.old.running
+        return is_running and is_complete(self.graph, self.old, node.id)
 
     def _is_alive(self, node: TokenNode) -> bool:
-        """All regions around it run, and none of them ends in this step."""
-        around = list(self.graph.regions_around(node.region))
-        return all(one.id in self.old.running and one not in self.ended for one in around)
+        """Return whether all regions around the node run and none of them ends in this step."""
+        enclosing = list(self.graph.regions_around(node.region))
+        return all(
+            region_node.id in self.old.running and region_node not in self.ended
+            for region_node in enclosing
+        )
 
-    def _fire(self, node: TokenNode) -> Sequence[TokenEdge]:
+    def _fire_node(self, node: TokenNode) -> Sequence[TokenEdge]:
         incoming, outgoing = self.graph.incoming(node), self.graph.outgoing(node)
         ready = [edge for edge in incoming if edge.id in self.old.tokens]
         match node.firing:
             case Firing.ANY if ready:
-                self._take(ready)
+                self._take_tokens(ready)
                 self._check_single(node, ready, outgoing)
                 return outgoing
             case Firing.ALL if incoming and len(ready) == len(incoming):
-                self._take(ready)
+                self._take_tokens(ready)
                 return outgoing
             case Firing.CHOICE if incoming and len(ready) == len(incoming):
-                return self._decide(node, ready, outgoing)
+                return self._take_branch(node, ready, outgoing)
             case Firing.WORK:
-                return self._work(node, incoming, ready, outgoing)
+                return self._work_step(node, incoming, ready, outgoing)
             case _:
                 return ()
 
@@ -231,31 +246,31 @@ class _Step:
         self, node: TokenNode, ready: list[TokenEdge], outgoing: list[TokenEdge]
     ) -> None:
         # Of several flows that interrupt one region at once, UML lets one pass.
-        apart = {edge.interrupts or edge.id for edge in ready}
-        if len(apart) > 1 and any(not edge.keeps for edge in outgoing):
+        sources = {edge.interrupts or edge.id for edge in ready}
+        if len(sources) > 1 and any(not edge.keeps for edge in outgoing):
             raise NotSafeError(f"two tokens reach {node.label} at once")
 
-    def _decide(
+    def _take_branch(
         self, node: TokenNode, ready: list[TokenEdge], outgoing: list[TokenEdge]
     ) -> Sequence[TokenEdge]:
         branches = self._open_branches(outgoing)
         if outgoing and not branches:
             return ()
-        self._take(ready)
+        self._take_tokens(ready)
         if not outgoing:
             return ()
         return (branches[0] if len(branches) == 1 else self.choose(node, branches),)
 
     def _open_branches(self, outgoing: list[TokenEdge]) -> list[TokenEdge]:
-        stated = [edge for edge in outgoing if not edge.is_else]
-        true = [edge for edge in stated if self._is_open(edge)]
-        return true or [edge for edge in outgoing if edge.is_else]
+        guarded = [edge for edge in outgoing if not edge.is_else]
+        open_edges = [edge for edge in guarded if self._is_open(edge)]
+        return open_edges or [edge for edge in outgoing if edge.is_else]
 
     def _is_open(self, edge: TokenEdge) -> bool:
         guard = edge.guard
         return guard is None or guard.condition is None or self.holds(guard.condition, self.inputs)
 
-    def _work(
+    def _work_step(
         self,
         node: TokenNode,
         incoming: list[TokenEdge],
@@ -267,7 +282,7 @@ class _Step:
         if has_all and is_running and not node.queues:
             raise NotSafeError(f"{node.label} is started while it runs")
         if has_all and not is_running:
-            self._take(ready)
+            self._take_tokens(ready)
             self.running.add(node.id)
             self.started.append(node)
         if not is_running or not self._is_done(node):
@@ -283,36 +298,36 @@ class _Step:
             return True
         return self.holds(node.done, self.inputs)
 
-    def _take(self, edges: Sequence[TokenEdge]) -> None:
-        taken = [edge.id for edge in edges if not edge.keeps]
-        self.tokens.difference_update(taken)
-        self.taken.update(taken)
+    def _take_tokens(self, edges: Sequence[TokenEdge]) -> None:
+        ids = [edge.id for edge in edges if not edge.keeps]
+        self.tokens.difference_update(ids)
+        self.taken.update(ids)
 
-    def _give(self, edge: TokenEdge) -> None:
+    def _give_token(self, edge: TokenEdge) -> None:
         if edge.id in self.tokens and not edge.keeps:
             raise NotSafeError(f"a second token reaches the flow {edge.label}")
         self.tokens.add(edge.id)
         if edge.interrupts:
             self.interrupted.append(edge.interrupts)
 
-    def _open(self, node: TokenNode) -> None:
+    def _start_region(self, node: TokenNode) -> None:
         if node.kind is NodeKind.STRUCTURED and node.id in self.running:
-            self.tokens.update(_marked(self.graph, node.id))
+            self.tokens.update(_marked_edges(self.graph, node.id))
 
     def _clear_region(self, region: str) -> None:
         edges, nodes = self.graph.inside(region)
         self.tokens.difference_update(edge.id for edge in edges)
-        self._stop(nodes)
+        self._stop_nodes(nodes)
 
     def _interrupt(self, region: str) -> None:
-        found = next(r for r in self.graph.interruptibles if r.id == region)
-        members = frozenset(found.nodes)
+        interruptible = next(r for r in self.graph.interruptibles if r.id == region)
+        members = frozenset(interruptible.nodes)
         self.tokens.difference_update(
             edge.id for edge in self.graph.edges if {edge.source, edge.target} <= members
         )
-        self._stop([node for node in self.graph.workers() if node.id in members])
+        self._stop_nodes([node for node in self.graph.workers() if node.id in members])
 
-    def _stop(self, nodes: Sequence[TokenNode]) -> None:
+    def _stop_nodes(self, nodes: Sequence[TokenNode]) -> None:
         for node in nodes:
             self.running.discard(node.id)
             if node.kind is NodeKind.STRUCTURED:

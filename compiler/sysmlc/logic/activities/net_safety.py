@@ -1,108 +1,119 @@
-"""Whether a region is 1-safe in any order of moves: Petri net reductions, then a bounded search.
+"""Check that a region is 1-safe whatever the order in which its nodes move.
 
-The reductions are those of T. Murata, "Petri nets: properties, analysis and applications", Proc.
-IEEE 77(4), 1989, section V: they keep safeness, so that series and parallel parts of a
-well-formed activity vanish before any marking is built. Guards are not looked at: a branch may
-always be taken. Structured nodes are checked on their own and count as one action outside.
+A region without forks and joins has one token, and a walk along its flows suffices. For any other
+region the markings of its Petri net are searched, after reductions if there are many. Guards are
+ignored: every branch may be taken. A structured node is checked by itself and counts as one action
+outside.
 
-A region that passes is 1-safe in the token game, too, where all nodes move at once. Not the other
-way round: what only the speed of the game keeps apart (``token_search``) fails here. Flows across
-borders of regions and data stores are no places of such a net.
+A region that passes is 1-safe in the token game too, where all nodes move at once. The converse
+does not hold: a region that is safe only because of the synchronous steps fails here and is left to
+``reachability``. Flows across borders of regions and data stores are not places of the net.
 """
 
 from collections.abc import Iterable, Iterator
 
-from sysmlc.logic.activities.petri_net import Net, Safety, net_of, reduce
+from sysmlc.logic.activities.petri_net import Net, Safety, build_net, reduce_net
 from sysmlc.logic.activities.token_graph import Firing, TokenEdge, TokenGraph, TokenNode
 
-_SMALL = 2_000
-"""Markings that are searched without reductions: some milliseconds."""
+_MAX_MARKINGS_UNREDUCED = 2_000
+"""Most markings searched without reductions: some milliseconds."""
 
 
-def check(graph: TokenGraph, region: str, limit: int) -> Safety:
-    """Search the markings of a region, at most ``limit`` of them.
+def check_safety(graph: TokenGraph, region: str, limit: int) -> Safety:
+    """Search the markings of a region, at most *limit* of them.
 
-    What is small is searched as it is, which finds the right place of a fault; what is large
-    is reduced before. In the reduced net others may move on before a final node ends the
-    region: this errs on the safe side.
+    A small net is searched unreduced, so that a fault is located exactly; a large net is reduced
+    first. In the reduced net other tokens may move before a final node ends the region, which can
+    only produce false alarms.
     """
-    found = walk(graph, region)
-    if found is not None:
-        return found
-    net = net_of(graph, region)
-    whole = search(net, min(limit, _SMALL))
-    if whole.is_complete or any(move.resets for move in net.moves):
-        return whole if whole.is_complete else search(net, limit)
-    reduce(net)
-    return search(net, limit)
+    single_token = check_single_token(graph, region)
+    if single_token is not None:
+        return single_token
+    net = build_net(graph, region)
+    unreduced = search_markings(net, min(limit, _MAX_MARKINGS_UNREDUCED))
+    if unreduced.is_complete or any(move.resets for move in net.moves):
+        return unreduced if unreduced.is_complete else search_markings(net, limit)
+    reduce_net(net)
+    return search_markings(net, limit)
 
 
-def search(net: Net, limit: int) -> Safety:
-    """Go through the markings, breadth first; a marking in which the region ends is the last."""
+def search_markings(net: Net, limit: int) -> Safety:
+    """Search the markings breadth first; a marking in which the region ends has no successors."""
     bits = {place: 1 << number for number, place in enumerate(net.places)}
-    moves = [
-        (_mask(m.takes, bits), _mask(m.gives, bits), _mask(m.resets, bits), m)
-        for m in net.moves
-        if not m.is_end
+    transitions = [
+        (
+            _mask_of(transition.takes, bits),
+            _mask_of(transition.gives, bits),
+            _mask_of(transition.resets, bits),
+            transition,
+        )
+        for transition in net.moves
+        if not transition.is_end
     ]
-    ends = [(_mask(m.takes, bits), m) for m in net.moves if m.is_end]
-    first = _mask(net.marked, bits)
-    seen, waiting = {first}, [first]
-    busy = _mask(net.busy, bits)
+    ends = [
+        (_mask_of(transition.takes, bits), transition)
+        for transition in net.moves
+        if transition.is_end
+    ]
+    initial = _mask_of(net.marked, bits)
+    visited, worklist = {initial}, [initial]
+    busy = _mask_of(net.busy, bits)
     fired, finishes, rests = set(net.alive), False, False
-    for marking in waiting:
-        ended = [move for takes, move in ends if marking & takes]
-        fired.update(node for move in ended for node in move.nodes)
+    for marking in worklist:
+        ended = [transition for takes, transition in ends if marking & takes]
+        fired.update(node for transition in ended for node in transition.nodes)
         can_move = bool(ended or marking & busy)
-        for takes, gives, resets, move in () if ended else moves:
+        for takes, gives, resets, transition in () if ended else transitions:
             if marking & takes != takes:
                 continue
             can_move = True
-            fired |= move.nodes
-            left = marking & ~takes
-            if left & gives & ~resets:
-                return Safety(unsafe=_place(left & gives, bits))
-            after = (left & ~resets) | gives
-            if after not in seen:
-                seen.add(after)
-                waiting.append(after)
+            fired |= transition.nodes
+            remaining = marking & ~takes
+            if remaining & gives & ~resets:
+                return Safety(unsafe=_first_place(remaining & gives, bits))
+            successor = (remaining & ~resets) | gives
+            if successor not in visited:
+                visited.add(successor)
+                worklist.append(successor)
         rests = rests or not can_move
         finishes = finishes or bool(ended)
-        if len(seen) > limit:
+        if len(visited) > limit:
             return Safety(is_complete=False)
     return Safety(dead=net.nodes - fired, finishes=finishes or rests, rests=rests)
 
 
-def _mask(places: Iterable[str], bits: dict[str, int]) -> int:
+def _mask_of(places: Iterable[str], bits: dict[str, int]) -> int:
     return sum(bits[place] for place in places)
 
 
-def _place(mask: int, bits: dict[str, int]) -> str:
+def _first_place(mask: int, bits: dict[str, int]) -> str:
     return next(place for place, bit in bits.items() if mask & bit)
 
 
-def walk(graph: TokenGraph, region: str) -> Safety | None:
-    """What a search of all markings finds; None where there may be more than one token.
+def check_single_token(graph: TokenGraph, region: str) -> Safety | None:
+    """Return the result for a region in which one token moves; None if there may be more tokens.
 
     No flow may cross the border of the region or interrupt one.
     """
     starts = [edge for edge in graph.inside(region)[0] if edge.marked]
     members = graph.members(region)
-    if len(starts) != 1 or not all(_keeps_one(graph, node) for node in members):
+    if len(starts) != 1 or not all(_preserves_token_count(graph, node) for node in members):
         return None
-    at = list(_places(graph, starts[0]))
-    firing = [(graph.node(edge.target), graph.outgoing(graph.node(edge.target))) for edge in at]
+    reached = list(_reachable_edges(graph, starts[0]))
+    firing = [
+        (graph.node(edge.target), graph.outgoing(graph.node(edge.target))) for edge in reached
+    ]
     fired = {node.id for node, _ in firing}
     finishes = any(node.firing is _END for node, _ in firing)
-    # A token that nothing takes stays, and one that nothing gives on is gone.
-    rests = any(not after and node.firing is not _END for node, after in firing)
+    # A token at rest: no node takes it, or its node gives no token.
+    rests = any(not outgoing and node.firing is not _END for node, outgoing in firing)
     rests = rests or any(node.firing is _NEVER for node, _ in firing)
-    dead = frozenset(node.id for node in members if _may_fire(graph, node)) - fired
+    dead = frozenset(node.id for node in members if _can_fire(graph, node)) - fired
     return Safety(dead=dead, finishes=finishes or rests, rests=rests)
 
 
-def _keeps_one(graph: TokenGraph, node: TokenNode) -> bool:
-    """Whether the node gives one token for one."""
+def _preserves_token_count(graph: TokenGraph, node: TokenNode) -> bool:
+    """Return whether the node gives exactly one token for each token that it takes."""
     match node.firing:
         case Firing.END | Firing.NEVER:
             return True
@@ -114,24 +125,26 @@ def _keeps_one(graph: TokenGraph, node: TokenNode) -> bool:
             return len(graph.incoming(node)) < 2 and len(graph.outgoing(node)) < 2
 
 
-def _places(graph: TokenGraph, start: TokenEdge) -> Iterator[TokenEdge]:
-    """The edges that the token comes to; where a region ends it goes no further."""
-    seen = {start.id}
-    waiting = [start]
-    for edge in waiting:
+def _reachable_edges(graph: TokenGraph, start: TokenEdge) -> Iterator[TokenEdge]:
+    """Yield the edges that the token reaches; it stops where the region ends."""
+    visited = {start.id}
+    worklist = [start]
+    for edge in worklist:
         yield edge
         node = graph.node(edge.target)
         if node.firing not in (_END, _NEVER):
-            new = [after for after in graph.outgoing(node) if after.id not in seen]
-            seen.update(after.id for after in new)
-            waiting += new
+            unvisited = [
+                edge_ahead for edge_ahead in graph.outgoing(node) if edge_ahead.id not in visited
+            ]
+            visited.update(edge_ahead.id for edge_ahead in unvisited)
+            worklist += unvisited
 
 
-def _may_fire(graph: TokenGraph, node: TokenNode) -> bool:
-    """Whether the node has tokens to move; a sink only takes them."""
+def _can_fire(graph: TokenGraph, node: TokenNode) -> bool:
+    """Return whether the node has tokens to move; a sink only takes them."""
     is_sink = node.firing is Firing.ANY and not graph.outgoing(node)
     return bool(graph.incoming(node)) and node.firing is not _NEVER and not is_sink
 
 
 _END, _NEVER = Firing.END, Firing.NEVER
-"""Members by names of the module: in Python 3.11 those of a class take twice as long."""
+# Module-level names: in Python 3.11, looking up a member of an enumeration takes twice as long.

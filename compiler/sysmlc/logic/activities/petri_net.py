@@ -1,4 +1,8 @@
-"""Petri nets of regions of token graphs: flows and running actions as places."""
+"""Petri nets of the regions of a token graph, and reductions that preserve 1-safety.
+
+Edges and running nodes are places. The reductions are those of T. Murata, "Petri nets: properties,
+analysis and applications", Proc. IEEE 77(4), 1989, section V.
+"""
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
@@ -10,8 +14,8 @@ from sysmlc.logic.activities.token_graph import Firing, TokenEdge, TokenGraph, T
 
 
 @dataclass(slots=True)
-class Move:
-    """A transition of the net; ``nodes`` are the graph's nodes that fire when it does."""
+class NetTransition:
+    """A transition of the net; ``nodes`` are the nodes of the graph that fire with it."""
 
     takes: set[str]
     gives: set[str]
@@ -22,14 +26,14 @@ class Move:
 
 @dataclass(slots=True)
 class Net:
-    """Places (ids of edges and running nodes), transitions, and the places marked at first.
+    """Places (ids of edges and running nodes), transitions, and the initially marked places.
 
     ``nodes`` are all nodes that a transition stands for, ``alive`` those known to fire. A token on
-    a ``busy`` place can move for ever.
+    a ``busy`` place can move forever.
     """
 
     places: dict[str, None]
-    moves: list[Move]
+    moves: list[NetTransition]
     marked: set[str]
     nodes: frozenset[str]
     alive: set[str] = field(default_factory=set)
@@ -37,13 +41,12 @@ class Net:
 
 
 class Safety(Struct, frozen=True):
-    """What the search found in one region.
+    """Result of the safety check of one region.
 
-    ``unsafe`` is the id of an edge (or node) that may get a second token, ``dead`` holds
-    the ids of nodes that never fire although a path of flows leads to them. ``finishes`` tells
-    whether the region may be complete, ``rests`` whether it may be so without a final node.
-    ``is_complete`` is false when there were more markings than allowed; nothing is known then
-    beyond ``unsafe``.
+    ``unsafe`` is the id of an edge or node that may get a second token; ``dead`` holds the ids of
+    nodes that never fire although a path of flows leads to them. ``finishes`` is true if the region
+    may be complete, ``rests`` if that may happen without a token at a final node. If
+    ``is_complete`` is false, there were more markings than allowed, and only ``unsafe`` is known.
     """
 
     unsafe: str = ""
@@ -53,43 +56,50 @@ class Safety(Struct, frozen=True):
     is_complete: bool = True
 
 
-def net_of(graph: TokenGraph, region: str) -> Net:
-    """The Petri net of a region, with one place for each edge and each running node."""
-    edges, workers = graph.inside(region)
-    # A sink takes its token in the next step, whatever happens: nothing can pile up before it.
+def build_net(graph: TokenGraph, region: str) -> Net:
+    """Return the Petri net of a region, with one place for each edge and each running node."""
+    edges, running_nodes = graph.inside(region)
+    # A sink always takes its token in the next step, so tokens cannot accumulate before it.
     drains = {edge.id for edge in edges if _is_drain(graph, edge)}
-    kept = [edge for edge in edges if edge.id not in drains]
-    places = dict.fromkeys([*(edge.id for edge in kept), *(node.id for node in workers)])
+    tokens_edges = [edge for edge in edges if edge.id not in drains]
+    places = dict.fromkeys(
+        [*(edge.id for edge in tokens_edges), *(node.id for node in running_nodes)]
+    )
     moves = [
         move
         for node in graph.nodes
         if node.region == region
-        for move in _moves(graph, node)
+        for move in _build_transitions(graph, node)
         if not move.takes & drains
     ]
-    resets = {edge.id: _reset(graph, edge, places) for edge in edges if edge.interrupts}
+    resets = {edge.id: _reset_places(graph, edge, places) for edge in edges if edge.interrupts}
     for move in moves:
-        move.resets = frozenset(p for gift in sorted(move.gives) for p in resets.get(gift, ()))
+        move.resets = frozenset(
+            reset_place for place in sorted(move.gives) for reset_place in resets.get(place, ())
+        )
         move.gives -= drains
     nodes = frozenset(node for move in moves for node in move.nodes)
-    marked = {edge.id for edge in kept if edge.marked}
-    for meeting in _meetings(graph, region, drains):
+    marked = {edge.id for edge in tokens_edges if edge.marked}
+    for meeting in _merge_conflicts(graph, region, drains):
         places |= dict.fromkeys(meeting.gives)
         marked |= meeting.gives
         moves.append(meeting)
     return Net(places, moves, marked, nodes)
 
 
-def _meetings(graph: TokenGraph, region: str, drains: set[str]) -> Iterator[Move]:
-    """Two tokens that reach a merge before a sink at once: the place that they lead to is full."""
+def _merge_conflicts(graph: TokenGraph, region: str, drains: set[str]) -> Iterator[NetTransition]:
+    """Yield transitions that expose two tokens reaching a merge before a sink at once.
+
+    Such a transition marks a place that is marked already, so that the search finds a second token.
+    """
     for node in graph.nodes:
         leaving = {edge.id for edge in graph.outgoing(node)}
         if node.region != region or node.firing is not Firing.ANY or not leaving & drains:
             continue
-        for one, other in combinations(graph.incoming(node), 2):
-            is_one_interruption = one.interrupts and one.interrupts == other.interrupts
-            if not is_one_interruption and {one.region, other.region} == {region}:
-                yield Move({one.id, other.id}, leaving & drains, set())
+        for left, right in combinations(graph.incoming(node), 2):
+            is_one_interruption = left.interrupts and left.interrupts == right.interrupts
+            if not is_one_interruption and {left.region, right.region} == {region}:
+                yield NetTransition({left.id, right.id}, leaving & drains, set())
 
 
 def _is_drain(graph: TokenGraph, edge: TokenEdge) -> bool:
@@ -97,179 +107,208 @@ def _is_drain(graph: TokenGraph, edge: TokenEdge) -> bool:
     return target.firing is Firing.ANY and not graph.outgoing(target)
 
 
-def _moves(graph: TokenGraph, node: TokenNode) -> Iterator[Move]:
+def _build_transitions(graph: TokenGraph, node: TokenNode) -> Iterator[NetTransition]:
     takes = {edge.id for edge in graph.incoming(node)}
     gives = {edge.id for edge in graph.outgoing(node)}
     match node.firing:
         case Firing.ANY:
-            yield from (Move({one}, set(gives), {node.id}) for one in sorted(takes))
+            yield from (NetTransition({taken}, set(gives), {node.id}) for taken in sorted(takes))
         case Firing.END:
-            yield from (Move({one}, set(), {node.id}, is_end=True) for one in sorted(takes))
+            yield from (
+                NetTransition({taken}, set(), {node.id}, is_end=True) for taken in sorted(takes)
+            )
         case Firing.ALL if takes:
-            yield Move(takes, gives, {node.id})
+            yield NetTransition(takes, gives, {node.id})
         case Firing.CHOICE if takes:
-            for gift in sorted(gives):
-                yield Move(set(takes), {gift}, {node.id})
+            for given in sorted(gives):
+                yield NetTransition(set(takes), {given}, {node.id})
             if not gives:
-                yield Move(takes, set(), {node.id})
+                yield NetTransition(takes, set(), {node.id})
         case Firing.WORK if takes:
-            yield Move(takes, {node.id}, {node.id})
-            yield Move({node.id}, gives, set())
+            yield NetTransition(takes, {node.id}, {node.id})
+            yield NetTransition({node.id}, gives, set())
 
 
-def _reset(graph: TokenGraph, edge: TokenEdge, places: Iterable[str]) -> frozenset[str]:
-    region = next(r for r in graph.interruptibles if r.id == edge.interrupts)
+def _reset_places(graph: TokenGraph, edge: TokenEdge, places: Iterable[str]) -> frozenset[str]:
+    region = next(
+        interruptible
+        for interruptible in graph.interruptibles
+        if interruptible.id == edge.interrupts
+    )
     members = frozenset(region.nodes)
-    inside = {e.id for e in graph.edges if {e.source, e.target} <= members}
+    inside = {inner.id for inner in graph.edges if {inner.source, inner.target} <= members}
     return frozenset(place for place in places if place in inside or place in members)
 
 
-def reduce(net: Net) -> None:
+def reduce_net(net: Net) -> None:
     """Apply the reductions until none applies."""
-    _delay_ends(net)
-    rules = (_drop_idle, _merge_parallel_moves, _fuse_places, _fuse_moves, _merge_parallel_places)
+    _insert_end_places(net)
+    rules = (
+        _drop_self_loops,
+        _merge_parallel_transitions,
+        _fuse_series_places,
+        _fuse_series_transitions,
+        _merge_parallel_places,
+    )
     while sum(rule(net) for rule in rules):
         pass
 
 
-def _delay_ends(net: Net) -> None:
-    """Let a token reach a final node one move later, so that what is before it can be fused."""
+def _insert_end_places(net: Net) -> None:
+    """Let a token reach a final node one transition later, so that the places before it can be
+    fused.
+    """
     for move in [move for move in net.moves if move.is_end]:
         (place,) = move.takes
         end = f"{place}$end"
         net.places[end] = None
-        net.moves.append(Move({place}, {end}, set()))
+        net.moves.append(NetTransition({place}, {end}, set()))
         move.takes = {end}
 
 
-def _makers(net: Net) -> dict[str, list[Move]]:
-    found: dict[str, list[Move]] = {place: [] for place in net.places}
+def _index_producers(net: Net) -> dict[str, list[NetTransition]]:
+    producers: dict[str, list[NetTransition]] = {place: [] for place in net.places}
     for move in net.moves:
         for place in sorted(move.gives):
-            found[place].append(move)
-    return found
+            producers[place].append(move)
+    return producers
 
 
-def _takers(net: Net) -> dict[str, list[Move]]:
-    found: dict[str, list[Move]] = {place: [] for place in net.places}
+def _index_consumers(net: Net) -> dict[str, list[NetTransition]]:
+    consumers: dict[str, list[NetTransition]] = {place: [] for place in net.places}
     for move in net.moves:
         for place in sorted(move.takes):
-            found[place].append(move)
-    return found
+            consumers[place].append(move)
+    return consumers
 
 
-def _credit(net: Net, place: str, nodes: set[str], makers: Iterable[Move]) -> None:
-    """Nodes that fire as soon as the place is marked fire with each move that marks it."""
+def _mark_fired(net: Net, place: str, nodes: set[str], producers: Iterable[NetTransition]) -> None:
+    """Record that *nodes* fire whenever the place is marked."""
     if place in net.marked:
         net.alive |= nodes
-    for maker in makers:
-        maker.nodes |= nodes
+    for producer in producers:
+        producer.nodes |= nodes
 
 
-def _drop_idle(net: Net) -> bool:
-    """A move that gives back exactly the one token that it takes changes nothing."""
-    idle = [m for m in net.moves if len(m.takes) == 1 and m.takes == m.gives and not m.is_end]
-    makers = _makers(net)
-    for move in idle:
+def _drop_self_loops(net: Net) -> bool:
+    """Drop transitions that give back exactly the one token that they take."""
+    loops = [
+        loop
+        for loop in net.moves
+        if len(loop.takes) == 1 and loop.takes == loop.gives and not loop.is_end
+    ]
+    producers = _index_producers(net)
+    for move in loops:
         (place,) = move.takes
         net.busy.add(place)
-        _credit(net, place, move.nodes, (m for m in makers[place] if m is not move))
-    net.moves = [move for move in net.moves if not any(move is other for other in idle)]
-    return bool(idle)
+        _mark_fired(net, place, move.nodes, (loop for loop in producers[place] if loop is not move))
+    net.moves = [move for move in net.moves if not any(move is other for other in loops)]
+    return bool(loops)
 
 
-def _merge_parallel_moves(net: Net) -> bool:
-    seen: dict[tuple[frozenset[str], frozenset[str], bool], Move] = {}
+def _merge_parallel_transitions(net: Net) -> bool:
+    merged: dict[tuple[frozenset[str], frozenset[str], bool], NetTransition] = {}
     for move in net.moves:
         key = (frozenset(move.takes), frozenset(move.gives), move.is_end)
-        seen.setdefault(key, move).nodes |= move.nodes
-    has_changed = len(seen) < len(net.moves)
-    net.moves = list(seen.values())
+        merged.setdefault(key, move).nodes |= move.nodes
+    has_changed = len(merged) < len(net.moves)
+    net.moves = list(merged.values())
     return has_changed
 
 
 def _merge_parallel_places(net: Net) -> bool:
-    makers, takers = _makers(net), _takers(net)
-    seen: dict[tuple[object, ...], str] = {}
-    doomed = []
+    producers, consumers = _index_producers(net), _index_consumers(net)
+    representatives: dict[tuple[object, ...], str] = {}
+    duplicates = []
     for place in net.places:
         key = (
-            tuple(map(id, makers[place])),
-            tuple(map(id, takers[place])),
+            tuple(map(id, producers[place])),
+            tuple(map(id, consumers[place])),
             place in net.marked,
         )
-        if seen.setdefault(key, place) != place and takers[place]:
-            doomed.append(place)
-            net.busy |= {seen[key]} if place in net.busy else set()
-    for place in doomed:
-        for move in (*makers[place], *takers[place]):
+        if representatives.setdefault(key, place) != place and consumers[place]:
+            duplicates.append(place)
+            net.busy |= {representatives[key]} if place in net.busy else set()
+    for place in duplicates:
+        for move in (*producers[place], *consumers[place]):
             move.gives.discard(place)
             move.takes.discard(place)
-        _forget(net, place)
-    return bool(doomed)
+        _remove_place(net, place)
+    return bool(duplicates)
 
 
-def _forget(net: Net, place: str) -> None:
+def _remove_place(net: Net, place: str) -> None:
     del net.places[place]
     net.marked.discard(place)
     net.busy.discard(place)
 
 
-def _fuse_places(net: Net) -> bool:
-    """p -> move -> q, where p has no other taker: p is q."""
-    makers, takers = _makers(net), _takers(net)
+def _fuse_series_places(net: Net) -> bool:
+    """Fuse the places of p -> transition -> q if p has no other consumer."""
+    producers, consumers = _index_producers(net), _index_consumers(net)
     touched: set[str] = set()
-    gone: list[Move] = []
+    fused: list[NetTransition] = []
     for move in net.moves:
         if move.is_end or len(move.takes) != 1 or len(move.gives) != 1:
             continue
-        (before,), (after,) = move.takes, move.gives
-        if before == after or {before, after} & touched or len(takers[before]) != 1:
+        (source,), (target,) = move.takes, move.gives
+        if source == target or {source, target} & touched or len(consumers[source]) != 1:
             continue
-        if {before, after} <= net.marked or any(after in m.gives for m in makers[before]):
+        if {source, target} <= net.marked or any(
+            target in producer.gives for producer in producers[source]
+        ):
             continue
-        if _has_end(takers, {after}):
+        if _ends_region(consumers, {target}):
             continue
-        touched |= {before, after}
-        gone.append(move)
-        _credit(net, before, move.nodes, makers[before])
-        for maker in makers[before]:
-            maker.gives.remove(before)
-            maker.gives.add(after)
-        if before in net.marked:
-            net.marked.add(after)
-        _forget(net, before)
-    net.moves = [move for move in net.moves if not any(move is other for other in gone)]
-    return bool(gone)
+        touched |= {source, target}
+        fused.append(move)
+        _mark_fired(net, source, move.nodes, producers[source])
+        for producer in producers[source]:
+            producer.gives.remove(source)
+            producer.gives.add(target)
+        if source in net.marked:
+            net.marked.add(target)
+        _remove_place(net, source)
+    net.moves = [move for move in net.moves if not any(move is other for other in fused)]
+    return bool(fused)
 
 
-def _fuse_moves(net: Net) -> bool:
-    """move -> p -> move, where p has one maker and one taker, which takes nothing else."""
-    makers, takers = _makers(net), _takers(net)
-    touched: list[Move] = []
-    gone: list[Move] = []
+def _fuse_series_transitions(net: Net) -> bool:
+    """Fuse transition -> p -> transition if p has one producer and one consumer, which takes
+    nothing else.
+    """
+    producers, consumers = _index_producers(net), _index_consumers(net)
+    touched: list[NetTransition] = []
+    fused: list[NetTransition] = []
     for place in list(net.places):
-        if place in net.marked or len(makers[place]) != 1 or len(takers[place]) != 1:
+        if place in net.marked or len(producers[place]) != 1 or len(consumers[place]) != 1:
             continue
-        maker, taker = makers[place][0], takers[place][0]
-        is_free = not any(m is maker or m is taker for m in touched)
-        if not is_free or not _fusible(maker, taker, place) or _has_end(takers, taker.gives):
+        producer, consumer = producers[place][0], consumers[place][0]
+        is_free = not any(
+            fused_transition is producer or fused_transition is consumer
+            for fused_transition in touched
+        )
+        if (
+            not is_free
+            or not _can_fuse(producer, consumer, place)
+            or _ends_region(consumers, consumer.gives)
+        ):
             continue
-        touched += [maker, taker]
-        gone.append(taker)
-        maker.gives = (maker.gives - {place}) | taker.gives
-        maker.nodes |= taker.nodes
-        _forget(net, place)
-    net.moves = [move for move in net.moves if not any(move is other for other in gone)]
-    return bool(gone)
+        touched += [producer, consumer]
+        fused.append(consumer)
+        producer.gives = (producer.gives - {place}) | consumer.gives
+        producer.nodes |= consumer.nodes
+        _remove_place(net, place)
+    net.moves = [move for move in net.moves if not any(move is other for other in fused)]
+    return bool(fused)
 
 
-def _has_end(takers: dict[str, list[Move]], places: set[str]) -> bool:
-    """Whether a token there ends the region at once, which a token before it does not."""
-    return any(taker.is_end for place in places for taker in takers[place])
+def _ends_region(consumers: dict[str, list[NetTransition]], places: set[str]) -> bool:
+    """Return whether a token on one of the places ends the region."""
+    return any(consumer.is_end for place in places for consumer in consumers[place])
 
 
-def _fusible(maker: Move, taker: Move, place: str) -> bool:
-    if maker is taker or taker.is_end or maker.is_end or taker.takes != {place}:
+def _can_fuse(producer: NetTransition, consumer: NetTransition, place: str) -> bool:
+    if producer is consumer or consumer.is_end or producer.is_end or consumer.takes != {place}:
         return False
-    return bool(taker.gives) and not taker.gives & (maker.gives - {place})
+    return bool(consumer.gives) and not consumer.gives & (producer.gives - {place})

@@ -1,7 +1,10 @@
-"""Writes of an activity that stop at a bound, found by playing it in all ways.
+"""Writes of an activity that saturate: their value can leave the range of the variable.
 
-Only the variables that matter are played: what guards and ends of actions read, the written ones,
-and what their values are made of. What starts with an unknown value starts with each of them.
+An analysis of the values along the flows decides most writes. For the others, all reachable states
+are searched, with every decision of the environment, unless there are too many. The search tracks
+only the relevant variables: those that guards and ends of actions read, the written ones, and those
+from which their values are computed. A variable without an initial value starts with each value of
+its domain.
 """
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -15,117 +18,133 @@ from msgspec.structs import replace
 from sysmlc.logic import domains, evaluate
 from sysmlc.logic import formula as f
 from sysmlc.logic.activities import interpreter as token_game
-from sysmlc.logic.activities.concurrency import Together
-from sysmlc.logic.activities.step_formulas import Game
+from sysmlc.logic.activities.concurrency import ConcurrencyRelation
+from sysmlc.logic.activities.step_formulas import StepFormulas
 from sysmlc.logic.activities.token_graph import Store, TokenGraph, TokenNode, Write
-from sysmlc.logic.activities.value_analysis import MOST_VALUES, Spread
+from sysmlc.logic.activities.value_analysis import MAX_VALUES, ValueAnalysis
 from sysmlc.logic.contract import Domain
 from sysmlc.logic.formula import Const, Formula, Literal
 from sysmlc.logic.simplify import is_satisfiable, substitute
 
 _T = TypeVar("_T")
-_MOST_MOVES = 100_000
-"""Nodes and flows looked at, all steps together: a tenth of a second."""
-_MOST_INPUTS = 64
-"""Valuations of the inputs that values are made of."""
+_MAX_MOVES = 100_000
+"""Most nodes and flows visited in all steps: a tenth of a second."""
+_MAX_INPUTS = 64
+"""Most valuations of the inputs that written values depend on."""
 
 
-class Stopped(Struct, frozen=True):
-    """The writes that stop in some run; the others never do if the search is complete."""
+class SearchResult(Struct, frozen=True):
+    """Writes that saturate in some run; the others never do if the search is complete."""
 
     writes: list[Write]
     is_complete: bool
 
 
-def search(graph: TokenGraph, writes: Iterable[Write]) -> Stopped:
-    """Play until each of the writes has stopped, or all states or too many were seen."""
-    wanted = list(writes)
-    return _Search(reduced(graph, wanted), wanted).play()
+def search_saturating_writes(graph: TokenGraph, writes: Iterable[Write]) -> SearchResult:
+    """Search until each of the writes has saturated, or all states or too many were visited."""
+    open_writes = list(writes)
+    return _Search(reduce_to_relevant(graph, open_writes), open_writes).run()
 
 
-def reduced(graph: TokenGraph, wanted: Sequence[Write]) -> TokenGraph:
-    """The graph with the variables that matter for these writes."""
+def reduce_to_relevant(graph: TokenGraph, relevant_writes: Sequence[Write]) -> TokenGraph:
+    """Return the graph with only the variables that are relevant for these writes."""
     guards = (edge.guard.condition for edge in graph.edges if edge.guard is not None)
     formulas = [*guards, *(node.done for node in graph.nodes)]
-    names = _names(one for one in formulas if one is not None)
-    names |= {s.variable.name for s in graph.stores if any(w in wanted for w in s.writes)}
+    names = _variable_names(formula for formula in formulas if formula is not None)
+    names |= {
+        store.variable.name
+        for store in graph.stores
+        if any(write in relevant_writes for write in store.writes)
+    }
     while True:
-        stores = tuple(one for one in graph.stores if one.variable.name in names)
-        more = _names(part for s in stores for w in s.writes for pair in w.values for part in pair)
-        if more <= names:
+        stores = tuple(formula for formula in graph.stores if formula.variable.name in names)
+        added = _variable_names(
+            part
+            for store in stores
+            for write in store.writes
+            for pair in write.values
+            for part in pair
+        )
+        if added <= names:
             return replace(graph, stores=stores)
-        names |= more
+        names |= added
 
 
-def _names(formulas: Iterable[Formula]) -> set[str]:
-    return {variable.name for one in formulas for variable in f.variables(one)}
+def _variable_names(formulas: Iterable[Formula]) -> set[str]:
+    return {variable.name for formula in formulas for variable in f.variables(formula)}
 
 
 class _Search:
     def __init__(self, graph: TokenGraph, wanted: list[Write]) -> None:
-        self._graph, self._game = graph, Game(graph)
+        self._graph, self._game = graph, StepFormulas(graph)
         self._open = list(wanted)
         self._domains = {one.name: one.domain for one in graph.inputs}
-        self._steps = _MOST_MOVES // (len(graph.nodes) + len(graph.edges))
+        self._steps = _MAX_MOVES // (len(graph.nodes) + len(graph.edges))
         values = (part for s in graph.stores for w in s.writes for p in w.values for part in p)
-        read = _names(values) & self._domains.keys()
-        self._given = {name: self._domains[name] for name in sorted(read)}
+        read = _variable_names(values) & self._domains.keys()
+        self._given_places = {name: self._domains[name] for name in sorted(read)}
 
-    def play(self) -> Stopped:
-        """The writes that stop."""
-        wanted = list(self._open)
-        is_complete = self._play()
-        return Stopped([one for one in wanted if one not in self._open], is_complete)
+    def run(self) -> SearchResult:
+        """Return the writes that saturate."""
+        all_writes = list(self._open)
+        is_complete = self._search_states()
+        return SearchResult([write for write in all_writes if write not in self._open], is_complete)
 
-    def _play(self) -> bool:
-        unknown = {
-            s.variable.name: s.variable.domain for s in self._graph.stores if s.first is None
+    def _search_states(self) -> bool:
+        unset = {
+            store.variable.name: store.variable.domain
+            for store in self._graph.stores
+            if store.first is None
         }
-        starts = domains.count(unknown)
-        if starts > self._steps or domains.count(self._given) > _MOST_INPUTS:
+        starts = domains.count(unset)
+        if starts > self._steps or domains.count(self._given_places) > _MAX_INPUTS:
             return False
-        waiting = list(_starts(self._graph, unknown))
-        seen = set(waiting)
-        for state in waiting:
-            self._open = [one for one in self._open if not self._stops(one, state)]
+        worklist = list(_initial_states(self._graph, unset))
+        visited = set(worklist)
+        for state in worklist:
+            self._open = [write for write in self._open if not self._can_saturate(write, state)]
             if not self._open:
                 return True
-            for after in self._successors(state):
+            for successor in self._successors(state):
                 self._steps -= 1
                 if self._steps < 0:
                     return False
-                if after not in seen:
-                    seen.add(after)
-                    waiting.append(after)
+                if successor not in visited:
+                    visited.add(successor)
+                    worklist.append(successor)
         return True
 
-    def _stops(self, write: Write, state: token_game.State) -> bool:
-        """Whether the node may be done in this step, with a value that stops."""
-        if write.node not in state.running or token_game.finishes(self._graph, state):
+    def _can_saturate(self, write: Write, state: token_game.State) -> bool:
+        """Return whether the node may be done in this step with a value that saturates."""
+        if write.node not in state.running or token_game.is_finished(self._graph, state):
             return False
-        node, values = self._graph.node(write.node), token_game.values(self._graph, state)
-        given = {name: Const(value) for name, value in values.items()}
-        ends = substitute(f.both(self._game.finishes(node), f.either(*write.stops)), given)
-        return is_satisfiable(ends, self._domains)
+        node, values = self._graph.node(write.node), token_game.values_of(self._graph, state)
+        constants = {name: Const(value) for name, value in values.items()}
+        condition = substitute(
+            f.both(self._game.finish_formula(node), f.either(*write.stops)), constants
+        )
+        return is_satisfiable(condition, self._domains)
 
     def _successors(self, state: token_game.State) -> Iterator[token_game.State]:
-        for inputs in domains.valuations(self._given):
+        for inputs in domains.valuations(self._given_places):
             plans: list[list[int]] = [[]]
             while plans:
-                oracle = _Oracle(inputs, self._domains, plans.pop())
-                yield token_game.step(self._graph, state, inputs, oracle.holds, oracle.choose)
-                plans += oracle.others()
+                oracle = _PlannedChoices(inputs, self._domains, plans.pop())
+                yield token_game.next_state(self._graph, state, inputs, oracle.holds, oracle.choose)
+                plans += oracle.list_alternatives()
 
 
-def _starts(graph: TokenGraph, unknown: Mapping[str, Domain]) -> Iterator[token_game.State]:
-    first = token_game.start(graph)
-    for values in domains.valuations(unknown):
-        stored = tuple((name, values.get(name, value)) for name, value in first.stored)
-        yield replace(first, stored=stored)
+def _initial_states(graph: TokenGraph, unset: Mapping[str, Domain]) -> Iterator[token_game.State]:
+    default = token_game.initial_state(graph)
+    for values in domains.valuations(unset):
+        stored = tuple((name, values.get(name, value)) for name, value in default.stored)
+        yield replace(default, stored=stored)
 
 
-class _Oracle:
-    """Answers as planned what the environment decides, and knows what else could be answered."""
+class _PlannedChoices:
+    """Decisions of the environment: first as planned, then the first alternative each; it
+    records the alternatives.
+    """
 
     def __init__(
         self, inputs: Mapping[str, Literal], known: Mapping[str, Domain], plan: list[int]
@@ -135,45 +154,47 @@ class _Oracle:
         self._answers: dict[Formula, bool] = {}
 
     def holds(self, formula: Formula, values: Mapping[str, Literal]) -> bool:
-        """Whether a condition holds; the environment answers what is not the activity's own."""
+        """Return whether a condition holds; the plan decides conditions that depend on the
+        environment.
+        """
         if all(one.name in values for one in f.variables(formula)):
             return evaluate.is_true(formula, values)
         if formula not in self._answers:
             given = {name: Const(value) for name, value in values.items()}
-            self._answers[formula] = self._answer(substitute(formula, given))
+            self._answers[formula] = self._choose_answer(substitute(formula, given))
         return self._answers[formula]
 
-    def _answer(self, formula: Formula) -> bool:
+    def _choose_answer(self, formula: Formula) -> bool:
         ways = (
             (True, is_satisfiable(formula, self._known)),
             (False, is_satisfiable(f.negate(formula), self._known)),
         )
         possible = [answer for answer, can_be in ways if can_be]
-        return possible[self._next(len(possible))]
+        return possible[self._next_choice(len(possible))]
 
     def choose(self, node: TokenNode, options: Sequence[_T]) -> _T:
-        """One of several ways that are open."""
+        """Return one of several open branches."""
         del node
-        return options[self._next(len(options))]
+        return options[self._next_choice(len(options))]
 
-    def _next(self, count: int) -> int:
+    def _next_choice(self, count: int) -> int:
         place = len(self._counts)
         self._counts.append(count)
         return self._plan[place] if place < len(self._plan) else 0
 
-    def others(self) -> Iterator[list[int]]:
-        """The plans that differ from this one at a place that was not planned."""
+    def list_alternatives(self) -> Iterator[list[int]]:
+        """Yield the plans that differ from this one at one decision after the planned ones."""
         taken = [*self._plan, *[0] * (len(self._counts) - len(self._plan))]
         for place in range(len(self._plan), len(self._counts)):
             for other in range(1, self._counts[place]):
                 yield [*taken[:place], other]
 
 
-_REMEMBERED = 256
-"""Answers that are kept: a process that compiles again finds those of what was not edited."""
+_CACHED_RESULTS = 256
+"""Cache size: a process that compiles again reuses results of activities that did not change."""
 
 
-class Can(StrEnum):
+class Possibility(StrEnum):
     """Whether something happens in some run."""
 
     YES = "can"
@@ -181,25 +202,39 @@ class Can(StrEnum):
     PERHAPS = "may (it has too many states to tell)"
 
 
-@lru_cache(_REMEMBERED)
-def leaving(tokens: TokenGraph) -> tuple[tuple[Store, Write, Can], ...]:
-    """Each write that has stops, and whether it comes to one."""
-    could = [(store, one) for store in tokens.stores for one in store.writes if one.stops]
-    together = Together(tokens)
-    said = [(*one, _on_the_way(tokens, together, *one)) for one in could]
-    found = search(tokens, [write for _, write, can in said if can is Can.PERHAPS])
-    rest = Can.NO if found.is_complete else Can.PERHAPS
+@lru_cache(_CACHED_RESULTS)
+def find_saturating_writes(tokens: TokenGraph) -> tuple[tuple[Store, Write, Possibility], ...]:
+    """Return each write that can be clamped according to its range, and whether that happens."""
+    candidates = [
+        (store, write) for store in tokens.stores for write in store.writes if write.stops
+    ]
+    concurrency = ConcurrencyRelation(tokens)
+    estimates = [(*write, _analyse_values(tokens, concurrency, *write)) for write in candidates]
+    result = search_saturating_writes(
+        tokens, [write for _, write, possibility in estimates if possibility is Possibility.PERHAPS]
+    )
+    remaining = Possibility.NO if result.is_complete else Possibility.PERHAPS
     return tuple(
-        (store, write, Can.YES if write in found.writes else rest if can is Can.PERHAPS else can)
-        for store, write, can in said
+        (
+            store,
+            write,
+            Possibility.YES
+            if write in result.writes
+            else remaining
+            if possibility is Possibility.PERHAPS
+            else possibility,
+        )
+        for store, write, possibility in estimates
     )
 
 
-def _on_the_way(tokens: TokenGraph, together: Together, store: Store, write: Write) -> Can:
-    """What the values along the flows say."""
-    if domains.size(store.variable.domain) > MOST_VALUES:
-        return Can.PERHAPS
-    spread = Spread(reduced(tokens, [write]), together, store)
-    if not spread.may_stop(write):
-        return Can.NO
-    return Can.YES if spread.is_exact else Can.PERHAPS
+def _analyse_values(
+    tokens: TokenGraph, concurrency: ConcurrencyRelation, store: Store, write: Write
+) -> Possibility:
+    """Return what the analysis of values along the flows proves."""
+    if domains.size(store.variable.domain) > MAX_VALUES:
+        return Possibility.PERHAPS
+    analysis = ValueAnalysis(reduce_to_relevant(tokens, [write]), concurrency, store)
+    if not analysis.may_stop(write):
+        return Possibility.NO
+    return Possibility.YES if analysis.is_exact else Possibility.PERHAPS

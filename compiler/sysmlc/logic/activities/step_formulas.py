@@ -1,13 +1,14 @@
-"""The token game as formulas about the present step: what moves, what is complete, what ends.
+"""Formulas about the present step of the token game.
 
-These are the parts that the conjuncts of an activity's contract are put together from.
+The derivation of contracts combines them: which nodes start and finish, which edges gain and lose a
+token, which regions are complete or end.
 """
 
 from collections.abc import Iterator
 from functools import cached_property
 
 from sysmlc.logic import formula as f
-from sysmlc.logic.activities.concurrency import Together
+from sysmlc.logic.activities.concurrency import ConcurrencyRelation
 from sysmlc.logic.activities.token_graph import (
     ACTIVITY_REGION,
     Duration,
@@ -21,209 +22,228 @@ from sysmlc.logic.activities.token_graph import (
 from sysmlc.logic.formula import Formula
 
 
-def at(edge: TokenEdge) -> Formula:
-    """The edge holds a token."""
+def token_at(edge: TokenEdge) -> Formula:
+    """Return the formula that the edge holds a token."""
     return f.var(edge.variable)
 
 
 def is_else(edge: TokenEdge) -> bool:
-    """Whether the edge is open when no other branch is."""
+    """Return whether the edge is taken only if no other branch is open."""
     return edge.guard is not None and edge.guard.condition is None
 
 
-class Game:
-    """The conditions of one token graph; those of regions are put together once."""
+class StepFormulas:
+    """Formulas of one token graph; the formulas of regions are built once."""
 
     def __init__(self, graph: TokenGraph) -> None:
         self.graph = graph
         self._quiets = dict(graph.quiets)
-        self._complete: dict[str, Formula] = {}
+        self._completions: dict[str, Formula] = {}
         self._interrupted: dict[str, Formula] = {}
         self._endings: dict[str, Formula] = {}
 
     @cached_property
-    def together(self) -> Together:
-        """What may have tokens at the same time."""
-        return Together(self.graph)
+    def concurrency(self) -> ConcurrencyRelation:
+        """Which places may hold tokens at the same time."""
+        return ConcurrencyRelation(self.graph)
 
     # -- nodes -----------------------------------------------------------------------------
 
-    def waits(self, node: TokenNode) -> Formula:
+    def waiting_formula(self, node: TokenNode) -> Formula:
         """A token is on every incoming edge."""
         incoming = self.graph.incoming(node)
-        return f.both(*map(at, incoming)) if incoming else f.FALSE
+        return f.both(*map(token_at, incoming)) if incoming else f.FALSE
 
-    def starts(self, node: TokenNode) -> Formula:
-        """An action takes its tokens, unless its region ends."""
-        return f.both(self.waits(node), self.is_free(node), self.lives(node))
+    def start_formula(self, node: TokenNode) -> Formula:
+        """The node takes its tokens, unless its region ends."""
+        return f.both(
+            self.waiting_formula(node), self.idle_formula(node), self.region_runs_formula(node)
+        )
 
-    def is_free(self, node: TokenNode) -> Formula:
-        """The node takes tokens: it does not run, as far as that is not clear anyway."""
+    def idle_formula(self, node: TokenNode) -> Formula:
+        """The node does not run; true for a node that never receives tokens while it runs."""
         return f.negate(f.var(node.run)) if node.queues else f.TRUE
 
-    def lives(self, node: TokenNode) -> Formula:
-        """The region of the node runs, as far as its tokens do not say so."""
-        if node.region == ACTIVITY_REGION or not self.graph.reaches_in(node):
+    def region_runs_formula(self, node: TokenNode) -> Formula:
+        """The region of the node runs; true where the tokens of the node imply it."""
+        if node.region == ACTIVITY_REGION or not self.graph.is_entered_from_outside(node):
             return f.TRUE
         return f.var(self.graph.node(node.region).run)
 
-    def done(self, node: TokenNode) -> Formula:
+    def done_formula(self, node: TokenNode) -> Formula:
         """A running node is done."""
         if node.kind is NodeKind.STRUCTURED:
-            return self.complete(node.id)
+            return self.complete_formula(node.id)
         if node.duration is Duration.PULSE or node.done is None:
             return f.TRUE
         return node.done
 
-    def finishes(self, node: TokenNode) -> Formula:
-        """A running node is done, and nothing around it ends before it counts."""
-        going = f.both(f.var(node.run), self.done(node), self.lives(node))
-        return f.both(going, f.negate(self.ended(node.region)))
+    def finish_formula(self, node: TokenNode) -> Formula:
+        """A running node is done, and no region around it ends in this step."""
+        going = f.both(f.var(node.run), self.done_formula(node), self.region_runs_formula(node))
+        return f.both(going, f.negate(self.ended_formula(node.region)))
 
-    def choosers(self) -> list[TokenNode]:
-        """Decisions with several branches that may be open at the same time."""
-        return [n for n in self.graph.nodes if _may_choose(self.graph.outgoing(n), n)]
+    def list_choosers(self) -> list[TokenNode]:
+        """List the decisions with several branches that can be open at the same time."""
+        return [n for n in self.graph.nodes if _can_choose(self.graph.outgoing(n), n)]
 
     def is_chosen(self, edge: TokenEdge) -> bool:
-        """Whether the edge is a branch of such a decision."""
+        """Return whether the edge is a branch of such a decision."""
         source = self.graph.node(edge.source)
-        return _may_choose(self.graph.outgoing(source), source)
+        return _can_choose(self.graph.outgoing(source), source)
 
     # -- complete regions ------------------------------------------------------------------
 
-    def complete(self, region: str) -> Formula:
-        """The region is complete, by name where it has one."""
+    def complete_formula(self, region: str) -> Formula:
+        """The region is complete; a variable of the graph stands for it if there is one."""
         name = self._quiets.get(region)
-        return f.var(name) if name else self.completion(region)
+        return f.var(name) if name else self.completion_formula(region)
 
-    def completion(self, region: str) -> Formula:
+    def completion_formula(self, region: str) -> Formula:
         """A token is at a final node of the region, or nothing in the region can move."""
-        if region not in self._complete:
-            self._complete[region] = self._completion(region)
-        return self._complete[region]
+        if region not in self._completions:
+            self._completions[region] = self._build_completion(region)
+        return self._completions[region]
 
-    def _completion(self, region: str) -> Formula:
-        at_final = map(at, self.graph.ends(region))
+    def _build_completion(self, region: str) -> Formula:
+        at_final = map(token_at, self.graph.ends(region))
         if not self.graph.can_rest(region):
             return f.either(*at_final)
-        moving = [part for node in self.graph.members(region) for part in self._activity(node)]
+        moving = [
+            part for node in self.graph.members(region) for part in self._activity_formulas(node)
+        ]
         return f.either(*at_final, f.both(*map(f.negate, moving)))
 
-    def _activity(self, node: TokenNode) -> Iterator[Formula]:
-        """What makes the node a reason not to end its region."""
+    def _activity_formulas(self, node: TokenNode) -> Iterator[Formula]:
+        """Yield the conditions under which the node prevents the end of its region."""
         if node.firing in (Firing.ANY, Firing.END):
-            yield from map(at, self.graph.incoming(node))
+            yield from map(token_at, self.graph.incoming(node))
         elif node.firing is not Firing.NEVER and self.graph.incoming(node):
-            yield f.both(*map(at, self.graph.triggers(node)))
+            yield f.both(*map(token_at, self.graph.triggers(node)))
         if node.firing is Firing.WORK:
             yield f.var(node.run)
 
-    def _ended(self, inner: str, outer: str) -> Formula:
-        """A region ends from ``inner`` up to, not including, ``outer``."""
+    def _region_end_formula(self, inner: str, outer: str) -> Formula:
+        """A region ends from *inner* up to, not including, *outer*."""
         if inner == outer:
             return f.FALSE
-        return f.either(*map(self._ends, self.graph.between(inner, outer)))
+        return f.either(*map(self._node_end_formula, self.graph.between(inner, outer)))
 
-    def _ends(self, around: TokenNode) -> Formula:
-        return f.both(f.var(around.run), self.complete(around.id))
+    def _node_end_formula(self, around: TokenNode) -> Formula:
+        return f.both(f.var(around.run), self.complete_formula(around.id))
 
     # -- edges -----------------------------------------------------------------------------
 
-    def opened(self, edge: TokenEdge) -> Formula:
-        """The guard of the edge, with else as none of the other guards."""
+    def guard_formula(self, edge: TokenEdge) -> Formula:
+        """The guard of the edge; ``else`` is the conjunction of the negated guards of its
+        siblings.
+        """
         guard = edge.guard
         if guard is None:
             return f.TRUE
         if guard.condition is not None:
             return guard.condition
         siblings = self.graph.outgoing(self.graph.node(edge.source))
-        return f.both(*(f.negate(self.opened(s)) for s in siblings if not is_else(s)))
+        return f.both(*(f.negate(self.guard_formula(s)) for s in siblings if not is_else(s)))
 
-    def given(self, edge: TokenEdge) -> Formula:
-        """The source of the edge gives it a token (or may, when the decision has a choice)."""
+    def given_formula(self, edge: TokenEdge) -> Formula:
+        """The source gives the edge a token, or may give it if the decision has a choice."""
         source = self.graph.node(edge.source)
-        alive = f.negate(self._ended(source.region, edge.region))
-        return f.both(self._fires_into(source, edge), self.lives(source), alive)
+        alive = f.negate(self._region_end_formula(source.region, edge.region))
+        return f.both(self._source_formula(source, edge), self.region_runs_formula(source), alive)
 
-    def _fires_into(self, source: TokenNode, edge: TokenEdge) -> Formula:
+    def _source_formula(self, source: TokenNode, edge: TokenEdge) -> Formula:
         match source.firing:
             case Firing.ANY:
-                return f.either(*map(at, self.graph.incoming(source)))
+                return f.either(*map(token_at, self.graph.incoming(source)))
             case Firing.ALL:
-                return self.waits(source)
+                return self.waiting_formula(source)
             case Firing.CHOICE:
-                return f.both(self.waits(source), self.opened(edge))
+                return f.both(self.waiting_formula(source), self.guard_formula(edge))
             case Firing.WORK:
-                return f.both(f.var(source.run), self.done(source))
+                return f.both(f.var(source.run), self.done_formula(source))
             case _:
                 return f.FALSE
 
-    def taken(self, edge: TokenEdge) -> Formula:
-        """The target of the edge takes a token that is on it."""
+    def taken_formula(self, edge: TokenEdge) -> Formula:
+        """The target takes the token on the edge."""
         target = self.graph.node(edge.target)
         if edge.keeps:
             return f.FALSE
-        alive = f.negate(self._ended(target.region, edge.region))
-        return f.both(self._takes_from(target, edge), self.lives(target), alive)
+        alive = f.negate(self._region_end_formula(target.region, edge.region))
+        return f.both(self._target_formula(target, edge), self.region_runs_formula(target), alive)
 
-    def _takes_from(self, target: TokenNode, edge: TokenEdge) -> Formula:
+    def _target_formula(self, target: TokenNode, edge: TokenEdge) -> Formula:
         match target.firing:
             case Firing.ANY | Firing.END:
                 return f.TRUE
             case Firing.NEVER:
                 return f.FALSE
             case Firing.CHOICE:
-                return f.both(self._others(edge), self.decides(target))
+                return f.both(self._other_tokens(edge), self.decision_formula(target))
             case _:
-                return f.both(self._others(edge), self.is_free(target))
+                return f.both(self._other_tokens(edge), self.idle_formula(target))
 
-    def decides(self, node: TokenNode) -> Formula:
-        """Some branch of the decision is open, as far as that is not clear anyway."""
+    def decision_formula(self, node: TokenNode) -> Formula:
+        """Some branch of the decision is open; true if one always is."""
         branches = self.graph.outgoing(node)
         if node.exhaustive or not branches:
             return f.TRUE
-        return f.either(*map(self.opened, branches))
+        return f.either(*map(self.guard_formula, branches))
 
-    def _others(self, edge: TokenEdge) -> Formula:
+    def _other_tokens(self, edge: TokenEdge) -> Formula:
         """A token is on every other edge into the same node."""
         incoming = self.graph.incoming(self.graph.node(edge.target))
-        return f.both(*(at(other) for other in incoming if other is not edge))
+        return f.both(*(token_at(sibling) for sibling in incoming if sibling is not edge))
 
-    def heard(self, edge: TokenEdge) -> Formula:
-        """A token enters the region that the edge listens to, and its target does not wait yet."""
+    def heard_formula(self, edge: TokenEdge) -> Formula:
+        """A token enters the region to which the edge listens, and the target neither waits nor
+        runs.
+        """
         if not edge.listens:
             return f.FALSE
         target = self.graph.node(edge.target)
-        coming = (f.both(at(one), self.taken(one)) for one in self.graph.entering(edge.listens))
-        is_idle = f.both(f.negate(at(edge)), f.negate(f.var(target.run)))
-        around = self.graph.regions_around(edge.region)
-        return f.both(f.either(*coming), is_idle, *(f.var(one.run) for one in around))
+        arrivals = (
+            f.both(token_at(edge_around), self.taken_formula(edge_around))
+            for edge_around in self.graph.entering(edge.listens)
+        )
+        is_idle = f.both(f.negate(token_at(edge)), f.negate(f.var(target.run)))
+        regions = self.graph.regions_around(edge.region)
+        return f.both(
+            f.either(*arrivals), is_idle, *(f.var(edge_around.run) for edge_around in regions)
+        )
 
-    def kept(self, edge: TokenEdge) -> Formula:
+    def kept_formula(self, edge: TokenEdge) -> Formula:
         """The edge holds a token that stays on it."""
-        return f.both(at(edge), f.negate(self.taken(edge)))
+        return f.both(token_at(edge), f.negate(self.taken_formula(edge)))
 
-    def arrives(self, edge: TokenEdge) -> Formula:
-        """The edge gets a token; for a branch that is chosen this is seen in the next step."""
+    def arrival_formula(self, edge: TokenEdge) -> Formula:
+        """The edge gets a token; for a branch that is chosen this becomes visible in the next
+        step.
+        """
         if not self.is_chosen(edge):
-            return self.given(edge)
-        return f.both(self.given(edge), f.primed(at(edge)), f.negate(self.kept(edge)))
+            return self.given_formula(edge)
+        return f.both(
+            self.given_formula(edge), f.primed(token_at(edge)), f.negate(self.kept_formula(edge))
+        )
 
     # -- ends of regions -------------------------------------------------------------------
 
-    def cleared(self, region: str, members: set[str]) -> Formula:
-        """Something ends the region or interrupts what ``members`` (node ids) are in."""
-        return f.either(self.ended(region), *self.interruptions(region, members))
+    def cleared_formula(self, region: str, members: set[str]) -> Formula:
+        """The region ends, or an interruption removes the tokens of *members* (node ids)."""
+        return f.either(self.ended_formula(region), *self.interruption_formulas(region, members))
 
-    def ended(self, region: str) -> Formula:
-        """The region, or one around it, ends."""
+    def ended_formula(self, region: str) -> Formula:
+        """The region, or a region around it, ends."""
         if region not in self._endings:
-            around = map(self._ends, self.graph.regions_around(region))
-            self._endings[region] = f.either(self.complete(ACTIVITY_REGION), *around)
+            around = map(self._node_end_formula, self.graph.regions_around(region))
+            self._endings[region] = f.either(self.complete_formula(ACTIVITY_REGION), *around)
         return self._endings[region]
 
-    def interruptions(self, region: str, members: set[str]) -> Iterator[Formula]:
-        """Interruptions of what ``members`` of a region are in."""
+    def interruption_formulas(self, region: str, members: set[str]) -> Iterator[Formula]:
+        """Yield the interruptions of an interruptible region that contains *members* of
+        *region*.
+        """
         if not self.graph.interruptibles:
             return
         around = {node.id for node in self.graph.regions_around(region)}
@@ -235,22 +255,24 @@ class Game:
     def _interruption(self, interruptible: Interruptible) -> Formula:
         """A token enters an interrupting edge of the region."""
         if interruptible.id not in self._interrupted:
-            entering = [e for e in self.graph.edges if e.interrupts == interruptible.id]
-            self._interrupted[interruptible.id] = f.either(*map(self.arrives, entering))
+            edges = [e for e in self.graph.edges if e.interrupts == interruptible.id]
+            self._interrupted[interruptible.id] = f.either(*map(self.arrival_formula, edges))
         return self._interrupted[interruptible.id]
 
-    def begins(self, region: str) -> Formula:
+    def begin_formula(self, region: str) -> Formula:
         """The region starts in the next step."""
         if region == ACTIVITY_REGION:
-            return self.complete(region)
+            return self.complete_formula(region)
         node = self.graph.node(region)
-        return f.both(self.starts(node), f.negate(self.cleared(node.region, {node.id})))
+        return f.both(
+            self.start_formula(node), f.negate(self.cleared_formula(node.region, {node.id}))
+        )
 
 
-def _may_choose(branches: list[TokenEdge], node: TokenNode) -> bool:
-    """Whether more than one branch may be open at the same time."""
+def _can_choose(branches: list[TokenEdge], node: TokenNode) -> bool:
+    """Return whether several branches of the node can be open at the same time."""
     if node.firing is not Firing.CHOICE:
         return False
-    others = [branch for branch in branches if is_else(branch)]
-    stated = len(branches) - len(others)
-    return len(others) > 1 or (stated > 1 and not node.exclusive)
+    else_branches = [branch for branch in branches if is_else(branch)]
+    guarded_count = len(branches) - len(else_branches)
+    return len(else_branches) > 1 or (guarded_count > 1 and not node.exclusive)

@@ -1,15 +1,15 @@
-"""Token graphs: activities as 1-safe token games, one Boolean an edge, as frozen values.
+"""Token graphs: activities as 1-safe token games with one Boolean for each edge.
 
-A token graph is what the pass ``activities`` makes of an activity diagram (UML 2.5.1, clauses 15
-and 16; fUML 1.5, clause 8). Contracts, the reference interpreter and back ends read it.
+The pass ``activities`` derives a token graph from an activity diagram (UML 2.5.1, clauses 15 and
+16; fUML 1.5, clause 8). Contracts, the reference interpreter and back ends read it.
 
-One step of the game moves every token that can move by one node: each node looks at the edges as
-they are at the start of the step. What the kinds of nodes do with tokens is in ``FIRING``.
+In one step of the game, every token that can move passes one node; each node reads the edges as
+they are at the start of the step. ``FIRING`` states what each kind of node does with tokens.
 
-A region is what a structured node owns, or the activity. An edge belongs to the innermost region
-that holds both of its ends. A node moves tokens only while its region runs; a token for a node in
-a region that does not run waits on its edge. A region is complete when a token is at one of its
-final nodes, or when nothing in it can move.
+A region is the content of a structured node, or of the activity. An edge belongs to the innermost
+region that contains both of its ends. A node moves tokens only while its region runs; a token for a
+node in a region that does not run waits on its edge. A region is complete when a token is at one of
+its final nodes, or when nothing in it can move.
 """
 
 from collections.abc import Iterator
@@ -26,7 +26,7 @@ ACTIVITY_REGION = ""
 
 
 class NodeKind(StrEnum):
-    """What a node is, in UML's words; object nodes and pins that only pass tokens are merges."""
+    """Kind of a node in UML's words; an object node or pin that only passes tokens is a merge."""
 
     INITIAL = "initial"
     ACTION = "action"
@@ -85,7 +85,7 @@ FIRING: dict[NodeKind, Firing] = {
 
 
 _ACTION, _SILENT, _ALL, _WORK = NodeKind.ACTION, Duration.SILENT, Firing.ALL, Firing.WORK
-"""Members by names of the module: in Python 3.11 those of a class take twice as long."""
+# Module-level names: in Python 3.11, looking up a member of an enumeration takes twice as long.
 
 
 class Guard(Struct, frozen=True):
@@ -96,13 +96,13 @@ class Guard(Struct, frozen=True):
 
 
 class TokenNode(Struct, frozen=True):
-    """One node; ``label`` is what the modeller calls it ("action 'read id'").
+    """One node; ``label`` is the name that diagnostics use ("action 'read id'").
 
-    ``region`` is the id of the structured node that owns it. ``run`` is the variable that says
-    that it runs, ``done`` the condition on inputs that ends a timed action. ``exclusive`` is true
-    of a decision whose guards never hold together, ``exhaustive`` when one of them always holds.
-    ``queues`` is true of an action that may get tokens while it runs: they wait until it is done
-    (UML 2.5.1, 16.2.3: no action is locally reentrant unless it says so).
+    ``region`` is the id of the structured node that owns it. ``run`` is the variable that is true
+    while it runs, ``done`` the condition on inputs that ends a timed action. ``exclusive`` is true
+    for a decision whose guards never hold together, ``exhaustive`` if one of them always holds.
+    ``queues`` is true for an action that may receive tokens while it runs; they wait until it is
+    done (UML 2.5.1, 16.2.3: no action is locally reentrant unless it says so).
     """
 
     id: str
@@ -119,19 +119,19 @@ class TokenNode(Struct, frozen=True):
 
     @property
     def firing(self) -> Firing:
-        """How it moves tokens."""
+        """How the node moves tokens."""
         return _ALL if self.duration is _SILENT and self.kind is _ACTION else FIRING[self.kind]
 
 
 class TokenEdge(Struct, frozen=True):
-    """One edge and the variable that says whether it holds a token.
+    """One edge and the variable that is true while it holds a token.
 
-    ``origins`` are the ids of the drawn flows that it stands for, several after a collapse.
-    ``marked`` edges hold a token when their region starts. ``interrupts`` is the id of the
-    interruptible region that loses its tokens when a token enters this edge. ``keeps`` edges
-    leave data stores: their token stays when it is taken. An edge that ``listens`` to an
-    interruptible region (its id) gets a token when one enters the region, unless its target has one
-    or runs: accept actions without incoming flows are enabled then (UML 2.5.1, 15.6.3).
+    ``origins`` are the ids of the drawn flows that the edge stands for, several after a collapse. A
+    ``marked`` edge holds a token when its region starts. ``interrupts`` is the id of the
+    interruptible region that loses its tokens when a token enters this edge. A ``keeps`` edge
+    leaves a data store: its token stays when it is taken. An edge that ``listens`` to an
+    interruptible region (its id) gets a token when one enters the region, unless its target holds a
+    token or runs: this enables accept actions without incoming flows (UML 2.5.1, 15.6.3).
     """
 
     id: str
@@ -149,20 +149,20 @@ class TokenEdge(Struct, frozen=True):
 
     @property
     def origin(self) -> str:
-        """The first drawn flow that it stands for."""
+        """The first drawn flow that the edge stands for."""
         return self.origins[0]
 
     @property
     def is_else(self) -> bool:
-        """Whether it is taken when no other branch of its decision is open."""
+        """Whether the edge is taken when no other branch of its decision is open."""
         return self.guard is not None and self.guard.condition is None
 
 
 class Interruptible(Struct, frozen=True):
     """Nodes (ids) that lose their tokens together.
 
-    They are an interruptible activity region, what an exception ends, or what a loop takes up
-    anew in each round.
+    Such a group is an interruptible activity region, the nodes that an exception ends, or the nodes
+    that a loop restarts in each round.
     """
 
     id: str
@@ -171,12 +171,12 @@ class Interruptible(Struct, frozen=True):
 
 
 class Write(Struct, frozen=True):
-    """A node writes a value when its work is done.
+    """A write of a variable when a node is done.
 
-    ``values`` are pairs of a condition and the value that it then gives, over what holds at that
-    time; one of the conditions holds, and under those in ``stops`` the value is a bound of the
-    range that it would leave. ``text`` is how the modeller writes the value, empty where
-    earlier assignments are in it.
+    ``values`` are pairs of a condition and the value written under it, both over the values at that
+    time; exactly one of the conditions holds. Under a condition in ``stops`` the value is clamped
+    to a bound of the range. ``text`` is the value as the modeller writes it, empty if earlier
+    assignments are substituted into it.
     """
 
     node: str
@@ -188,8 +188,8 @@ class Write(Struct, frozen=True):
 class Store(Struct, frozen=True):
     """A variable that the activity decides: it keeps its value until a node writes another.
 
-    ``first`` is its value at the start, None when nothing says so; a ``local`` one has it again
-    each time the activity starts.
+    ``first`` is its initial value, or None if the model gives none. A ``local`` variable is reset
+    to it each time the activity starts.
     """
 
     variable: Variable
@@ -199,14 +199,14 @@ class Store(Struct, frozen=True):
 
 
 class TokenGraph(Struct, frozen=True, dict=True):
-    """One activity as a token game; nodes and edges in the order of the model.
+    """One activity as a token game; nodes and edges are in the order of the model.
 
-    ``inputs`` are the variables that the environment decides. ``pulses`` names those that stand
-    for an event or the end of an action; the others keep their value until they are changed.
-    ``finishes`` is false when no run can end. ``rests`` are the regions that may come to rest
-    before a token is at a final node (None: any of them), ``quiets`` the names of variables that
-    say that a region is complete: formulas that would repeat a long condition name it instead.
-    ``stores`` are the variables that its nodes write.
+    ``inputs`` are the variables that the environment decides. ``pulses`` names those that stand for
+    an event or the end of an action; the others keep their value until they change. ``finishes`` is
+    false if no run can end. ``rests`` are the regions that can be complete without a token at a
+    final node (None: any of them). ``quiets`` are pairs of a region and the variable that is true
+    when it is complete: formulas that would repeat a long condition refer to the variable.
+    ``stores`` are the variables that nodes write.
     """
 
     activity: str
@@ -223,16 +223,18 @@ class TokenGraph(Struct, frozen=True, dict=True):
     stores: tuple[Store, ...] = ()
 
     @cached_property
-    def own(self) -> frozenset[str]:
-        """Names of the variables that the nodes of the activity write."""
-        return frozenset(one.variable.name for one in self.stores)
+    def written_variables(self) -> frozenset[str]:
+        """Names of the variables that nodes of the activity write."""
+        return frozenset(store.variable.name for store in self.stores)
 
     def is_decided_outside(self, formula: Formula) -> bool:
-        """Whether the environment has a say in the condition."""
-        return any(one.name not in self.own for one in variables(formula))
+        """Return whether the condition depends on the environment."""
+        return any(variable.name not in self.written_variables for variable in variables(formula))
 
-    def is_own(self, formula: Formula) -> bool:
-        """Whether what nodes write decides the condition, and nothing else does."""
+    def is_decided_inside(self, formula: Formula) -> bool:
+        """Return whether the condition depends on variables that nodes write, and on nothing
+        else.
+        """
         return bool(variables(formula)) and not self.is_decided_outside(formula)
 
     @cached_property
@@ -241,17 +243,17 @@ class TokenGraph(Struct, frozen=True, dict=True):
 
     @cached_property
     def _incoming(self) -> dict[str, list[TokenEdge]]:
-        return self._index("target")
+        return self._index_edges("target")
 
     @cached_property
     def _outgoing(self) -> dict[str, list[TokenEdge]]:
-        return self._index("source")
+        return self._index_edges("source")
 
-    def _index(self, end: str) -> dict[str, list[TokenEdge]]:
-        found: dict[str, list[TokenEdge]] = {node.id: [] for node in self.nodes}
+    def _index_edges(self, end: str) -> dict[str, list[TokenEdge]]:
+        edges: dict[str, list[TokenEdge]] = {node.id: [] for node in self.nodes}
         for edge in self.edges:
-            found[getattr(edge, end)].append(edge)
-        return found
+            edges[getattr(edge, end)].append(edge)
+        return edges
 
     def node(self, id: str) -> TokenNode:
         """The node with this id; KeyError when there is none."""
@@ -266,20 +268,20 @@ class TokenGraph(Struct, frozen=True, dict=True):
         return self._outgoing[node.id]
 
     def workers(self) -> Iterator[TokenNode]:
-        """Nodes that run for a while and have a variable for it."""
+        """Iterate over the nodes that run for some steps and have a variable for that."""
         return (node for node in self.nodes if node.firing is _WORK)
 
     @cached_property
     def _inside(self) -> dict[str, tuple[list[TokenEdge], list[TokenNode]]]:
-        found: dict[str, tuple[list[TokenEdge], list[TokenNode]]] = {}
+        content: dict[str, tuple[list[TokenEdge], list[TokenNode]]] = {}
         for edge in self.edges:
-            found.setdefault(edge.region, ([], []))[0].append(edge)
+            content.setdefault(edge.region, ([], []))[0].append(edge)
         for node in self.workers():
-            found.setdefault(node.region, ([], []))[1].append(node)
-        return found
+            content.setdefault(node.region, ([], []))[1].append(node)
+        return content
 
     def inside(self, region: str) -> tuple[list[TokenEdge], list[TokenNode]]:
-        """Edges and running nodes directly in a region."""
+        """Return the edges and running nodes directly in a region."""
         return self._inside.get(region, ([], []))
 
     def regions(self) -> Iterator[str]:
@@ -288,9 +290,11 @@ class TokenGraph(Struct, frozen=True, dict=True):
         yield from (node.id for node in self.nodes if node.kind is NodeKind.STRUCTURED)
 
     def entering(self, interruptible: str) -> list[TokenEdge]:
-        """Edges that bring tokens into an interruptible region, from outside or at its start."""
-        found = next(one for one in self.interruptibles if one.id == interruptible)
-        members = frozenset(found.nodes)
+        """Return the edges that bring tokens into an interruptible region, from outside or at
+        its start.
+        """
+        region = next(one for one in self.interruptibles if one.id == interruptible)
+        members = frozenset(region.nodes)
         return [
             edge
             for edge in self.edges
@@ -300,27 +304,29 @@ class TokenGraph(Struct, frozen=True, dict=True):
         ]
 
     def enters(self, edge: TokenEdge) -> bool:
-        """Whether the edge leads into a region from outside."""
+        """Return whether the edge leads into a region from outside."""
         return self._nodes[edge.target].region != edge.region
 
-    def reaches_in(self, node: TokenNode) -> bool:
-        """Whether an edge from outside its region leads to the node."""
+    def is_entered_from_outside(self, node: TokenNode) -> bool:
+        """Return whether an edge from outside its region leads to the node."""
         return any(map(self.enters, self._incoming[node.id]))
 
     def triggers(self, node: TokenNode) -> list[TokenEdge]:
-        """Edges that make the node a reason not to end its region, when all hold a token.
+        """Return the edges that prevent the completion of the node's region while all of them hold
+        a token.
 
-        What has its tokens from inside the region waits for those from outside.
+        A node with all tokens from inside its region waits for those from outside, so these do not
+        count.
         """
         incoming = self._incoming[node.id]
         return [edge for edge in incoming if edge.region == node.region] or incoming
 
     @cached_property
     def _members(self) -> dict[str, list[TokenNode]]:
-        found: dict[str, list[TokenNode]] = {}
+        members: dict[str, list[TokenNode]] = {}
         for node in self.nodes:
-            found.setdefault(node.region, []).append(node)
-        return found
+            members.setdefault(node.region, []).append(node)
+        return members
 
     def members(self, region: str) -> list[TokenNode]:
         """Nodes directly in a region."""
@@ -334,18 +340,18 @@ class TokenGraph(Struct, frozen=True, dict=True):
             region = node.region
 
     def between(self, inner: str, outer: str) -> Iterator[TokenNode]:
-        """Structured nodes from the region ``inner`` up to, not including, the region ``outer``."""
+        """Yield the structured nodes from region *inner* up to, not including, region *outer*."""
         for node in self.regions_around(inner):
             if node.id == outer:
                 return
             yield node
 
     def can_rest(self, region: str) -> bool:
-        """Whether the region may be complete without a token at a final node."""
+        """Return whether the region can be complete without a token at a final node."""
         return self.rests is None or region in self.rests
 
     def ends(self, region: str) -> list[TokenEdge]:
-        """Edges whose token ends the region."""
+        """Return the edges whose token ends the region."""
         return [
             edge
             for node in self.members(region)

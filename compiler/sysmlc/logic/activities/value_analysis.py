@@ -1,16 +1,21 @@
-"""The values that a variable may have wherever an activity has a token.
+"""Values that a variable may have wherever an activity has a token (a data-flow analysis).
 
-One variable is followed along the flows, the others may have any value at any time. What it finds
-holds in every run, however many states there are; a value that it allows need not come up.
-Sets of values are bits, in the order of the domain.
+One variable is followed along the flows; all others may have any value at any time. The result
+covers every run, however many states there are, but may contain values that never occur. Sets of
+values are bit masks in the order of the domain.
 """
 
 from collections.abc import Iterable, Iterator, Mapping
 
 from sysmlc.logic import domains
 from sysmlc.logic import formula as f
-from sysmlc.logic.activities.concurrency import Move, Together, gone, takers
-from sysmlc.logic.activities.step_formulas import Game
+from sysmlc.logic.activities.concurrency import (
+    ConcurrencyRelation,
+    Move,
+    consumed_place,
+    index_takers,
+)
+from sysmlc.logic.activities.step_formulas import StepFormulas
 from sysmlc.logic.activities.token_graph import (
     ACTIVITY_REGION,
     Firing,
@@ -24,110 +29,116 @@ from sysmlc.logic.contract import Domain
 from sysmlc.logic.evaluate import Evaluation, evaluation
 from sysmlc.logic.formula import Formula, Literal
 
-MOST_VALUES = 4_096
-"""Values of a variable that is followed."""
-_MOST_VALUATIONS = 20_000
-"""Conditions over more values of several variables than this hold for each value of the one."""
+MAX_VALUES = 4_096
+"""Largest domain of a variable that is followed."""
+_MAX_VALUATIONS = 20_000
+"""Above this number of valuations, a condition counts as true for every value."""
 
 
-class Spread:
-    """The values of one variable at each place; of at most ``MOST_VALUES``."""
+class ValueAnalysis:
+    """The values of one variable at each place; its domain has at most ``MAX_VALUES`` values."""
 
-    def __init__(self, graph: TokenGraph, together: Together, store: Store) -> None:
+    def __init__(self, graph: TokenGraph, together: ConcurrencyRelation, store: Store) -> None:
         self._graph, self._together, self._store = graph, together, store
-        self._game = Game(graph)
+        self._game = StepFormulas(graph)
         known = (*graph.inputs, *(one.variable for one in graph.stores))
-        self._image = _Image(store, {one.name: one.domain for one in known})
+        self._image = _ValueSets(store, {one.name: one.domain for one in known})
         self._writes = {one.node: one for one in store.writes}
-        self._takers = takers(together.moves)
-        self._at: dict[str, int] = {}
-        self._made: dict[Move, int] = {}
+        self._takers = index_takers(together.moves)
+        self._values_at: dict[str, int] = {}
+        self._applied: dict[Move, int] = {}
         self._waiting: dict[Move, None] = {}
-        self._play()
+        self._propagate()
 
     @property
     def is_exact(self) -> bool:
-        """Whether all values that are allowed come up: one token moves, one variable decides."""
-        is_alone = self._together.are_none and len(self._graph.stores) == 1
+        """Whether every value of the result occurs: there is one token, and one variable
+        decides.
+        """
+        is_alone = self._together.is_sequential and len(self._graph.stores) == 1
         return is_alone and not self._graph.interruptibles and not self._image.gave_up
 
     def may_stop(self, write: Write) -> bool:
-        """Whether a stop of the write may hold when its node is done."""
-        values = self._at.get(write.node, 0)
-        values &= self._image.where(self._game.done(self._graph.node(write.node)))
-        return any(values & self._image.where(stop) for stop in write.stops)
+        """Return whether the write can be clamped when its node is done."""
+        values = self._values_at.get(write.node, 0)
+        values &= self._image.filter_values(self._game.done_formula(self._graph.node(write.node)))
+        return any(values & self._image.filter_values(stop) for stop in write.stops)
 
-    def _play(self) -> None:
-        starts = self._together.started(ACTIVITY_REGION)
-        regions = [one for one in self._together.moves if one.clears]
-        self._add(starts, self._first())
-        before: dict[str, int] = {}
-        while before != self._at:
-            before = dict(self._at)
+    def _propagate(self) -> None:
+        start_edges = self._together.list_start_edges(ACTIVITY_REGION)
+        region_moves = [one for one in self._together.moves if one.clears]
+        self._add_values(start_edges, self._initial_values())
+        previous: dict[str, int] = {}
+        while previous != self._values_at:
+            previous = dict(self._values_at)
             while self._waiting:
                 move = next(iter(self._waiting))
                 del self._waiting[move]
-                self._make(move)
-            for move in regions:
-                self._make(move)
-            self._add(starts, self._again())
+                self._apply_move(move)
+            for move in region_moves:
+                self._apply_move(move)
+            self._add_values(start_edges, self._restart_values())
 
-    def _first(self) -> int:
+    def _initial_values(self) -> int:
         first = self._store.first
-        return self._image.every if first is None else self._image.only(first)
+        return self._image.every if first is None else self._image.single(first)
 
-    def _again(self) -> int:
-        """The values with which the activity starts once more."""
+    def _restart_values(self) -> int:
+        """Return the values with which the activity restarts."""
         if self._store.local and self._store.first is not None:
             return 0
-        return self._over(ACTIVITY_REGION)
+        return self._values_at_completion(ACTIVITY_REGION)
 
-    def _add(self, places: Iterable[str], values: int) -> None:
+    def _add_values(self, places: Iterable[str], values: int) -> None:
         for place in places:
-            before = self._at.get(place, 0)
-            if values & ~before:
-                self._at[place] = before | values
+            known = self._values_at.get(place, 0)
+            if values & ~known:
+                self._values_at[place] = known | values
                 self._waiting.update(dict.fromkeys(self._takers(place)))
 
-    def _make(self, move: Move) -> None:
-        new = self._before(move) & ~self._made.get(move, 0)
-        if not new:
+    def _apply_move(self, move: Move) -> None:
+        values = self._values_before(move) & ~self._applied.get(move, 0)
+        if not values:
             return
-        self._made[move] = self._made.get(move, 0) | new
+        self._applied[move] = self._applied.get(move, 0) | values
         write = self._writes.get(move.node.id) if move.is_end else None
         if write is None:
-            self._add(move.gives, new)
+            self._add_values(move.gives, values)
             return
-        after = self._image.after(write, new)
-        self._add((*move.gives, *self._together.beside(write.node)), after)
+        written = self._image.written_values(write, values)
+        self._add_values((*move.gives, *self._together.list_concurrent_places(write.node)), written)
 
-    def _before(self, move: Move) -> int:
-        """The values with which a move can be made."""
+    def _values_before(self, move: Move) -> int:
+        """Return the values with which a move is possible."""
         values = self._image.every
         for place in move.takes:
-            values &= self._at.get(place, 0)
+            values &= self._values_at.get(place, 0)
         if move.branch is not None:
-            values &= self._image.where(self._game.opened(move.branch))
+            values &= self._image.filter_values(self._game.guard_formula(move.branch))
         if move.is_end and move.node.kind is NodeKind.STRUCTURED:
-            return values & self._over(move.node.id)
-        return values & self._image.where(self._game.done(move.node)) if move.is_end else values
+            return values & self._values_at_completion(move.node.id)
+        return (
+            values & self._image.filter_values(self._game.done_formula(move.node))
+            if move.is_end
+            else values
+        )
 
     # -- ends of regions -----------------------------------------------------------------------
 
-    def _over(self, region: str) -> int:
-        """The values with which a region may be over."""
-        if self._graph.interruptibles or not self._together.started(region):
+    def _values_at_completion(self, region: str) -> int:
+        """Return the values with which a region may be complete."""
+        if self._graph.interruptibles or not self._together.list_start_edges(region):
             return self._image.every
-        ends = [edge.id for edge in self._graph.ends(region)]
-        last = self._last(region) if self._graph.can_rest(region) else ()
+        final_edges = [edge.id for edge in self._graph.ends(region)]
+        resting = self._list_resting_places(region) if self._graph.can_rest(region) else ()
         values = 0
-        for place in (*ends, *last):
-            values |= self._at.get(place, 0)
+        for place in (*final_edges, *resting):
+            values |= self._values_at.get(place, 0)
         return values
 
-    def _last(self, region: str) -> Iterator[str]:
-        """Places where tokens are when nothing in a region can move."""
-        yield from map(gone, self._graph.members(region))
+    def _list_resting_places(self, region: str) -> Iterator[str]:
+        """Yield the places of tokens when nothing in a region can move."""
+        yield from map(consumed_place, self._graph.members(region))
         edges, _ = self._graph.inside(region)
         yield from (edge.id for edge in edges if self._is_stuck(edge))
 
@@ -139,74 +150,83 @@ class Spread:
         return not is_any and len(self._graph.triggers(target)) > 1
 
 
-class _Image:
-    """What conditions and values say of one variable."""
+class _ValueSets:
+    """Sets of values of one variable under conditions and assignments."""
 
     def __init__(self, store: Store, known: Mapping[str, Domain]) -> None:
         self._name, self._known = store.variable.name, known
         self._values = domains.values(store.variable.domain)
         self._bits = {value: 1 << place for place, value in enumerate(self._values)}
         self.gave_up = False
-        """Whether conditions or values were too large to look at."""
+        """Whether a condition or an expression had too many valuations."""
         self.every = (1 << len(self._values)) - 1
-        self._where: dict[Formula, int] = {}
-        self._gives: dict[tuple[Formula, Formula, int], int] = {}
+        self._filter_cache: dict[Formula, int] = {}
+        self._image_cache: dict[tuple[Formula, Formula, int], int] = {}
 
-    def only(self, value: Literal) -> int:
-        """The value alone."""
+    def single(self, value: Literal) -> int:
+        """Return the set with one value."""
         return self._bits.get(value, self.every)
 
-    def where(self, condition: Formula) -> int:
-        """The values with which a condition may hold."""
-        if condition not in self._where:
-            self._where[condition] = self._holding(condition)
-        return self._where[condition]
+    def filter_values(self, condition: Formula) -> int:
+        """Return the values with which the condition may hold."""
+        if condition not in self._filter_cache:
+            self._filter_cache[condition] = self._satisfying_values(condition)
+        return self._filter_cache[condition]
 
-    def _holding(self, condition: Formula) -> int:
-        others = self._others(condition)
-        if others is None:
+    def _satisfying_values(self, condition: Formula) -> int:
+        other_valuations = self._list_other_valuations(condition)
+        if other_valuations is None:
             return self.every
-        truth, found = evaluation(condition), 0
+        truth, satisfying = evaluation(condition), 0
         for value, bit in self._bits.items():
-            if any(truth({**row, self._name: value}, None) for row in others):
-                found |= bit
-        return found
+            if any(truth({**row, self._name: value}, None) for row in other_valuations):
+                satisfying |= bit
+        return satisfying
 
-    def _others(self, *formulas: Formula) -> list[dict[str, Literal]] | None:
-        """All values of the other variables; None when there are too many."""
-        names = {one.name for formula in formulas for one in f.variables(formula)} - {self._name}
-        others = {name: self._known[name] for name in sorted(names & self._known.keys())}
-        if len(others) < len(names) or self._count(others) > _MOST_VALUATIONS:
+    def _list_other_valuations(self, *formulas: Formula) -> list[dict[str, Literal]] | None:
+        """Return all valuations of the other variables; None if there are too many."""
+        names = {variable.name for formula in formulas for variable in f.variables(formula)} - {
+            self._name
+        }
+        other_domains = {name: self._known[name] for name in sorted(names & self._known.keys())}
+        if (
+            len(other_domains) < len(names)
+            or self._count_valuations(other_domains) > _MAX_VALUATIONS
+        ):
             self.gave_up = True
             return None
-        return list(domains.valuations(others))
+        return list(domains.valuations(other_domains))
 
-    def _count(self, others: Mapping[str, Domain]) -> int:
+    def _count_valuations(self, others: Mapping[str, Domain]) -> int:
         return domains.count(others) * len(self._values)
 
-    def after(self, write: Write, before: int) -> int:
-        """The values that a write gives."""
-        found = 0
-        for condition, value in write.values:
-            held = before & self.where(condition)
-            found |= self._given(condition, value, held) if held else 0
-        return found
+    def written_values(self, write: Write, before: int) -> int:
+        """Return the values that the write gives."""
+        image = 0
+        for condition, expression in write.values:
+            values = before & self.filter_values(condition)
+            image |= self._image_of(condition, expression, values) if values else 0
+        return image
 
-    def _given(self, condition: Formula, value: Formula, before: int) -> int:
-        others = self._others(condition, value)
-        if others is None:
+    def _image_of(self, condition: Formula, value: Formula, values: int) -> int:
+        other_valuations = self._list_other_valuations(condition, value)
+        if other_valuations is None:
             return self.every
-        truth, gives, found = evaluation(condition), evaluation(value), 0
-        for known, bit in self._bits.items():
-            if before & bit:
-                found |= self._all_given(truth, gives, others, known)
-        return found
+        truth, evaluate, image = evaluation(condition), evaluation(value), 0
+        for own_value, bit in self._bits.items():
+            if values & bit:
+                image |= self._image_of_valuation(truth, evaluate, other_valuations, own_value)
+        return image
 
-    def _all_given(
-        self, truth: Evaluation, gives: Evaluation, others: list[dict[str, Literal]], known: Literal
+    def _image_of_valuation(
+        self,
+        truth: Evaluation,
+        evaluate: Evaluation,
+        other_valuations: list[dict[str, Literal]],
+        own_value: Literal,
     ) -> int:
-        found = 0
-        for row in others:
-            now = {**row, self._name: known}
-            found |= self.only(gives(now, None)) if truth(now, None) else 0
-        return found
+        image = 0
+        for row in other_valuations:
+            valuation = {**row, self._name: own_value}
+            image |= self.single(evaluate(valuation, None)) if truth(valuation, None) else 0
+        return image

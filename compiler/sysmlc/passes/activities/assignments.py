@@ -6,7 +6,7 @@ from msgspec import Struct
 
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Element, Graph, query
-from sysmlc.logic.activities.saturation import Can, leaving
+from sysmlc.logic.activities.saturation import Possibility, find_saturating_writes
 from sysmlc.logic.activities.token_graph import TokenGraph
 from sysmlc.logic.expressions.context import named_values
 from sysmlc.logic.expressions.declared import Feature
@@ -102,8 +102,8 @@ def report_saturation(graph: Graph, tokens: TokenGraph, sink: Sink) -> None:
     if not any(write.stops for store in tokens.stores for write in store.writes):
         return
 
-    for store, write, can in leaving(tokens):
-        if can is not Can.NO:
+    for store, write, can in find_saturating_writes(tokens):
+        if can is not Possibility.NO:
             node, name = tokens.node(write.node), store.variable.name
             subject = graph.subject(graph[node.origin])
             sink.report(SATURATES, subject, transition=node.label, can=can.value, variable=name)

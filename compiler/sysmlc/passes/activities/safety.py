@@ -110,7 +110,7 @@ def _is_coupled(tokens: TokenGraph) -> bool:
 
 
 def _search_regions(tokens: TokenGraph, limit: int) -> SafetyResult:
-    results = {region: token_net.check(tokens, region, limit) for region in tokens.regions()}
+    results = {region: token_net.check_safety(tokens, region, limit) for region in tokens.regions()}
     return SafetyResult(
         next((safety.unsafe for safety in results.values() if safety.unsafe), ""),
         all(safety.is_complete for safety in results.values()),
@@ -122,7 +122,7 @@ def _search_regions(tokens: TokenGraph, limit: int) -> SafetyResult:
 
 def _search_steps(tokens: TokenGraph, limit: int) -> SafetyResult:
 
-    explored = token_search.explore(tokens, limit)
+    explored = token_search.explore_states(tokens, limit)
     moving = {node.id for node in tokens.nodes if node.firing is not Firing.NEVER}
     return SafetyResult(
         explored.unsafe,

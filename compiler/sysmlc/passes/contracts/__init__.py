@@ -99,7 +99,7 @@ def _is_submachine(graph: Graph, machine: Element) -> bool:
 
 def _derive_activities(graph: Graph) -> Iterator[Contract]:
     for tokens in graph.derived(TokenGraph):
-        yield activity_contract.derive(tokens)
+        yield activity_contract.derive_contract(tokens)
 
 
 def _number_components(graph: Graph, contracts: list[Contract], sink: Sink) -> list[Contract]:
