@@ -6,7 +6,7 @@ import pytest
 
 from sysmlc.diagnostics import Sink
 from sysmlc.driver import Request, compile_model
-from sysmlc.logic.composition.derivation import compose
+from sysmlc.logic.composition.derivation import compose_blocks
 from sysmlc.logic.contract import Contract
 from sysmlc.synthesis.composition_check import check_compositions
 from sysmlc.synthesis.contract_checks import check
@@ -37,7 +37,7 @@ def test_every_contract_of_the_ice_laboratory_can_be_kept_and_none_is_suspicious
 def test_machines_of_the_ice_laboratory_exchange_nothing_that_a_contract_speaks_of(laboratory):
     """Its services call OPC UA methods; connectors and flows lead to no behaviour."""
     sink = Sink()
-    made = list(compose(laboratory, laboratory.derived(Contract), sink))
+    made = list(compose_blocks(laboratory, laboratory.derived(Contract), sink))
     told = [one.text() for one in check_compositions(made, place(laboratory), sink, Options())]
     assert told == [
         "PlantTopology::Cell1_FunctionalTesting: nothing joins its 2 parts",

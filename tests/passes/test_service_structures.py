@@ -2,7 +2,7 @@
 
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import parse_text
-from sysmlc.logic.services.conditions import services
+from sysmlc.logic.services.conditions import iter_services
 
 MODEL = """\
 Package p "P"
@@ -17,7 +17,7 @@ Package p "P"
 
 
 def found(kind):
-    return list(services(parse_text(MODEL.format(kind=kind)), (0, 15), Sink()))
+    return list(iter_services(parse_text(MODEL.format(kind=kind)), (0, 15), Sink()))
 
 
 def test_a_structure_is_no_service_and_an_action_is_one():

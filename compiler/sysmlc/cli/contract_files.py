@@ -73,7 +73,7 @@ def read_contracts(
 def _read_model(file: Path, config: "Config", settings: "Settings") -> ContractFile:
     from sysmlc.cli import reports, session
     from sysmlc.diagnostics import Sink
-    from sysmlc.logic.composition.derivation import compose
+    from sysmlc.logic.composition.derivation import compose_blocks
     from sysmlc.logic.contract import Contract
 
     compilation = session.compile_unit((file,), config, settings)
@@ -89,7 +89,7 @@ def _read_model(file: Path, config: "Config", settings: "Settings") -> ContractF
     if not contracts and not findings and compilation.exit_code() < 2:
         session.fail(f"'{file}' has no behaviour and no requirement that gives a contract")
     sink = Sink(config.rules)
-    composites = compose(compilation.graph, contracts, sink)
+    composites = compose_blocks(compilation.graph, contracts, sink)
     return ContractFile(
         tuple(contracts),
         tuple(composites),

@@ -5,7 +5,7 @@ from reading_v2 import read
 
 from sysmlc.diagnostics import Sink, catalogue
 from sysmlc.ir.text import parse_text
-from sysmlc.logic.composition.derivation import compose
+from sysmlc.logic.composition.derivation import compose_blocks
 from sysmlc.logic.contract import Contract, IntegerDomain
 from sysmlc.logic.printing import print_formula
 from sysmlc.passes import pipeline
@@ -60,7 +60,7 @@ JOINED = """
 def composites(text):
     reading = read(text)
     pipeline.run(reading.graph, reading.sink)
-    found = list(compose(reading.graph, reading.graph.derived(Contract), reading.sink))
+    found = list(compose_blocks(reading.graph, reading.graph.derived(Contract), reading.sink))
     codes = [one.rule.code for one in reading.sink if one.rule.code.startswith("SM5")]
     return {one.component: one for one in found}, codes
 
@@ -151,7 +151,7 @@ def test_rules_report_their_wrong_model_and_not_their_right_one(code):
         sink = Sink()
         graph = parse_text(text)
         pipeline.run(graph, sink, verify_each=True)
-        is_composed = len(list(compose(graph, graph.derived(Contract), sink))) == 1
+        is_composed = len(list(compose_blocks(graph, graph.derived(Contract), sink))) == 1
         assert (code in [one.rule.code for one in sink]) is expected
         assert is_composed is (code in ("SM508", "SM526") or not expected)
 
@@ -274,7 +274,7 @@ def told(text):
     reading = read(text)
     pipeline.run(reading.graph, reading.sink)
     graph, sink = reading.graph, Sink()
-    made = list(compose(graph, graph.derived(Contract), sink))
+    made = list(compose_blocks(graph, graph.derived(Contract), sink))
     place = lambda it: graph.subject(graph[it])  # noqa: E731
     (result,) = check_compositions(made, place, sink, Options("", Limits()))
     return [f"{one.rule.code} {one.message}" for one in sink], result.text()
@@ -365,7 +365,7 @@ Package p "Cells"
 def test_operations_are_composed_by_their_methods():
     graph, sink = parse_text(OPERATIONS), Sink()
     pipeline.run(graph, sink)
-    (cell,) = compose(graph, graph.derived(Contract), sink)
+    (cell,) = compose_blocks(graph, graph.derived(Contract), sink)
     assert cell.component == "Cells::Cell"
     assert [one.name for one in cell.parts] == ["fetch", "put"]
 

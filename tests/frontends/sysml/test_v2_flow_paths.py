@@ -5,7 +5,7 @@ from test_v2_roundtrip import read_back
 
 from sysmlc.ir import Kind
 from sysmlc.ir.compare import compare
-from sysmlc.logic.composition.structure import links, unclear_flows
+from sysmlc.logic.composition.structure import find_unclear_flows, iter_links
 
 PLANT = """
 package P {
@@ -35,9 +35,9 @@ def joined(graph):
     (plant,) = [one for one in graph if one.name == "Plant"]
     ends = [
         [f"{one.path}.{one.feature}" for side in both for one in side]
-        for both in links(graph, plant)
+        for both in iter_links(graph, plant)
     ]
-    return ends, len(list(unclear_flows(graph, plant)))
+    return ends, len(list(find_unclear_flows(graph, plant)))
 
 
 def test_one_of_two_parts_of_a_type_is_the_one_that_the_text_names():

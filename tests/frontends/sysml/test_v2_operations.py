@@ -7,7 +7,7 @@ import pytest
 from reading_v2 import read
 
 from sysmlc.diagnostics import Sink
-from sysmlc.logic.composition.derivation import compose
+from sysmlc.logic.composition.derivation import compose_blocks
 from sysmlc.logic.contract import Contract, Owner
 from sysmlc.logic.printing import print_formula
 from sysmlc.passes import pipeline
@@ -103,7 +103,7 @@ def contracts(text):
 
 def composed(text):
     graph, sink = compiled(text), Sink()
-    made = list(compose(graph, graph.derived(Contract), sink))
+    made = list(compose_blocks(graph, graph.derived(Contract), sink))
     place = lambda id: graph.subject(graph[id])  # noqa: E731
     (result,) = together.check_compositions(made, place, sink, Options())
     return result.text(), [(one.rule.code, one.message) for one in sink]
@@ -166,7 +166,7 @@ def test_two_arms_mount_what_comes():
 
 def test_a_step_ends_when_the_one_action_that_performs_it_is_executed():
     graph = compiled(machine(ACTIONS, CLAMPS))
-    (found,) = compose(graph, graph.derived(Contract), Sink())
+    (found,) = compose_blocks(graph, graph.derived(Contract), Sink())
     (clamp,) = (one.contract for one in found.parts if one.name == "clamp")
     inputs = [one.name for one in clamp.variables if one.owner is Owner.ENVIRONMENT]
     assert inputs == ["pick_executed", "move_executed", "turn_executed", "place_executed"]
@@ -176,7 +176,7 @@ def test_of_two_actions_that_could_perform_a_step_a_binding_says_which():
     two = CLAMPS + "        action other : Pick;\n"
     for bound, name in (("", "clamp.done_pick"), ("bind clamp.pick = other;", "other.executed")):
         graph = compiled(machine(ACTIONS, two + bound))
-        (found,) = compose(graph, graph.derived(Contract), Sink())
+        (found,) = compose_blocks(graph, graph.derived(Contract), Sink())
         (clamp,) = (one.contract for one in found.parts if one.name == "clamp")
         assert name in [one.name for one in clamp.variables]
 

@@ -4,7 +4,7 @@ import pytest
 from reading_v2 import read
 
 from sysmlc.diagnostics import Sink, catalogue
-from sysmlc.logic.composition.derivation import compose
+from sysmlc.logic.composition.derivation import compose_blocks
 from sysmlc.logic.contract import Contract
 from sysmlc.passes import pipeline
 from sysmlc.synthesis import Limits
@@ -21,7 +21,7 @@ def checked(text, limits=None):
     pipeline.run(reading.graph, reading.sink, verify_each=True)
     graph, sink = reading.graph, Sink()
     options = Options("", limits or Limits())
-    made = list(compose(graph, graph.derived(Contract), sink))
+    made = list(compose_blocks(graph, graph.derived(Contract), sink))
     results = together.check_compositions(made, lambda it: graph.subject(graph[it]), sink, options)
     return list(results), list(sink)
 

@@ -1,7 +1,7 @@
-"""Composites: for each block with parts the contracts that make it up, in shared variables.
+"""Composites: for each block with parts, the contracts of its members in shared variables.
 
-Design section 7: the direction of ports decides who owns a variable, connectors rename; what
-flows from a sender's output is the receiver's input (SysML 1.6 clause 9.3.2).
+The direction of ports decides who owns a variable, connectors rename; an output of a sender is the
+input of a receiver (SysML 1.6 clause 9.3.2).
 """
 
 from collections.abc import Iterable, Iterator, Mapping
@@ -10,10 +10,21 @@ from msgspec import Struct
 
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Edge, Element, Graph, Kind, query
-from sysmlc.logic.composition.members import Block, Member, behaviour, itself, read_block, required
-from sysmlc.logic.composition.messages import crowding, wiring
-from sysmlc.logic.composition.naming import Wire, is_one_type, renamed, wires
-from sysmlc.logic.composition.structure import drawn_of, tells, unclear_flows
+from sysmlc.logic.composition.members import (
+    Block,
+    Member,
+    block_as_member,
+    find_behaviour_contract,
+    find_required_contract,
+    read_block,
+)
+from sysmlc.logic.composition.messages import derive_exclusions, derive_wiring
+from sysmlc.logic.composition.naming import Wire, find_wires, has_single_type, rename_contract
+from sysmlc.logic.composition.structure import (
+    find_drawn_activity,
+    find_unclear_flows,
+    is_end_observable,
+)
 from sysmlc.logic.contract import Composite, Contract, Owner, Part
 from sysmlc.logic.domains import describe
 
@@ -42,122 +53,148 @@ UNCLEAR_FLOW = rule(
 )
 
 
-def compose(graph: Graph, contracts: Iterable[Contract], sink: Sink) -> Iterator[Composite]:
-    """A composite for each block that has parts with contracts, and something to compare.
+def compose_blocks(graph: Graph, contracts: Iterable[Contract], sink: Sink) -> Iterator[Composite]:
+    """Yield a composite for each block whose parts have contracts that can be compared.
 
-    A block takes part in itself by a contract whose outputs its parts read and none of them
-    decides (a controller, a coordinator), and by its behaviour; what its parts decide is what
-    they make up together. ``contracts`` are those that the pass of that name derives from the
-    graph; composites come in the order of their components.
+    A block is a member of its own composition with a behaviour, and with requirements whose outputs
+    its parts only read (a controller, a coordinator). Outputs that its parts decide are what the
+    parts must establish together. *contracts* are those that the pass ``contracts`` derives from
+    the graph; composites are in the order of their components.
     """
-    known = {one.origin: one for one in contracts}
-    waiting: list[OpenStep] = []
-    for element in _blocks(graph, known):
-        block = read_block(graph, element, known)
-        whole = _take_part(block) if block.members else None
+    contracts_by_origin = {one.origin: one for one in contracts}
+    open_steps_found: list[OpenStep] = []
+    for element in _list_blocks(graph, contracts_by_origin):
+        block = read_block(graph, element, contracts_by_origin)
+        whole = _add_own_contracts(block) if block.members else None
         if len(block.members) + (whole is not None) < 2:
             continue
-        waiting += open_steps(block)
-        composite = _composite(block, whole, sink)
+        open_steps_found += find_open_steps(block)
+        composite = _make_composite(block, whole, sink)
         if composite is not None:
             yield composite
-    report_open_steps(graph, waiting, sink)
+    report_open_steps(graph, open_steps_found, sink)
 
 
-def _blocks(graph: Graph, known: Mapping[str, Contract]) -> list[Element]:
-    """Classifiers with a part, or an action, that has a contract, at whatever depth."""
-    types = [graph[id] for id in known]
-    waiting = list(types)
-    found: dict[str, Element] = {}
-    while waiting:
-        one = waiting.pop()
-        for owner in _owners(graph, one):
-            if owner.id not in found:
-                found[owner.id] = owner
-                waiting.append(owner)
-    blocks = [one for one in found.values() if one.kind in (Kind.CLASS, Kind.COMPONENT)]
-    shown = (one for one in blocks if not one.attrs.get("external"))
-    return sorted(shown, key=lambda one: (graph.qualified_name(one), one.id))
+def _list_blocks(graph: Graph, contracts_by_origin: Mapping[str, Contract]) -> list[Element]:
+    """List the classifiers that have a part or an action with a contract, at any depth."""
+    types = [graph[id] for id in contracts_by_origin]
+    worklist = list(types)
+    owners: dict[str, Element] = {}
+    while worklist:
+        element = worklist.pop()
+        for owner in _iter_owners(graph, element):
+            if owner.id not in owners:
+                owners[owner.id] = owner
+                worklist.append(owner)
+    blocks = [
+        element for element in owners.values() if element.kind in (Kind.CLASS, Kind.COMPONENT)
+    ]
+    own_blocks = (element for element in blocks if not element.attrs.get("external"))
+    return sorted(own_blocks, key=lambda element: (graph.qualified_name(element), element.id))
 
 
-def _owners(graph: Graph, one: Element) -> Iterator[Element]:
-    """What has it as a part or an action, what specialises it, whose behaviour it is."""
-    yield from graph.sources(one, Edge.SPECIALIZES)
-    yield from graph.sources(one, Edge.CLASSIFIER_BEHAVIOR)
-    owner = graph.owner(one) if one.kind is Kind.ACTIVITY else None
+def _iter_owners(graph: Graph, element: Element) -> Iterator[Element]:
+    """Yield the elements that have *element* as a part, an action or a behaviour, or that
+    specialise it.
+    """
+    yield from graph.sources(element, Edge.SPECIALIZES)
+    yield from graph.sources(element, Edge.CLASSIFIER_BEHAVIOR)
+    owner = graph.owner(element) if element.kind is Kind.ACTIVITY else None
     if owner is not None:
         yield owner
-    usages = [*graph.sources(one, Edge.TYPED_BY), *graph.sources(one, Edge.METHOD)]
-    for usage in [one] if one.kind is Kind.OPERATION else usages:
+    usages = [*graph.sources(element, Edge.TYPED_BY), *graph.sources(element, Edge.METHOD)]
+    for usage in [element] if element.kind is Kind.OPERATION else usages:
         if usage.kind in (Kind.PROPERTY, Kind.PORT, Kind.OPERATION):
             yield from graph.sources(usage, Edge.FEATURE)
 
 
-def _composite(block: Block, whole: Member | None, sink: Sink) -> Composite | None:
-    known = wires(block, [*block.members, *([whole] if whole else [])])
+def _make_composite(block: Block, whole: Member | None, sink: Sink) -> Composite | None:
+    wires_found = find_wires(block, [*block.members, *([whole] if whole else [])])
     _report_flows(block, sink)
-    if list(_faults(block, whole, known, sink)):
+    if list(_report_faults(block, whole, wires_found, sink)):
         return None
     return Composite(
         component=query.component_name(block.graph, block.element),
         origin=block.element.id,
-        parts=tuple(Part(one.name, renamed(one, known), one.origin) for one in block.members),
-        wiring=tuple(wiring(block, block.members, known)),
-        whole=None if whole is None else renamed(whole, known),
-        crowding=tuple(crowding(block, block.members, known)),
+        parts=tuple(
+            Part(member.name, rename_contract(member, wires_found), member.origin)
+            for member in block.members
+        ),
+        wiring=tuple(derive_wiring(block, block.members, wires_found)),
+        whole=None if whole is None else rename_contract(whole, wires_found),
+        crowding=tuple(derive_exclusions(block, block.members, wires_found)),
     )
 
 
-def _take_part(block: Block) -> Member | None:
-    """Let the block's own contracts take part, and return what the parts make up together."""
-    demanded, own = (_own(block, of(block, block.element)) for of in (required, behaviour))
-    inner = tuple(block.members)
-    if own is not None and (demanded is not None or not _is_made(block, own, inner)):
-        block.members.append(own)
-        own = None
-    if demanded is None:
-        return own
-    if _is_read(block, demanded, inner) and not _is_made(block, demanded, inner):
-        if len(block.members) == len(inner):
-            block.members.append(demanded)
+def _add_own_contracts(block: Block) -> Member | None:
+    """Add the block's own contracts to its members; return the contract that the parts must
+    establish.
+    """
+    requirement, behaviour_member = (
+        _as_member(block, find(block, block.element))
+        for find in (find_required_contract, find_behaviour_contract)
+    )
+    parts = tuple(block.members)
+    if behaviour_member is not None and (
+        requirement is not None or not _has_decided_outputs(block, behaviour_member, parts)
+    ):
+        block.members.append(behaviour_member)
+        behaviour_member = None
+    if requirement is None:
+        return behaviour_member
+    if _has_read_outputs(block, requirement, parts) and not _has_decided_outputs(
+        block, requirement, parts
+    ):
+        if len(block.members) == len(parts):
+            block.members.append(requirement)
         return None
-    return demanded
+    return requirement
 
 
-def _own(block: Block, contract: Contract | None) -> Member | None:
-    return None if contract is None else itself(block, contract)
+def _as_member(block: Block, contract: Contract | None) -> Member | None:
+    return None if contract is None else block_as_member(block, contract)
 
 
-def _is_made(block: Block, one: Member, inner: Iterable[Member]) -> bool:
-    """Whether parts decide some of its outputs."""
-    return _meets(block, one, inner, Owner.SYSTEM)
+def _has_decided_outputs(block: Block, member: Member, parts: Iterable[Member]) -> bool:
+    """Return whether parts decide some of the member's outputs."""
+    return _shares_outputs(block, member, parts, Owner.SYSTEM)
 
 
-def _is_read(block: Block, one: Member, inner: Iterable[Member]) -> bool:
-    """Whether parts have some of its outputs as inputs."""
-    return _meets(block, one, inner, Owner.ENVIRONMENT)
+def _has_read_outputs(block: Block, member: Member, parts: Iterable[Member]) -> bool:
+    """Return whether parts have some of the member's outputs as inputs."""
+    return _shares_outputs(block, member, parts, Owner.ENVIRONMENT)
 
 
-def _meets(block: Block, one: Member, inner: Iterable[Member], owner: Owner) -> bool:
-    outputs = {block.features.find(slot) for slot in one.slots(Owner.SYSTEM)}
-    return any(
-        block.features.find(slot) in outputs for member in inner for slot in member.slots(owner)
-    )
+def _shares_outputs(block: Block, member: Member, parts: Iterable[Member], owner: Owner) -> bool:
+    outputs = {block.features.find(slot) for slot in member.slots(Owner.SYSTEM)}
+    return any(block.features.find(slot) in outputs for part in parts for slot in part.slots(owner))
 
 
 # -- what stands against it ----------------------------------------------------------------------
 
 
-def _faults(block: Block, whole: Member | None, known: Iterable[Wire], sink: Sink) -> Iterator[str]:
+def _report_faults(
+    block: Block, whole: Member | None, wires_found: Iterable[Wire], sink: Sink
+) -> Iterator[str]:
+    """Report joined features of different types or with several drivers. Yield the names of
+    their wires.
+    """
     subject, name = block.graph.subject(block.element), block.element.name
-    for wire in known:
-        drivers = [one.name for one in wire.drivers if one is not whole]
-        if not is_one_type(wire):
-            (one, first), *_ = wire.ends
-            other, second = next(end for end in wire.ends if end[1].domain != first.domain)
-            shown = f"{describe(first.domain)} and {describe(second.domain)}"
-            left, right = _full(one, first.name), _full(other, second.name)
-            sink.report(OTHER_VALUES, subject, block=name, domains=shown, first=left, second=right)
+    for wire in wires_found:
+        drivers = [left_member.name for left_member in wire.drivers if left_member is not whole]
+        if not has_single_type(wire):
+            (left_member, left_variable), *_ = wire.ends
+            right_member, right_variable = next(
+                end for end in wire.ends if end[1].domain != left_variable.domain
+            )
+            domains = f"{describe(left_variable.domain)} and {describe(right_variable.domain)}"
+            left, right = (
+                _full_name(left_member, left_variable.name),
+                _full_name(right_member, right_variable.name),
+            )
+            sink.report(
+                OTHER_VALUES, subject, block=name, domains=domains, first=left, second=right
+            )
             yield wire.name
         elif len(drivers) > 1:
             sink.report(
@@ -171,13 +208,13 @@ def _faults(block: Block, whole: Member | None, known: Iterable[Wire], sink: Sin
             yield wire.name
 
 
-def _full(member: Member, variable: str) -> str:
+def _full_name(member: Member, variable: str) -> str:
     return f"{member.path}.{variable}" if member.path else variable
 
 
 def _report_flows(block: Block, sink: Sink) -> None:
     graph = block.graph
-    for flow, feature, count in unclear_flows(graph, block.element):
+    for flow, feature, count in find_unclear_flows(graph, block.element):
         ends = [graph.target(flow, edge) for edge in (Edge.FLOW_SOURCE, Edge.FLOW_TARGET)]
         source, target = (end.name if end is not None else "" for end in ends)
         sink.report(
@@ -205,7 +242,9 @@ OPEN_STEP = rule(
 
 
 class OpenStep(Struct, frozen=True):
-    """A step of an operation (path from a block) that is an operation without an end to see."""
+    """A step of an operation (path from a block) that calls an operation whose end is not
+    observable.
+    """
 
     block: Element
     operation: str
@@ -213,41 +252,43 @@ class OpenStep(Struct, frozen=True):
     called: Element
 
 
-def open_steps(block: Block) -> Iterator[OpenStep]:
-    """The steps of the operations in a block that are operations without an end to see."""
+def find_open_steps(block: Block) -> Iterator[OpenStep]:
+    """Yield the steps of operations in a block whose end is not observable."""
     for member in block.members:
-        for step, called in _open(block, member):
+        for step, called in _iter_open_steps(block, member):
             yield OpenStep(block.element, member.name, step, called)
 
 
-def report_open_steps(graph: Graph, found: Iterable[OpenStep], sink: Sink) -> None:
-    """Tell of each step once: at the block that has its operation, not at those around it."""
+def report_open_steps(graph: Graph, open_steps_found: Iterable[OpenStep], sink: Sink) -> None:
+    """Report each step once: at the block that has its operation, not at the blocks around it."""
     nearest: dict[str, OpenStep] = {}
-    for one in found:
-        known = nearest.setdefault(one.step.id, one)
-        if one.operation.count(".") < known.operation.count("."):
-            nearest[one.step.id] = one
-    for one in nearest.values():
+    for open_step in open_steps_found:
+        nearest_step = nearest.setdefault(open_step.step.id, open_step)
+        if open_step.operation.count(".") < nearest_step.operation.count("."):
+            nearest[open_step.step.id] = open_step
+    for open_step in nearest.values():
         sink.report(
             OPEN_STEP,
-            graph.subject(one.step),
-            block=one.block.name,
-            step=one.step.name,
-            operation=one.operation,
-            called=one.called.name,
+            graph.subject(open_step.step),
+            block=open_step.block.name,
+            step=open_step.step.name,
+            operation=open_step.operation,
+            called=open_step.called.name,
         )
 
 
-def _open(block: Block, member: Member) -> Iterator[tuple[Element, Element]]:
+def _iter_open_steps(block: Block, member: Member) -> Iterator[tuple[Element, Element]]:
     graph = block.graph
     if not member.path or graph[member.origin].kind not in (Kind.OPERATION, Kind.ACTIVITY):
         return
-    for one in member.contract.variables:
-        step = graph.get(one.origin)
-        if one.owner is not Owner.ENVIRONMENT or step is None or step.kind is not Kind.ACTION:
+    for variable in member.contract.variables:
+        step = graph.get(variable.origin)
+        if variable.owner is not Owner.ENVIRONMENT or step is None or step.kind is not Kind.ACTION:
             continue
         called = graph.target(step, Edge.CALLS)
-        if called is None or called.kind is not Kind.ACTIVITY or tells(graph, step):
+        if called is None or called.kind is not Kind.ACTIVITY or is_end_observable(graph, step):
             continue
-        if any(each.kind is Kind.ACTION for each in graph.owned(drawn_of(graph, called))):
+        if any(
+            node.kind is Kind.ACTION for node in graph.owned(find_drawn_activity(graph, called))
+        ):
             yield step, called

@@ -1,4 +1,4 @@
-"""Who takes part in a block: its parts, and the block itself, each with a contract."""
+"""Members of a composition: the parts of a block, and the block itself, each with a contract."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
@@ -12,11 +12,11 @@ from sysmlc.logic.composition.structure import (
     ITSELF,
     End,
     Usage,
-    ends_of_steps,
-    joined,
-    links,
-    performed,
-    usages,
+    iter_links,
+    iter_performed_steps,
+    iter_usages,
+    join_path,
+    list_step_ends,
 )
 from sysmlc.logic.contract import Contract, Owner
 from sysmlc.logic.expressions.context import variables_of
@@ -30,7 +30,9 @@ Slot = tuple[str, str]
 
 
 class Member(Struct, frozen=True):
-    """A contract that takes part, with the variables that its features are, by dotted name."""
+    """A contract that takes part in a composition; ``features`` maps dotted names to its
+    variables.
+    """
 
     path: str
     name: str
@@ -39,11 +41,13 @@ class Member(Struct, frozen=True):
     features: Mapping[str, str]
 
     def owner(self, variable: str) -> Owner:
-        """Who decides the variable, as the member sees it."""
-        return next(one.owner for one in self.contract.variables if one.name == variable)
+        """Return the owner of a variable from the member's point of view."""
+        return next(
+            candidate.owner for candidate in self.contract.variables if candidate.name == variable
+        )
 
     def slots(self, *owners: Owner) -> Iterator[Slot]:
-        """The features that its contract speaks of and that one of the owners decides."""
+        """Yield the features in its contract that one of the owners decides."""
         for name, variable in self.features.items():
             if self.owner(variable) in owners:
                 yield self.path, name
@@ -51,136 +55,150 @@ class Member(Struct, frozen=True):
 
 @dataclass(slots=True)
 class Block:
-    """A block with what is in it; parts that have no contract are opened."""
+    """A block with its members; parts without a contract are replaced by their own parts."""
 
     graph: Graph
     element: Element
     contracts: Mapping[str, Contract]
-    """Contracts by the id of what they are contracts of."""
+    """Contracts by the id of the element that has the contract."""
     members: list[Member] = field(default_factory=list)
     names: dict[str, list[str]] = field(default_factory=dict)
     """Dotted names of the features of each usage."""
     steps: set[Slot] = field(default_factory=set)
-    """What tells of each step of an operation that it is over."""
+    """The features that report the end of a step of an operation."""
     features: DisjointSets[Slot] = field(default_factory=DisjointSets)
     channels: DisjointSets[Slot] = field(default_factory=DisjointSets)
     """Ends between which messages pass."""
 
 
 def read_block(graph: Graph, element: Element, contracts: Mapping[str, Contract]) -> Block:
-    """A block with its members and what of them is joined.
+    """Return a block with its members and its joined features.
 
-    ``contracts`` are those of behaviours and of requirements, by the id of the behaviour and of
-    the requirements' subject.
+    *contracts* are those of behaviours, by the id of the behaviour, and of requirements, by the id
+    of their subject.
     """
     block = Block(graph, element, contracts)
     block.names[ITSELF] = list(variables_of(graph, element))
-    _open(block, element, ITSELF, {element.id})
+    _open_usage(block, element, ITSELF, {element.id})
     return block
 
 
-def _open(block: Block, element: Element, path: str, around: set[str]) -> None:
-    for usage in usages(block.graph, element, path):
+def _open_usage(block: Block, element: Element, path: str, enclosing: set[str]) -> None:
+    for usage in iter_usages(block.graph, element, path):
         variables = variables_of(block.graph, usage.type_)
         block.names[usage.path] = list(variables)
-        contract = contract_of(block, usage)
+        contract = find_contract(block, usage)
         if contract is not None:
-            made = _member(block, usage.path, usage.element, contract, variables)
-            block.members.append(_with_shared(block, element, path, made))
-        elif usage.type_.id not in around and usage.element.kind not in _ACTIONS:
-            _open(block, usage.type_, usage.path, around | {usage.type_.id})
-    for side, other in links(block.graph, element, path):
-        for one in side:
-            for two in other:
-                _join(block, one, two)
-    for step, action in performed(block.graph, element, path):
+            member = _make_member(block, usage.path, usage.element, contract, variables)
+            block.members.append(_share_block_features(block, element, path, member))
+        elif usage.type_.id not in enclosing and usage.element.kind not in _ACTIONS:
+            _open_usage(block, usage.type_, usage.path, enclosing | {usage.type_.id})
+    for left_ends, right_ends in iter_links(block.graph, element, path):
+        for left in left_ends:
+            for right in right_ends:
+                _join_ends(block, left, right)
+    for step, action in iter_performed_steps(block.graph, element, path):
         if not block.features.has_merged((step.path, step.feature)):
-            _join(block, step, action)
+            _join_ends(block, step, action)
 
 
-def contract_of(block: Block, usage: Usage) -> Contract | None:
-    """What a usage promises: what requirements demand of its type, else what its behaviour is."""
+def find_contract(block: Block, usage: Usage) -> Contract | None:
+    """Return the contract of a usage: that of the requirements of its type, else of its
+    behaviour.
+    """
     if usage.element.kind in _ACTIONS:
         return block.contracts.get(usage.element.id) or block.contracts.get(usage.type_.id)
-    return required(block, usage.type_) or behaviour(block, usage.type_)
+    return find_required_contract(block, usage.type_) or find_behaviour_contract(block, usage.type_)
 
 
-def required(block: Block, type_: Element) -> Contract | None:
-    """The contract that requirements make with a type, or with what it specialises."""
+def find_required_contract(block: Block, type_: Element) -> Contract | None:
+    """Return the contract that requirements state for a type or for what it specialises."""
     family = (type_, *query.generals(block.graph, type_))
-    return next((found for one in family if (found := block.contracts.get(one.id))), None)
+    return next(
+        (contract for relative in family if (contract := block.contracts.get(relative.id))), None
+    )
 
 
-def behaviour(block: Block, type_: Element) -> Contract | None:
-    """The contract of the behaviour of a type, its own or inherited."""
-    found = query.classifier_behavior(block.graph, type_)
-    return None if found is None else block.contracts.get(found.id)
+def find_behaviour_contract(block: Block, type_: Element) -> Contract | None:
+    """Return the contract of the behaviour of a type, its own or inherited."""
+    activity = query.classifier_behavior(block.graph, type_)
+    return None if activity is None else block.contracts.get(activity.id)
 
 
-def itself(block: Block, contract: Contract) -> Member:
-    """The block as one that takes part, by its behaviour or by what is demanded of it."""
+def block_as_member(block: Block, contract: Contract) -> Member:
+    """Return the block as a member of its own composition, with the given contract."""
     variables = variables_of(block.graph, block.element)
-    return _member(block, ITSELF, block.element, contract, variables)
+    return _make_member(block, ITSELF, block.element, contract, variables)
 
 
-def _member(
+def _make_member(
     block: Block, path: str, element: Element, contract: Contract, variables: Mapping[str, str]
 ) -> Member:
     origin = block.graph[contract.origin]
     if origin.kind in query.BEHAVIORS and origin is not element:
-        around = find_context_classifier(block.graph, origin)
-        variables = variables_of(block.graph, around, origin)
+        classifier = find_context_classifier(block.graph, origin)
+        variables = variables_of(block.graph, classifier, origin)
     elif origin.kind is Kind.OPERATION:
         variables = variables_of(block.graph, definition_of(block.graph, origin))
-    known = {one.name for one in contract.variables}
-    found = {name: variable for name, variable in variables.items() if variable in known}
+    variable_names = {variable.name for variable in contract.variables}
+    features = {
+        name: variable for name, variable in variables.items() if variable in variable_names
+    }
     if origin.kind in _ACTIONS:
-        steps = ends_of_steps(block.graph, contract)
+        steps = list_step_ends(block.graph, contract)
         block.steps.update((path, name) for name in steps)
         block.names[path] = list(dict.fromkeys((*block.names[path], *steps)))
-        found |= steps
-    return Member(path, path or element.name, element.id, contract, found)
+        features |= steps
+    return Member(path, path or element.name, element.id, contract, features)
 
 
-def _with_shared(block: Block, around: Element, path: str, member: Member) -> Member:
-    """An action that is drawn in its block reads the block's own features: they are one."""
+def _share_block_features(block: Block, owner: Element, path: str, member: Member) -> Member:
+    """Join the features of the block that an action drawn in it reads with those of the block."""
     graph = block.graph
-    drawn = definition_of(graph, graph[member.contract.origin])
-    if drawn.kind is not Kind.ACTIVITY:
+    activity = definition_of(graph, graph[member.contract.origin])
+    if activity.kind is not Kind.ACTIVITY:
         return member
-    family = (around, *query.generals(graph, around))
-    context = find_context_classifier(graph, drawn)
-    known = {one.name for one in member.contract.variables} - set(member.features.values())
+    family = (owner, *query.generals(graph, owner))
+    context = find_context_classifier(graph, activity)
+    unbound = {variable.name for variable in member.contract.variables} - set(
+        member.features.values()
+    )
     names = variables_of(graph, context) if context in family else {}
-    found = {name: variable for name, variable in names.items() if variable in known}
-    for name in found:
+    shared = {name: variable for name, variable in names.items() if variable in unbound}
+    for name in shared:
         block.features.union((path, name), (member.path, name))
-    block.names[member.path] = list(dict.fromkeys((*block.names[member.path], *found)))
-    return replace(member, features={**member.features, **found})
+    block.names[member.path] = list(dict.fromkeys((*block.names[member.path], *shared)))
+    return replace(member, features={**member.features, **shared})
 
 
-def _join(block: Block, one: End, other: End) -> None:
-    block.channels.union((one.path, one.feature), (other.path, other.feature))
-    one, other = (_end_of(block, this, that) for this, that in ((one, other), (other, one)))
-    if not (one.feature and other.feature):
+def _join_ends(block: Block, left: End, right: End) -> None:
+    block.channels.union((left.path, left.feature), (right.path, right.feature))
+    left, right = (
+        _resolve_step_end(block, end, opposite) for end, opposite in ((left, right), (right, left))
+    )
+    if not (left.feature and right.feature):
         return
-    theirs = set(_behind(block, other))
-    for rest in _behind(block, one):
-        if rest in theirs:
-            block.features.union((one.path, one.feature + rest), (other.path, other.feature + rest))
+    suffixes = set(_iter_suffixes(block, right))
+    for suffix in _iter_suffixes(block, left):
+        if suffix in suffixes:
+            block.features.union(
+                (left.path, left.feature + suffix), (right.path, right.feature + suffix)
+            )
 
 
-def _end_of(block: Block, one: End, other: End) -> End:
-    """Of a step that is an action of the block, and of that action: what tells that it is over."""
-    for step in (one, other):
-        told = End(step.path, joined(step.feature, EXECUTED))
-        if step.feature and (step.path, told.feature) in block.steps:
-            return told if step is one else End(one.path, one.feature or EXECUTED)
-    return one
+def _resolve_step_end(block: Block, end: End, opposite: End) -> End:
+    """Return the feature that reports the end, if one end is a step and the other the action
+    that performs it.
+    """
+    for step in (end, opposite):
+        step_end = End(step.path, join_path(step.feature, EXECUTED))
+        if step.feature and (step.path, step_end.feature) in block.steps:
+            return step_end if step is end else End(end.path, end.feature or EXECUTED)
+    return end
 
 
-def _behind(block: Block, end: End) -> Iterator[str]:
-    """What of dotted names follows the feature of an end."""
+def _iter_suffixes(block: Block, end: End) -> Iterator[str]:
+    """Yield the suffixes that follow the feature of an end in dotted names of its usage."""
     for name in block.names.get(end.path, ()):
         if name == end.feature or name.startswith(f"{end.feature}."):
             yield name[len(end.feature) :]

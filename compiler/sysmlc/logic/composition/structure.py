@@ -1,4 +1,10 @@
-"""Usages inside a block, and which of their features connectors, bindings and flows join."""
+"""Structure of a block: its usages, the features that connectors, bindings and flows join, and the
+steps of its operations.
+
+A step of an operation ends when the action that performs it reports that it is executed. A binding
+names that action, or the value that reports the end. Without a binding it is the only action of the
+block that specialises the action which the step calls.
+"""
 
 from collections.abc import Iterator
 
@@ -9,13 +15,13 @@ from sysmlc.ir.query.relations import flow_path
 from sysmlc.logic.contract import Contract, Owner
 
 ITSELF = ""
-"""Path of the block whose parts are looked at."""
-_MOST_COPIES = 16
+"""Path of the block itself."""
+_MAX_COPIES = 16
 _STEPS = (Kind.ACTION, Kind.CONTROL, Kind.CONTROL_FLOW, Kind.STRUCTURED)
 
 
 class Usage(Struct, frozen=True):
-    """A part, or an action that a block has, by the path of names from the block to it."""
+    """A part or an action of a block, with the path of names from the block."""
 
     path: str
     element: Element
@@ -23,103 +29,116 @@ class Usage(Struct, frozen=True):
 
 
 class End(Struct, frozen=True):
-    """Where something is attached: a usage, and the dotted name of a feature of it (or nothing)."""
+    """An end of a connection: a usage, and the dotted name of one of its features, or no name."""
 
     path: str
     feature: str
 
 
-def usages(graph: Graph, block: Element, path: str = ITSELF) -> Iterator[Usage]:
-    """The parts of a block and the actions that it performs, each copy of a part by itself."""
-    seen: set[str] = set()
-    for one in (*query.features(graph, block), *graph.owned(block)):
-        is_action = one.kind is Kind.ACTIVITY
-        type_ = _type(graph, one) if is_action or one.kind in query.FEATURES else None
-        if type_ is not None and one.name and one.id not in seen:
-            seen.add(one.id)
-            for name in _copies(one):
-                yield Usage(joined(path, name), one, type_)
+def iter_usages(graph: Graph, block: Element, path: str = ITSELF) -> Iterator[Usage]:
+    """Yield the parts of a block and the actions that it performs; each copy of a part is a
+    usage.
+    """
+    visited: set[str] = set()
+    for feature in (*query.features(graph, block), *graph.owned(block)):
+        is_action = feature.kind is Kind.ACTIVITY
+        type_ = (
+            _type_of_usage(graph, feature) if is_action or feature.kind in query.FEATURES else None
+        )
+        if type_ is not None and feature.name and feature.id not in visited:
+            visited.add(feature.id)
+            for name in _copy_names(feature):
+                yield Usage(join_path(path, name), feature, type_)
 
 
-def _type(graph: Graph, feature: Element) -> Element | None:
+def _type_of_usage(graph: Graph, feature: Element) -> Element | None:
     if feature.kind is Kind.OPERATION:
         return graph.target(feature, Edge.METHOD)
     if feature.kind is Kind.ACTIVITY:
-        return feature if _is_usage(graph, feature) or _is_own(graph, feature) else None
+        return (
+            feature if _is_plain_usage(graph, feature) or _is_own_action(graph, feature) else None
+        )
     is_part = feature.role == "part" and feature.kind in (Kind.PROPERTY, Kind.PORT)
     return query.type_of(graph, feature) if is_part else None
 
 
-def _is_usage(graph: Graph, action: Element) -> bool:
-    """Whether an action says no more than what it specialises: it has no steps of its own."""
+def _is_plain_usage(graph: Graph, action: Element) -> bool:
+    """Return whether an action has no steps of its own beyond what it specialises."""
     return bool(graph.targets(action, Edge.SPECIALIZES)) and not _is_drawn(graph, action)
 
 
-def _is_own(graph: Graph, action: Element) -> bool:
-    """Whether an action drawn in a block is performed for itself, not as what another one is."""
-    taken = (Edge.CLASSIFIER_BEHAVIOR, Edge.METHOD, Edge.CALLS)
-    is_taken = any(True for edge in taken for _ in graph.sources(action, edge))
-    return _is_drawn(graph, action) and not is_taken
+def _is_own_action(graph: Graph, action: Element) -> bool:
+    """Return whether a drawn action is performed by the block itself, and not used by another
+    element.
+    """
+    edges = (Edge.CLASSIFIER_BEHAVIOR, Edge.METHOD, Edge.CALLS)
+    is_used = any(True for edge in edges for _ in graph.sources(action, edge))
+    return _is_drawn(graph, action) and not is_used
 
 
-def drawn_of(graph: Graph, action: Element) -> Element:
-    """The activity whose steps an action has: its own, else the nearest that it specialises."""
+def find_drawn_activity(graph: Graph, action: Element) -> Element:
+    """Return the activity that has the steps of an action: itself, else the nearest activity
+    that it specialises.
+    """
     family = (action, *query.generals(graph, action))
-    return next((one for one in family if _is_drawn(graph, one)), action)
+    return next((relative for relative in family if _is_drawn(graph, relative)), action)
 
 
 def _is_drawn(graph: Graph, action: Element) -> bool:
-    return any(one.kind in _STEPS for one in graph.owned(action))
+    return any(member.kind in _STEPS for member in graph.owned(action))
 
 
-def _copies(part: Element) -> Iterator[str]:
-    """Names of the copies of a part; one of which nobody says how many there are counts once."""
+def _copy_names(part: Element) -> Iterator[str]:
+    """Yield the names of the copies of a part; a part without an exact multiplicity counts once."""
     limits = query.bounds(part.attrs.get("multiplicity"))
-    number = limits[1] if limits is not None and limits[0] == limits[1] else 1
-    if number is None or not 1 < number <= _MOST_COPIES:
+    count = limits[1] if limits is not None and limits[0] == limits[1] else 1
+    if count is None or not 1 < count <= _MAX_COPIES:
         yield part.name
         return
-    yield from (f"{part.name}[{at}]" for at in range(1, number + 1))
+    yield from (f"{part.name}[{index}]" for index in range(1, count + 1))
 
 
-def joined(path: str, name: str) -> str:
-    """A path with one more step."""
+def join_path(path: str, name: str) -> str:
+    """Return the path extended by *name*."""
     return f"{path}.{name}" if path and name else path or name
 
 
 Link = tuple[list[End], list[End]]
-"""What is joined: the ends on either side, several where a side leads to a part with copies."""
+"""The joined ends on either side, several where a side leads to a part with copies."""
 
 
-def links(graph: Graph, block: Element, path: str = ITSELF) -> Iterator[Link]:
-    """What connectors, bindings and flows of a block join."""
+def iter_links(graph: Graph, block: Element, path: str = ITSELF) -> Iterator[Link]:
+    """Yield the pairs of sides that connectors, bindings and flows of a block join."""
     for owner in (block, *query.generals(graph, block)):
-        for one in graph.owned(owner):
-            if one.kind is Kind.CONNECTOR:
-                sides = [list(_ends(graph, block, end, path)) for end in query.ends(graph, one)]
-                for number, side in enumerate(sides):
-                    for other in sides[number + 1 :]:
-                        yield side, other
-            elif one.kind is Kind.ITEM_FLOW and not graph.targets(one, Edge.REALIZING):
-                yield from _flow(graph, block, one, path)
+        for relation in graph.owned(owner):
+            if relation.kind is Kind.CONNECTOR:
+                sides = [
+                    list(_connector_ends(graph, block, end, path))
+                    for end in query.ends(graph, relation)
+                ]
+                for index, left in enumerate(sides):
+                    for right in sides[index + 1 :]:
+                        yield left, right
+            elif relation.kind is Kind.ITEM_FLOW and not graph.targets(relation, Edge.REALIZING):
+                yield from _flow_link(graph, block, relation, path)
 
 
-def _ends(graph: Graph, block: Element, end: Element, path: str) -> Iterator[End]:
+def _connector_ends(graph: Graph, block: Element, end: Element, path: str) -> Iterator[End]:
     steps = [*graph.targets(end, Edge.PATH), *graph.targets(end, Edge.ROLE)]
-    yield from _along(graph, block, steps, path)
+    yield from _follow_path(graph, block, steps, path)
 
 
-def _along(graph: Graph, block: Element, steps: list[Element], path: str) -> Iterator[End]:
-    """The ends to which features lead, parts first."""
-    if steps and _type(graph, steps[0]) is not None:
-        for name in _copies(steps[0]):
-            yield from _along(graph, block, steps[1:], joined(path, name))
+def _follow_path(graph: Graph, block: Element, features: list[Element], path: str) -> Iterator[End]:
+    """Yield the ends to which a sequence of features leads, parts first."""
+    if features and _type_of_usage(graph, features[0]) is not None:
+        for name in _copy_names(features[0]):
+            yield from _follow_path(graph, block, features[1:], join_path(path, name))
         return
-    yield End(path, ".".join(step.name for step in steps))
+    yield End(path, ".".join(feature.name for feature in features))
 
 
-def _flow(graph: Graph, block: Element, flow: Element, path: str) -> Iterator[Link]:
-    """A flow that no connector realises leads between features: of the parts that have them."""
+def _flow_link(graph: Graph, block: Element, flow: Element, path: str) -> Iterator[Link]:
+    """Yield the link of a flow that no connector realises, if both sides are unambiguous."""
     sides: list[list[End]] = []
     for edge in (Edge.FLOW_SOURCE, Edge.FLOW_TARGET):
         feature = graph.target(flow, edge)
@@ -127,82 +146,96 @@ def _flow(graph: Graph, block: Element, flow: Element, path: str) -> Iterator[Li
         if feature is None:
             sides.append([])
         elif parts:
-            sides.append(list(_along(graph, block, [*parts, feature], path)))
+            sides.append(list(_follow_path(graph, block, [*parts, feature], path)))
         else:
-            sides.append(list(_holders(graph, block, feature, path)))
+            sides.append(list(_find_holders(graph, block, feature, path)))
     if all(len(side) == 1 for side in sides):
         yield sides[0], sides[1]
 
 
-def _holders(graph: Graph, block: Element, feature: Element, path: str) -> Iterator[End]:
+def _find_holders(graph: Graph, block: Element, feature: Element, path: str) -> Iterator[End]:
+    """Yield the ends of all usages that have the feature."""
     if feature in query.features(graph, block):
         yield End(path, feature.name)
         return
-    for usage in usages(graph, block, path):
-        known = (*query.features(graph, usage.type_), *query.parameters(graph, usage.type_))
-        if feature in known:
+    for usage in iter_usages(graph, block, path):
+        features = (*query.features(graph, usage.type_), *query.parameters(graph, usage.type_))
+        if feature in features:
             yield End(usage.path, feature.name)
 
 
-def unclear_flows(graph: Graph, block: Element) -> Iterator[tuple[Element, Element, int]]:
-    """Flows of a block of which it is not clear between what they lead: the flow, the feature
-    that several usages have, how many.
+def find_unclear_flows(graph: Graph, block: Element) -> Iterator[tuple[Element, Element, int]]:
+    """Yield each flow whose parts are ambiguous, with the feature that several usages have, and
+    their number.
     """
     for owner in (block, *query.generals(graph, block)):
-        for one in graph.owned(owner):
-            if one.kind is not Kind.ITEM_FLOW or graph.targets(one, Edge.REALIZING):
+        for flow in graph.owned(owner):
+            if flow.kind is not Kind.ITEM_FLOW or graph.targets(flow, Edge.REALIZING):
                 continue
             for edge in (Edge.FLOW_SOURCE, Edge.FLOW_TARGET):
-                feature = graph.target(one, edge)
-                if flow_path(graph, one, edge):
+                feature = graph.target(flow, edge)
+                if flow_path(graph, flow, edge):
                     continue
-                count = 0 if feature is None else len(list(_holders(graph, block, feature, "")))
+                count = (
+                    0 if feature is None else len(list(_find_holders(graph, block, feature, "")))
+                )
                 if feature is not None and count > 1:
-                    yield one, feature, count
+                    yield flow, feature, count
 
 
 EXECUTED = "executed"
-"""The output by which an action tells that it is executed."""
+"""Name of the output with which an action reports that it is executed."""
 
 
-def ends_of_steps(graph: Graph, contract: Contract) -> dict[str, str]:
-    """The inputs of an operation that say that a step is over, as features of its steps."""
-    found = {}
-    for one in contract.variables:
-        step = graph.get(one.origin)
-        if one.owner is Owner.ENVIRONMENT and step is not None and tells(graph, step):
-            found[joined(step.name, EXECUTED)] = one.name
-    return found
+def list_step_ends(graph: Graph, contract: Contract) -> dict[str, str]:
+    """Return the inputs of an operation that report the end of a step, by the name of the step's
+    feature.
+    """
+    ends = {}
+    for variable in contract.variables:
+        step = graph.get(variable.origin)
+        if (
+            variable.owner is Owner.ENVIRONMENT
+            and step is not None
+            and is_end_observable(graph, step)
+        ):
+            ends[join_path(step.name, EXECUTED)] = variable.name
+    return ends
 
 
-def performed(graph: Graph, block: Element, path: str) -> Iterator[tuple[End, End]]:
-    """For each step of the operations of a block the end of the one action that performs it."""
-    known = [one for one in usages(graph, block, path) if one.element.kind in _ACTIONS]
-    for operation in known:
-        for step in graph.owned(drawn_of(graph, operation.type_)):
-            if tells(graph, step):
-                able = [one for one in known if _is_what(graph, one, step)]
-                if len(able) == 1:
-                    feature = joined(step.name, EXECUTED)
-                    yield End(operation.path, feature), End(able[0].path, EXECUTED)
+def iter_performed_steps(graph: Graph, block: Element, path: str) -> Iterator[tuple[End, End]]:
+    """Yield, for each step of the block's operations, its end and the end of the one action that
+    performs it.
+    """
+    actions = [
+        action for action in iter_usages(graph, block, path) if action.element.kind in _ACTIONS
+    ]
+    for operation in actions:
+        for step in graph.owned(find_drawn_activity(graph, operation.type_)):
+            if is_end_observable(graph, step):
+                performers = [action for action in actions if _performs_step(graph, action, step)]
+                if len(performers) == 1:
+                    feature = join_path(step.name, EXECUTED)
+                    yield End(operation.path, feature), End(performers[0].path, EXECUTED)
 
 
 _ACTIONS = (Kind.OPERATION, Kind.ACTIVITY)
 
 
-def tells(graph: Graph, step: Element) -> bool:
-    """Whether the step calls an action that tells that it is executed."""
-    called = graph.target(step, Edge.CALLS) if step.kind is Kind.ACTION else None
-    if called is None or called.kind is not Kind.ACTIVITY:
+def is_end_observable(graph: Graph, step: Element) -> bool:
+    """Return whether the step calls an action that reports when it is executed."""
+    action = graph.target(step, Edge.CALLS) if step.kind is Kind.ACTION else None
+    if action is None or action.kind is not Kind.ACTIVITY:
         return False
-    return any(one.name == EXECUTED for one in _parameters(graph, called))
+    return any(parameter.name == EXECUTED for parameter in _parameters(graph, action))
 
 
 def _parameters(graph: Graph, action: Element) -> Iterator[Element]:
-    for one in (action, *query.generals(graph, action)):
-        yield from query.parameters(graph, one)
+    for relative in (action, *query.generals(graph, action)):
+        yield from query.parameters(graph, relative)
 
 
-def _is_what(graph: Graph, usage: Usage, step: Element) -> bool:
-    called = graph.target(step, Edge.CALLS)
-    return called in (usage.type_, *query.generals(graph, usage.type_))
+def _performs_step(graph: Graph, usage: Usage, step: Element) -> bool:
+    """Return whether the usage is, or specialises, the action that the step calls."""
+    action = graph.target(step, Edge.CALLS)
+    return action in (usage.type_, *query.generals(graph, usage.type_))

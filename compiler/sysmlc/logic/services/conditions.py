@@ -39,7 +39,7 @@ _LANGUAGES = ("", "kerml", "sysml", "ocl", "alf")
 
 
 class Condition(Struct, frozen=True):
-    """What must hold before a service, or holds after it."""
+    """A condition that must hold before a service, or holds after it."""
 
     constraint: Element
     formula: Formula
@@ -54,26 +54,26 @@ class Service(Struct, frozen=True):
     conditions: tuple[Condition, ...]
 
     def feature(self, variable: str) -> Feature:
-        """The parameter or feature that a variable stands for."""
+        """Return the parameter or feature behind a variable."""
         return next(one for one in self.context.features.values() if one.variable == variable)
 
 
-def services(graph: Graph, assumed: tuple[int, int], sink: Sink) -> Iterator[Service]:
-    """The services of a model that have conditions, in its order.
+def iter_services(graph: Graph, assumed: tuple[int, int], sink: Sink) -> Iterator[Service]:
+    """Yield the services of a model that have conditions, in model order.
 
-    ``assumed`` is the range of Integers that have none. What is no expression over parameters
-    and features with finitely many values is reported.
+    *assumed* is the range of Integers without a stated one. A condition that is not an expression
+    over parameters and features with finitely many values is reported.
     """
-    found: dict[str, tuple[Element, list[Element]]] = {}
+    constraints_by_service: dict[str, tuple[Element, list[Element]]] = {}
     for constraint in graph.of_kind(Kind.CONSTRAINT):
         owner = graph.owner(constraint)
         if owner is not None and _is_condition(constraint):
-            for service in _performed(graph, owner):
-                found.setdefault(service.id, (service, []))[1].append(constraint)
-    for service, constraints in found.values():
-        made = _service(graph, service, constraints, assumed, sink)
-        if made.conditions:
-            yield made
+            for service in _performed_services(graph, owner):
+                constraints_by_service.setdefault(service.id, (service, []))[1].append(constraint)
+    for service, constraints in constraints_by_service.values():
+        result = _read_service(graph, service, constraints, assumed, sink)
+        if result.conditions:
+            yield result
 
 
 def _is_condition(constraint: Element) -> bool:
@@ -86,64 +86,72 @@ def _is_condition(constraint: Element) -> bool:
     return not is_formal(language, body)
 
 
-def _performed(graph: Graph, owner: Element) -> Iterator[Element]:
-    """The services that what owns a condition is: the operation or those that redefine it, the
-    operations of a method or of what specialises it, else the action itself.
+def _performed_services(graph: Graph, owner: Element) -> Iterator[Element]:
+    """Yield the services to which the conditions of *owner* apply.
+
+    These are the operation and those that redefine it, the operations of a method or of what
+    specialises it, else the action itself.
     """
     edges = {Kind.OPERATION: Edge.REDEFINES, Kind.ACTIVITY: Edge.SPECIALIZES}
-    family = [owner] if owner.kind in edges else []
-    for one in family:
-        above = graph.sources(one, edges[one.kind])
+    worklist = [owner] if owner.kind in edges else []
+    for element in worklist:
+        specializing = graph.sources(element, edges[element.kind])
         # In KerML a structure may specialise a behaviour: it is no service.
-        family += (one for one in above if one.kind in edges and one not in family)
-        yield from _services_of(graph, one)
+        worklist += (
+            element for element in specializing if element.kind in edges and element not in worklist
+        )
+        yield from _services_of(graph, element)
 
 
-def _services_of(graph: Graph, one: Element) -> Iterator[Element]:
-    if one.kind is Kind.ACTIVITY:
-        performed = graph.sources(one, Edge.METHOD)
-        is_own = not performed and not one.attrs.get("external")
-        yield from performed or ([one] if is_own else [])
-    elif not one.attrs.get("external"):
-        yield one
+def _services_of(graph: Graph, element: Element) -> Iterator[Element]:
+    if element.kind is Kind.ACTIVITY:
+        operations = graph.sources(element, Edge.METHOD)
+        is_service = not operations and not element.attrs.get("external")
+        yield from operations or ([element] if is_service else [])
+    elif not element.attrs.get("external"):
+        yield element
 
 
-def _service(
+def _read_service(
     graph: Graph,
     service: Element,
     constraints: list[Element],
     assumed: tuple[int, int],
     sink: Sink,
 ) -> Service:
-    context = _context(graph, service, assumed)
-    read = [_condition(graph, service, context, one, sink) for one in constraints]
-    found = tuple(one for one in read if one is not None)
-    for used in {one.name: None for each in found for one in f.variables(each.formula)}:
-        feature = next(one for one in context.features.values() if one.variable == used)
+    context = _make_context(graph, service, assumed)
+    read_conditions = [
+        _read_condition(graph, service, context, condition, sink) for condition in constraints
+    ]
+    conditions = tuple(part for part in read_conditions if part is not None)
+    for name in {
+        variable.name: None for part in conditions for variable in f.variables(part.formula)
+    }:
+        feature = next(feature for feature in context.features.values() if feature.variable == name)
         note_range(graph, feature, sink)
-    return Service(service, context, found)
+    return Service(service, context, conditions)
 
 
-def _context(graph: Graph, service: Element, assumed: tuple[int, int]) -> Context:
+def _make_context(graph: Graph, service: Element, assumed: tuple[int, int]) -> Context:
     owner = graph.owner(service)
     is_owned = owner is not None and owner.kind in query.CLASSIFIERS
     method = graph.target(service, Edge.METHOD)
-    within = service if method is None or not _has_parameters(graph, method) else method
-    return context_of(graph, owner if is_owned else service, assumed, within)
+    parameter_owner = service if method is None or not _has_parameters(graph, method) else method
+    return context_of(graph, owner if is_owned else service, assumed, parameter_owner)
 
 
 def _has_parameters(graph: Graph, method: Element) -> bool:
-    """Whether a method has parameters of its own, or of what it specialises."""
+    """Return whether a method has parameters of its own or inherited ones."""
     family = (method, *query.generals(graph, method))
-    return any(query.parameters(graph, one) for one in family)
+    return any(query.parameters(graph, relative) for relative in family)
 
 
-def _condition(
+def _read_condition(
     graph: Graph, service: Element, context: Context, constraint: Element, sink: Sink
 ) -> Condition | None:
     kind = constraint.subkind or "constraint"
     try:
-        formula = _formula(context, constraint)
+        formula = _read_formula(context, constraint)
     except (ExpressionError, ElaborationError) as error:
         body = str(constraint.attrs["body"])
         sink.report(
@@ -152,45 +160,59 @@ def _condition(
             kind=kind,
             text=body,
             service=service.name,
-            reason=_reason(context, error),
+            reason=_explain(context, error),
         )
         return None
     if formula == f.TRUE:
         return None
-    is_before = kind == "precondition" or (kind == "constraint" and _is_given(context, formula))
+    is_before = kind == "precondition" or (
+        kind == "constraint" and _is_precondition(context, formula)
+    )
     return Condition(constraint, formula, is_before)
 
 
-def _formula(context: Context, constraint: Element) -> Formula:
+def _read_formula(context: Context, constraint: Element) -> Formula:
     language = str(constraint.attrs.get("language", "")).lower()
     if language.rstrip("0123456789. ") not in _LANGUAGES:
         raise ExpressionError(f"it is written in {constraint.attrs['language']}", 0)
-    read = _unchained(parse_expression(str(constraint.attrs["body"])))
-    formula = condition(read, lambda name: _symbol(context, name))
+    expression = _split_chain(parse_expression(str(constraint.attrs["body"])))
+    formula = condition(expression, lambda name: _find_symbol(context, name))
     domains: dict[str, Domain] = {
-        one.variable: one.domain for one in context.features.values() if one.domain is not None
+        feature.variable: feature.domain
+        for feature in context.features.values()
+        if feature.domain is not None
     }
-    found = simplified(formula, domains)
-    return formula if found == f.TRUE and _is_bound(read, formula) else found
+    simplified_formula = simplified(formula, domains)
+    return (
+        formula
+        if simplified_formula == f.TRUE and _is_single_bound(expression, formula)
+        else simplified_formula
+    )
 
 
-def _is_bound(read: Expression, formula: Formula) -> bool:
-    """Whether it is one bound (``h > 0``): the values have it already, but it is no range."""
-    return isinstance(read, Binary) and read.op in _ORDERS and bool(list(f.variables(formula)))
+def _is_single_bound(expression: Expression, formula: Formula) -> bool:
+    """Return whether the expression is a single bound (``h > 0``), which narrows values but is
+    no range.
+    """
+    return (
+        isinstance(expression, Binary)
+        and expression.op in _ORDERS
+        and bool(list(f.variables(formula)))
+    )
 
 
-def _unchained(read: Expression) -> Expression:
-    """``0 <= x <= 4`` is ``0 <= x and x <= 4``."""
-    match read:
+def _split_chain(expression: Expression) -> Expression:
+    """Rewrite ``0 <= x <= 4`` to ``0 <= x and x <= 4``."""
+    match expression:
         case Binary("and" as op, left, right):
-            return Binary(op, _unchained(left), _unchained(right))
+            return Binary(op, _split_chain(left), _split_chain(right))
         case Binary(op, Binary(first, _, middle) as left, right) if {op, first} <= _ORDERS:
             return Binary("and", left, Binary(op, middle, right))
         case _:
-            return read
+            return expression
 
 
-def _symbol(context: Context, name: str) -> Symbol | None:
+def _find_symbol(context: Context, name: str) -> Symbol | None:
     feature = context.features.get(name) or context.features.get(name.removeprefix("self."))
     if feature is None:
         return literal_of(context, name)
@@ -199,19 +221,21 @@ def _symbol(context: Context, name: str) -> Symbol | None:
     return Symbol(f.var(feature.variable), feature.domain)
 
 
-def _is_given(context: Context, formula: Formula) -> bool:
-    """Whether it speaks of what is given to the service, and of nothing else."""
-    used = {one.name for one in f.variables(formula)}
-    return all(is_given(one) for one in context.features.values() if one.variable in used)
+def _is_precondition(context: Context, formula: Formula) -> bool:
+    """Return whether the formula reads only inputs of the service."""
+    names = {feature.name for feature in f.variables(formula)}
+    return all(
+        is_input(feature) for feature in context.features.values() if feature.variable in names
+    )
 
 
-def is_given(feature: Feature) -> bool:
-    """Whether who asks for the service decides it: an input parameter."""
+def is_input(feature: Feature) -> bool:
+    """Return whether the caller decides the feature: it is an input parameter."""
     direction = feature.direction or "in"
     return feature.element.kind is Kind.PARAMETER and direction == "in"
 
 
-def _reason(context: Context, error: Exception) -> str:
+def _explain(context: Context, error: Exception) -> str:
     if isinstance(error, ElaborationError) and error.fault is Fault.UNKNOWN:
         return f"'{error.name}' is no parameter or feature with finitely many values"
     return str(error)

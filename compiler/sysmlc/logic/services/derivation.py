@@ -1,7 +1,7 @@
-"""Contracts of services: who asks meets the preconditions, what is done meets the postconditions.
+"""Contracts of services: the caller meets the preconditions, the service the postconditions.
 
-The thesis has machines that offer services and recipes that ask for them (3.5.2); UML 2.5.1 clause
-9.6.3 says what the conditions of an operation mean. In a step the environment may ask (``call``);
+In the thesis machines offer services and recipes request them (3.5.2); UML 2.5.1 clause 9.6.3
+defines the conditions of an operation. In a step the environment may call the service (``call``);
 the service runs until it is done (``done``), one step later at the earliest.
 """
 
@@ -23,12 +23,12 @@ from sysmlc.logic.contract import (
 from sysmlc.logic.expressions.declared import Feature
 from sysmlc.logic.formula import Formula
 from sysmlc.logic.names import Names
-from sysmlc.logic.services.conditions import Condition, Service, is_given, services
+from sysmlc.logic.services.conditions import Condition, Service, is_input, iter_services
 from sysmlc.logic.simplify import substitute
 
 
-class _Asked(Struct, frozen=True):
-    """A service with the variables that say how far it is."""
+class _ServiceCall(Struct, frozen=True):
+    """A service with the variables of its handshake."""
 
     service: Service
     call: Formula
@@ -39,117 +39,130 @@ class _Asked(Struct, frozen=True):
 
     @property
     def runs(self) -> Formula:
-        """It was asked for, and is not done yet."""
+        """The service is called or busy."""
         return f.either(self.call, self.busy)
 
     def conditions(self, is_before: bool) -> Iterator[Condition]:
-        """Its preconditions, or its postconditions."""
+        """Yield the preconditions, or the postconditions."""
         return (one for one in self.service.conditions if one.is_before is is_before)
 
 
-def derive(
-    graph: Graph, taken: Iterable[str], assumed: tuple[int, int], sink: Sink
+def derive_contracts(
+    graph: Graph, reserved: Iterable[str], assumed: tuple[int, int], sink: Sink
 ) -> Iterator[Contract]:
-    """A contract for each service with conditions; ``taken`` are names of other contracts.
+    """Yield a contract for each service with conditions; *taken* are names of other contracts.
 
-    ``assumed`` is the range of Integers that have none.
+    *assumed* is the range of Integers without a stated one.
     """
-    known = set(taken)
-    for service in services(graph, assumed, sink):
-        component = _component(graph, service.element)
-        name = f"{component}.service" if component in known else component
-        yield _contract(name, service)
+    used_names = set(reserved)
+    for service in iter_services(graph, assumed, sink):
+        component = _component_name(graph, service.element)
+        name = f"{component}.service" if component in used_names else component
+        yield _derive_contract(name, service)
 
 
-def _component(graph: Graph, service: Element) -> str:
-    """``<Owner>.<service>`` of what a classifier has, else the name of the action."""
+def _component_name(graph: Graph, service: Element) -> str:
+    """Return ``<Owner>.<service>`` for a service of a classifier, else the name of the action."""
     owner = graph.owner(service)
     if owner is None or owner.kind not in query.CLASSIFIERS:
         return graph.qualified_name(service)
     return f"{query.component_name(graph, owner)}.{service.name}"
 
 
-def _contract(component: str, service: Service) -> Contract:
-    asked, own = _asked(service)
-    features = (*asked.inputs, *asked.outputs)
-    variables = (*own, *(_variable(one) for one in features))
+def _derive_contract(component: str, service: Service) -> Contract:
+    call, handshake = _make_call(service)
+    features = (*call.inputs, *call.outputs)
+    variables = (*handshake, *(_make_variable(feature) for feature in features))
     id = service.element.id
-    return Contract(component, id, variables, tuple(_assumed(asked)), tuple(_promised(asked)))
+    return Contract(
+        component, id, variables, tuple(_derive_assumptions(call)), tuple(_derive_guarantees(call))
+    )
 
 
-def _asked(service: Service) -> tuple[_Asked, list[Variable]]:
-    used = {one.name for each in service.conditions for one in f.variables(each.formula)}
-    features = [one for one in service.context.features.values() if one.variable in used]
-    names = Names(*(one.variable for one in features))
-    made = [names.new(word) for word in ("call", "busy", "done")]
+def _make_call(service: Service) -> tuple[_ServiceCall, list[Variable]]:
+    names_used = {
+        feature.name
+        for condition in service.conditions
+        for feature in f.variables(condition.formula)
+    }
+    features = [
+        feature for feature in service.context.features.values() if feature.variable in names_used
+    ]
+    names = Names(*(feature.variable for feature in features))
+    variable_names = [names.new(word) for word in ("call", "busy", "done")]
     owners = (Owner.ENVIRONMENT, Owner.SYSTEM, Owner.SYSTEM)
-    id, kind = service.element.id, BooleanDomain()
-    own = [Variable(name, owner, kind, id) for name, owner in zip(made, owners, strict=True)]
-    inputs = tuple(one for one in features if is_given(one))
-    outputs = tuple(one for one in features if not is_given(one))
-    call, busy, done = (f.var(name) for name in made)
-    return _Asked(service, call, busy, done, inputs, outputs), own
+    id, boolean = service.element.id, BooleanDomain()
+    handshake = [
+        Variable(name, owner, boolean, id)
+        for name, owner in zip(variable_names, owners, strict=True)
+    ]
+    inputs = tuple(feature for feature in features if is_input(feature))
+    outputs = tuple(feature for feature in features if not is_input(feature))
+    call, busy, done = (f.var(name) for name in variable_names)
+    return _ServiceCall(service, call, busy, done, inputs, outputs), handshake
 
 
-def _variable(feature: Feature) -> Variable:
+def _make_variable(feature: Feature) -> Variable:
     assert feature.domain is not None, "only features with finite domains are in conditions"
-    owner = Owner.ENVIRONMENT if is_given(feature) else Owner.SYSTEM
+    owner = Owner.ENVIRONMENT if is_input(feature) else Owner.SYSTEM
     return Variable(feature.variable, owner, feature.domain, feature.element.id)
 
 
-def _assumed(asked: _Asked) -> Iterator[Conjunct]:
-    name, id = asked.service.element.name, asked.service.element.id
-    after = {one.variable: f.primed(f.var(one.variable)) for one in asked.inputs}
-    for one in asked.conditions(is_before=True):
-        text = f"Who asks for '{name}' sees to it that {_named(one)} holds."
-        if not _speaks_of(one.formula, asked.outputs):
-            first = f.implies(asked.call, one.formula)
-            yield Conjunct(first, Class.INIT, one.constraint.id, text)
-        later = f.implies(f.primed(asked.call), substitute(one.formula, after))
-        yield Conjunct(later, Class.SAFETY, one.constraint.id, text)
-    waits = f.both(asked.runs, f.negate(asked.done))
-    again = f.implies(waits, f.negate(f.primed(asked.call)))
+def _derive_assumptions(call: _ServiceCall) -> Iterator[Conjunct]:
+    name, id = call.service.element.name, call.service.element.id
+    next_inputs = {
+        condition.variable: f.primed(f.var(condition.variable)) for condition in call.inputs
+    }
+    for condition in call.conditions(is_before=True):
+        text = f"Who asks for '{name}' sees to it that {_name_of(condition)} holds."
+        if not _reads_any(condition.formula, call.outputs):
+            first = f.implies(call.call, condition.formula)
+            yield Conjunct(first, Class.INIT, condition.constraint.id, text)
+        later = f.implies(f.primed(call.call), substitute(condition.formula, next_inputs))
+        yield Conjunct(later, Class.SAFETY, condition.constraint.id, text)
+    waiting = f.both(call.runs, f.negate(call.done))
+    no_repetition = f.implies(waiting, f.negate(f.primed(call.call)))
     text = f"'{name}' is not asked for again before it is done."
-    yield Conjunct(again, Class.SAFETY, id, text)
-    for feature in asked.inputs:
+    yield Conjunct(no_repetition, Class.SAFETY, id, text)
+    for feature in call.inputs:
         value = f.var(feature.variable)
         text = f"'{feature.element.name}' stays as it is until '{name}' is done."
-        kept = f.implies(waits, _same(f.primed(value), value, feature))
-        yield Conjunct(kept, Class.SAFETY, feature.element.id, text)
+        unchanged = f.implies(waiting, _equality(f.primed(value), value, feature))
+        yield Conjunct(unchanged, Class.SAFETY, feature.element.id, text)
 
 
-def _promised(asked: _Asked) -> Iterator[Conjunct]:
-    name, id = asked.service.element.name, asked.service.element.id
-    after_done, after_busy = f.primed(asked.done), f.primed(asked.busy)
-    idle = f.both(f.negate(asked.busy), f.negate(asked.done))
+def _derive_guarantees(call: _ServiceCall) -> Iterator[Conjunct]:
+    name, id = call.service.element.name, call.service.element.id
+    after_done, after_busy = f.primed(call.done), f.primed(call.busy)
+    idle = f.both(f.negate(call.busy), f.negate(call.done))
     yield Conjunct(idle, Class.INIT, id, f"'{name}' is not running at the start.")
-    goes_on = f.iff(after_busy, f.both(asked.runs, f.negate(asked.done), f.negate(after_done)))
+    runs = f.iff(after_busy, f.both(call.runs, f.negate(call.done), f.negate(after_done)))
     text = f"'{name}' runs from when it is asked for until it is done."
-    yield Conjunct(goes_on, Class.SAFETY, id, text)
-    only = f.implies(after_done, f.both(asked.runs, f.negate(asked.done)))
-    yield Conjunct(only, Class.SAFETY, id, f"'{name}' is done only when it was asked for.")
-    for one in asked.conditions(is_before=False):
-        text = f"When '{name}' is done, {_named(one)} holds."
-        kept = f.implies(after_done, f.primed(one.formula))
-        yield Conjunct(kept, Class.SAFETY, one.constraint.id, text)
-    for feature in asked.outputs:
+    yield Conjunct(runs, Class.SAFETY, id, text)
+    ends = f.implies(after_done, f.both(call.runs, f.negate(call.done)))
+    yield Conjunct(ends, Class.SAFETY, id, f"'{name}' is done only when it was asked for.")
+    for condition in call.conditions(is_before=False):
+        text = f"When '{name}' is done, {_name_of(condition)} holds."
+        conjunct = f.implies(after_done, f.primed(condition.formula))
+        yield Conjunct(conjunct, Class.SAFETY, condition.constraint.id, text)
+    for feature in call.outputs:
         value = f.var(feature.variable)
-        stays = f.implies(f.negate(after_done), _same(f.primed(value), value, feature))
+        unchanged = f.implies(f.negate(after_done), _equality(f.primed(value), value, feature))
         text = f"What '{name}' makes of '{feature.element.name}' is seen when it is done."
-        yield Conjunct(stays, Class.SAFETY, feature.element.id, text)
+        yield Conjunct(unchanged, Class.SAFETY, feature.element.id, text)
     text = f"'{name}' is done in the end, whenever it is asked for."
-    answered = f.either(asked.done, f.negate(asked.runs))
-    yield Conjunct(answered, Class.LIVENESS, id, text)
+    finishes = f.either(call.done, f.negate(call.runs))
+    yield Conjunct(finishes, Class.LIVENESS, id, text)
 
 
-def _speaks_of(formula: Formula, features: tuple[Feature, ...]) -> bool:
-    names = {one.variable for one in features}
-    return any(one.name in names for one in f.variables(formula))
+def _reads_any(formula: Formula, features: tuple[Feature, ...]) -> bool:
+    names = {feature.variable for feature in features}
+    return any(feature.name in names for feature in f.variables(formula))
 
 
-def _same(one: Formula, other: Formula, feature: Feature) -> Formula:
-    return f.iff(one, other) if isinstance(feature.domain, BooleanDomain) else f.eq(one, other)
+def _equality(left: Formula, right: Formula, feature: Feature) -> Formula:
+    return f.iff(left, right) if isinstance(feature.domain, BooleanDomain) else f.eq(left, right)
 
 
-def _named(one: Condition) -> str:
-    return f"'{one.constraint.name or one.constraint.attrs['body']}'"
+def _name_of(condition: Condition) -> str:
+    return f"'{condition.constraint.name or condition.constraint.attrs['body']}'"

@@ -59,7 +59,9 @@ class Contracts(Struct, frozen=True):
         derived = [*derived, *required]
         components = [contract.component for contract in derived]
         derived = _number_components(
-            graph, [*derived, *services.derive(graph, components, assumed_range, sink)], sink
+            graph,
+            [*derived, *services.derive_contracts(graph, components, assumed_range, sink)],
+            sink,
         )
         graph.store(Contract, sorted(derived, key=lambda contract: contract.component))
 
