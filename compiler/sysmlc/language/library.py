@@ -48,6 +48,7 @@ class Library:
 
         Files that are named like it are searched first, then those whose text mentions it.
         """
+        # A library file is mostly named after its package, so most names need one file.
         members = self._find_roots(self._stems.get(name, ()), name)
         return members or self._find_roots(self._paths_mentioning(name), name)
 

@@ -69,6 +69,7 @@ def _find_unevaluable(model: Model, node: Node) -> str:
     if node.kind != "InvocationExpression":
         return ""
     function = find_named_element(node, model.lookup)
+    # Functions of the library are evaluable, except those that iterate with a body (KerML 8.4.4.9).
     is_basic = function is None or (_is_in_library(function) and function.name not in _ITERATING)
     return "" if is_basic else name_of(model, function)
 

@@ -70,6 +70,7 @@ def check_objective(model: Model, node: Node) -> Iterator[Finding]:
         member for member in model.members(node) if member.membership == "ObjectiveMembership"
     ]
     own_objectives = [objective for objective in objectives if objective.owner is node]
+    # An inherited objective that an own one redefines is not among the members.
     if len(objectives) > max(len(own_objectives), 1):
         start = own_objectives[0].start if own_objectives else node.start
         yield Finding(ONLY_ONE, start, {"owner": name_of(model, node), "role": "objective"})

@@ -34,6 +34,7 @@ class Exclusion(NamedTuple):
     wanted: str
 
 
+# Associations are classes too where they are structures, so links appear on both sides.
 _EXCLUSIONS = (
     Exclusion(_DATA, _CLASSES | _LINKS, "an attribute definition or data type"),
     Exclusion(_CLASSES - _LINKS, _DATA | _LINKS, "an item, part, port, action or another class"),

@@ -93,6 +93,7 @@ def _find_line_end(pieces: Sequence[Piece], start: int, width: int) -> int:
         ):
             best_end, best_rank = index, piece.rank
         width += len(space) + _last_line_width(piece.text)
+        # The best break that fits, else the first one possible.
         if width > WIDTH and best_end:
             return best_end
         if width > WIDTH and index > start and piece.rank is not None:

@@ -131,6 +131,7 @@ def _tokenize_valid(tokens: Tokens, types: TokenTypes, position: int) -> int:
     """Append tokens up to an invalid one; return where to go on, or -1 at the end of the text."""
     token_types, starts, ends = tokens.types, tokens.starts, tokens.ends
     words, name = types.words, types.name
+    # Indexed by the number of the matching group; 0 is the end of the text.
     by_group = (types.end, name, types.number, types.body, name, types.string)
     for match in TOKEN.finditer(tokens.text, position):
         group = match.lastindex or 0

@@ -20,6 +20,7 @@ from sysmlc.language.text.builders import (
 )
 from sysmlc.language.text.lalr import Action
 
+# KerML reuses the builders of SysML where both notations agree.
 _COMMON = (nodes, declarations, namespaces, operators, expressions, connections)
 _SYSML = (definitions, usages, actions, referring_usages, transitions)
 
