@@ -3,7 +3,7 @@
 from hypothesis import strategies as st
 
 from sysmlc.logic import formula as f
-from sysmlc.logic.classification import classified
+from sysmlc.logic.classification import classify
 from sysmlc.logic.contract import (
     BooleanDomain,
     Class,
@@ -94,7 +94,7 @@ def canonical(contract):
 
     def side(found):
         whole = f.both(*map(ltl, found))
-        parts = {Conjunct(part, class_, ""): None for class_, part in classified(whole)}
+        parts = {Conjunct(part, class_, ""): None for class_, part in classify(whole)}
         return in_order(one for one in parts if one.formula != f.TRUE)
 
     return (

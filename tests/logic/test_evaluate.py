@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import Class, Conjunct
-from sysmlc.logic.evaluate import evaluation, lasso_truth, value_of, violation
+from sysmlc.logic.evaluate import compile_evaluation, evaluate_on_lasso, find_violation, value_of
 from sysmlc.logic.formula import Apply, Const, Op, Var
 from sysmlc.logic.printing import print_formula
 
@@ -27,18 +27,18 @@ def test_integers_divide_towards_zero(left, right, quotient, rest):
 def test_the_step_of_a_violation():
     rises = Conjunct(f.implies(P, Var("q", True)), Class.SAFETY, "x")
     trace = [{"p": False, "q": False}, {"p": True, "q": False}, {"p": True, "q": False}]
-    assert violation(rises, trace) == 1
-    assert violation(rises, trace[:2]) is None
-    assert violation(Conjunct(P, Class.INIT, "x"), trace) == 0
-    assert violation(Conjunct(f.negate(P), Class.SAFETY, "x"), trace) == 1
+    assert find_violation(rises, trace) == 1
+    assert find_violation(rises, trace[:2]) is None
+    assert find_violation(Conjunct(P, Class.INIT, "x"), trace) == 0
+    assert find_violation(Conjunct(f.negate(P), Class.SAFETY, "x"), trace) == 1
 
 
 def test_liveness_is_violated_only_by_a_lasso():
     again = Conjunct(P, Class.LIVENESS, "x")
     trace = [{"p": True}, {"p": False}, {"p": False}]
-    assert violation(again, trace) is None
-    assert violation(again, trace, loop=1) == 1
-    assert violation(again, trace, loop=0) is None
+    assert find_violation(again, trace) is None
+    assert find_violation(again, trace, loop=1) == 1
+    assert find_violation(again, trace, loop=0) is None
 
 
 _formulas = st.recursive(
@@ -74,7 +74,7 @@ def test_lassos_mean_what_spot_says(formula, trace, data):
     letters = ["&".join(n if step[n] else f"!{n}" for n in "pq") for step in trace]
     word = spot.parse_word(";".join([*letters[:loop], f"cycle{{{';'.join(letters[loop:])}}}"]))
     accepts = spot.formula(print_formula(formula)).translate().intersects(word.as_automaton())
-    assert lasso_truth(formula, trace, loop)[0] == accepts
+    assert evaluate_on_lasso(formula, trace, loop)[0] == accepts
 
 
 _numbers = st.one_of(
@@ -110,7 +110,7 @@ _values = st.fixed_dictionaries({"x": st.integers(-3, 3), "y": st.integers(-3, 3
 
 @given(_steps, _values, _values)
 def test_an_evaluation_gives_the_value_of_its_formula(formula, now, then):
-    assert evaluation(formula)(now, then) == value_of(formula, now, then)
+    assert compile_evaluation(formula)(now, then) == value_of(formula, now, then)
 
 
 def test_a_formula_is_read_back_with_the_hash_of_this_process():

@@ -33,7 +33,9 @@ def play(graph: TokenGraph, seed: int, steps: int) -> Trace:
 
 def violated(contract: Contract, trace: Trace) -> list[str]:
     return [
-        part.text for part in contract.guarantees if evaluate.violation(part, trace) is not None
+        part.text
+        for part in contract.guarantees
+        if evaluate.find_violation(part, trace) is not None
     ]
 
 

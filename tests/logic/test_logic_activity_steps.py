@@ -52,7 +52,7 @@ def drawn(tokens: TokenGraph, dice: random.Random) -> Valuation:
 def is_allowed(contract: Contract, now: Valuation, then: Valuation) -> bool:
     """Whether the guarantees about steps allow this one."""
     return all(
-        evaluate.violation(part, [now, then]) is None
+        evaluate.find_violation(part, [now, then]) is None
         for part in contract.guarantees
         if part.class_ is Class.SAFETY
     )

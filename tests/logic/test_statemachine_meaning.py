@@ -15,7 +15,7 @@ from machines import machines, rich_machines
 from sysmlc.diagnostics import Sink
 from sysmlc.logic import domains
 from sysmlc.logic.contract import Class
-from sysmlc.logic.evaluate import violation
+from sysmlc.logic.evaluate import find_violation
 from sysmlc.logic.machines import interpreter as step
 from sysmlc.logic.machines.derivation import derive_contract
 from sysmlc.logic.machines.reader import read_machine
@@ -52,7 +52,9 @@ def _trace(data, machine):
 
 def _breaks(contract, trace, *classes):
     return [
-        c for c in contract.guarantees if c.class_ in classes and violation(c, trace) is not None
+        c
+        for c in contract.guarantees
+        if c.class_ in classes and find_violation(c, trace) is not None
     ]
 
 

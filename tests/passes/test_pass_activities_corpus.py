@@ -101,7 +101,7 @@ def test_real_activities_keep_their_contracts_when_they_are_played(corpus, name)
                 lambda _, open_, dice=dice: dice.choice(open_),
             )
         for conjunct in derive_contract(tokens).guarantees:
-            assert evaluate.violation(conjunct, trace) is None, conjunct.text
+            assert evaluate.find_violation(conjunct, trace) is None, conjunct.text
 
 
 OTHER_REVISION = {"TestClassReclassifier", "TestClassUnmarshaller"}

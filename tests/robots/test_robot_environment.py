@@ -12,7 +12,7 @@ from small_floors import floor
 from test_robot_simulation import some_floor
 
 from sysmlc.diagnostics import Sink, Subject
-from sysmlc.logic.evaluate import violation
+from sysmlc.logic.evaluate import find_violation
 from sysmlc.robots import contract_terms as words
 from sysmlc.robots.environment_contract import environment_contract
 from sysmlc.robots.robot_contract import robot_contract
@@ -64,7 +64,7 @@ def run_of(study, allocation, answers, start, world=Told):
 def broken(contract, trace, loop, is_promise=True):
     """The conjuncts that do not hold in a run."""
     known = contract.guarantees if is_promise else contract.assumptions
-    return [one.text for one in known if violation(one, trace, loop) is not None]
+    return [one.text for one in known if find_violation(one, trace, loop) is not None]
 
 
 def starts_of(study, count=7):

@@ -7,7 +7,7 @@ from itertools import product
 
 from sysmlc.logic import domains
 from sysmlc.logic.contract import Class, Contract, Owner
-from sysmlc.logic.evaluate import evaluation
+from sysmlc.logic.evaluate import compile_evaluation
 
 State = tuple[int, int]
 """Places of the inputs and of the outputs in the lists of their valuations."""
@@ -96,4 +96,4 @@ def valuations(contract: Contract, owner: Owner):
 
 
 def rules(conjuncts, class_: Class):
-    return [evaluation(one.formula) for one in conjuncts if one.class_ is class_]
+    return [compile_evaluation(one.formula) for one in conjuncts if one.class_ is class_]

@@ -5,7 +5,7 @@ from explicit import rules
 
 from sysmlc.logic import domains
 from sysmlc.logic.contract import Class
-from sysmlc.logic.evaluate import evaluation
+from sysmlc.logic.evaluate import compile_evaluation
 
 
 class Listed:
@@ -43,7 +43,7 @@ class Listed:
 
     def is_violated(self, conjunct) -> bool:
         """Whether the conjunct fails in some run."""
-        rule, graph = evaluation(conjunct.formula), self.graph
+        rule, graph = compile_evaluation(conjunct.formula), self.graph
         fair = self.fair(graph)
         if conjunct.class_ is Class.INIT:
             return any(not rule(self.values[one], None) for one in self.starts if one in fair)

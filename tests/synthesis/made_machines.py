@@ -8,7 +8,7 @@ from msgspec.structs import replace
 
 from sysmlc.logic import domains
 from sysmlc.logic.contract import Class, Owner
-from sysmlc.logic.evaluate import evaluation, violation
+from sysmlc.logic.evaluate import compile_evaluation, find_violation
 from sysmlc.logic.formula import Const, negate
 from sysmlc.synthesis import Manager, make_game
 from sysmlc.synthesis.controller_synthesis import Form, made
@@ -67,8 +67,10 @@ def holds(rule, steps, inputs):
 def broken(contract, steps):
     """The initial guarantees and those for every step that a finite play breaks."""
     safe = [one for one in contract.guarantees if one.class_ is not Class.LIVENESS]
-    found = [one for one in safe if violation(one, steps) not in (None, len(steps) - 1)]
-    return found + [one for one in safe if one.class_ is Class.INIT and violation(one, steps) == 0]
+    found = [one for one in safe if find_violation(one, steps) not in (None, len(steps) - 1)]
+    return found + [
+        one for one in safe if one.class_ is Class.INIT and find_violation(one, steps) == 0
+    ]
 
 
 def followed(controller):
@@ -179,7 +181,7 @@ class Closed:
         return [one for one in self.contract.guarantees if self.is_broken(one)]
 
     def is_broken(self, conjunct):
-        rule = evaluation(conjunct.formula)
+        rule = compile_evaluation(conjunct.formula)
         if conjunct.class_ is Class.INIT:
             return any(not rule(dict(one[0]), None) for one in self.starts)
         if conjunct.class_ is Class.SAFETY:

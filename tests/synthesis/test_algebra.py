@@ -10,7 +10,7 @@ from small_games import contract as random_contract
 
 from sysmlc.diagnostics import Sink
 from sysmlc.logic.contract import Class
-from sysmlc.logic.evaluate import lasso_truth
+from sysmlc.logic.evaluate import evaluate_on_lasso
 from sysmlc.logic.formats import read
 from sysmlc.logic.printing import print_formula
 from sysmlc.synthesis import Manager, OutsideGr1Error
@@ -101,7 +101,7 @@ def entailments(seed):
 
 
 def holds(conjunct, trace):
-    column = lasso_truth(conjunct.formula, trace.steps, trace.loop)
+    column = evaluate_on_lasso(conjunct.formula, trace.steps, trace.loop)
     match conjunct.class_:
         case Class.INIT:
             return column[0]

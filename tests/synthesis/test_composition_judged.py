@@ -7,7 +7,7 @@ from contracts_in_lines import contract
 from listed_runs import Listed
 
 from sysmlc.logic.contract import Class, Composite, Contract, Part
-from sysmlc.logic.evaluate import evaluation
+from sysmlc.logic.evaluate import compile_evaluation
 from sysmlc.synthesis import Manager
 from sysmlc.synthesis.algebra.composition import compose_parts
 
@@ -69,7 +69,7 @@ class Implemented(Listed):
 
     def holds(self, conjunct):
         """As a component has to keep it: at once, whatever comes later; or again and again."""
-        rule = evaluation(conjunct.formula)
+        rule = compile_evaluation(conjunct.formula)
         if conjunct.class_ is Class.INIT:
             return all(rule(self.values[one], None) for one in self.starts)
         if conjunct.class_ is Class.SAFETY:

@@ -9,7 +9,7 @@ from explicit import Explicit, rules, valuations
 from small_games import contract as random_contract
 
 from sysmlc.logic.contract import Class, Owner
-from sysmlc.logic.evaluate import evaluation
+from sysmlc.logic.evaluate import compile_evaluation
 from sysmlc.logic.reduction.reduce import reduced
 from sysmlc.synthesis import LimitError, Manager, make_game
 from sysmlc.synthesis.counterstrategy.counter_files import counterstrategy_files
@@ -155,8 +155,16 @@ def test_in_every_loop_of_the_machine_all_assumptions_recur_and_one_goal_does_no
         loop = trace.steps[trace.loop :]
         if not loop:
             continue
-        fair = [evaluation(one.formula) for one in made.assumptions if one.class_ is Class.LIVENESS]
-        goals = [evaluation(one.formula) for one in made.guarantees if one.class_ is Class.LIVENESS]
+        fair = [
+            compile_evaluation(one.formula)
+            for one in made.assumptions
+            if one.class_ is Class.LIVENESS
+        ]
+        goals = [
+            compile_evaluation(one.formula)
+            for one in made.guarantees
+            if one.class_ is Class.LIVENESS
+        ]
         assert all(any(rule(step, None) for step in loop) for rule in fair), seed
         assert any(not any(rule(step, None) for step in loop) for rule in goals), seed
 

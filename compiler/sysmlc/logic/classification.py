@@ -1,4 +1,4 @@
-"""Which class of GR(1) an LTL formula belongs to, and its form there (thesis, 2.2.3)."""
+"""Classes of GR(1): the class of an LTL formula, and its form in that class (thesis, 2.2.3)."""
 
 from collections.abc import Iterator
 from functools import lru_cache
@@ -10,48 +10,48 @@ from sysmlc.logic.formula import Apply, Formula, Op
 _TEMPORAL = frozenset([Op.NEXT, Op.ALWAYS, Op.EVENTUALLY, Op.UNTIL, Op.RELEASE, Op.WEAK_UNTIL])
 
 
-def classified(formula: Formula) -> Iterator[tuple[Class, Formula]]:
-    """The conjuncts of an LTL formula with their classes.
+def classify(formula: Formula) -> Iterator[tuple[Class, Formula]]:
+    """Yield the conjuncts of an LTL formula with their classes.
 
-    ``G p`` is safety and ``G F p`` liveness (X inside p becomes primes), a formula without
-    temporal operators initial; the rest is ``other`` and keeps its operators.
+    ``G p`` is safety and ``G F p`` liveness (X inside p becomes primes); a formula without temporal
+    operators is initial. Any other formula is ``other`` and keeps its operators.
     """
     match formula:
         case Apply(Op.AND, args):
             for arg in args:
-                yield from classified(arg)
+                yield from classify(arg)
         case Apply(Op.ALWAYS, (Apply(Op.AND, args),)):
             for arg in args:
-                yield from classified(f.always(arg))
+                yield from classify(f.always(arg))
         case Apply(Op.ALWAYS, (Apply(Op.EVENTUALLY, (inner,)),)) if (
-            step := with_primes(inner)
+            step := replace_next_by_primes(inner)
         ) is not None:
             yield Class.LIVENESS, step
         case Apply(Op.NOT, (Apply(Op.EVENTUALLY, (Apply(Op.ALWAYS, (inner,)),)),)) if (
-            step := with_primes(inner)
+            step := replace_next_by_primes(inner)
         ) is not None:
             yield Class.LIVENESS, f.negate(step)
-        case Apply(Op.ALWAYS, (inner,)) if (step := with_primes(inner)) is not None:
+        case Apply(Op.ALWAYS, (inner,)) if (step := replace_next_by_primes(inner)) is not None:
             yield Class.SAFETY, step
         case _:
             is_plain = not _is_temporal(formula) and not _is_primed(formula)
             yield (Class.INIT if is_plain else Class.OTHER), formula
 
 
-def within(formula: Formula, class_: Class) -> Formula | None:
-    """A formula that stands among those of a class, with primes for X; None when it cannot.
+def convert_to_class(formula: Formula, class_: Class) -> Formula | None:
+    """Return the formula with primes for X if it belongs to the class, else None.
 
-    Initial conditions have no next step; only ``other`` has temporal operators that reach
-    further than one.
+    An initial condition has no next step; only ``other`` has temporal operators that reach further
+    than one step.
     """
     if class_ is Class.OTHER:
         return formula
-    step = with_primes(formula) if _is_temporal(formula) else formula
+    step = replace_next_by_primes(formula) if _is_temporal(formula) else formula
     return None if class_ is Class.INIT and step is not None and _is_primed(step) else step
 
 
-def with_primes(formula: Formula) -> Formula | None:
-    """The formula with primes for X, or None when it looks further than one step."""
+def replace_next_by_primes(formula: Formula) -> Formula | None:
+    """Return the formula with primes for X, or None if it reaches further than one step."""
     match formula:
         case Apply(Op.NEXT, (inner,)):
             is_one_step = not _is_temporal(inner) and not _is_primed(inner)
@@ -59,14 +59,14 @@ def with_primes(formula: Formula) -> Formula | None:
         case Apply(op, _) if op in _TEMPORAL:
             return None
         case Apply(op, args):
-            parts = [with_primes(arg) for arg in args]
-            known = tuple(part for part in parts if part is not None)
-            return _applied(op, known) if len(known) == len(parts) else None
+            parts = [replace_next_by_primes(arg) for arg in args]
+            converted = tuple(part for part in parts if part is not None)
+            return _apply(op, converted) if len(converted) == len(parts) else None
         case _:
             return formula
 
 
-def _applied(op: Op, args: tuple[Formula, ...]) -> Formula:
+def _apply(op: Op, args: tuple[Formula, ...]) -> Formula:
     match op:
         case Op.AND:
             return f.both(*args)

@@ -1,6 +1,6 @@
-"""Assume/guarantee contracts: variables with owners and domains, classified conjuncts.
+"""Assume/guarantee contracts (thesis, 2.2.1), and composites of them.
 
-Thesis section 2.2.1; the neutral JSON form is the one of corpus/gr1 (design, section 6).
+A contract has variables with owners and domains, and classified conjuncts.
 """
 
 from enum import StrEnum
@@ -18,7 +18,7 @@ class Owner(StrEnum):
 
 
 class BooleanDomain(Struct, frozen=True):
-    """true and false."""
+    """The values true and false."""
 
 
 class IntegerDomain(Struct, frozen=True):
@@ -31,7 +31,8 @@ class IntegerDomain(Struct, frozen=True):
 class EnumerationDomain(Struct, frozen=True):
     """Names of literals, in declaration order.
 
-    Of a text (String) they stand for ``texts``, in this order, and the last one for any other.
+    For a String, ``texts`` are the texts behind the literals in this order; the last literal stands
+    for any other text.
     """
 
     literals: tuple[str, ...]
@@ -68,14 +69,14 @@ class Class(StrEnum):
 
 
 class Conjunct(Struct, frozen=True):
-    """One conjunct with the element (id) that it comes from and what it says in words."""
+    """One conjunct, with the id of the element that it comes from and its meaning in words."""
 
     formula: Formula
     class_: Class
     origin: str
     text: str = ""
     viewpoint: str = ""
-    """Name of the requirement whose viewpoint it belongs to; empty for what is common to all."""
+    """Name of the requirement whose viewpoint the conjunct belongs to; empty if common to all."""
 
 
 class Contract(Struct, frozen=True):
@@ -92,8 +93,8 @@ class Contract(Struct, frozen=True):
 class Part(Struct, frozen=True):
     """A part with the contract of its type, in the variables of the whole.
 
-    What two parts share has one name in both contracts; what only one knows is named behind the
-    part (``gate.state``). ``origin`` is the id of the part.
+    A variable that several parts share has one name in all contracts; a variable of one part has
+    the name of the part as a prefix (``gate.state``). ``origin`` is the id of the part.
     """
 
     name: str
@@ -102,11 +103,11 @@ class Part(Struct, frozen=True):
 
 
 class Composite(Struct, frozen=True):
-    """A block with parts. ``whole`` is what it promises itself, in the same variables.
+    """A block with parts; ``whole`` is the contract of the block itself, in the same variables.
 
-    ``wiring`` is what connectors make true and no renaming says, as that an event of the receiver
-    occurs when the sender sends it; it restricts no part. ``crowding`` is what has to hold for
-    nothing to be lost on the way, which nobody owes.
+    ``wiring`` states what connectors imply beyond shared names, such as that an event of the
+    receiver occurs when the sender sends it; it restricts no part. ``crowding`` states when no
+    message is lost; no part guarantees it.
     """
 
     component: str

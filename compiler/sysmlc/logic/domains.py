@@ -1,4 +1,4 @@
-"""Finite domains: their values, bounds and how they are shown."""
+"""Finite domains: their values, sizes and textual form."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import product
@@ -8,7 +8,7 @@ from sysmlc.logic.formula import Literal
 
 
 def values(domain: Domain) -> Sequence[Literal]:
-    """All values, the least or first declared one first; those of a range are not listed."""
+    """Return all values, the least or first declared one first; a range is not expanded."""
     match domain:
         case BooleanDomain():
             return (False, True)
@@ -19,7 +19,7 @@ def values(domain: Domain) -> Sequence[Literal]:
 
 
 def size(domain: Domain) -> int:
-    """Number of values."""
+    """Return the number of values."""
     match domain:
         case BooleanDomain():
             return 2
@@ -30,7 +30,7 @@ def size(domain: Domain) -> int:
 
 
 def contains(domain: Domain, value: Literal) -> bool:
-    """Whether the value is one of the domain's, of the right type too."""
+    """Return whether the value belongs to the domain, by its type too."""
     match domain:
         case BooleanDomain():
             return isinstance(value, bool)
@@ -41,7 +41,7 @@ def contains(domain: Domain, value: Literal) -> bool:
 
 
 def describe(domain: Domain) -> str:
-    """The domain in words: ``Boolean``, ``0..7``, ``open, closed``."""
+    """Return the domain as text: ``Boolean``, ``0..7`` or ``open, closed``."""
     match domain:
         case BooleanDomain():
             return "Boolean"
@@ -52,15 +52,15 @@ def describe(domain: Domain) -> str:
 
 
 def valuations(domains: Mapping[str, Domain]) -> Iterator[dict[str, Literal]]:
-    """Every assignment of values to the variables."""
+    """Yield every assignment of values to the variables."""
     names: Sequence[str] = tuple(domains)
     for row in product(*(values(domains[name]) for name in names)):
         yield dict(zip(names, row, strict=True))
 
 
 def count(domains: Mapping[str, Domain]) -> int:
-    """Number of assignments of values to the variables."""
-    number = 1
+    """Return the number of assignments of values to the variables."""
+    total = 1
     for domain in domains.values():
-        number *= size(domain)
-    return number
+        total *= size(domain)
+    return total

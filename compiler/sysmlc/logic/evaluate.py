@@ -1,4 +1,4 @@
-"""What formulas say of traces: values, single steps, finite traces and lassos."""
+"""Evaluation of formulas on valuations, single steps, finite traces and lassos."""
 
 from collections.abc import Callable, Mapping, Sequence
 
@@ -9,16 +9,16 @@ Valuation = Mapping[str, Literal]
 
 
 def value_of(formula: Formula, now: Valuation, then: Valuation | None = None) -> Literal:
-    """Value of a formula without temporal operators; ``then`` gives the primed variables.
+    """Return the value of a formula without temporal operators; *then* gives the primed variables.
 
-    Integers divide towards zero; x / 0 is 0 and x mod 0 is x, so that every formula has a
-    value. Raises KeyError for a variable without value.
+    Integers divide towards zero; x / 0 is 0 and x mod 0 is x, so that every formula has a value.
+    Raises KeyError for a variable without a value.
     """
     match formula:
         case Const(value):
             return value
         case Var(name, primed):
-            return _next(then)[name] if primed else now[name]
+            return _require_next(then)[name] if primed else now[name]
         case Apply(Op.IMPLIES, (left, right)):
             return not value_of(left, now, then) or bool(value_of(right, now, then))
         case Apply(Op.AND, args):
@@ -33,27 +33,27 @@ Evaluation = Callable[[Valuation, Valuation | None], Literal]
 """``value_of`` for one formula."""
 
 
-def evaluation(formula: Formula) -> Evaluation:
-    """``value_of`` for one formula that is asked for many values: it is walked through once."""
+def compile_evaluation(formula: Formula) -> Evaluation:
+    """Return ``value_of`` for one formula as a closure, for formulas that are evaluated often."""
     match formula:
         case Const(value):
             return lambda now, then: value
         case Var(name, True):
-            return lambda now, then: _next(then)[name]
+            return lambda now, then: _require_next(then)[name]
         case Var(name):
             return lambda now, then: now[name]
         case Apply(op, args):
-            return _applied(op, tuple(evaluation(arg) for arg in args))
+            return _compile_operator(op, tuple(compile_evaluation(arg) for arg in args))
 
 
-def _applied(op: Op, parts: tuple[Evaluation, ...]) -> Evaluation:
+def _compile_operator(op: Op, parts: tuple[Evaluation, ...]) -> Evaluation:
     match op, parts:
         case Op.IMPLIES, (left, right):
             return lambda now, then: not left(now, then) or bool(right(now, then))
         case Op.AND, _:
-            return lambda now, then: _every(parts, now, then)
+            return lambda now, then: _all_true(parts, now, then)
         case Op.OR, _:
-            return lambda now, then: _some(parts, now, then)
+            return lambda now, then: _any_true(parts, now, then)
         case _, (only,):
             act = _OPERATIONS[op]
             return lambda now, then: act(only(now, then))
@@ -64,14 +64,14 @@ def _applied(op: Op, parts: tuple[Evaluation, ...]) -> Evaluation:
             raise KeyError(op)
 
 
-def _every(parts: tuple[Evaluation, ...], now: Valuation, then: Valuation | None) -> bool:
+def _all_true(parts: tuple[Evaluation, ...], now: Valuation, then: Valuation | None) -> bool:
     for part in parts:  # noqa: SIM110 - a generator for every connective costs as much again
         if not part(now, then):
             return False
     return True
 
 
-def _some(parts: tuple[Evaluation, ...], now: Valuation, then: Valuation | None) -> bool:
+def _any_true(parts: tuple[Evaluation, ...], now: Valuation, then: Valuation | None) -> bool:
     for part in parts:  # noqa: SIM110
         if part(now, then):
             return True
@@ -79,12 +79,12 @@ def _some(parts: tuple[Evaluation, ...], now: Valuation, then: Valuation | None)
 
 
 def is_true(formula: Formula, now: Valuation, then: Valuation | None = None) -> bool:
-    """Truth of a formula without temporal operators in one step."""
+    """Return whether a formula without temporal operators holds in one step."""
     return bool(value_of(formula, now, then))
 
 
 def has_primes(formula: Formula) -> bool:
-    """Whether the formula speaks of the next step."""
+    """Return whether the formula refers to the next step."""
     match formula:
         case Var(_, primed):
             return primed
@@ -94,28 +94,30 @@ def has_primes(formula: Formula) -> bool:
             return False
 
 
-def violation(
+def find_violation(
     conjunct: Conjunct, trace: Sequence[Valuation], loop: int | None = None
 ) -> int | None:
-    """The first step in which the conjunct is violated, or None.
+    """Return the first step in which the conjunct is violated, or None.
 
-    ``loop`` is the step to which the last one returns; without it the trace is finite: a
-    formula about the next step is not asked of the last one, and liveness cannot be violated.
+    *loop* is the step to which the last one returns. Without it the trace is finite: a formula
+    about the next step is not evaluated in the last one, and liveness cannot be violated.
     """
     if conjunct.class_ is Class.INIT:
         return None if is_true(conjunct.formula, trace[0]) else 0
     if conjunct.class_ is Class.SAFETY:
-        return _first_unsafe(conjunct.formula, trace, loop)
+        return _find_unsafe_step(conjunct.formula, trace, loop)
     if loop is None:
         return None
     if conjunct.class_ is Class.OTHER:
-        return None if lasso_truth(conjunct.formula, trace, loop)[0] else 0
-    holds = any(is_true(conjunct.formula, now, then) for now, then in _steps(trace, loop)[loop:])
+        return None if evaluate_on_lasso(conjunct.formula, trace, loop)[0] else 0
+    holds = any(
+        is_true(conjunct.formula, now, then) for now, then in _pair_steps(trace, loop)[loop:]
+    )
     return None if holds else loop
 
 
-def _first_unsafe(formula: Formula, trace: Sequence[Valuation], loop: int | None) -> int | None:
-    for index, (now, then) in enumerate(_steps(trace, loop)):
+def _find_unsafe_step(formula: Formula, trace: Sequence[Valuation], loop: int | None) -> int | None:
+    for index, (now, then) in enumerate(_pair_steps(trace, loop)):
         if then is None and has_primes(formula):
             continue
         if not is_true(formula, now, then):
@@ -123,26 +125,28 @@ def _first_unsafe(formula: Formula, trace: Sequence[Valuation], loop: int | None
     return None
 
 
-def _steps(
+def _pair_steps(
     trace: Sequence[Valuation], loop: int | None
 ) -> list[tuple[Valuation, Valuation | None]]:
     last = None if loop is None else trace[loop]
     return list(zip(trace, [*trace[1:], last], strict=True))
 
 
-def lasso_truth(formula: Formula, trace: Sequence[Valuation], loop: int) -> list[bool]:
-    """Truth of an LTL formula at each step of the infinite trace that returns to ``loop``."""
+def evaluate_on_lasso(formula: Formula, trace: Sequence[Valuation], loop: int) -> list[bool]:
+    """Return the truth of an LTL formula at each step of the infinite trace that returns to
+    *loop*.
+    """
     match formula:
         case Apply(op, args) if op in _TEMPORAL:
-            return _TEMPORAL[op](loop, *(lasso_truth(arg, trace, loop) for arg in args))
+            return _TEMPORAL[op](loop, *(evaluate_on_lasso(arg, trace, loop) for arg in args))
         case Apply(op, args) if op in _CONNECTIVES:
-            columns = [lasso_truth(arg, trace, loop) for arg in args]
+            columns = [evaluate_on_lasso(arg, trace, loop) for arg in args]
             return [_CONNECTIVES[op](row) for row in zip(*columns, strict=True)]
         case _:
-            return [is_true(formula, now, then) for now, then in _steps(trace, loop)]
+            return [is_true(formula, now, then) for now, then in _pair_steps(trace, loop)]
 
 
-def _next(then: Valuation | None) -> Valuation:
+def _require_next(then: Valuation | None) -> Valuation:
     if then is None:
         raise KeyError("there is no next step")
     return then
@@ -152,20 +156,26 @@ def _shift(loop: int, column: Sequence[bool]) -> list[bool]:
     return [*column[1:], column[loop]]
 
 
-def _least(loop: int, stay: list[bool], goal: list[bool], start: bool) -> list[bool]:
-    found = [start] * len(goal)
+def _iterate_backwards(loop: int, stay: list[bool], goal: list[bool], start: bool) -> list[bool]:
+    """Iterate the expansion of an until operator backwards along the lasso; *start* selects weak
+    or strong until.
+    """
+    truth = [start] * len(goal)
     for _ in range(2 * len(goal)):
-        ahead = _shift(loop, found)
-        found = [g or (s and a) for g, s, a in zip(goal, stay, ahead, strict=True)]
-    return found
+        next_truth = _shift(loop, truth)
+        truth = [
+            goal_holds or (stay_holds and next_holds)
+            for goal_holds, stay_holds, next_holds in zip(goal, stay, next_truth, strict=True)
+        ]
+    return truth
 
 
 def _until(loop: int, stay: list[bool], goal: list[bool]) -> list[bool]:
-    return _least(loop, stay, goal, start=False)
+    return _iterate_backwards(loop, stay, goal, start=False)
 
 
 def _weak_until(loop: int, stay: list[bool], goal: list[bool]) -> list[bool]:
-    return _least(loop, stay, goal, start=True)
+    return _iterate_backwards(loop, stay, goal, start=True)
 
 
 def _release(loop: int, goal: list[bool], stay: list[bool]) -> list[bool]:

@@ -1,7 +1,7 @@
 """Linear temporal logic over variables with finite domains, as immutable values.
 
-A formula is built by the small functions at the end (``var``, ``eq``, ``both``, ``always`` ...),
-never by calling the classes from outside: they keep operands flat and constants folded.
+Formulas are built with the functions at the end (``var``, ``eq``, ``both``, ``always`` ...), which
+flatten operands and fold constants; other modules do not call the classes.
 """
 
 from dataclasses import dataclass
@@ -11,7 +11,7 @@ from weakref import WeakValueDictionary
 
 Literal = bool | int | str
 """A value of a variable: Boolean, integer, or the name of an enumeration literal."""
-_REMEMBERED = 1 << 14
+_CACHED_FORMULAS = 1 << 14
 """Formulas that are kept with what they are made of, and with their variables: machines of one
 kind ask for the same again and again."""
 
@@ -46,16 +46,16 @@ class Op(StrEnum):
     HISTORICALLY = "H"
     SINCE = "S"
 
-    # That of Enum is written in Python, and operators are keys of every table here.
+    # Enum.__hash__ is written in Python, and operators are keys of every table here.
     __hash__ = str.__hash__
 
 
 _NOT, _AND, _OR, _IMPLIES, _IFF, _EQ = Op.NOT, Op.AND, Op.OR, Op.IMPLIES, Op.IFF, Op.EQ
-"""Members by names of the module: in Python 3.11 those of a class take twice as long."""
+# Module-level names: in Python 3.11, looking up a member of an enumeration takes twice as long.
 
 
-# Formulas that are equal are one object, so that comparing them and looking them up costs nothing,
-# however deep they are. A table holds those that somebody still has.
+# Equal formulas are one object (interning), so that comparing them and looking them up takes
+# constant time at any depth. The tables hold weak references.
 
 
 @dataclass(frozen=True, slots=True, eq=False, init=False, weakref_slot=True)
@@ -66,14 +66,14 @@ class Const:
 
     def __new__(cls, value: Literal) -> "Const":
         key = (value.__class__, value)
-        found = _CONSTANTS.get(key)
-        if found is None:
-            found = _CONSTANTS[key] = object.__new__(cls)
-            _set(found, "value", value)
-        return found
+        instance = _CONSTANTS.get(key)
+        if instance is None:
+            instance = _CONSTANTS[key] = object.__new__(cls)
+            _set(instance, "value", value)
+        return instance
 
     def __reduce__(self) -> tuple[type["Const"], tuple[Literal]]:
-        """Copies and what is read back are the same object again."""
+        """Interned objects stay unique when they are copied or unpickled."""
         return Const, (self.value,)
 
 
@@ -86,12 +86,12 @@ class Var:
 
     def __new__(cls, name: str, primed: bool = False) -> "Var":
         key = (name, primed)
-        found = _VARIABLES.get(key)
-        if found is None:
-            found = _VARIABLES[key] = object.__new__(cls)
-            _set(found, "name", name)
-            _set(found, "primed", primed)
-        return found
+        instance = _VARIABLES.get(key)
+        if instance is None:
+            instance = _VARIABLES[key] = object.__new__(cls)
+            _set(instance, "name", name)
+            _set(instance, "primed", primed)
+        return instance
 
     def __reduce__(self) -> tuple[type["Var"], tuple[str, bool]]:
         return Var, (self.name, self.primed)
@@ -106,12 +106,12 @@ class Apply:
 
     def __new__(cls, op: Op, args: tuple["Formula", ...]) -> "Apply":
         key = (op, args)
-        found = _APPLIED.get(key)
-        if found is None:
-            found = _APPLIED[key] = object.__new__(cls)
-            _set(found, "op", op)
-            _set(found, "args", args)
-        return found
+        instance = _APPLIED.get(key)
+        if instance is None:
+            instance = _APPLIED[key] = object.__new__(cls)
+            _set(instance, "op", op)
+            _set(instance, "args", args)
+        return instance
 
     def __reduce__(self) -> tuple[type["Apply"], tuple[Op, tuple["Formula", ...]]]:
         return Apply, (self.op, self.args)
@@ -134,15 +134,15 @@ def const(value: Literal) -> Const:
     return Const(value)
 
 
-@lru_cache(_REMEMBERED)
+@lru_cache(_CACHED_FORMULAS)
 def var(name: str) -> Var:
     """A variable in the present step."""
     return Var(name)
 
 
-@lru_cache(_REMEMBERED)
+@lru_cache(_CACHED_FORMULAS)
 def primed(formula: Formula) -> Formula:
-    """The formula about the next step: every variable primed."""
+    """Return the formula about the next step: every variable is primed."""
     match formula:
         case Var(name):
             return Var(name, primed=True)
@@ -153,7 +153,7 @@ def primed(formula: Formula) -> Formula:
 
 
 def negate(formula: Formula) -> Formula:
-    """Not; a double negation falls away."""
+    """Return the negation; a double negation is removed."""
     if isinstance(formula, Apply):
         return formula.args[0] if formula.op is _NOT else _applied(_NOT, (formula,))
     if isinstance(formula, Const) and isinstance(formula.value, bool):
@@ -162,12 +162,12 @@ def negate(formula: Formula) -> Formula:
 
 
 def both(*formulas: Formula) -> Formula:
-    """Conjunction, flat, without true; true when there is nothing to join."""
+    """Return the flat conjunction without ``true``; ``true`` for no operands."""
     return _flat(_AND, formulas, TRUE, FALSE)
 
 
 def either(*formulas: Formula) -> Formula:
-    """Disjunction, flat, without false; false when there is nothing to join."""
+    """Return the flat disjunction without ``false``; ``false`` for no operands."""
     return _flat(_OR, formulas, FALSE, TRUE)
 
 
@@ -205,25 +205,25 @@ def eventually(formula: Formula) -> Formula:
     return _applied(Op.EVENTUALLY, (formula,))
 
 
-@lru_cache(_REMEMBERED)
+@lru_cache(_CACHED_FORMULAS)
 def _applied(op: Op, args: tuple[Formula, ...]) -> Apply:
-    """``Apply``, found again without a call in Python."""
+    """Return ``Apply(op, args)`` from a cache."""
     return Apply(op, args)
 
 
-@lru_cache(_REMEMBERED)
+@lru_cache(_CACHED_FORMULAS)
 def variables(formula: Formula) -> tuple[Var, ...]:
-    """Every variable of the formula, with repetitions, from left to right."""
+    """Return every variable of the formula from left to right, with repetitions."""
     match formula:
         case Var():
             return (formula,)
         case Apply(_, args):
-            return tuple(found for arg in args for found in variables(arg))
+            return tuple(variable for arg in args for variable in variables(arg))
         case _:
             return ()
 
 
-@lru_cache(_REMEMBERED)
+@lru_cache(_CACHED_FORMULAS)
 def _flat(op: Op, formulas: tuple[Formula, ...], unit: Const, zero: Const) -> Formula:
     parts: dict[Formula, None] = {}
     for formula in formulas:

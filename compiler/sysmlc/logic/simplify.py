@@ -6,19 +6,19 @@ from functools import lru_cache
 from sysmlc.logic import domains
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import Domain
-from sysmlc.logic.evaluate import evaluation, value_of
+from sysmlc.logic.evaluate import compile_evaluation, value_of
 from sysmlc.logic.formula import Apply, Const, Formula, Literal, Op, Var
 
-_LIMIT = 4096
-"""Valuations tried; beyond them the answer is that a formula may be true and may be false."""
-_REMEMBERED = 1 << 16
-"""Answers that are kept: machines of one kind ask the same questions."""
-_TIDY_LIMIT = 300
-"""The same for what only serves the reader."""
+_MAX_VALUATIONS = 4096
+"""Most valuations tried; above this number a formula counts as satisfiable."""
+_CACHED_ANSWERS = 1 << 16
+"""Cache size: similar machines ask the same questions."""
+_MAX_VALUATIONS_REDUNDANCY = 300
+"""Most valuations tried to shorten a formula for its reader."""
 
 
 def substitute(formula: Formula, values: Mapping[str, Formula]) -> Formula:
-    """The formula with unprimed variables replaced, constants folded."""
+    """Return the formula with unprimed variables replaced and constants folded."""
     match formula:
         case Var(name, False):
             return values.get(name, formula)
@@ -29,16 +29,16 @@ def substitute(formula: Formula, values: Mapping[str, Formula]) -> Formula:
 
 
 def rebuild(op: Op, args: tuple[Formula, ...]) -> Formula:
-    """An operator applied, with what is constant folded away."""
+    """Apply the operator to the operands and fold constants."""
     if all(isinstance(arg, Const) for arg in args) and op not in _TEMPORAL:
         return Const(value_of(Apply(op, args), {}))
     if op in _CONNECTIVES:
         return _CONNECTIVES[op](*args)
-    return _shifted(op, args) if op in _OPPOSITE else Apply(op, args)
+    return _move_constant_right(op, args) if op in _OPPOSITE else Apply(op, args)
 
 
-def _shifted(op: Op, args: tuple[Formula, ...]) -> Formula:
-    """A comparison with the constant moved to the right: ``x + 1 = 3`` is ``x = 2``."""
+def _move_constant_right(op: Op, args: tuple[Formula, ...]) -> Formula:
+    """Move a constant of a comparison to the right: ``x + 1 = 3`` becomes ``x = 2``."""
     match args:
         case (Apply(Op.ADD, (inner, Const(int(by)))), Const(int(limit))):
             return Apply(op, (inner, Const(limit - by)))
@@ -48,15 +48,17 @@ def _shifted(op: Op, args: tuple[Formula, ...]) -> Formula:
             return Apply(op, args)
 
 
-def _same(left: Formula, right: Formula) -> Formula:
-    for one, other in ((left, right), (right, left)):
-        if isinstance(one, Const):
-            return other if one.value else f.negate(other)
+def _fold_equivalence(left: Formula, right: Formula) -> Formula:
+    for constant, operand in ((left, right), (right, left)):
+        if isinstance(constant, Const):
+            return operand if constant.value else f.negate(operand)
     return f.iff(left, right)
 
 
-def is_satisfiable(formula: Formula, known: Mapping[str, Domain], limit: int = _LIMIT) -> bool:
-    """Whether some values make the formula true; yes when there are too many to try.
+def is_satisfiable(
+    formula: Formula, known: Mapping[str, Domain], limit: int = _MAX_VALUATIONS
+) -> bool:
+    """Return whether some values make the formula true; also if there are too many to try.
 
     Primed and unprimed variables are independent of one another.
     """
@@ -68,31 +70,34 @@ def is_satisfiable(formula: Formula, known: Mapping[str, Domain], limit: int = _
     return _is_satisfiable(formula, tuple(domains_of.items()))
 
 
-def _count(found: Iterable[Domain], limit: int) -> int:
-    """Number of valuations, or of those of some variables if that is more than the limit."""
-    number = 1
-    for domain in found:
-        number *= domains.size(domain)
-        if number > limit:
+def _count(variable_domains: Iterable[Domain], limit: int) -> int:
+    """Return the number of valuations; counting stops above the limit."""
+    total = 1
+    for domain in variable_domains:
+        total *= domains.size(domain)
+        if total > limit:
             break
-    return number
+    return total
 
 
-@lru_cache(_REMEMBERED)
+@lru_cache(_CACHED_ANSWERS)
 def _is_satisfiable(formula: Formula, variables: tuple[tuple[Var, Domain], ...]) -> bool:
-    """Parts of a disjunction are tried one by one, parts of a conjunction that have nothing to
-    do with one another too: that is much less than all values of all variables."""
-    branches = _branches(formula)
+    """Return whether some values make the formula true.
+
+    The branches of a disjunction, and parts of a conjunction without common variables, are tried
+    separately: that needs far fewer valuations than all variables together.
+    """
+    branches = _split_disjunction(formula)
     if branches:
-        return any(_is_possible(one, variables) for one in branches)
-    groups = _apart(_joined(formula))
+        return any(_is_part_satisfiable(branch, variables) for branch in branches)
+    groups = _group_by_variables(_split_any_conjunction(formula))
     if len(groups) > 1:
-        return all(_is_possible(f.both(*group), variables) for group in groups)
+        return all(_is_part_satisfiable(f.both(*group), variables) for group in groups)
     return _has_model(formula, dict(variables))
 
 
-def _branches(formula: Formula) -> tuple[Formula, ...]:
-    """The parts of a disjunction, however it is written; nothing for what is none."""
+def _split_disjunction(formula: Formula) -> tuple[Formula, ...]:
+    """Return the operands of a disjunction in any spelling; nothing for another formula."""
     match formula:
         case Apply(Op.OR, args):
             return args
@@ -104,28 +109,32 @@ def _branches(formula: Formula) -> tuple[Formula, ...]:
             return ()
 
 
-def _joined(formula: Formula) -> tuple[Formula, ...]:
-    """The parts of a conjunction, however it is written, else the formula alone."""
+def _split_any_conjunction(formula: Formula) -> tuple[Formula, ...]:
+    """Return the operands of a conjunction in any spelling, else the formula alone."""
     match formula:
         case Apply(Op.NOT, (Apply(Op.OR, args),)):
             return tuple(map(f.negate, args))
         case _:
-            return _parts(formula)
+            return _split_conjunction(formula)
 
 
-def _is_possible(formula: Formula, around: tuple[tuple[Var, Domain], ...]) -> bool:
+def _is_part_satisfiable(
+    formula: Formula, variable_domains: tuple[tuple[Var, Domain], ...]
+) -> bool:
     if isinstance(formula, Const):
         return bool(formula.value)
-    used = frozenset(f.variables(formula))
-    return _is_satisfiable(formula, tuple(pair for pair in around if pair[0] in used))
+    own_variables = frozenset(f.variables(formula))
+    return _is_satisfiable(
+        formula, tuple(pair for pair in variable_domains if pair[0] in own_variables)
+    )
 
 
-def _apart(formulas: tuple[Formula, ...]) -> list[list[Formula]]:
-    """The formulas in groups that share no variable."""
+def _group_by_variables(formulas: tuple[Formula, ...]) -> list[list[Formula]]:
+    """Group the formulas so that different groups share no variable."""
     groups: list[tuple[set[Var], list[Formula]]] = []
     for formula in formulas:
         variables, members = set(f.variables(formula)), [formula]
-        for group in [one for one in groups if not one[0].isdisjoint(variables)]:
+        for group in [existing for existing in groups if not existing[0].isdisjoint(variables)]:
             groups.remove(group)
             variables |= group[0]
             members = [*group[1], *members]
@@ -133,22 +142,30 @@ def _apart(formulas: tuple[Formula, ...]) -> list[list[Formula]]:
     return [members for _, members in groups]
 
 
-def _has_model(formula: Formula, found: Mapping[Var, Domain]) -> bool:
-    """Whether some of all values make the formula true."""
-    if len(found) == 1:
-        return any(_solutions(formula, variable, domain) for variable, domain in found.items())
-    now = {one.name: domain for one, domain in found.items() if not one.primed}
-    then = {one.name: domain for one, domain in found.items() if one.primed}
-    truth = evaluation(formula)
+def _has_model(formula: Formula, variable_domains: Mapping[Var, Domain]) -> bool:
+    """Return whether some valuation makes the formula true, by trying all."""
+    if len(variable_domains) == 1:
+        return any(
+            _solutions(formula, variable, domain) for variable, domain in variable_domains.items()
+        )
+    current = {
+        variable.name: domain
+        for variable, domain in variable_domains.items()
+        if not variable.primed
+    }
+    following = {
+        variable.name: domain for variable, domain in variable_domains.items() if variable.primed
+    }
+    truth = compile_evaluation(formula)
     return any(
         truth(before, after)
-        for after in domains.valuations(then)
-        for before in domains.valuations(now)
+        for after in domains.valuations(following)
+        for before in domains.valuations(current)
     )
 
 
-def simplified(formula: Formula, known: Mapping[str, Domain]) -> Formula:
-    """True or false when the formula is always that, else the formula."""
+def simplify_constant(formula: Formula, known: Mapping[str, Domain]) -> Formula:
+    """Return true or false if the formula is constant, else the formula."""
     if isinstance(formula, Const):
         return formula
     if not is_satisfiable(formula, known):
@@ -156,18 +173,18 @@ def simplified(formula: Formula, known: Mapping[str, Domain]) -> Formula:
     return formula if is_satisfiable(f.negate(formula), known) else f.TRUE
 
 
-@lru_cache(_REMEMBERED)
+@lru_cache(_CACHED_ANSWERS)
 def _solutions(formula: Formula, variable: Var, domain: Domain) -> frozenset[Literal]:
-    """The values of its only variable that make the formula true."""
+    """Return the values of its only variable that make the formula true."""
     match formula:
         case Apply(Op.NOT, (inner,)):
             return frozenset(domains.values(domain)) - _solutions(inner, variable, domain)
         case Apply(Op.AND, args):
-            return frozenset.intersection(*(_solutions(one, variable, domain) for one in args))
+            return frozenset.intersection(*(_solutions(arg, variable, domain) for arg in args))
         case Apply(Op.OR, args):
-            return frozenset.union(*(_solutions(one, variable, domain) for one in args))
+            return frozenset.union(*(_solutions(arg, variable, domain) for arg in args))
         case _:
-            truth = evaluation(formula)
+            truth = compile_evaluation(formula)
             rows = ((value, {variable.name: value}) for value in domains.values(domain))
             return frozenset(value for value, row in rows if truth(row, row))
 
@@ -175,83 +192,93 @@ def _solutions(formula: Formula, variable: Var, domain: Domain) -> frozenset[Lit
 # -- tidying -----------------------------------------------------------------------------------
 
 
-def tidy(formula: Formula, known: Mapping[str, Domain], facts: tuple[Formula, ...] = ()) -> Formula:
-    """An equivalent formula, given the facts, without the parts that the rest implies."""
-    return _remembered(formula, tuple(known.items()), facts)
+def remove_redundant(
+    formula: Formula, known: Mapping[str, Domain], facts: tuple[Formula, ...] = ()
+) -> Formula:
+    """Return an equivalent formula, given the facts, without parts that the rest implies."""
+    return _remove_redundant_cached(formula, tuple(known.items()), facts)
 
 
-@lru_cache(_REMEMBERED)
-def _remembered(
+@lru_cache(_CACHED_ANSWERS)
+def _remove_redundant_cached(
     formula: Formula, known: tuple[tuple[str, Domain], ...], facts: tuple[Formula, ...]
 ) -> Formula:
-    return _tidy(formula, dict(known), facts)
+    return _remove_redundant(formula, dict(known), facts)
 
 
-def _tidy(formula: Formula, known: Mapping[str, Domain], facts: tuple[Formula, ...]) -> Formula:
+def _remove_redundant(
+    formula: Formula, known: Mapping[str, Domain], facts: tuple[Formula, ...]
+) -> Formula:
     match formula:
         case Apply(Op.AND, args):
-            return _tidy_and(args, known, facts)
+            return _remove_redundant_conjuncts(args, known, facts)
         case Apply(Op.OR, args):
-            return f.either(*(_tidy(arg, known, facts) for arg in args))
+            return f.either(*(_remove_redundant(arg, known, facts) for arg in args))
         case Apply(Op.NOT, (inner,)):
-            return opposite(_tidy(inner, known, facts))
+            return opposite(_remove_redundant(inner, known, facts))
         case Apply(Op.IMPLIES, (left, right)):
-            return f.implies(_tidy(left, known, facts), right)
+            return f.implies(_remove_redundant(left, known, facts), right)
         case _:
-            return _leaf(formula, known, facts)
+            return _decide_atom(formula, known, facts)
 
 
 def opposite(formula: Formula) -> Formula:
-    """The negation; a comparison is turned into the opposite one."""
+    """Return the negation; a comparison becomes the opposite comparison."""
     if isinstance(formula, Apply) and formula.op in _OPPOSITE:
         return Apply(_OPPOSITE[formula.op], formula.args)
     return f.negate(formula)
 
 
-def _tidy_and(
+def _remove_redundant_conjuncts(
     args: tuple[Formula, ...], known: Mapping[str, Domain], facts: tuple[Formula, ...]
 ) -> Formula:
     parts = list(args)
     for index in reversed(range(len(parts))):
         others = (*facts, *parts[:index], *parts[index + 1 :])
-        parts[index] = _tidy(parts[index], known, others)
+        parts[index] = _remove_redundant(parts[index], known, others)
     return f.both(*parts)
 
 
-def _leaf(formula: Formula, known: Mapping[str, Domain], facts: tuple[Formula, ...]) -> Formula:
-    near = _near(formula, known, facts)
-    if not is_satisfiable(f.both(near, f.negate(formula)), known, _TIDY_LIMIT):
+def _decide_atom(
+    formula: Formula, known: Mapping[str, Domain], facts: tuple[Formula, ...]
+) -> Formula:
+    near = _select_facts(formula, known, facts)
+    if not is_satisfiable(f.both(near, f.negate(formula)), known, _MAX_VALUATIONS_REDUNDANCY):
         return f.TRUE
-    if not is_satisfiable(f.both(near, formula), known, _TIDY_LIMIT):
+    if not is_satisfiable(f.both(near, formula), known, _MAX_VALUATIONS_REDUNDANCY):
         return f.FALSE
     return formula
 
 
-def _near(formula: Formula, known: Mapping[str, Domain], facts: tuple[Formula, ...]) -> Formula:
-    """Facts about the formula's variables, the simplest first, as many as can be tried."""
-    used = set(f.variables(formula))
-    parts = [part for fact in facts for part in _parts(fact)]
-    about = [(set(f.variables(part)), part) for part in parts]
+def _select_facts(
+    formula: Formula, known: Mapping[str, Domain], facts: tuple[Formula, ...]
+) -> Formula:
+    """Return the facts about the formula's variables, simplest first, within the valuation
+    limit.
+    """
+    selected_variables = set(f.variables(formula))
+    parts = [part for fact in facts for part in _split_conjunction(fact)]
+    candidates = [(set(f.variables(part)), part) for part in parts]
     chosen: list[Formula] = []
-    for variables, part in sorted(about, key=lambda one: len(one[0])):
+    for variables, part in sorted(candidates, key=lambda candidate: len(candidate[0])):
         if variables.isdisjoint(f.variables(formula)):
             continue
-        if _size(used | variables, known) <= _TIDY_LIMIT:
-            used |= variables
+        if _size(selected_variables | variables, known) <= _MAX_VALUATIONS_REDUNDANCY:
+            selected_variables |= variables
             chosen.append(part)
     return f.both(*chosen)
 
 
-def _parts(formula: Formula) -> tuple[Formula, ...]:
+def _split_conjunction(formula: Formula) -> tuple[Formula, ...]:
     is_and = isinstance(formula, Apply) and formula.op is Op.AND
     return formula.args if is_and and isinstance(formula, Apply) else (formula,)
 
 
 def _size(variables: set[Var], known: Mapping[str, Domain]) -> int:
-    number = 1
+    total = 1
     for variable in variables:
-        number *= domains.size(known[variable.name])
-    return number
+        total *= domains.size(known[variable.name])
+    return total
 
 
 _TEMPORAL = frozenset([Op.NEXT, Op.ALWAYS, Op.EVENTUALLY, Op.UNTIL, Op.RELEASE, Op.WEAK_UNTIL])
@@ -261,7 +288,7 @@ _CONNECTIVES: dict[Op, Callable[..., Formula]] = {
     Op.OR: f.either,
     Op.NOT: f.negate,
     Op.IMPLIES: f.implies,
-    Op.IFF: _same,
+    Op.IFF: _fold_equivalence,
 }
 _OPPOSITE = {
     Op.EQ: Op.NE,

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Mapping
 from typing import NamedTuple
 
-from sysmlc.logic.evaluate import evaluation
+from sysmlc.logic.evaluate import compile_evaluation
 from sysmlc.logic.formula import Literal
 from sysmlc.robots import contract_terms as words
 from sysmlc.robots.study import WAYS, Grid, Robot, next_move
@@ -86,7 +86,10 @@ def _steps(machine: Machine | Table) -> Step:
         return machine.step
     names = [one.name for one in machine.outputs]
     rows = [
-        [(evaluation(move.when), tuple(map(evaluation, move.output)), move.state) for move in moves]
+        [
+            (compile_evaluation(move.when), tuple(map(compile_evaluation, move.output)), move.state)
+            for move in moves
+        ]
         for moves in machine.states
     ]
 

@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence, Set
 from functools import partial
 
 from sysmlc.logic.contract import Conjunct, Contract
-from sysmlc.logic.evaluate import violation
+from sysmlc.logic.evaluate import find_violation
 from sysmlc.logic.formula import Literal
 from sysmlc.robots import contract_terms as words
 from sysmlc.robots.joint_contracts import liveness_conjuncts, safety_conjuncts
@@ -125,7 +125,7 @@ def _rest_values(study: Study, known: Values, rests: Mapping[Robot, int]) -> dic
 
 def violated_conjuncts(run: Trace, conjuncts: Iterable[Conjunct]) -> Iterator[Conjunct]:
     """The conjuncts that do not hold in a run."""
-    return (one for one in conjuncts if violation(one, run.steps, run.loop) is not None)
+    return (one for one in conjuncts if find_violation(one, run.steps, run.loop) is not None)
 
 
 def satisfies_contract(run: Trace, contract: Contract) -> bool:

@@ -26,7 +26,7 @@ from sysmlc.logic.activities.token_graph import (
     Write,
 )
 from sysmlc.logic.contract import Domain
-from sysmlc.logic.evaluate import Evaluation, evaluation
+from sysmlc.logic.evaluate import Evaluation, compile_evaluation
 from sysmlc.logic.formula import Formula, Literal
 
 MAX_VALUES = 4_096
@@ -177,7 +177,7 @@ class _ValueSets:
         other_valuations = self._list_other_valuations(condition)
         if other_valuations is None:
             return self.every
-        truth, satisfying = evaluation(condition), 0
+        truth, satisfying = compile_evaluation(condition), 0
         for value, bit in self._bits.items():
             if any(truth({**row, self._name: value}, None) for row in other_valuations):
                 satisfying |= bit
@@ -212,7 +212,7 @@ class _ValueSets:
         other_valuations = self._list_other_valuations(condition, value)
         if other_valuations is None:
             return self.every
-        truth, evaluate, image = evaluation(condition), evaluation(value), 0
+        truth, evaluate, image = compile_evaluation(condition), compile_evaluation(value), 0
         for own_value, bit in self._bits.items():
             if values & bit:
                 image |= self._image_of_valuation(truth, evaluate, other_valuations, own_value)

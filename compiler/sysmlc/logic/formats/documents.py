@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping
 from typing import NoReturn
 
-from sysmlc.logic.classification import within
+from sysmlc.logic.classification import convert_to_class
 from sysmlc.logic.contract import (
     BooleanDomain,
     Class,
@@ -177,7 +177,7 @@ def _conjunct(
         place = text.offset(error.at)
         file.report(rules.WRONG_FORMULA, place, section=section, reason=str(error))
         return None
-    step = within(formula, class_)
+    step = convert_to_class(formula, class_)
     if step is None:
         reason = "it has primes" if class_ is Class.INIT else "it looks further than one step"
         file.report(rules.WRONG_CLASS, text.at, formula=text, section=section, reason=reason)

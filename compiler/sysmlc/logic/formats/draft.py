@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterator
 
 from sysmlc.diagnostics import Rule
 from sysmlc.logic import formula as f
-from sysmlc.logic.classification import classified, within
+from sysmlc.logic.classification import classify, convert_to_class
 from sysmlc.logic.contract import Class, Conjunct, Contract, Domain, Owner, Variable
 from sysmlc.logic.formats import rules
 from sysmlc.logic.formats.base import SECTIONS
@@ -61,7 +61,7 @@ class Draft:
 
     def add(self, owner: Owner, class_: Class, formula: Formula, at: int, text: str = "") -> None:
         """Add a conjunct whose class is said by where it stands."""
-        step = within(formula, class_)
+        step = convert_to_class(formula, class_)
         if step is None:
             reason = "it looks further than one step"
             reason = "it speaks of the next step" if class_ is Class.INIT else reason
@@ -72,7 +72,7 @@ class Draft:
 
     def add_classified(self, owner: Owner, class_: Class, formula: Formula, at: int) -> None:
         """Add the conjuncts of a formula whose operators must say the class of its section."""
-        for found, part in classified(formula):
+        for found, part in classify(formula):
             if found is class_:
                 self.add(owner, class_, part, at)
                 continue
@@ -82,7 +82,7 @@ class Draft:
 
     def add_ltl(self, owner: Owner, formula: Formula, at: int) -> None:
         """Add the conjuncts of a formula in LTL, whose operators say their classes."""
-        for class_, part in classified(formula):
+        for class_, part in classify(formula):
             if part != f.TRUE:
                 self._sides[owner].append(Conjunct(part, class_, self.file.origin(at)))
 

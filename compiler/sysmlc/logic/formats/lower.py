@@ -18,7 +18,7 @@ from sysmlc.logic.contract import (
     EnumerationDomain,
     Variable,
 )
-from sysmlc.logic.evaluate import Evaluation, evaluation
+from sysmlc.logic.evaluate import Evaluation, compile_evaluation
 from sysmlc.logic.formula import Apply, Const, Formula, Literal, Op, Var
 from sysmlc.logic.spelling import COMPARISONS
 
@@ -232,7 +232,7 @@ def _written_out(formula: Formula, found: tuple[tuple[Var, Domain], ...], limit:
         number *= domains.size(domain)
     if number > limit:
         raise TooManyValuesError
-    return _cases(evaluation(formula), found, {}, {})
+    return _cases(compile_evaluation(formula), found, {}, {})
 
 
 def _cases(

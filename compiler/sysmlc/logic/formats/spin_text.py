@@ -11,7 +11,7 @@ from functools import lru_cache
 from sysmlc.logic import domains
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import BooleanDomain, Class, Conjunct, Contract, Domain
-from sysmlc.logic.evaluate import Evaluation, evaluation
+from sysmlc.logic.evaluate import Evaluation, compile_evaluation
 from sysmlc.logic.formula import Apply, Const, Formula, Literal, Op, Var
 from sysmlc.logic.printing import print_literal
 
@@ -132,7 +132,7 @@ def _spelt(formula: Formula, found: tuple[tuple[str, Domain], ...]) -> str:
         ):
             return f"!{_atom(name, primed, value, known)}"
         case _:
-            return _cases(evaluation(formula), variables, {}, {}, known)
+            return _cases(compile_evaluation(formula), variables, {}, {}, known)
 
 
 def _atom(name: str, primed: bool, value: Literal, known: Mapping[str, Domain]) -> str:

@@ -14,7 +14,7 @@ from sysmlc.ir import Graph
 from sysmlc.logic import domains
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import Domain
-from sysmlc.logic.evaluate import evaluation
+from sysmlc.logic.evaluate import compile_evaluation
 from sysmlc.logic.expressions.elaborate import Scope, condition
 from sysmlc.logic.expressions.expression import Expression, name_of
 from sysmlc.logic.formula import Formula
@@ -69,7 +69,7 @@ class GuardComparison:
         self._remaining -= count
         if self._remaining < 0:
             raise TooManyValuationsError
-        is_true = evaluation(formula)
+        is_true = compile_evaluation(formula)
         return any(is_true(values, None) for values in domains.valuations(variables))
 
     def _read_guard(self, transition: Transition) -> tuple[Formula, dict[str, Domain]]:

@@ -35,7 +35,7 @@ from sysmlc.logic.machines.moves import (
     is_chosen_formula,
 )
 from sysmlc.logic.machines.paths import Path
-from sysmlc.logic.simplify import is_satisfiable, tidy
+from sysmlc.logic.simplify import is_satisfiable, remove_redundant
 
 _Touches = Callable[[Path, str], bool]
 
@@ -165,10 +165,10 @@ def _derive_transition(exploration: Exploration, move: Move) -> Iterator[Conjunc
             is_chosen_formula(pick, literal)
             for pick, literal in _choices_on_path(exploration, move, path)
         ]
-        taken = tidy(f.both(move.fires, path.when, *choices), exploration.domains)
+        taken = remove_redundant(f.both(move.fires, path.when, *choices), exploration.domains)
         formula = f.implies(taken, f.both(*_effect_formulas(exploration, path)))
         if formula != f.TRUE:
-            branch = tidy(path.when, exploration.domains, _conjuncts(move.fires))
+            branch = remove_redundant(path.when, exploration.domains, _conjuncts(move.fires))
             preempting = [item.transition for item in _find_overtaking(exploration, move, path)]
             text = texts.describe_transition(
                 exploration.machine, move.transition, path, branch, preempting
@@ -290,7 +290,7 @@ def _change_conditions(
         return
     for path in touching:
         choices = [is_chosen_formula(*pick) for pick in _choices_on_path(exploration, move, path)]
-        yield tidy(f.both(move.fires, path.when, *choices), exploration.domains)
+        yield remove_redundant(f.both(move.fires, path.when, *choices), exploration.domains)
 
 
 # -- clocks, memories, activities --------------------------------------------------------------
@@ -316,7 +316,7 @@ def _derive_clocks(exploration: Exploration) -> Iterator[Conjunct]:
         )
         for case, update, text in cases:
             text = text.format(clock=state.timer, state=state.literal)
-            formula = tidy(f.implies(case, update), exploration.domains)
+            formula = remove_redundant(f.implies(case, update), exploration.domains)
             yield Conjunct(formula, Class.SAFETY, element_id(state.id), text)
 
 
@@ -333,7 +333,7 @@ def _stay_condition(exploration: Exploration, state: Vertex) -> Formula:
         is_active_formula(exploration.machine, state.id),
         *(f.negate(condition) for condition in exits),
     )
-    return tidy(formula, exploration.domains)
+    return remove_redundant(formula, exploration.domains)
 
 
 def _derive_memories(exploration: Exploration) -> Iterator[Conjunct]:
@@ -362,7 +362,7 @@ def _derive_history(exploration: Exploration, region: Region) -> Iterator[Conjun
     state = exploration.machine.vertices[region.state].literal
     update = f.implies(f.negate(is_inactive), f.eq(next_memory, f.var(region.variable)))
     text = texts.UPDATES_MEMORY.format(memory=region.memory, region=region.variable)
-    yield Conjunct(tidy(update, exploration.domains), Class.SAFETY, origin, text)
+    yield Conjunct(remove_redundant(update, exploration.domains), Class.SAFETY, origin, text)
     frame = f.implies(is_inactive, f.eq(next_memory, f.var(region.memory)))
     text = texts.KEEPS_MEMORY.format(memory=region.memory, state=state)
     yield Conjunct(frame, Class.SAFETY, origin, text)

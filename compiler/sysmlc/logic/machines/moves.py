@@ -34,7 +34,7 @@ from sysmlc.logic.machines.machine import (
     element_id,
 )
 from sysmlc.logic.machines.paths import MAX_PATHS, Path, PathExplorer, TooManyPathsError
-from sysmlc.logic.simplify import simplified, tidy
+from sysmlc.logic.simplify import remove_redundant, simplify_constant
 
 SATURATES = rule(
     "SM428",
@@ -115,7 +115,7 @@ def explore_machine(graph: Graph, machine: Machine, sink: Sink) -> Exploration |
 def _add_firing_condition(
     machine: Machine, domains: Mapping[str, Domain], move: Move, moves: list[Move]
 ) -> Move:
-    fires = tidy(_firing_condition(machine, move, moves), domains)
+    fires = remove_redundant(_firing_condition(machine, move, moves), domains)
     return replace(move, fires=fires, before=tuple(_find_preempting(machine, move, moves)))
 
 
@@ -137,7 +137,7 @@ def _enable_joins(machine: Machine, domains: Mapping[str, Domain], moves: list[M
             for inner_move in moves_by_id.values()
             if _leaves_inner_state(machine, inner_move, move)
         ]
-        enabled = tidy(f.both(move.enabled, *map(f.negate, inner)), domains)
+        enabled = remove_redundant(f.both(move.enabled, *map(f.negate, inner)), domains)
         moves_by_id[move.transition.id] = replace(move, enabled=enabled)
     return list(moves_by_id.values())
 
@@ -195,7 +195,7 @@ def _enabling_condition(
     occurs = _occurrence_condition(machine, transition)
     path_condition = _path_condition(machine, domains, transition, paths)
     active_sources = (is_active_formula(machine, source) for source in transition.sources)
-    return tidy(f.both(*active_sources, occurs, path_condition), domains)
+    return remove_redundant(f.both(*active_sources, occurs, path_condition), domains)
 
 
 def _path_condition(
@@ -205,9 +205,9 @@ def _path_condition(
     guard = f.TRUE if transition.guard is None else condition(transition.guard, machine.scope)
     condition_of_paths = f.either(*(path.when for path in paths))
     if condition_of_paths == guard:
-        return simplified(guard, domains)
-    is_always_open = simplified(f.implies(guard, condition_of_paths), domains) == f.TRUE
-    return simplified(guard if is_always_open else condition_of_paths, domains)
+        return simplify_constant(guard, domains)
+    is_always_open = simplify_constant(f.implies(guard, condition_of_paths), domains) == f.TRUE
+    return simplify_constant(guard if is_always_open else condition_of_paths, domains)
 
 
 def is_active_formula(machine: Machine, vertex: str) -> Formula:
@@ -313,6 +313,6 @@ def _report_faults(
         return
     guard = f.TRUE if transition.guard is None else condition(transition.guard, machine.scope)
     condition_of_paths = _path_condition(machine, domains, transition, paths)
-    if simplified(f.implies(guard, condition_of_paths), domains) != f.TRUE:
+    if simplify_constant(f.implies(guard, condition_of_paths), domains) != f.TRUE:
         vertex_name = graph[element_id(target.id)].name or target.kind
         sink.report(BLOCKED, subject, transition=name, vertex=vertex_name)

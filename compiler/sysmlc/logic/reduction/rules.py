@@ -8,7 +8,7 @@ Every rule is an equivalence in all traces in which the bits follow their rules.
 from collections.abc import Iterator
 
 from sysmlc.logic import formula as f
-from sysmlc.logic.classification import classified
+from sysmlc.logic.classification import classify
 from sysmlc.logic.contract import Class
 from sysmlc.logic.evaluate import has_primes
 from sysmlc.logic.formula import Apply, Formula, Op
@@ -48,7 +48,7 @@ class Reduction:
 
     def parts(self, formula: Formula) -> Iterator[Part]:
         """The conjuncts of a formula about the first step."""
-        for class_, part in classified(self.present(formula)):
+        for class_, part in classify(self.present(formula)):
             if class_ is Class.LIVENESS and has_primes(part):
                 yield Class.LIVENESS, self._happened(part)
             elif class_ is not Class.OTHER:

@@ -72,11 +72,11 @@ def _classified(
 def _parts(
     scope: Scope, statement: Statement, formula: Formula, is_assumed: bool
 ) -> Iterator[tuple[Class, Formula]]:
-    from sysmlc.logic.classification import classified
+    from sysmlc.logic.classification import classify
     from sysmlc.logic.requirements.meaning import is_temporal
 
     if is_temporal(statement.constraint):
-        yield from classified(formula)
+        yield from classify(formula)
     elif is_assumed and scope.is_input(formula):
         yield Class.INIT, formula
         yield Class.SAFETY, f.primed(formula)

@@ -24,7 +24,7 @@ from sysmlc.logic.expressions.expression import (
     parse_expression,
 )
 from sysmlc.logic.formula import Formula
-from sysmlc.logic.simplify import simplified
+from sysmlc.logic.simplify import simplify_constant
 from sysmlc.logic.texts.formal import is_formal
 
 NOT_FORMAL = rule(
@@ -182,7 +182,7 @@ def _read_formula(context: Context, constraint: Element) -> Formula:
         for feature in context.features.values()
         if feature.domain is not None
     }
-    simplified_formula = simplified(formula, domains)
+    simplified_formula = simplify_constant(formula, domains)
     return (
         formula
         if simplified_formula == f.TRUE and _is_single_bound(expression, formula)

@@ -94,7 +94,7 @@ class _Checker:
         """
         conditions = [(edge, _guard_condition(edge)) for edge in guarded]
         names = {v.name for _, c in conditions for v in variables(c)}
-        opens = [(edge, evaluate.evaluation(c)) for edge, c in conditions]
+        opens = [(edge, evaluate.compile_evaluation(c)) for edge, c in conditions]
         declared = (*self.tokens.inputs, *(store.variable for store in self.tokens.stores))
         read = {v.name: v.domain for v in declared if v.name in names}
         if domains.count(read) > _MOST_VALUATIONS:

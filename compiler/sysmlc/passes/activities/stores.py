@@ -16,7 +16,7 @@ from sysmlc.logic.expressions.declared import Feature
 from sysmlc.logic.expressions.elaborate import ElaborationError
 from sysmlc.logic.formula import Formula
 from sysmlc.logic.machines.paths import split_by_range
-from sysmlc.logic.simplify import is_satisfiable, substitute, tidy
+from sysmlc.logic.simplify import is_satisfiable, remove_redundant, substitute
 from sysmlc.logic.writers import Writers, called
 from sysmlc.logic.written import Assigned
 from sysmlc.passes.activities.assignments import ResolvedAssignment
@@ -143,7 +143,7 @@ class _StoreTracker:
         domains = {
             variable.name: self.scope.domain_of(variable.name) for variable in f.variables(when)
         }
-        return tidy(when, domains) if is_satisfiable(when, domains) else f.FALSE
+        return remove_redundant(when, domains) if is_satisfiable(when, domains) else f.FALSE
 
     # -- which of them are followed ------------------------------------------------------------
 

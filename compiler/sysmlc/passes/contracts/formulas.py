@@ -8,7 +8,7 @@ from msgspec.structs import replace
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Edge, Element, Graph, Kind, query
 from sysmlc.logic import formula as f
-from sysmlc.logic.classification import classified
+from sysmlc.logic.classification import classify
 from sysmlc.logic.contract import Class, Conjunct, Contract, Owner
 from sysmlc.logic.expressions.context import context_of
 from sysmlc.logic.formula import Formula
@@ -148,7 +148,7 @@ def _add_formula(graph: Graph, contract: Contract, constraint: Element, sink: Si
         return contract
     conjuncts = [
         Conjunct(part, class_, constraint.id, f"'{name}' demands it.")
-        for class_, part in classified(formula)
+        for class_, part in classify(formula)
     ]
     if any(part.class_ is Class.OTHER and not is_reducible(part.formula) for part in conjuncts):
         sink.report(OUTSIDE_GR1, subject, constraint=name)

@@ -12,7 +12,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from sysmlc.logic import domains
 from sysmlc.logic.contract import BooleanDomain, Class, Conjunct, Contract, Variable
-from sysmlc.logic.evaluate import Evaluation, evaluation
+from sysmlc.logic.evaluate import Evaluation, compile_evaluation
 from sysmlc.logic.formats.document_text import type_of
 from sysmlc.logic.formula import Apply, Const, Formula, Literal, Op, Var
 from sysmlc.logic.printing import print_formula
@@ -284,7 +284,9 @@ class _Unrolling:
 
 
 def _compile_conjuncts(conjuncts: Sequence[Conjunct], class_: Class) -> list[Evaluation]:
-    return [evaluation(conjunct.formula) for conjunct in conjuncts if conjunct.class_ is class_]
+    return [
+        compile_evaluation(conjunct.formula) for conjunct in conjuncts if conjunct.class_ is class_
+    ]
 
 
 def _value_code(variable: Variable, value: Literal) -> int:

@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from msgspec import Struct
 
 from sysmlc.logic.contract import Variable
-from sysmlc.logic.evaluate import evaluation, value_of
+from sysmlc.logic.evaluate import compile_evaluation, value_of
 from sysmlc.logic.formula import Formula, Literal
 
 
@@ -64,7 +64,9 @@ class Machine(Struct, frozen=True):
         *last* has the inputs and outputs of the previous step. Raises LookupError if there is no
         move.
         """
-        enabled_moves = (move for move in self.states[state] if evaluation(move.when)(last, now))
+        enabled_moves = (
+            move for move in self.states[state] if compile_evaluation(move.when)(last, now)
+        )
         first_move = next(enabled_moves, None)
         if first_move is None:
             raise LookupError(f"state {state} has no move for {dict(now)}")
