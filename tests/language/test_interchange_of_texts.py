@@ -34,7 +34,7 @@ def written(folder, library):
     ]
     model = resolve(documents, library, sink)
     redefined, told = partial(implied_redefinitions, model), Sink()
-    known = InterchangeFiles([*documents, *library.loaded()], redefined=redefined)
+    known = InterchangeFiles([*documents, *library.loaded_documents()], redefined=redefined)
     files = {interchange_path(one): write(one, known, told) for one in documents}
     return documents, files, [found.rule.code for found in told]
 
@@ -117,7 +117,7 @@ def test_models_of_the_pilot_come_back_as_they_were(corpus, library):
         one = parse(text, path.name.removesuffix(".xt"), language, sink)
         resolve([one], library, sink)
         if not sink.has_errors():
-            data = write(one, [one, *library.loaded()], sink)
+            data = write(one, [one, *library.loaded_documents()], sink)
             again = read_again({interchange_path(one): data})
             assert shape([one]) == shape(again), path
             compared += 1
@@ -160,7 +160,7 @@ def test_kerml_as_we_write_it_is_valid_for_the_metamodel(corpus, library, tmp_pa
         one = parse(path.read_text("utf-8"), path.name[:-3], "kerml", sink)
         resolve([one], library, sink)
         if not sink.has_errors():
-            files[interchange_path(one)] = write(one, [one, *library.loaded()], sink)
+            files[interchange_path(one)] = write(one, [one, *library.loaded_documents()], sink)
     found, there = loaded(files, tmp_path, corpus)
     assert len(files) > 20
     assert found == there

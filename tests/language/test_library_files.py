@@ -37,7 +37,7 @@ def test_a_folder_is_searched_with_all_below_it(folder):
 def test_only_the_file_named_like_the_package_is_read(folder):
     library = find_library(folder)
     library.roots("Doors")
-    assert [document.path for document in library.loaded()] == ["Doors.sysml"]
+    assert [document.path for document in library.loaded_documents()] == ["Doors.sysml"]
 
 
 def test_an_archive_is_a_library_and_so_is_a_folder_of_them(folder, tmp_path):

@@ -74,7 +74,7 @@ class Library:
         """Return the names of all files, sorted."""
         return sorted(self._sources)
 
-    def loaded(self) -> list[Document]:
+    def loaded_documents(self) -> list[Document]:
         """Return the documents that the model refers to so far, by path.
 
         Documents that were searched without success are not among them.

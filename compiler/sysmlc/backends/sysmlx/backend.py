@@ -37,7 +37,7 @@ class SysmlxBackend(Struct, frozen=True):
             said = _said(graph, sink, options)
             models = [] if said is None else [said]
         for model in models:
-            library = _index_library(tuple(model.library.loaded()))
+            library = _index_library(tuple(model.library.loaded_documents()))
             known = InterchangeFiles(
                 model.documents, library, partial(implied_redefinitions, model)
             )

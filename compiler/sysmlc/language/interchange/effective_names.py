@@ -23,7 +23,7 @@ class QualifiedNames:
     def __init__(self) -> None:
         self._qualified: dict[Node, tuple[str, ...]] = {}
 
-    def qualified(self, node: Node) -> tuple[str, ...]:
+    def find_qualified_name(self, node: Node) -> tuple[str, ...]:
         """Return the names from the root of the document down to the element.
 
         An element without a name is represented by its position: ``#3`` is the third member of its

@@ -126,7 +126,7 @@ def set_names(root: Node, naming: QualifiedNames) -> None:
         for relation in node.relations:
             targets = relation.reference.targets
             if targets is not None and len(targets) == len(relation.reference.chain):
-                relation.reference.chain = tuple(map(naming.qualified, targets))
+                relation.reference.chain = tuple(map(naming.find_qualified_name, targets))
 
 
 def _resolve(pending: PendingReference, find: _Find, path: str, sink: Sink) -> None:

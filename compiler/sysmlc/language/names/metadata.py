@@ -69,11 +69,11 @@ def _apply_operator(
 
 
 def _compare_numbers(compare: Callable[[float, float], bool]) -> Callable[[Value, Value], bool]:
-    def ordered(left: Value, right: Value) -> bool:
+    def compare_ordered(left: Value, right: Value) -> bool:
         numbers = [value for value in (left, right) if isinstance(value, int | float)]
         return len(numbers) == 2 and compare(numbers[0], numbers[1])
 
-    return ordered
+    return compare_ordered
 
 
 _COMPARISONS: dict[str, Callable[[Value, Value], bool]] = {

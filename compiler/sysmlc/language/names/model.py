@@ -161,7 +161,7 @@ class Model:
         root = find_root(node)
         # The library loads documents on demand, so new ones may have been added.
         if root not in self._documents_by_root:
-            self._documents_by_root.update((d.root, d) for d in self.library.loaded())
+            self._documents_by_root.update((d.root, d) for d in self.library.loaded_documents())
         return self._documents_by_root.get(root)
 
     # -- implied generals ------------------------------------------------------------------------

@@ -121,7 +121,7 @@ def _report_missing_library(model: Model, sink: Sink) -> None:
 
     The diagnostic has no location: the installation lacks something, not a line of the model.
     """
-    core = {document.root for document in model.library.loaded()}
+    core = {document.root for document in model.library.loaded_documents()}
     targets = (
         relation.reference.target
         for document in model.documents
