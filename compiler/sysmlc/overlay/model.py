@@ -122,9 +122,7 @@ class Refinement(Struct, frozen=True):
     allocations: tuple[Allocation, ...]
 
     def subject(self, term: Term | Key, about: str = "") -> Subject:
-        """Return a word of the overlay as the subject of a diagnostic about the element of this
-        id.
-        """
+        """Return a word of the overlay as the subject of a diagnostic on element *about*."""
         return Subject(term.text, about, place_of(self.file, term.spot))
 
 

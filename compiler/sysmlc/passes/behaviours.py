@@ -117,9 +117,7 @@ def _inherit_method(graph: Graph, operation: Element) -> None:
 
 
 def _is_only_user(graph: Graph, operation: Element, methods: list[Element]) -> bool:
-    """Whether no other operation has the methods, so that linking them again would change no
-    order.
-    """
+    """Whether no other operation has the methods: linking them again changes no order."""
     return all(graph.sources(method, Edge.METHOD) == [operation] for method in methods)
 
 
@@ -143,9 +141,7 @@ def _check_method(graph: Graph, sink: Sink, operation: Element) -> None:
 
 
 def _parameter_directions(graph: Graph, owner: Element) -> list[str]:
-    """Return the directions of the parameters in order, results last: tools put them at either
-    end.
-    """
+    """Return the directions of the parameters, results last: tools put them at either end."""
     directions = [
         str(parameter.attrs.get("direction", "in")) for parameter in parameters(graph, owner)
     ]

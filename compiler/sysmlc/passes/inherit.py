@@ -113,9 +113,7 @@ class _Hierarchy:
         return list(self._features[classifier.id])
 
     def is_general_of(self, general: Element, classifier: Element) -> bool:
-        """Whether *general* is a direct or indirect general of the classifier, outside any
-        cycle.
-        """
+        """Whether *general* is a transitive general of the classifier, outside any cycle."""
         same = self._component.get(general.id) == self._component.get(classifier.id)
         return not same and general in generals(self._graph, classifier)
 

@@ -126,9 +126,7 @@ def _check_message(
 
 
 def _find_missing_end(graph: Graph, message: Element) -> str:
-    """Return what is missing at the ends of a message. Gates, and ends of lost messages, are
-    ends.
-    """
+    """Return what is missing at the ends of a message; gates and lost ends count as ends."""
     if message.attrs.get("message_kind") == "unknown":
         return "has no lifeline at either end"
     for event, lifeline, verb in (

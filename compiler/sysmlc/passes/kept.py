@@ -65,9 +65,7 @@ class Kept(Struct, frozen=True):
 
 
 def _read_record(data: Any) -> _Record:  # noqa: ANN401 - JSON
-    """Return the record. Raises ValueError, TypeError, KeyError or AttributeError if it is
-    damaged.
-    """
+    """Return the record. A damaged one raises Value-, Type-, Key- or AttributeError."""
     return _Record(
         elements=[
             _StoredElement(

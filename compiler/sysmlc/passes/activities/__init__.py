@@ -35,9 +35,7 @@ from sysmlc.passes.activities.stores import track_stores
 
 
 class _OtherBehaviours(Struct, frozen=True):
-    """Facts about other behaviours that an activity depends on: exceptions raised, features
-    written.
-    """
+    """Facts about other behaviours: the exceptions they raise and the features they write."""
 
     raising: Raising
     writers: Writers

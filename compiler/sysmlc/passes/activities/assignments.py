@@ -126,9 +126,7 @@ def report_unknown_targets(
     writers: Writers,
     sink: Sink,
 ) -> None:
-    """Report assigned names that the activity does not know (SM545) or another object owns
-    (SM544).
-    """
+    """Report names that the activity does not know (SM545) or another object owns (SM544)."""
     # A write action refers to its target by id, so that the name cannot be wrong.
     unresolved = (
         resolved.assignment for row in written for resolved in row if resolved.feature is None

@@ -89,9 +89,7 @@ class _Checker:
         return replace(node, exclusive=not overlap, exhaustive=is_exhaustive)
 
     def _list_open_branches(self, guarded: list[TokenEdge]) -> list[list[TokenEdge]] | None:
-        """Return the open branches for each valuation of the inputs, or None if there are too
-        many.
-        """
+        """Return the open branches for each valuation of the inputs; None if too many."""
         conditions = [(edge, _guard_condition(edge)) for edge in guarded]
         names = {v.name for _, c in conditions for v in variables(c)}
         opens = [(edge, evaluate.compile_evaluation(c)) for edge, c in conditions]
@@ -119,9 +117,7 @@ class _Checker:
     # -- reachability --------------------------------------------------------------------------
 
     def check_reachability(self) -> set[str]:
-        """Report unreachable nodes, without those that only follow a reported node. Return
-        reachable ids.
-        """
+        """Return the reachable ids. Of unreachable nodes, report those without such a source."""
         reachable = self._find_reachable(e.target for e in self.tokens.edges if self._is_start(e))
         unreachable = [n for n in self.tokens.nodes if n.id not in reachable and self._is_drawn(n)]
         covered: set[str] = set()
@@ -200,9 +196,7 @@ class _Checker:
         return node.label, node.origin
 
     def _find_stuck(self, dead: frozenset[str], reachable: set[str]) -> Iterator[TokenNode]:
-        """Yield the dead nodes to report: tokens reach some of their edges, but never all of
-        them.
-        """
+        """Yield the dead nodes of which tokens reach some edges, but never all."""
         for id in sorted(dead & reachable, key=[n.id for n in self.tokens.nodes].index):
             node = self.tokens.node(id)
             sources = [edge.source for edge in self.tokens.incoming(node)]

@@ -80,9 +80,7 @@ class Drawing:
         return [flow for flow in self.flows if flow.source is node and not flow.enters]
 
     def enclosing_regions(self, region: str) -> Iterator[str]:
-        """Yield the region and the regions around it, innermost first; the last is the
-        activity's.
-        """
+        """Yield the region and those around it, from the innermost to the activity's."""
         owners = {part.id: part.owner.id for parts in self.parts.values() for part in parts}
         while region != ACTIVITY_REGION:
             yield region
@@ -98,9 +96,7 @@ class Drawing:
 
 
 def read_drawing(graph: Graph, activity: Element, sink: Sink) -> Drawing:
-    """Return the drawing of an activity. Raises CannotPlayError after it has reported the
-    reason.
-    """
+    """Return the drawing of an activity. Reports why and raises CannotPlayError."""
     drawing = Drawing(activity, list(graph.subtree(activity)))
     # Groups and borders are no regions: their nodes belong to the region around them.
     groups = find_groups(graph, drawing.inside)
@@ -268,9 +264,7 @@ class _Reader:
         )
 
     def _find_part(self, regions: list[str], node: Element) -> str:
-        """Return the part of the structured node that the regions lead through, or the node
-        itself.
-        """
+        """Return the part of the structured node among the regions, or the node itself."""
         parts = {part.id for part in self.drawing.parts.get(node.id, ())}
         return next((region for region in regions if region in parts), node.id)
 

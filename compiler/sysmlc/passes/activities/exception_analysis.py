@@ -73,9 +73,7 @@ def _is_external(called: Element) -> bool:
 def _index_callers(
     graph: Graph, unprotected: Iterable[tuple[Element, Element]]
 ) -> dict[str, list[str]]:
-    """Map each behaviour to the behaviours that also raise when it does: callers, and
-    operations.
-    """
+    """Map each behaviour to its callers and to the operations that it implements."""
     callers: dict[str, list[str]] = {}
     for action, home in unprotected:
         for called in _called_by(graph, action):

@@ -39,9 +39,7 @@ def _add_edge(
 
 
 def _find_region(draft: Draft, flow: Flow, target: str) -> str:
-    """Return the region of the flow, or the one around it that contains the merge before its
-    target.
-    """
+    """Return the region of the flow, or the one around it with the merge at its target."""
     target_region = draft.nodes[target].region
     if target_region == flow.region:
         return target_region
@@ -128,9 +126,7 @@ def _find_merge_region(draft: Draft, owner: Element, flows: list[Flow]) -> str:
 
 
 def _find_exit(draft: Draft, flow: Flow) -> tuple[str, bool, str | None]:
-    """Return the source node, whether its token is there at the start, and the decision node, if
-    any.
-    """
+    """Return the source node, whether it starts with a token, and its decision, if any."""
     node = flow.source
     if flow.enters:
         return _find_inner_exit(draft, flow)

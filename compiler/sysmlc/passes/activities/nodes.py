@@ -1,6 +1,4 @@
-"""Token nodes of drawn nodes, with their variables; reports shapes that UML asks to be drawn
-otherwise.
-"""
+"""Token nodes of drawn nodes with their variables, and checks of the drawn shapes."""
 
 from msgspec.structs import replace
 
@@ -114,9 +112,7 @@ def _check_pins(draft: Draft, node: Element) -> None:
 
 
 def _check_shape(draft: Draft, node: Element) -> None:
-    """Report a control node that does the work of two, such as a merge with several outgoing
-    flows.
-    """
+    """Report a control node with two jobs, such as a merge with several outgoing flows."""
     if node.kind is not Kind.CONTROL:
         return
     incoming, outgoing = len(draft.primary_flows(node)), len(draft.outgoing[node.id])

@@ -39,9 +39,7 @@ def refuse_shared(writer: str) -> Refusal:
 
 
 class UntrackedFeature(Struct, frozen=True):
-    """A feature that the activity assigns, the reason why it is not tracked, and the assigning
-    actions.
-    """
+    """An assigned feature, the reason why it is not tracked, and the assigning actions."""
 
     feature: Element
     why: Refusal

@@ -60,9 +60,7 @@ def apply_result(tokens: TokenGraph, result: SafetyResult) -> TokenGraph:
 
 @lru_cache(_REMEMBERED)
 def collapse_if_safe(tokens: TokenGraph, limit: int) -> TokenGraph:
-    """Return the graph without nodes that only pass tokens on, unless it needs them to be
-    1-safe.
-    """
+    """Return the reduced graph, unless the removed nodes are needed for 1-safety."""
     reduced = collapse(tokens)
     result = search(reduced, limit)
     return tokens if result.unsafe or not result.is_complete else apply_result(reduced, result)
@@ -247,9 +245,7 @@ def _combine_labels(before: TokenEdge, after: TokenEdge) -> str:
 def _remove_node(
     graph: TokenGraph, node: TokenNode, replacements: dict[str, TokenEdge], removed: TokenEdge
 ) -> TokenGraph | None:
-    """Return the graph with new edges and without the node, or None if a loop would lose an
-    edge.
-    """
+    """Return the graph without the node, or None if a loop would lose an edge."""
     if removed.id in replacements or any(
         edge.source == edge.target == node.id for edge in replacements.values()
     ):

@@ -63,9 +63,7 @@ class Scope:
         return self._feature(name)
 
     def belongs_to_another_object(self, variable: str) -> bool:
-        """Whether the variable stands for a feature of a part, or of an object behind a
-        reference.
-        """
+        """Whether the variable stands for a feature of a part or of a referenced object."""
         return all("." in name for name, known in self._variables.items() if known == variable)
 
     def domain_of(self, variable: str) -> Domain:
@@ -81,9 +79,7 @@ class Scope:
         return next(domains, BooleanDomain())
 
     def declare_input(self, name: str) -> Variable | None:
-        """Return the variable of a property as an input. Reports the range that was assumed for
-        it.
-        """
+        """Return the variable of a property as an input. Reports an assumed range."""
         return self._make_input(name)
 
     def evaluate(self, expression: Expression, domain: Domain) -> Meaning:

@@ -197,9 +197,7 @@ class _StoreTracker:
         return owner is not None and owner.kind in query.BEHAVIORS
 
     def _is_shared(self, name: str) -> bool:
-        """Whether another behaviour of the block writes a variable that could be tracked
-        otherwise.
-        """
+        """Whether only another writer in the block prevents that the variable is tracked."""
         feature = self.features[name]
         is_able = feature.domain is not None and not feature.is_assumed
         return (

@@ -104,9 +104,7 @@ def _find_lineages(graph: Graph) -> dict[str, tuple[Ancestor, ...]]:
 def _find_meanings(
     graph: Graph, sink: Sink, lineages: dict[str, tuple[Ancestor, ...]]
 ) -> _Meanings:
-    """Return the names of the SysML stereotypes that each application stands for, look-alikes
-    included.
-    """
+    """Return the SysML stereotypes that each application stands for, look-alikes included."""
     meanings: _Meanings = {}
     doubtful: dict[tuple[str, str], list[Element]] = {}
     for id, lineage in lineages.items():

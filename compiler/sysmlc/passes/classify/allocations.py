@@ -1,6 +1,4 @@
-"""Allocation in activities: actions in an «allocate» partition are allocated to what it
-represents.
-"""
+"""Allocation of actions to the elements that their «allocate» partitions represent."""
 
 from collections.abc import Iterator
 

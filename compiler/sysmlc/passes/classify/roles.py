@@ -63,9 +63,7 @@ _OTHERS = frozenset({Kind.INTERFACE, Kind.SIGNAL, Kind.USE_CASE})
 
 
 def role_by_stereotype(element: Element, meanings: tuple[str, ...]) -> str:
-    """Return the role that SysML stereotypes give to an element of this kind, or the empty
-    string.
-    """
+    """Return the role that SysML stereotypes give to an element of this kind, or ""."""
     roles = _BY_STEREOTYPE.get(element.kind, {})
     return next((role for name, role in roles.items() if name in meanings), "")
 

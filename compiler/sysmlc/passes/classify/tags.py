@@ -25,9 +25,7 @@ def apply_tags(graph: Graph, meanings: Mapping[str, tuple[str, ...]]) -> None:
 
 
 def _find_subjects(graph: Graph, application: Element) -> list[Element]:
-    """Return the subjects of an application; for one on an event, the triggers that name the
-    event.
-    """
+    """Return the subjects of an application; for an event, the triggers that name it."""
     folded = application.attrs.get("on") in ("change-event", "generalization")
     return graph.targets(application, Edge.REFERENCES if folded else Edge.SUBJECT)
 
@@ -238,9 +236,7 @@ _TAG = "tag."
 
 
 def check_tags(graph: Graph, sink: Sink) -> None:
-    """Report tags that a stereotype of the unit does not define, once for each stereotype and
-    tag.
-    """
+    """Report undefined tags of stereotypes of the unit, each once per stereotype."""
     defined: dict[str, frozenset[str] | None] = {}
     undefined: dict[tuple[str, str], list[Element]] = {}
     for application in graph.of_kind(Kind.APPLICATION):

@@ -88,9 +88,7 @@ def _describe_unit(graph: Graph, unit: Element) -> None:
 
 
 def _link_by_tags(graph: Graph, application: Element, subject: Element) -> None:
-    """Link a value type by its tags ``unit`` and ``quantityKind`` (``dimension`` in SysML 1.0 and
-    1.1).
-    """
+    """Link a value type by its tags ``unit`` and ``quantityKind`` (``dimension`` until 1.1)."""
     for tag, kind in (
         ("unit", Kind.UNIT),
         ("quantityKind", Kind.QUANTITY_KIND),
@@ -124,9 +122,7 @@ def _is_name(text: AttrValue) -> bool:
 
 
 def _give_unit_role(graph: Graph, target: Element, kind: Kind) -> None:
-    """Give the target of a value type's unit the role of a unit, even if nothing else is known of
-    it.
-    """
+    """Give the target of a value type's unit the role of a unit, also to unknown stubs."""
     if target.kind is not kind and not target.role:
         graph.set(target, role="unit" if kind is Kind.UNIT else "quantity kind")
 

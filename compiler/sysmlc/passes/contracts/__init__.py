@@ -48,9 +48,7 @@ class Contracts(Struct, frozen=True):
     after: ClassVar[tuple[str, ...]] = ("classify", "activities", "behaviours")
 
     def run(self, graph: Graph, sink: Sink) -> None:
-        """Store a Contract for each derived behaviour and for subjects of requirements and
-        services.
-        """
+        """Store the Contracts of behaviours, of subjects of requirements and of services."""
         derived = [*self._derive_machines(graph, sink), *_derive_activities(graph)]
         derived = add_formulas(graph, _number_components(graph, derived, sink), sink)
         assumed_range = self.assumed_low, self.assumed_high

@@ -155,9 +155,7 @@ def _title(graph: Graph, relation: Element) -> str:
 
 
 def _list_port_ends(graph: Graph, flow: Element) -> Iterator[tuple[Element, str, str]]:
-    """Yield the ports at the ends of the flow, with the expected direction and a verb for
-    messages.
-    """
+    """Yield the ports at the ends of the flow, the expected direction, and a verb."""
     for edge, outside, inside, way in (
         (Edge.FLOW_SOURCE, "out", "in", "leaves"),
         (Edge.FLOW_TARGET, "in", "out", "enters"),

@@ -32,9 +32,7 @@ def check_paths(graph: Graph, sink: Sink, connector: Element) -> None:
 
 
 def _find_breaks(graph: Graph, owner: Element, end: Element) -> Iterator[tuple[Element, Element]]:
-    """Yield the first step that is no feature of its classifier; an unknown type ends the
-    search.
-    """
+    """Yield the first step that its classifier lacks; an unknown type ends the search."""
     classifier: Element | None = _start_of_paths(graph, owner)
     for step in (*graph.targets(end, Edge.PATH), *graph.targets(end, Edge.ROLE)):
         if step.kind is Kind.INSTANCE:

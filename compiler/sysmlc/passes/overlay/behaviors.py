@@ -16,9 +16,7 @@ from sysmlc.support.suggestions import did_you_mean
 
 
 def find_behaviors(finder: Finder, entry: BlockEntry) -> None:
-    """Find the behaviours of a block before any behaviour is moved away from its place in the
-    model.
-    """
+    """Find the behaviours of a block while all are at their place in the model."""
     for term in (entry.behavior, *(operation.method for operation in entry.operations)):
         if term is not None:
             finder.behaviors[term.text] = finder.find_named(term.text, BEHAVIOR)
@@ -69,9 +67,7 @@ def _give_method(finder: Finder, block: Element, entry: OperationEntry, method: 
 def _assign_behavior(
     finder: Finder, block: Element, holder: Element, edge: Edge, term: Term
 ) -> Element | None:
-    """Connect the holder with the behaviour, which the block then owns (UML 2.5.1 clause
-    13.2.3).
-    """
+    """Connect the holder with the behaviour and move it to the block (UML 2.5.1, 13.2.3)."""
     graph = finder.graph
     current = graph.target(holder, edge)
     if current is not None and graph.owner(current) is block and current.name == _last_name(term):

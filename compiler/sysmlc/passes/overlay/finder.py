@@ -99,9 +99,7 @@ class Finder:
     # -- what words mean -----------------------------------------------------------------------
 
     def find_entry(self, key: Key, sort: Sort) -> Element | None:
-        """Return the element that an entry is about, or None if that is unclear, which is
-        reported.
-        """
+        """Return the element that an entry is about; report an unclear one, return None."""
         elements = self.find_named(key.text, sort)
         if key.path:
             elements = self._compare_with_path(key, elements, self.find_named(key.path, sort))
@@ -132,9 +130,7 @@ class Finder:
         return self.require_one(term, self.find_named(term.text, sort), sort, "")
 
     def find_named(self, text: str, sort: Sort) -> list[Element]:
-        """Return everything that an id, a path, a qualified name or ``file#qualified name``
-        means.
-        """
+        """Return the elements of an id, a path, a qualified name or ``file#qualified name``."""
         by_id = self._find_by_id(text)
         if by_id is not None:
             return _unique([self._convert(by_id, sort)])
@@ -167,9 +163,7 @@ class Finder:
                 yield element
 
     def _find_inside(self, top: Element, name: str) -> list[Element]:
-        """Return the elements of this name in an element, or in its types, classifiers and
-        generals.
-        """
+        """Return the elements of this name in an element, its types or their generals."""
         scopes = [top]
         for scope in scopes[:]:
             scopes += self.graph.targets(scope, Edge.INSTANCE_OF)
@@ -299,9 +293,7 @@ class Finder:
 
 
 def _list_other_ids(graph: Graph) -> Iterator[tuple[str, Element]]:
-    """Yield further ids of elements: those of repeated interfaces, and GUIDs in another
-    spelling.
-    """
+    """Yield further ids: those of repeated interfaces, and GUIDs in another spelling."""
     for element in graph:
         if normalise_guid(element.id) != element.id:
             yield normalise_guid(element.id), element

@@ -66,9 +66,7 @@ def _part_or_role(finder: Finder, end: Element) -> Element:
 
 
 def _find_ends(finder: Finder, connector: Element, flow: FlowEntry) -> _Ends | None:
-    """Return the ends that the flow starts from and leads to; both ends for one in both
-    directions.
-    """
+    """Return the ends that the flow starts from and leads to; both for a two-way flow."""
     connector_ends = [end for end in ends(finder.graph, connector) if role_of(finder.graph, end)]
     if flow.is_both:
         return (

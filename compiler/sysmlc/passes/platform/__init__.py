@@ -1,6 +1,4 @@
-"""Pass ``platform``: maps the machines and services of recipes to the plant that runs them (thesis
-3.2).
-"""
+"""Pass ``platform``: maps machines and services of recipes to the plant (thesis 3.2)."""
 
 from collections.abc import Iterable, Sequence
 from typing import ClassVar

@@ -92,9 +92,7 @@ class Context:
 
     @cached_property
     def services(self) -> dict[str, Service]:
-        """The services of all recipes by id, sorted. Services of several recipes have one
-        definition.
-        """
+        """The services of all recipes by id, sorted; a service of several recipes is one."""
         by_id = {service.id: service for model in self.models for service in model.services}
         return {id: by_id[id] for id in sorted(by_id) if by_id[id].element in self.graph}
 
@@ -143,9 +141,7 @@ class Context:
         return [PlantElement(element.id, element, None, None, block, element.owner or "")]
 
     def suggest_similar(self, name: str) -> str:
-        """Return a clause that suggests plant elements with a similar name; empty if there are
-        none.
-        """
+        """Return a clause that suggests plant elements with a similar name, or ""."""
         if not self.plant or len(self.plant.elements) > _TELLING:
             return ""
         names: dict[str, list[PlantElement]] = {}

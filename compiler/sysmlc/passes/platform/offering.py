@@ -105,9 +105,7 @@ _Answer = tuple[_OfferingOperation | None, tuple[Element, str] | None]
 def _find_operation(
     context: Context, service: Service, block: Element, stated: list[_OfferingOperation]
 ) -> _Answer:
-    """Return the operation of a block that offers the service, or why the one of its name does
-    not.
-    """
+    """Return the operation of a block that offers the service, or why none does."""
     family = context.plant.class_ids(block)
     for candidate in stated:
         if candidate.operation.owner in family:

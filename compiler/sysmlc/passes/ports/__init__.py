@@ -151,9 +151,7 @@ def _direction_of_type(graph: Graph, type_: Element) -> str | None:
 
 
 def _direction_of_original(graph: Graph, type_: Element) -> str | None:
-    """Return the direction of the block that a ~InterfaceBlock conjugates, if the tool left it
-    empty.
-    """
+    """Return the direction of the block that an empty ~InterfaceBlock conjugates."""
     if not has_stereotype(graph, type_, *_CONJUGATED):
         return None
     original = graph.get(str(tag(graph, type_, "original")))

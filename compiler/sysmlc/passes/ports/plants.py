@@ -1,6 +1,4 @@
-"""Diagnostics on ports of AutomationML: one for each file, because the language leaves much
-open.
-"""
+"""Diagnostics on ports of AutomationML, one per file: the language leaves much open."""
 
 from collections.abc import Iterable
 
@@ -52,9 +50,7 @@ def _leads_to_document(graph: Graph, port: Element) -> bool:
 def report_by_file(
     graph: Graph, sink: Sink, rule: Rule, faulty: Iterable[Element], ports: Iterable[Element]
 ) -> None:
-    """Report a rule about the *faulty* among all *ports*, once for each file, at the first of
-    them.
-    """
+    """Report the *faulty* among all *ports* once for each file, at the first of them."""
     totals: dict[str, int] = {}
     for port in ports:
         totals[port.source] = totals.get(port.source, 0) + 1

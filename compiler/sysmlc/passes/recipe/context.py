@@ -1,6 +1,4 @@
-"""The context of the recipe pass: the graph, recipe levels, ids for the JSON, and memoised
-results.
-"""
+"""The context of the recipe pass: graph, recipe levels, ids, and memoised results."""
 
 from collections.abc import Iterator, Mapping
 
@@ -100,9 +98,7 @@ class Context(Struct, frozen=True):
     # -- levels --------------------------------------------------------------------------------
 
     def own_level(self, element: Element) -> str:
-        """Return the level that the options, ``classify`` or a stereotype give the element
-        itself.
-        """
+        """Return the level that options, ``classify`` or a stereotype give the element."""
         return self.stated.get(element.id, "")
 
     def level(self, element: Element | None) -> str:
@@ -119,9 +115,7 @@ class Context(Struct, frozen=True):
         return level
 
     def with_derived(self, derived: Mapping[str, str]) -> "Context":
-        """Return a context with derived levels (by id); levels that depend on them are computed
-        anew.
-        """
+        """Return a context with derived levels (by id) and without memos that depend on them."""
         changed = find_followers(self.graph, derived)
         unaffected = {id: level for id, level in self._levels.items() if id not in changed}
         return replace(
@@ -173,18 +167,14 @@ class Context(Struct, frozen=True):
     # -- contents ------------------------------------------------------------------------------
 
     def contents(self, activity: Element) -> list[Element]:
-        """Return the elements that an activity owns; each inlined node is followed by its
-        content.
-        """
+        """Return the owned elements of an activity, with the content of inlined nodes."""
         elements = self._contents.get(activity.id)
         if elements is None:
             elements = self._contents[activity.id] = list(list_contents(self.graph, activity))
         return elements
 
     def nodes(self, activity: Element) -> list[Element]:
-        """Return the nodes of the activity, including those in for-each regions and plain
-        blocks.
-        """
+        """Return the nodes of the activity, also those in for-each regions and blocks."""
         nodes = self._nodes.get(activity.id)
         if nodes is None:
             elements = self.contents(activity)
@@ -196,9 +186,7 @@ class Context(Struct, frozen=True):
     # -- stereotypes and tagged values ---------------------------------------------------------
 
     def find_application(self, element: Element, stereotype: str) -> Element | None:
-        """Return the application of a stereotype of the shipped profile, or of one that specialises
-        it.
-        """
+        """Return the application of a stereotype of the shipped profile or a special one."""
         if not self.may_have_stereotype(element):
             return None
         applications = query.applications(self.graph, element)
@@ -223,9 +211,7 @@ class Context(Struct, frozen=True):
     # -- ids -----------------------------------------------------------------------------------
 
     def name(self, element: Element) -> str:
-        """Return the qualified name. An unnamed part shows its kind; siblings of one name get
-        ``#2``.
-        """
+        """Return the qualified name; unnamed parts show their kind, namesakes get ``#2``."""
         name = self._names.get(element.id)
         if name is None:
             owner, segment = self.graph.owner(element), self._segment(element)
@@ -234,9 +220,7 @@ class Context(Struct, frozen=True):
         return name
 
     def label(self, element: Element) -> str:
-        """Return the own name; an unnamed element shows its kind and its number among its
-        siblings.
-        """
+        """Return the own name; an unnamed element shows its kind and its number."""
         return element.name or self._segment(element)
 
     def reference(self, value: str) -> str:

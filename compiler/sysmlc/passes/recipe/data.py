@@ -128,15 +128,11 @@ class Data(Struct, frozen=True):
     # -- declarations --------------------------------------------------------------------------
 
     def list_parameters(self, *directions: str) -> tuple[Parameter, ...]:
-        """Return the parameters with one of the directions, without materials and optional
-        machines.
-        """
+        """Return the parameters of some directions, without materials and optional machines."""
         return list_data_parameters(self.context, self.activity, *directions)
 
     def list_variables(self) -> tuple[Parameter, ...]:
-        """Return the attributes of the activity, and the variables that output pins declare, by
-        name.
-        """
+        """Return the attributes of the activity and the variables of output pins, by name."""
         elements = self.context.contents(self.activity)
         attributes = [
             element

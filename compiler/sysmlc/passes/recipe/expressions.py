@@ -28,9 +28,7 @@ def read_expression(text: str) -> source.Expression:
 
 
 def read_time(text: str) -> source.Expression:
-    """Return a duration in milliseconds: a number with a unit, or an expression that already is
-    one.
-    """
+    """Return a duration in milliseconds, from a number with a unit or an expression."""
     duration = parse_milliseconds(text)
     return read_expression(text) if duration is None else source.Literal(duration)
 

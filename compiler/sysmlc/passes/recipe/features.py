@@ -16,9 +16,7 @@ _HEADS = (Kind.PARAMETER, Kind.PROPERTY)
 
 
 def find_feature(context: Context, activity: Element, name: str) -> Element | None:
-    """Return the parameter, variable or feature that a dotted name of an activity means, or
-    None.
-    """
+    """Return the parameter, variable or feature of a dotted name in an activity, or None."""
     head, *rest = name.split(".")
     elements = context.contents(activity)
     feature = next(

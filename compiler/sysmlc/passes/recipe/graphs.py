@@ -64,9 +64,7 @@ _ENDS = ("final", "flow-final")
 
 @dataclass(slots=True)
 class Draft:
-    """Nodes and edges so far; ``first`` and ``last`` map an activity node to the ends of its
-    nodes.
-    """
+    """Nodes and edges so far; ``first`` and ``last`` map activity nodes to recipe nodes."""
 
     nodes: list[Node] = field(default_factory=list)
     edges: list[FlowEdge] = field(default_factory=list)
@@ -78,9 +76,7 @@ class Draft:
 
 
 def open_region(context: Context, region: Element, draft: Draft) -> None:
-    """Replace the initial nodes of a region's content by its first node, final nodes by its
-    last.
-    """
+    """Replace the initial nodes in a region by its first node, final ones by its last."""
     for node in list_steps(context.graph, region):
         if node.kind is Kind.CONTROL and node.subkind in ("initial", *_ENDS):
             draft.nodes = [

@@ -69,9 +69,7 @@ def _find_holder(
 def _find_relations(
     context: Context, definition: Element, callers: list[Element]
 ) -> Iterator[Relation]:
-    """Yield where a service can run: stated relations, else machines of the owner, else
-    partitions.
-    """
+    """Yield where a service can run: as stated, else the owner's machines, else partitions."""
     relations = list(relations_by_dependency(context, definition)) or list(
         relations_by_owner(context, definition)
     )

@@ -109,9 +109,7 @@ def is_machine_flow(context: Context, flow: Element) -> bool:
 
 
 def build_material_uses(context: Context, recipe: Element, step: Step) -> tuple[MaterialUse, ...]:
-    """Return the materials of a task by the direction of their flows; in and out again is
-    carried.
-    """
+    """Return the materials of a task by the direction of their flows, or as carried."""
     amounts: dict[tuple[str, str], float] = {}
     for flow in list_flows(context, recipe):
         for material, use, quantity in _read_use(context, flow, step):
@@ -149,9 +147,7 @@ def _read_use(context: Context, flow: Element, step: Step) -> Iterator[tuple[Ele
 
 
 def find_material(context: Context, flow: Element) -> Element | None:
-    """Return the material that a flow carries: the type, or the element itself, at one of its
-    ends.
-    """
+    """Return the material that a flow carries: a type of one end, or the end itself."""
     graph = context.graph
     ends = (query.flow_source(graph, flow), query.flow_target(graph, flow))
     for end in ends:
@@ -170,9 +166,7 @@ def find_material(context: Context, flow: Element) -> Element | None:
 def find_precedence(
     context: Context, recipe: Element, steps: list[Step]
 ) -> tuple[tuple[str, str], ...]:
-    """Return the pairs of tasks of which the first precedes the second, by control and material
-    flow.
-    """
+    """Return the pairs of consecutive tasks, by control and material flow."""
     following: dict[str, list[Element]] = {}
     for flow in list_flows(context, recipe):
         source, target = find_flow_ends(context, flow)

@@ -1,6 +1,4 @@
-"""Pass ``resolve``: turns references into edges, with external stubs for elements outside the
-unit.
-"""
+"""Pass ``resolve``: turns references into edges, some to stubs of external elements."""
 
 from typing import ClassVar
 

@@ -1,6 +1,4 @@
-"""References into other files: what an href says about its target, and the files of the
-standards.
-"""
+"""References into other files: the parts of an href, and the files of the standards."""
 
 import re
 from urllib.parse import unquote
@@ -9,7 +7,7 @@ from sysmlc.ir import Kind
 
 PRIMITIVES = ("Boolean", "Integer", "Real", "String", "UnlimitedNatural")
 PRIMITIVE_TYPES = "http://www.omg.org/spec/UML/20161101/PrimitiveTypes.xmi#"
-"""The UML primitives of all dialects share one stand-in each, under this href."""
+"""The UML primitives of all dialects share one stub each, under this href."""
 
 _STANDARD = re.compile(
     r"""pathmap://(UML_|SysML|SYSMLC_)\w*(LIBRARIES|METAMODELS|PROFILES)/
@@ -60,9 +58,7 @@ def is_href(target: str) -> bool:
 
 
 def is_standard(library: str) -> bool:
-    """Whether the file is one of UML, SysML or sysmlc, whose content is known without reading
-    it.
-    """
+    """Whether the file belongs to UML, SysML or sysmlc: its content is known unread."""
     return _STANDARD.match(unquote(library)) is not None
 
 
@@ -83,9 +79,7 @@ def find_primitive(href: str, path: str, kind: Kind) -> str:
 
 
 def read_name(href: str, path: str) -> str:
-    """Return the name of the target: the last part of its path, else what the fragment shows of
-    it.
-    """
+    """Return the name of the target from its path, else from the fragment."""
     if path:
         return path.rpartition("::")[2]
     fragment = unquote(split_href(href)[1])

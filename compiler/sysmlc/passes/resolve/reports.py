@@ -1,6 +1,4 @@
-"""Diagnostics of the pass ``resolve``: missing elements, and files that are not part of the
-unit.
-"""
+"""Diagnostics of the pass ``resolve``: missing elements and missing files."""
 
 from sysmlc.diagnostics import Place, Rule, Severity, Sink, Subject, rule
 from sysmlc.ir import Graph, Kind
@@ -114,9 +112,7 @@ _LISTED = 10
 
 
 def report_libraries(graph: Graph, sink: Sink, external: dict[str, list[Need]]) -> None:
-    """Report each missing file once, with the users of its elements. *external* is keyed by
-    href.
-    """
+    """Report each missing file once, with its users. *external* is keyed by href."""
     libraries: dict[str, dict[str, list[Use]]] = {}
     for href, needs in external.items():
         library, _ = split_href(href)

@@ -29,9 +29,7 @@ class UnitIndex:
 
     @cached_property
     def _by_shared_id(self) -> dict[str, list[Element]]:
-        """Elements whose id occurs in several files, by that id; in the graph the file precedes
-        it.
-        """
+        """Elements whose id occurs in several files, by that id without the file."""
         index: dict[str, list[Element]] = {}
         for element in self._graph:
             if "#" in element.id and element.source:
@@ -133,9 +131,7 @@ class Resolver:
         return not self.index.files(file, split_href(target)[0])
 
     def _find_canonical_href(self, target: str, needs: list[Need]) -> str:
-        """Return the href of the stub for a target, the same for all spellings of a library
-        element.
-        """
+        """Return the href of a target's stub, one for all spellings of a library element."""
         # All references to the target count, because their order must not matter.
         descriptions = {(need.path, need.kind) for need in needs}
         name = max({find_primitive(target, path, kind) for path, kind in descriptions})
