@@ -4,7 +4,7 @@ import pytest
 
 from examples.compiling import ROOT, compile_example
 from sysmlc.diagnostics import Sink
-from sysmlc.simulation import run
+from sysmlc.simulation import run_scenarios
 from sysmlc.sources import Source
 
 SCENARIOS = sorted((ROOT / "examples").glob("*/scenarios/*.yaml"))
@@ -16,7 +16,7 @@ def play(path, change=("", "")):
     text = path.read_text(encoding="utf-8")
     assert change[0] in text
     source = Source(path.name, text.replace(*change, 1).encode())
-    report = run(compile_example(model, "ir").graph, source, sink)
+    report = run_scenarios(compile_example(model, "ir").graph, source, sink)
     return report, [found.message for found in sink]
 
 
@@ -24,7 +24,7 @@ def play(path, change=("", "")):
 def test_the_scenarios_of_an_example_pass(path):
     report, complaints = play(path)
     assert complaints == []
-    assert report.passed, report.text()
+    assert report.passed, report.as_text()
 
 
 @pytest.mark.parametrize(

@@ -7,7 +7,7 @@ import pytest
 from sysmlc.diagnostics import Sink, catalogue
 from sysmlc.ir.text import parse_text
 from sysmlc.passes.activities import Activities
-from sysmlc.simulation import run
+from sysmlc.simulation import run_scenarios
 from sysmlc.sources import Source
 
 GATE = """
@@ -65,14 +65,14 @@ def simulate(text: str, model: str = GATE):
     graph, sink = parse_text(model), Sink()
     Activities().run(graph, sink)
     found = Sink()
-    return run(graph, Source("s.yaml", text.encode()), found), found
+    return run_scenarios(graph, Source("s.yaml", text.encode()), found), found
 
 
 def test_a_scenario_that_the_diagram_shows_passes():
     report, sink = simulate(PULLS)
     assert list(sink) == []
     assert report.passed
-    assert report.text() == (
+    assert report.as_text() == (
         "passed  Gate.pass: a wide gate pulls (5 steps)\n1 of 1 scenarios passed\n"
     )
 
@@ -86,7 +86,7 @@ def test_properties_keep_their_value_and_ends_of_actions_last_one_step():
 def test_the_first_difference_is_told_with_its_line():
     report, _ = simulate(PULLS.replace("run_pull: true", "run_pull: false"))
     assert not report.passed
-    assert report.text() == (
+    assert report.as_text() == (
         "FAILED  Gate.pass: a wide gate pulls\n"
         "        s.yaml:11: step 4: run_pull is true, expected false\n"
         "0 of 1 scenarios passed\n"
@@ -99,13 +99,13 @@ def test_junit_has_a_case_for_each_scenario():
         for text in (PULLS, PULLS.replace("run_pull: true", "run_pull: false"))
     )
     report, _ = simulate(both)
-    root = ElementTree.fromstring(report.junit())
+    root = ElementTree.fromstring(report.as_junit())
     assert root.attrib == {"tests": "2", "failures": "1", "errors": "0"}
     good, bad = root.iter("testcase")
     assert (good.get("classname"), good.get("name")) == ("Gate.pass", "a wide gate pulls")
     assert good.find("failure") is None
     assert bad.find("failure").get("message") == "step 4: run_pull is true, expected false"
-    assert report.junit() == simulate(both)[0].junit()
+    assert report.as_junit() == simulate(both)[0].as_junit()
 
 
 def test_the_failing_run_is_drawn_with_a_message_for_each_change():

@@ -4,7 +4,7 @@ import pytest
 
 from sysmlc.diagnostics import Sink
 from sysmlc.ir.text import parse_text
-from sysmlc.simulation import run
+from sysmlc.simulation import run_scenarios
 from sysmlc.sources import Source
 
 STOPPER = """
@@ -50,7 +50,7 @@ steps:
 
 def simulate(text: str):
     sink = Sink()
-    report = run(parse_text(STOPPER), Source("s.yaml", text.encode()), sink)
+    report = run_scenarios(parse_text(STOPPER), Source("s.yaml", text.encode()), sink)
     assert list(sink) == []
     return report
 

@@ -50,19 +50,19 @@ def command(
     from sysmlc.cli.result_files import write_files
     from sysmlc.diagnostics import Sink
     from sysmlc.diagnostics.render import make_report
-    from sysmlc.simulation import run
+    from sysmlc.simulation import run_scenarios
 
     settings = session.Settings(**given)
     config = session.load_config(models, settings)
     compilation = session.compile_unit(models, config, settings)
     source = _read(scenario)
     sink = Sink(config.rules)
-    result = run(compilation.graph, source, sink) if compilation.exit_code() < 2 else None
+    result = run_scenarios(compilation.graph, source, sink) if compilation.exit_code() < 2 else None
     of_model = reports.list_findings(compilation, only_errors=not settings.verbose)
     reports.print_findings([*of_model, *make_report(sink, [source]).findings], settings)
     if result is not None:
-        terminal.echo_text(result.text(), nl=False, err=not reports.allows_sentences(settings))
-        _save(junit, result.junit())
+        terminal.echo_text(result.as_text(), nl=False, err=not reports.allows_sentences(settings))
+        _save(junit, result.as_junit())
         diagram = result.sequence_diagram()
         if output is not None and diagram:
             write_files([(f"{scenario.stem}.seq.puml", diagram)], output)

@@ -1,4 +1,4 @@
-"""What can be simulated: activities and state machines behind one interface."""
+"""Players: activities and state machines that can be simulated, behind one interface."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Protocol, TypeVar
@@ -26,11 +26,11 @@ from sysmlc.logic.machines.reader import read_machine
 
 Valuation = dict[str, Literal]
 _T = TypeVar("_T")
-_LASTING = (Kind.PROPERTY, Kind.PORT, Kind.FLOW_PROPERTY)
+_LASTING_KINDS = (Kind.PROPERTY, Kind.PORT, Kind.FLOW_PROPERTY)
 
 
 class Player(Protocol):
-    """A component that makes steps; several results where its diagram leaves a choice."""
+    """A component that makes steps; a step has several results if the diagram leaves a choice."""
 
     @property
     def component(self) -> str:
@@ -45,60 +45,60 @@ class Player(Protocol):
         """Inputs that last one step."""
 
     def initial(self, inputs: Mapping[str, Literal]) -> list[Valuation]:
-        """All first steps with these inputs."""
+        """Return all first steps with these inputs."""
 
     def successors(
         self, now: Mapping[str, Literal], inputs: Mapping[str, Literal]
     ) -> list[Valuation]:
-        """All steps that may follow ``now`` when the next step has these inputs."""
+        """Return all steps that may follow *now* if the next step has the given inputs."""
 
 
-def players(graph: Graph) -> dict[str, Player]:
-    """Everything that can be simulated, by qualified name."""
-    found: dict[str, Player] = {}
+def find_players(graph: Graph) -> dict[str, Player]:
+    """Return every component that can be simulated, by qualified name."""
+    players_by_name: dict[str, Player] = {}
     for tokens in graph.derived(TokenGraph):
-        found.setdefault(tokens.component, ActivityPlayer(tokens))
+        players_by_name.setdefault(tokens.component, ActivityPlayer(tokens))
     for element in graph.of_kind(Kind.STATE_MACHINE):
         # What is wrong with the machine has been reported by the pass that derives contracts.
         machine = read_machine(graph, element, Sink())
         if machine is not None:
             name = query.component_name(graph, element)
-            found.setdefault(name, MachinePlayer(graph, machine, name))
-    return found
+            players_by_name.setdefault(name, MachinePlayer(graph, machine, name))
+    return players_by_name
 
 
-def resting_value(graph: Graph, variable: Variable) -> Literal:
-    """The value of an input until a scenario gives another: the default, else false, 0 or the
+def find_resting_value(graph: Graph, variable: Variable) -> Literal:
+    """Return the value of an input until a scenario sets it: the default, else false, 0 or the
     first value.
     """
     element = graph.get(variable.origin)
-    default = _default(graph, element, variable.domain) if element is not None else None
+    default = _default_value(graph, element, variable.domain) if element is not None else None
     if default is not None:
         return default
     return 0 if contains(variable.domain, 0) else values(variable.domain)[0]
 
 
-def _default(graph: Graph, element: Element, domain: Domain) -> Literal | None:
-    written = element.attrs.get("default")
-    if element.kind not in _LASTING or written is None:
+def _default_value(graph: Graph, element: Element, domain: Domain) -> Literal | None:
+    text = element.attrs.get("default")
+    if element.kind not in _LASTING_KINDS or text is None:
         return None
-    value = _read(graph, str(written), domain)
+    value = _parse_value(graph, str(text), domain)
     return value if value is not None and contains(domain, value) else None
 
 
-def _read(graph: Graph, text: str, domain: Domain) -> Literal | None:
+def _parse_value(graph: Graph, text: str, domain: Domain) -> Literal | None:
     match domain:
         case BooleanDomain():
             return {"true": True, "false": False}.get(text.lower())
         case IntegerDomain():
             return int(text) if text.removeprefix("-").isdecimal() else None
         case EnumerationDomain():
-            named = graph.get(text)
-            return text.rpartition("::")[2] if named is None else named.name
+            literal = graph.get(text)
+            return text.rpartition("::")[2] if literal is None else literal.name
 
 
 class ActivityPlayer(Struct, frozen=True, dict=True):
-    """Plays the token game."""
+    """Plays the token game of an activity."""
 
     tokens: TokenGraph
 
@@ -123,19 +123,21 @@ class ActivityPlayer(Struct, frozen=True, dict=True):
         self, now: Mapping[str, Literal], inputs: Mapping[str, Literal]
     ) -> list[Valuation]:
         state = token_game.state_of(self.tokens, now)
-        found: dict[token_game.State, None] = {}
-        waiting: list[list[int]] = [[]]
-        while waiting:
-            chooser = _Chooser(waiting.pop())
-            found[
+        states: dict[token_game.State, None] = {}
+        worklist: list[list[int]] = [[]]
+        while worklist:
+            chooser = _BranchPlan(worklist.pop())
+            states[
                 token_game.next_state(self.tokens, state, now, evaluate.is_true, chooser.choose)
             ] = None
-            waiting += chooser.others()
-        return [{**inputs, **token_game.values_of(self.tokens, after)} for after in found]
+            worklist += chooser.list_alternatives()
+        return [{**inputs, **token_game.values_of(self.tokens, after)} for after in states]
 
 
-class _Chooser:
-    """Takes the given branches, then first ones, and knows what else could be taken."""
+class _BranchPlan:
+    """Takes the planned branches, then the first branch of each choice, and records the
+    alternatives.
+    """
 
     def __init__(self, given: list[int]) -> None:
         self._given = given
@@ -144,15 +146,15 @@ class _Chooser:
     def choose(self, node: TokenNode, options: Sequence[_T]) -> _T:
         del node
         self._counts.append(len(options))
-        place = len(self._counts) - 1
-        return options[self._given[place] if place < len(self._given) else 0]
+        position = len(self._counts) - 1
+        return options[self._given[position] if position < len(self._given) else 0]
 
-    def others(self) -> Iterator[list[int]]:
-        """The choices that differ from this one at a place that was not given."""
-        taken = [*self._given, *[0] * (len(self._counts) - len(self._given))]
-        for place in range(len(self._given), len(self._counts)):
-            for branch in range(1, self._counts[place]):
-                yield [*taken[:place], branch]
+    def list_alternatives(self) -> Iterator[list[int]]:
+        """Yield the plans that differ from this one at one choice after the planned ones."""
+        branches = [*self._given, *[0] * (len(self._counts) - len(self._given))]
+        for position in range(len(self._given), len(self._counts)):
+            for branch in range(1, self._counts[position]):
+                yield [*branches[:position], branch]
 
 
 class MachinePlayer(Struct, frozen=True, dict=True):
@@ -176,7 +178,7 @@ class MachinePlayer(Struct, frozen=True, dict=True):
 
     def _is_lasting(self, variable: Variable) -> bool:
         element = self.graph.get(variable.origin)
-        return element is not None and element.kind in _LASTING
+        return element is not None and element.kind in _LASTING_KINDS
 
     def initial(self, inputs: Mapping[str, Literal]) -> list[Valuation]:
         return step.initial_steps(self.machine, inputs)

@@ -1,4 +1,4 @@
-"""What came of scenarios: as text, as JUnit XML, and as a sequence diagram."""
+"""Reports of scenario runs: as text, as JUnit XML, and as a sequence diagram."""
 
 from collections.abc import Iterator
 from xml.etree import ElementTree
@@ -13,7 +13,7 @@ Valuation = dict[str, Literal]
 
 
 class Difference(Struct, frozen=True):
-    """The first value that is not as expected; steps count from 0, lines from 1."""
+    """The first value that differs from the expected one; steps count from 0, lines from 1."""
 
     step: int
     variable: str
@@ -22,12 +22,14 @@ class Difference(Struct, frozen=True):
     line: int
 
     def __str__(self) -> str:
-        expected, found = _show(self.expected), _show(self.found)
+        expected, found = _show_value(self.expected), _show_value(self.found)
         return f"step {self.step}: {self.variable} is {found}, expected {expected}"
 
 
 class Result(Struct, frozen=True):
-    """One scenario. ``trace`` is a run that shows the expected values, or comes nearest."""
+    """Result of one scenario; ``trace`` is a run that shows the expected values, or comes
+    closest.
+    """
 
     name: str
     component: str
@@ -39,7 +41,7 @@ class Result(Struct, frozen=True):
 
     @property
     def passed(self) -> bool:
-        """Whether some run of the diagram shows everything that is expected."""
+        """Whether some run of the diagram shows every expected value."""
         return self.is_valid and self.difference is None
 
 
@@ -54,16 +56,16 @@ class Report(Struct, frozen=True):
         """Whether there are scenarios and all of them passed."""
         return bool(self.results) and all(result.passed for result in self.results)
 
-    def text(self) -> str:
-        """One line a scenario, and how many passed."""
-        lines = [line for result in self.results for line in self._lines(result)]
+    def as_text(self) -> str:
+        """Return one line for each scenario, and the number that passed."""
+        lines = [line for result in self.results for line in self._result_lines(result)]
         passed = sum(result.passed for result in self.results)
         return "\n".join([*lines, f"{passed} of {len(self.results)} scenarios passed"]) + "\n"
 
-    def _lines(self, result: Result) -> Iterator[str]:
+    def _result_lines(self, result: Result) -> Iterator[str]:
         what = escape_invisible(f"{result.component}: {result.name}")
         if result.passed:
-            yield f"passed  {what} ({_steps(len(result.trace))})"
+            yield f"passed  {what} ({_count_steps(len(result.trace))})"
         elif result.difference is None:
             yield f"invalid {what}"
         else:
@@ -71,8 +73,8 @@ class Report(Struct, frozen=True):
             difference = escape_invisible(str(result.difference))
             yield f"        {self.file}:{result.difference.line}: {difference}"
 
-    def junit(self) -> str:
-        """JUnit XML without times, so that the same run gives the same bytes."""
+    def as_junit(self) -> str:
+        """Return JUnit XML without times, so that equal runs give equal bytes."""
         failures = sum(result.difference is not None for result in self.results)
         errors = sum(not result.is_valid for result in self.results)
         counts = {"tests": len(self.results), "failures": failures, "errors": errors}
@@ -87,37 +89,40 @@ class Report(Struct, frozen=True):
 
     def _add_case(self, suite: ElementTree.Element, result: Result) -> None:
         place = {"file": self.file, "line": str(result.line)}
-        names = {"classname": _clean(result.component), "name": _clean(result.name)}
+        names = {
+            "classname": _drop_invalid_characters(result.component),
+            "name": _drop_invalid_characters(result.name),
+        }
         case = ElementTree.SubElement(suite, "testcase", {**names, **place})
         if result.difference is not None:
-            message = _clean(str(result.difference))
+            message = _drop_invalid_characters(str(result.difference))
             failure = ElementTree.SubElement(case, "failure", {"message": message})
             failure.text = f"{self.file}:{result.difference.line}: {message}"
         elif not result.is_valid:
             ElementTree.SubElement(case, "error", {"message": "the scenario is not valid"})
 
     def sequence_diagram(self) -> str:
-        """The first failing run (the first run when none fails) as a PlantUML diagram.
+        """Return the first failing run, else the first run, as a PlantUML diagram.
 
-        It has one message for each variable that changes: from the environment for inputs,
-        from the component for the others. Empty when nothing was run.
+        It has one message for each variable that changes: from the environment for inputs, from the
+        component for the others. The text is empty if nothing was run.
         """
-        run = [result for result in self.results if result.trace]
-        failed = [result for result in run if result.difference is not None]
-        chosen = next(iter([*failed, *run]), None)
-        return "" if chosen is None else "\n".join(_diagram(chosen)) + "\n"
+        results_with_trace = [result for result in self.results if result.trace]
+        failed = [result for result in results_with_trace if result.difference is not None]
+        shown = next(iter([*failed, *results_with_trace]), None)
+        return "" if shown is None else "\n".join(_diagram_lines(shown)) + "\n"
 
 
-def _clean(text: str) -> str:
-    """The text without characters that XML forbids."""
+def _drop_invalid_characters(text: str) -> str:
+    """Return the text without characters that XML forbids."""
     return "".join(c for c in text if c in "\t\n" or (c >= " " and not "\ud800" <= c <= "\udfff"))
 
 
-def _steps(number: int) -> str:
+def _count_steps(number: int) -> str:
     return "1 step" if number == 1 else f"{number} steps"
 
 
-def _show(value: Literal | None) -> str:
+def _show_value(value: Literal | None) -> str:
     if isinstance(value, bool):
         return str(value).lower()
     return "unknown" if value is None else str(value)
@@ -126,37 +131,39 @@ def _show(value: Literal | None) -> str:
 # -- the diagram -------------------------------------------------------------------------------
 
 
-def _diagram(result: Result) -> Iterator[str]:
+def _diagram_lines(result: Result) -> Iterator[str]:
     yield "@startuml"
     yield f"title {plain(result.name)}"
     yield "hide footbox"
     yield "participant environment"
     yield f'participant "{plain(result.component)}" as component'
-    before: Valuation = {}
+    previous: Valuation = {}
     for number, now in enumerate(result.trace):
-        messages = list(_messages(result, before, now))
+        messages = list(_message_lines(result, previous, now))
         failed = result.difference is not None and result.difference.step == number
         if messages or failed:
             yield f"== step {number} =="
         yield from messages
         if failed:
-            yield from _note(result)
-        before = now
+            yield from _note_lines(result)
+        previous = now
     yield "@enduml"
 
 
-def _messages(result: Result, before: Valuation, now: Valuation) -> Iterator[str]:
-    """What differs from the step before; at first, what is not false."""
+def _message_lines(result: Result, before: Valuation, now: Valuation) -> Iterator[str]:
+    """Yield a message for each value that differs from the previous step; in the first step,
+    from false.
+    """
     changed = [name for name in now if now[name] != before.get(name, False)]
     for name in sorted(changed, key=lambda name: name not in result.inputs):
         arrow = "environment -> component" if name in result.inputs else "component -> environment"
-        yield f"{arrow} : {plain(name)} = {plain(_show(now[name]))}"
+        yield f"{arrow} : {plain(name)} = {plain(_show_value(now[name]))}"
 
 
-def _note(result: Result) -> Iterator[str]:
+def _note_lines(result: Result) -> Iterator[str]:
     assert result.difference is not None
     difference = result.difference
     yield "note over component #FFDDDD"
-    yield f"  {plain(difference.variable)} is {plain(_show(difference.found))}"
-    yield f"  expected: {plain(_show(difference.expected))}"
+    yield f"  {plain(difference.variable)} is {plain(_show_value(difference.found))}"
+    yield f"  expected: {plain(_show_value(difference.expected))}"
     yield "end note"
