@@ -67,7 +67,7 @@ def test_a_model_is_clean(run, tmp_path, name, content):
 
 def test_an_empty_text_has_no_errors_of_our_library(run, tmp_path, monkeypatch):
     """With the bundled core 54 names of sysmlc's own library were reported as unknown."""
-    monkeypatch.setattr(library, "_installed", lambda: None)
+    monkeypatch.setattr(library, "_find_installed", lambda: None)
     (tmp_path / "empty.sysml").touch()
     text = "package P { private import SysMLC::*; }"
     (tmp_path / "uses.sysml").write_text(text)
