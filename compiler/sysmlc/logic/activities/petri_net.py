@@ -61,9 +61,9 @@ def build_net(graph: TokenGraph, region: str) -> Net:
     edges, running_nodes = graph.inside(region)
     # A sink always takes its token in the next step, so tokens cannot accumulate before it.
     drains = {edge.id for edge in edges if _is_drain(graph, edge)}
-    tokens_edges = [edge for edge in edges if edge.id not in drains]
+    place_edges = [edge for edge in edges if edge.id not in drains]
     places = dict.fromkeys(
-        [*(edge.id for edge in tokens_edges), *(node.id for node in running_nodes)]
+        [*(edge.id for edge in place_edges), *(node.id for node in running_nodes)]
     )
     moves = [
         move
@@ -79,7 +79,7 @@ def build_net(graph: TokenGraph, region: str) -> Net:
         )
         move.gives -= drains
     nodes = frozenset(node for move in moves for node in move.nodes)
-    marked = {edge.id for edge in tokens_edges if edge.marked}
+    marked = {edge.id for edge in place_edges if edge.marked}
     for meeting in _merge_conflicts(graph, region, drains):
         places |= dict.fromkeys(meeting.gives)
         marked |= meeting.gives

@@ -61,23 +61,23 @@ def compose_blocks(graph: Graph, contracts: Iterable[Contract], sink: Sink) -> I
     parts must establish together. *contracts* are those that the pass ``contracts`` derives from
     the graph; composites are in the order of their components.
     """
-    contracts_by_origin = {one.origin: one for one in contracts}
-    open_steps_found: list[OpenStep] = []
-    for element in _list_blocks(graph, contracts_by_origin):
-        block = read_block(graph, element, contracts_by_origin)
+    by_origin = {one.origin: one for one in contracts}
+    open_steps: list[OpenStep] = []
+    for element in _list_blocks(graph, by_origin):
+        block = read_block(graph, element, by_origin)
         whole = _add_own_contracts(block) if block.members else None
         if len(block.members) + (whole is not None) < 2:
             continue
-        open_steps_found += find_open_steps(block)
+        open_steps += find_open_steps(block)
         composite = _make_composite(block, whole, sink)
         if composite is not None:
             yield composite
-    report_open_steps(graph, open_steps_found, sink)
+    report_open_steps(graph, open_steps, sink)
 
 
-def _list_blocks(graph: Graph, contracts_by_origin: Mapping[str, Contract]) -> list[Element]:
+def _list_blocks(graph: Graph, by_origin: Mapping[str, Contract]) -> list[Element]:
     """List the classifiers that have a part or an action with a contract, at any depth."""
-    types = [graph[id] for id in contracts_by_origin]
+    types = [graph[id] for id in by_origin]
     worklist = list(types)
     owners: dict[str, Element] = {}
     while worklist:
@@ -109,20 +109,20 @@ def _iter_owners(graph: Graph, element: Element) -> Iterator[Element]:
 
 
 def _make_composite(block: Block, whole: Member | None, sink: Sink) -> Composite | None:
-    wires_found = find_wires(block, [*block.members, *([whole] if whole else [])])
+    wires = find_wires(block, [*block.members, *([whole] if whole else [])])
     _report_flows(block, sink)
-    if list(_report_faults(block, whole, wires_found, sink)):
+    if list(_report_faults(block, whole, wires, sink)):
         return None
     return Composite(
         component=query.component_name(block.graph, block.element),
         origin=block.element.id,
         parts=tuple(
-            Part(member.name, rename_contract(member, wires_found), member.origin)
+            Part(member.name, rename_contract(member, wires), member.origin)
             for member in block.members
         ),
-        wiring=tuple(derive_wiring(block, block.members, wires_found)),
-        whole=None if whole is None else rename_contract(whole, wires_found),
-        crowding=tuple(derive_exclusions(block, block.members, wires_found)),
+        wiring=tuple(derive_wiring(block, block.members, wires)),
+        whole=None if whole is None else rename_contract(whole, wires),
+        crowding=tuple(derive_exclusions(block, block.members, wires)),
     )
 
 
@@ -174,13 +174,13 @@ def _shares_outputs(block: Block, member: Member, parts: Iterable[Member], owner
 
 
 def _report_faults(
-    block: Block, whole: Member | None, wires_found: Iterable[Wire], sink: Sink
+    block: Block, whole: Member | None, wires: Iterable[Wire], sink: Sink
 ) -> Iterator[str]:
     """Report joined features of different types or with several drivers. Yield the names of
     their wires.
     """
     subject, name = block.graph.subject(block.element), block.element.name
-    for wire in wires_found:
+    for wire in wires:
         drivers = [left_member.name for left_member in wire.drivers if left_member is not whole]
         if not has_single_type(wire):
             (left_member, left_variable), *_ = wire.ends
@@ -259,10 +259,10 @@ def find_open_steps(block: Block) -> Iterator[OpenStep]:
             yield OpenStep(block.element, member.name, step, called)
 
 
-def report_open_steps(graph: Graph, open_steps_found: Iterable[OpenStep], sink: Sink) -> None:
+def report_open_steps(graph: Graph, open_steps: Iterable[OpenStep], sink: Sink) -> None:
     """Report each step once: at the block that has its operation, not at the blocks around it."""
     nearest: dict[str, OpenStep] = {}
-    for open_step in open_steps_found:
+    for open_step in open_steps:
         nearest_step = nearest.setdefault(open_step.step.id, open_step)
         if open_step.operation.count(".") < nearest_step.operation.count("."):
             nearest[open_step.step.id] = open_step

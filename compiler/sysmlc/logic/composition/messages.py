@@ -67,6 +67,7 @@ def derive_exclusions(
             (receipt, sending)
             for receipt, sendings in receipts
             for sending in sendings
+            # A Boolean input has its own variable: only values of one event exclude one another.
             if not isinstance(receipt.occurs, f.Var)
         ]
         for (receipt, sending), (second_receipt, second_sending) in combinations(sent, 2):

@@ -88,28 +88,28 @@ def rename_contract(member: Member, wires: Iterable[Wire]) -> Contract:
     """
     wire_by_variable: dict[str, Wire] = {}
     for wire in wires:
-        for variable_member, variable in wire.ends:
-            if variable_member is member:
+        for own_variable, variable in wire.ends:
+            if own_variable is member:
                 wire_by_variable[variable.name] = wire
     names = {
-        variable_member.name: _composite_name(member, variable_member, wire_by_variable)
-        for variable_member in member.contract.variables
+        own_variable.name: _composite_name(member, own_variable, wire_by_variable)
+        for own_variable in member.contract.variables
     }
     variables = tuple(
         replace(
-            variable_member,
-            name=names[variable_member.name],
-            domain=_common_domain(variable_member, wire_by_variable.get(variable_member.name)),
+            own_variable,
+            name=names[own_variable.name],
+            domain=_common_domain(own_variable, wire_by_variable.get(own_variable.name)),
         )
-        for variable_member in member.contract.variables
+        for own_variable in member.contract.variables
     )
     bounds = [
-        (variable_member.owner, conjunct)
-        for variable_member in member.contract.variables
+        (own_variable.owner, conjunct)
+        for own_variable in member.contract.variables
         for conjunct in _range_conjuncts(
-            variable_member,
-            names[variable_member.name],
-            _common_domain(variable_member, wire_by_variable.get(variable_member.name)),
+            own_variable,
+            names[own_variable.name],
+            _common_domain(own_variable, wire_by_variable.get(own_variable.name)),
         )
     ]
     return replace(

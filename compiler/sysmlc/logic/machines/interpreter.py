@@ -219,6 +219,7 @@ def _apply_joins(
 
     A join goes before other transitions that leave its sources or the states around them.
     """
+    # Inner joins first: a join that fires disables the joins around it.
     joins = [join for join in machine.list_transitions() if join.join_partners]
     for join in sorted(joins, key=lambda join: -len(machine.list_enclosing_states(join.source))):
         states = [machine.vertices[source] for source in join.sources]

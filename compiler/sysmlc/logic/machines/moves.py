@@ -127,6 +127,7 @@ def _enable_joins(machine: Machine, domains: Mapping[str, Domain], moves: list[M
     if not any(move.transition.join_partners for move in moves):
         return moves
     moves_by_id = {move.transition.id: move for move in moves}
+    # Inner joins first: the condition of an outer join negates theirs.
     joins = [move for move in moves if move.transition.join_partners]
     for move in sorted(
         joins,

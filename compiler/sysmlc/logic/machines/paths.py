@@ -173,6 +173,7 @@ class PathExplorer(Struct, frozen=True):
     def _pass_guard(self, path: Path, transition: Transition) -> Path:
         """Return the path on which the guard of the transition is true."""
         source = self.machine.vertices[transition.source]
+        # A choice is dynamic (UML 2.5.1, 14.2.3.7): guards behind it read the values reached there.
         if source.kind == "choice":
             path = replace(path, seen=path.values)
         if transition.guard is not None:

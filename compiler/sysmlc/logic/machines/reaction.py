@@ -142,6 +142,7 @@ def _follow(
     the start of the machine.
     """
     source = machine.vertices[transition.source]
+    # A choice is dynamic (UML 2.5.1, 14.2.3.7): guards behind it read the values reached there.
     if source.kind == "choice":
         run = replace(run, seen=run.store)
     if transition.guard is not None and not evaluate_expression(
@@ -297,11 +298,8 @@ def clamp(value: int, domain: IntegerDomain) -> int:
 
 def is_active(machine: Machine, store: Mapping[str, Literal], vertex: str) -> bool:
     """Return whether the vertex is the active state of its region."""
-    found_vertex = machine.vertices[vertex]
-    return (
-        store[machine.regions[found_vertex.region].variable] == found_vertex.literal
-        and found_vertex.is_stable
-    )
+    state = machine.vertices[vertex]
+    return store[machine.regions[state.region].variable] == state.literal and state.is_stable
 
 
 def last_literal(now: Mapping[str, Literal], region: Region) -> Literal:

@@ -50,7 +50,7 @@ class _ServiceCall(Struct, frozen=True):
 def derive_contracts(
     graph: Graph, reserved: Iterable[str], assumed: tuple[int, int], sink: Sink
 ) -> Iterator[Contract]:
-    """Yield a contract for each service with conditions; *taken* are names of other contracts.
+    """Yield a contract for each service with conditions; *reserved* are names of other contracts.
 
     *assumed* is the range of Integers without a stated one.
     """
