@@ -11,8 +11,8 @@ from sysmlc.logic.contract import Contract
 from sysmlc.synthesis import Limits, Manager
 from sysmlc.synthesis.algebra.fair_systems import DomainError
 from sysmlc.synthesis.algebra.refinement import find_refinement_failures
-from sysmlc.synthesis.controller_synthesis import synthesised
-from sysmlc.synthesis.deadline import deadline
+from sysmlc.synthesis.controller_synthesis import synthesise_controller
+from sysmlc.synthesis.deadline import find_deadline
 from sysmlc.synthesis.decision import Options, decide
 from sysmlc.synthesis.games.game import make_game
 from sysmlc.synthesis.unrealizable.core import unrealizable_core
@@ -57,7 +57,7 @@ def decided(name: str, text: str) -> str:
 def made(name: str, text: str) -> str:
     """Decide, make a controller, check it."""
     return (
-        synthesised(read(name, text), lambda origin: Subject(), Sink(), OPTIONS)
+        synthesise_controller(read(name, text), lambda origin: Subject(), Sink(), OPTIONS)
         .text()
         .split("; ")[-1]
     )
@@ -87,7 +87,7 @@ def bounded(name: str, text: str) -> tuple[float, int | None]:
         _count(data)
     contract = read(name, json.dumps(data))
     timers = [one.name for one in contract.variables if one.name.startswith("tm")]
-    found = deadline(contract, timers, lambda origin: Subject(), Sink(), OPTIONS)
+    found = find_deadline(contract, timers, lambda origin: Subject(), Sink(), OPTIONS)
     return time.process_time() - start, found.bound
 
 

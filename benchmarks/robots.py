@@ -17,12 +17,18 @@ from msgspec.structs import replace
 
 from sysmlc.diagnostics import Sink, Subject
 from sysmlc.logic.contract import Contract
-from sysmlc.robots.outcome import Outcome, allocated
+from sysmlc.robots.outcome import Outcome, allocate_mission
 from sysmlc.robots.robot_contract import robot_contract
-from sysmlc.robots.robot_controller import ANY, answers_of, measured, synthesise, travels
+from sysmlc.robots.robot_controller import (
+    ANY,
+    build_answers,
+    measure_travel_times,
+    synthesise_robot,
+    travel_times_of,
+)
 from sysmlc.robots.study import Grid, Robot, Study, Target
 from sysmlc.robots.system_contract import system_contract
-from sysmlc.synthesis.controller_synthesis import Synthesis, synthesised
+from sysmlc.synthesis.controller_synthesis import Synthesis, synthesise_controller
 from sysmlc.synthesis.controllers.mealy import Machine
 from sysmlc.synthesis.decision import Options
 
@@ -101,14 +107,14 @@ def _states(report: Report, size: tuple[int, int, int]) -> None:
 
 
 def _size(contract: Contract) -> int:
-    made = synthesised(contract, _nowhere, Sink(), Options())
+    made = synthesise_controller(contract, _nowhere, Sink(), Options())
     return made.machine.size if isinstance(made.machine, Machine) else 0
 
 
 def _controller(size: tuple[int, int, int]) -> tuple[Synthesis, float]:
     """The controller of a floor, which is that of all its rows, and the seconds that it took."""
     start = time.process_time()
-    return synthesise(floor(*size), _nowhere, Sink(), Options()), time.process_time() - start
+    return synthesise_robot(floor(*size), _nowhere, Sink(), Options()), time.process_time() - start
 
 
 def _measured(
@@ -147,10 +153,10 @@ def _from_one_start(report: Report, study: Study, controller: Synthesis, synthes
 
 def _validated(study: Study, controller: Synthesis) -> tuple[Outcome, float]:
     start = time.process_time()
-    answers = answers_of(study, controller)
-    times = measured(study, answers)
-    made = Outcome(study, controller, travels(study, times), answers, times)
-    made = allocated(made, _nowhere, Sink())
+    answers = build_answers(study, controller)
+    times = measure_travel_times(study, answers)
+    made = Outcome(study, controller, travel_times_of(study, times), answers, times)
+    made = allocate_mission(made, _nowhere, Sink())
     return made, time.process_time() - start
 
 

@@ -114,7 +114,7 @@ def test_new_targets_take_the_robots_of_the_run_before(tmp_path, tmp_path_factor
     def fail(*given):
         raise AssertionError("synthesised again")
 
-    monkeypatch.setattr(outcome, "synthesise", fail)
+    monkeypatch.setattr(outcome, "synthesise_robot", fail)
     other = HALL.replace("part left : Target { :>> row = 0;", "part left : Target { :>> row = 1;")
     made = run(tmp_path, other, "-o", str(tmp_path / "out"))
     assert made.exit_code == 0, made.output

@@ -7,7 +7,7 @@ import sys
 
 import pytest
 
-from sysmlc.synthesis import composition_rules as together_rules
+from sysmlc.synthesis import composition_check as together_rules
 from sysmlc.synthesis import contract_checks as check
 from sysmlc.synthesis import rules
 

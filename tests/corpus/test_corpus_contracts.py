@@ -9,7 +9,7 @@ from sysmlc.driver import Request, compile_model
 from sysmlc.logic.composition.derivation import compose_blocks
 from sysmlc.logic.contract import Contract
 from sysmlc.synthesis.composition_check import check_compositions
-from sysmlc.synthesis.contract_checks import check
+from sysmlc.synthesis.contract_checks import check_contracts
 from sysmlc.synthesis.decision import Options
 
 pytestmark = pytest.mark.corpus
@@ -27,7 +27,7 @@ def place(graph):
 @pytest.mark.long
 def test_every_contract_of_the_ice_laboratory_can_be_kept_and_none_is_suspicious(laboratory):
     found, sink = laboratory.derived(Contract), Sink()
-    results = list(check(found, found, place(laboratory), sink, Options()))
+    results = list(check_contracts(found, found, place(laboratory), sink, Options()))
     verdicts = {one.verdict.component: one.verdict.is_realizable for one in results}
     assert len(verdicts) == 50
     assert [name for name, is_kept in verdicts.items() if not is_kept] == []

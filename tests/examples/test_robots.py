@@ -8,8 +8,8 @@ from examples.compiling import ROOT, compile_example, findings, outputs
 from sysmlc.diagnostics import Sink, Subject
 from sysmlc.logic.contract import Contract
 from sysmlc.logic.printing import print_formula
-from sysmlc.robots.outcome import studied
-from sysmlc.robots.report import files, summary
+from sysmlc.robots.outcome import run_study
+from sysmlc.robots.report import study_files, summarise_outcome
 from sysmlc.robots.study import Study
 from sysmlc.synthesis.decision import Options, decide
 
@@ -19,7 +19,7 @@ MODELS = [ROOT / "examples" / "robots" / name for name in ("hall.sysml", "hall.u
 def outcome_of(model):
     (study,) = compile_example(model, "ir").graph.derived(Study)
     sink = Sink()
-    outcome = studied(study, lambda origin: Subject(), sink, Options(), has_relations=False)
+    outcome = run_study(study, lambda origin: Subject(), sink, Options(), has_relations=False)
     assert outcome.is_good
     assert list(sink) == []
     return outcome
@@ -27,15 +27,17 @@ def outcome_of(model):
 
 def test_the_mission_is_done_as_the_report_says(golden):
     outcome = outcome_of(MODELS[0])
-    assert f"    {summary(outcome)}\n" in (MODELS[0].parent / "README.md").read_text("utf-8")
-    made = dict(files(outcome))
+    assert f"    {summarise_outcome(outcome)}\n" in (MODELS[0].parent / "README.md").read_text(
+        "utf-8"
+    )
+    made = dict(study_files(outcome))
     kept = {path: text for path, text in made.items() if path.endswith((".md", ".seq.puml"))}
     golden.check("examples/robots", kept | {"files.txt": "".join(f"{one}\n" for one in made)})
 
 
 def test_both_notations_come_to_the_same():
     """But for the ids of elements, which controllers and contracts name."""
-    first, second = (dict(files(outcome_of(model))) for model in MODELS)
+    first, second = (dict(study_files(outcome_of(model))) for model in MODELS)
     assert sorted(first) == sorted(second)
     for path, text in first.items():
         if path.endswith(".json"):

@@ -10,7 +10,7 @@ from sysmlc.diagnostics import Sink
 from sysmlc.driver import Request, compile_model
 from sysmlc.logic.contract import Contract
 from sysmlc.logic.printing import print_formula
-from sysmlc.synthesis.contract_checks import check
+from sysmlc.synthesis.contract_checks import check_contracts
 from sysmlc.synthesis.decision import Options
 
 XMI = "{http://www.omg.org/spec/XMI/20131001}"
@@ -117,7 +117,9 @@ def checked(file):
     made, sink = compile_model(Request((file,))), Sink()
     graph = made.graph
     found = graph.derived(Contract)
-    results = check(found, found, lambda origin: graph.subject(graph[origin]), sink, Options())
+    results = check_contracts(
+        found, found, lambda origin: graph.subject(graph[origin]), sink, Options()
+    )
     verdicts = {one.verdict.component: one.verdict.is_realizable for one in results}
     return verdicts, [f"{one.rule.code} {one.message}" for one in sink]
 

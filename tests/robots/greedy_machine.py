@@ -2,7 +2,7 @@
 
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import Owner
-from sysmlc.robots import contract_terms as words
+from sysmlc.robots import contract_terms as terms
 from sysmlc.robots.answers import Answers
 from sysmlc.robots.robot_controller import ANY, controller_contract
 from sysmlc.robots.study import STAY, WAYS
@@ -13,7 +13,7 @@ def greedy_machine(study):
     """State 1 is for a robot that was not in its target in the step before."""
     contract = controller_contract(study)
     sides = [tuple(one for one in contract.variables if one.owner is owner) for owner in Owner]
-    here, goal = (f.primed(f.var(name(ANY))) for name in (words.position, words.target))
+    here, goal = (f.primed(f.var(name(ANY))) for name in (terms.position, terms.target))
     is_home = f.eq(here, goal)
     moves = [_move(is_home, STAY, 0), *_going(study), _move(f.TRUE, STAY, 1)]
     resting = (_move(is_home, STAY, 0), _move(f.TRUE, STAY, 1))
@@ -28,11 +28,11 @@ def _going(study):
     grid = study.grid
     for way in WAYS:
         for goal in grid.cells:
-            cells = [cell for cell in grid.cells if way in grid.nearer(cell, goal)]
+            cells = [cell for cell in grid.cells if way in grid.commands_nearer(cell, goal)]
             if cells:
-                is_there = words.one_of(words.position(ANY), cells)
-                sees = f.var(words.sensor(ANY, way))
-                when = f.both(is_there, sees, words.is_(words.target(ANY), goal))
+                is_there = terms.is_in_any(terms.position(ANY), cells)
+                sees = f.var(terms.sensor(ANY, way))
+                when = f.both(is_there, sees, terms.equals(terms.target(ANY), goal))
                 yield _move(f.primed(when), way, 1)
 
 

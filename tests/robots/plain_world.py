@@ -20,7 +20,7 @@ class Plain:
         home = [self.cells[r] == self.goals[r] for r in self.robots]
         for r in self.robots:
             if self.commands[r] != "stay":
-                self.cells[r] = self.grid.after(self.cells[r], self.commands[r])
+                self.cells[r] = self.grid.cell_after(self.cells[r], self.commands[r])
         assert len(set(self.cells)) == len(self.cells)
         for r in self.robots:
             if home[r]:
@@ -90,7 +90,7 @@ class Plain:
             asked |= {r for r in idle if self.cells[r] in beside}
 
     def _command(self, r, was_home):
-        ways = self.grid.nearer(self.cells[r], self.goals[r])
+        ways = self.grid.commands_nearer(self.cells[r], self.goals[r])
         return ways[0] if ways and was_home is False else "stay"
 
     def told(self):

@@ -58,7 +58,10 @@ def test_the_best_is_the_best_of_all(study):
 @given(missions(most=7))
 def test_orders_and_carrying_are_kept_and_the_best_is_no_worse(study):
     travel = shortest_travel_times(study)
-    first, found = allocate_greedily(study, travel), allocate_optimally(study, travel, most=300)
+    first, found = (
+        allocate_greedily(study, travel),
+        allocate_optimally(study, travel, max_nodes=300),
+    )
     for schedule in (one for one in (first, found and found.schedule) if one):
         assert respects_orders(study, schedule.allocation)
         for order in study.orders:

@@ -9,12 +9,12 @@ from sysmlc.robots import claims
 from sysmlc.robots import outcome as flow
 from sysmlc.robots.answers import Answers
 from sysmlc.robots.crew_cache import CrewCache, decode_controller, encode_controller
-from sysmlc.robots.outcome import studied
-from sysmlc.robots.report import files
-from sysmlc.robots.robot_controller import ANY, controller_contract, measured
+from sysmlc.robots.outcome import run_study
+from sysmlc.robots.report import study_files
+from sysmlc.robots.robot_controller import ANY, controller_contract, measure_travel_times
 from sysmlc.support.cache import Cache
 from sysmlc.synthesis import Limits
-from sysmlc.synthesis.controller_synthesis import Form, synthesised
+from sysmlc.synthesis.controller_synthesis import Form, synthesise_controller
 from sysmlc.synthesis.controllers.table import Table
 from sysmlc.synthesis.decision import Options
 
@@ -34,7 +34,7 @@ def keeper(tmp_path):
 
 def made(study, keeper, has_relations=True, options=None):
     sink = Sink()
-    found = studied(study, nowhere, sink, options or Options(), has_relations, keeper)
+    found = run_study(study, nowhere, sink, options or Options(), has_relations, keeper)
     return found, [(one.rule.code, one.message, one.notes) for one in sink]
 
 
@@ -71,7 +71,7 @@ def test_what_is_kept_comes_to_the_same_as_what_is_made(keeper):
     made(FIRST, keeper)
     kept, told = made(OTHER, keeper)
     fresh, told_fresh = made(OTHER, None)
-    assert dict(files(kept)) == dict(files(fresh))
+    assert dict(study_files(kept)) == dict(study_files(fresh))
     assert told == told_fresh
 
 
@@ -82,7 +82,7 @@ def test_what_is_kept_comes_to_the_same_as_what_is_made(keeper):
         floor(4, None, None, targets=(0, 8), rows=3),
         floor(3, None, None, targets=(0, 8), blocked=(4,)),
         floor(3, None, None, targets=(0, 8), within=9),
-        floor(3, None, None, targets=(0, 8), counted=4),
+        floor(3, None, None, targets=(0, 8), counter_size=4),
     ],
 )
 def test_another_floor_or_other_robots_are_made_anew(other, keeper, monkeypatch):
@@ -111,7 +111,8 @@ def test_what_was_not_decided_is_tried_again(keeper):
     made(FIRST, keeper, has_relations=False)
     crew = keeper.get(FIRST)
     undecided = {
-        one.claim: one for one in claims.decide_claims(FIRST, flow.travels(FIRST, {}), short)
+        one.claim: one
+        for one in claims.decide_claims(FIRST, flow.travel_times_of(FIRST, {}), short)
     }
     assert None in {one.holds for one in undecided.values()}
     keeper.put(FIRST, flow.replace(crew, claims=undecided))
@@ -137,11 +138,11 @@ def test_a_damaged_entry_costs_time_only(keeper):
 def test_a_table_is_kept_as_well():
     study = floor(2, None, targets=(3,))
     contract = controller_contract(study)
-    found = synthesised(contract, nowhere, Sink(), Options(), Form.TABLE)
+    found = synthesise_controller(contract, nowhere, Sink(), Options(), Form.TABLE)
     assert isinstance(found.machine, Table)
     again = decode_controller(
         encode_controller(found.machine), reduced(contract).contract.variables
     )
     assert again == found.machine
     answers = Answers(again, ANY, study.grid)
-    assert measured(study, (answers,))[3] == {0: 4, 1: 3, 2: 3, 3: 1}
+    assert measure_travel_times(study, (answers,))[3] == {0: 4, 1: 3, 2: 3, 3: 1}

@@ -8,7 +8,7 @@ from msgspec.structs import replace
 from small_floors import floor
 
 from sysmlc.logic.formula import variables
-from sysmlc.robots import contract_terms as words
+from sysmlc.robots import contract_terms as terms
 from sysmlc.robots.claims import decide_claims
 from sysmlc.robots.environment_contract import environment_contract
 from sysmlc.robots.joint_contracts import mission_guarantees
@@ -46,15 +46,15 @@ def together(study):
 def test_what_is_decided_is_what_listed_states_say(name):
     study = FLOORS[name]
     asked, listed = together(study), Listed(study)
-    assert (asked.stepwise_failure() is None) == listed.is_safe()
-    assert (asked.offered_failure() is not None) == listed.is_ever_stuck()
+    assert (asked.find_safety_failure() is None) == listed.is_safe()
+    assert (asked.find_offer_failure() is not None) == listed.is_ever_stuck()
     assert (asked.find_endless_travel() is not None) == listed.is_ever_away()
 
 
 @pytest.mark.parametrize("name", FLOORS)
 def test_a_run_that_fails_is_one_of_the_listed_states(name):
     study = FLOORS[name]
-    found, listed = together(study).offered_failure(), Listed(study)
+    found, listed = together(study).find_offer_failure(), Listed(study)
     if found is not None:
         steps = [state(study, one) for one in found.run.steps]
         onward = [*steps[1:], steps[found.run.loop]]
@@ -69,17 +69,17 @@ def state(study, values):
     """The values of a step as a listed state."""
     return tuple(
         (
-            values[words.position(one)],
-            values[words.target(one)],
-            frozenset(way for way in WAYS if values[words.sensor(one, way)]),
-            values[words.command(one)],
+            values[terms.position(one)],
+            values[terms.target(one)],
+            frozenset(way for way in WAYS if values[terms.sensor(one, way)]),
+            values[terms.command(one)],
         )
         for one in study.robots
     )
 
 
 def test_floors_of_both_kinds_are_judged():
-    answers = {together(study).offered_failure() is None for study in FLOORS.values()}
+    answers = {together(study).find_offer_failure() is None for study in FLOORS.values()}
     assert answers == {True, False}
     assert {together(study).find_endless_travel() is None for study in FLOORS.values()} == {
         True,
@@ -91,43 +91,43 @@ def test_floors_of_both_kinds_are_judged():
 def test_floors_of_the_thesis_are_decided_one_robot_or_two_at_a_time(side, robots):
     study = floor(side, *(None,) * robots)
     asked = together(study)
-    assert asked.stepwise_failure() is None
-    assert asked.recurring_failure() is None
-    found = asked.offered_failure()
+    assert asked.find_safety_failure() is None
+    assert asked.find_liveness_failure() is None
+    found = asked.find_offer_failure()
     assert found.conjunct.text == "Again and again 'r0' is in its target, or may go nearer."
     assert list(violated_conjuncts(found.run, (found.conjunct,))) == [found.conjunct]
-    promised = list(violated_conjuncts(found.run, asked.joined.system.guarantees))
+    promised = list(violated_conjuncts(found.run, asked.contracts.system.guarantees))
     assert [one.text for one in promised] == ["'r0' reaches its targets."]
 
 
 def test_without_its_promise_to_go_on_free_ways_only_a_robot_breaks_what_is_assumed_of_it():
     asked = together(floor(3, None, None))
-    first, *others = asked.joined.robots
+    first, *others = asked.contracts.robots
     kept = [one for one in first.guarantees if "only when the way is free" not in one.text]
-    asked.joined.robots = [replace(first, guarantees=tuple(kept)), *others]
-    asked.joined.parts = (asked.joined.environment, *asked.joined.robots)
-    asked._steps = {(one.class_, one.formula) for one in asked.joined.steps()}
-    broken = [one for one in asked.joined.environment.assumptions if not asked._follows(one)]
+    asked.contracts.robots = [replace(first, guarantees=tuple(kept)), *others]
+    asked.contracts.parts = (asked.contracts.environment, *asked.contracts.robots)
+    asked._step_conjuncts = {(one.class_, one.formula) for one in asked.contracts.steps()}
+    broken = [one for one in asked.contracts.environment.assumptions if not asked._is_proven(one)]
     assert [one.text for one in broken] == [
         f"'r0' goes {way} only when the way is free." for way in WAYS
     ]
 
 
 def test_nothing_says_how_soon_a_robot_comes_to_its_target():
-    found = together(floor(3, None, None, within=4)).stepwise_failure()
+    found = together(floor(3, None, None, within=4)).find_safety_failure()
     assert found.conjunct.text == "'r0' reaches a target within 4 steps."
     assert [one["r0_timer"] for one in found.run.steps][:8] == [0, 0, 0, 1, 2, 3, 4, 5]
-    assert together(floor(1, None, within=4)).stepwise_failure() is None
+    assert together(floor(1, None, within=4)).find_safety_failure() is None
 
 
 def test_targets_of_a_mission_stay_and_can_be_reached():
     """What joins the contracts keeps what C_R and C_S assume of targets, on any floor."""
     for study in FLOORS.values():
         asked = together(study)
-        goals = {words.target(one) for one in study.robots}
-        for part in asked.joined.robots:
+        goals = {terms.target(one) for one in study.robots}
+        for part in asked.contracts.robots:
             of_targets = [one for one in part.assumptions if goals & names(one)]
-            assert all(asked._follows(one) for one in of_targets if one.class_ != "liveness")
+            assert all(asked._is_proven(one) for one in of_targets if one.class_ != "liveness")
 
 
 def names(conjunct):
@@ -136,7 +136,7 @@ def names(conjunct):
 
 def test_others_rest_in_nobodys_way():
     study = floor(3, None, None, None)
-    found = together(study).offered_failure()
+    found = together(study).find_offer_failure()
     contract = environment_contract(study)
     assert list(violated_conjuncts(found.run, (*contract.assumptions, *contract.guarantees))) == []
     assert list(violated_conjuncts(found.run, mission_guarantees(study))) == []
@@ -146,7 +146,7 @@ def test_others_rest_in_nobodys_way():
 def test_where_there_is_no_room_a_run_of_few_robots_is_none_of_all():
     study = floor(2, None, None, None, None)
     few = replace(study, robots=study.robots[:1])
-    run = together(few).offered_failure().run
+    run = together(few).find_offer_failure().run
     contract = environment_contract(study)
     for one in extend_to_all_robots(study, few.robots, run):
         assert list(violated_conjuncts(one, contract.guarantees)) != []

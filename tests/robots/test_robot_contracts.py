@@ -67,7 +67,7 @@ def test_on_a_floor_in_two_parts_targets_are_in_the_part_of_the_robot():
 
 
 def test_step_counters_count_changes_of_position_and_begin_again():
-    study = floor(2, None, counted=3)
+    study = floor(2, None, counter_size=3)
     contract = robot_contract(study, study.robots[0])
     texts = {text for _, _, text in said(contract)}
     assert "!r0_position'=r0_position & r0_steps=2 -> r0_steps'=0" in texts

@@ -13,10 +13,10 @@ from test_robot_simulation import some_floor
 
 from sysmlc.diagnostics import Sink, Subject
 from sysmlc.logic.evaluate import find_violation
-from sysmlc.robots import contract_terms as words
+from sysmlc.robots import contract_terms as terms
 from sysmlc.robots.environment_contract import environment_contract
 from sysmlc.robots.robot_contract import robot_contract
-from sysmlc.robots.robot_controller import answers_of, synthesise
+from sysmlc.robots.robot_controller import build_answers, synthesise_robot
 from sysmlc.robots.run_sets import RunSpace, difference
 from sysmlc.robots.study import STAY, WAYS
 from sysmlc.robots.system_contract import system_contract
@@ -25,32 +25,32 @@ from sysmlc.robots.world import World
 from sysmlc.synthesis.decision import Options
 
 
-class Told(World):
-    """A world of one run that notes in every step what the variables of the contracts are."""
+class RecordingWorld(World):
+    """A world of one run that records the contracts' variables in every step."""
 
     def _answer_all(self):
-        self.shown = set()
+        self.offered = set()
         super()._answer_all()
-        self.trace = [*getattr(self, "trace", ()), self.now()]
+        self.trace = [*getattr(self, "trace", ()), self.read_variables()]
 
-    def _shown(self, number, known, goal, step, given):
-        if given:
-            self.shown.add((number, step[0]))
-        super()._shown(number, known, goal, step, given)
+    def _offer_and_answer(self, number, memory, goal, move, runs):
+        if runs:
+            self.offered.add((number, move[0]))
+        super()._offer_and_answer(number, memory, goal, move, runs)
 
-    def now(self):
+    def read_variables(self):
         found = {}
         for number, (robot, body) in enumerate(zip(self.study.robots, self.bodies, strict=True)):
             (memory,) = [one for one, plane in body.memory.items() if plane]
             commands = [way for way, plane in body.commands.items() if plane]
-            found[words.position(robot)] = body.places.index(1)
-            found[words.target(robot)] = memory.goal
-            found[words.command(robot)] = commands[0] if commands else STAY
-            found |= {words.sensor(robot, way): (number, way) in self.shown for way in WAYS}
-        return found | {words.free(cell): not one for cell, one in enumerate(self.taken)}
+            found[terms.position(robot)] = body.places.index(1)
+            found[terms.target(robot)] = memory.goal
+            found[terms.command(robot)] = commands[0] if commands else STAY
+            found |= {terms.sensor(robot, way): (number, way) in self.offered for way in WAYS}
+        return found | {terms.free(cell): not one for cell, one in enumerate(self.occupied)}
 
 
-def run_of(study, allocation, answers, start, world=Told):
+def run_of(study, allocation, answers, start, world=RecordingWorld):
     """What the variables are in each step, and the step to which the last one returns."""
     cells = range(study.grid.size)
     placed = tuple(tuple(int(cell == one) for cell in cells) for one in start)
@@ -91,17 +91,17 @@ def test_all_contracts_are_kept_in_whole_runs(seed):
 
 def test_the_synthesised_machine_keeps_them_as_well():
     study = floor(3, None, None, targets=(0, 8, 4))
-    made = synthesise(study, lambda origin: Subject(), Sink(), Options())
-    trace, loop = run_of(study, ((0, 2), (1,)), answers_of(study, made), (4, 5))
+    made = synthesise_robot(study, lambda origin: Subject(), Sink(), Options())
+    trace, loop = run_of(study, ((0, 2), (1,)), build_answers(study, made), (4, 5))
     assert broken(environment_contract(study), trace, loop) == []
     assert broken(robot_contract(study, study.robots[0], is_alone=False), trace, loop) == []
 
 
-class Silent(Told):
-    """An environment that shows nothing to robots at rest."""
+class Silent(RecordingWorld):
+    """An environment that offers nothing to robots at rest."""
 
-    def _in_turn(self, number, known, given):
-        return given
+    def _offer_in_turn(self, number, memory, runs):
+        return runs
 
 
 def test_without_a_turn_for_robots_at_rest_the_environment_breaks_its_promise():
@@ -142,7 +142,7 @@ def timers(study, trace):
         timer = 0
         for one in trace:
             yield timer
-            is_home = one[words.position(robot)] == one[words.target(robot)]
+            is_home = one[terms.position(robot)] == one[terms.target(robot)]
             timer = 0 if is_home else timer + 1
 
 

@@ -121,7 +121,7 @@ def test_both_give_equal_studies_and_contracts(tmp_path):
     ours, contracts = said(first, LIBRARY)
     theirs, wanted = said(second)
     assert contracts == wanted
-    assert (ours.grid, ours.deadline, ours.counted) == (theirs.grid, theirs.deadline, 5)
+    assert (ours.grid, ours.deadline, ours.counter_size) == (theirs.grid, theirs.deadline, 5)
     assert [one.start for one in ours.robots] == [6, None]
     for study in (ours, theirs):
         pairs = [(one.earlier, one.later, one.is_carried) for one in study.orders]

@@ -12,9 +12,9 @@ from sysmlc.robots import outcome as module
 from sysmlc.robots.claims import Claim, decide_claims
 from sysmlc.robots.mission_contract import mission_contract
 from sysmlc.robots.mission_run import sequence_diagram
-from sysmlc.robots.outcome import allocated, studied
-from sysmlc.robots.report import files, markdown
-from sysmlc.robots.robot_controller import answers_of, simulated, synthesise
+from sysmlc.robots.outcome import allocate_mission, run_study
+from sysmlc.robots.report import study_files, study_markdown
+from sysmlc.robots.robot_controller import build_answers, simulate_travel_times, synthesise_robot
 from sysmlc.robots.schedule import build_schedule, shortest_travel_times
 from sysmlc.robots.validation import validate_allocation
 from sysmlc.synthesis import Limits
@@ -29,7 +29,7 @@ def nowhere(origin):
 
 def made(study, has_relations=False):
     sink = Sink()
-    found = studied(study, nowhere, sink, Options(), has_relations)
+    found = run_study(study, nowhere, sink, Options(), has_relations)
     return found, [(one.rule.code, one.message) for one in sink]
 
 
@@ -60,7 +60,7 @@ def test_the_mission_is_done_from_every_start(nine):
 def test_the_synthesised_machine_and_one_written_by_hand_reach_the_same():
     study = floor(4, None, None, None, targets=(0, 5, 10), rows=3)
     lists = ((0,), (1,), (2,))
-    machine = answers_of(study, synthesise(study, nowhere, Sink(), Options()))
+    machine = build_answers(study, synthesise_robot(study, nowhere, Sink(), Options()))
     assert validate_allocation(study, lists, machine) == validate_allocation(
         study, lists, greedy_answers(study)
     )
@@ -70,9 +70,9 @@ def test_new_targets_are_given_to_the_robots_that_there_are(nine, monkeypatch):
     def fail(*given):
         raise AssertionError("synthesised again")
 
-    monkeypatch.setattr(module, "synthesise", fail)
+    monkeypatch.setattr(module, "synthesise_robot", fail)
     other = floor(3, None, None, targets=(2, 6, 1, 3), deadline=60)
-    again = allocated(nine, nowhere, Sink(), other)
+    again = allocate_mission(nine, nowhere, Sink(), other)
     assert again.is_good
     assert again.study is other
     assert again.controller is nine.controller
@@ -155,16 +155,16 @@ def test_what_is_not_decided_is_told(monkeypatch):
 
 
 def test_a_report_is_the_same_each_time(nine):
-    assert dict(files(nine)) == dict(files(nine))
-    text = markdown(nine)
+    assert dict(study_files(nine)) == dict(study_files(nine))
+    text = study_markdown(nine)
     assert text.startswith("# Hall\n\nHall: 9 cells, 2 robots, 3 targets: done in ")
     assert "A machine of 2 states" in text
 
 
 def test_a_schedule_is_what_a_robot_alone_does():
     study = floor(3, 0, targets=(8, 2, 6), deadline=60)
-    answers = answers_of(study, synthesise(study, nowhere, Sink(), Options()))
-    schedule = build_schedule(study, simulated(study, answers), ((0, 1, 2),))
+    answers = build_answers(study, synthesise_robot(study, nowhere, Sink(), Options()))
+    schedule = build_schedule(study, simulate_travel_times(study, answers), ((0, 1, 2),))
     found = validate_allocation(study, ((0, 1, 2),), answers)
     assert found.reached == schedule.reached
 

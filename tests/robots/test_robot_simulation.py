@@ -10,7 +10,7 @@ from plain_world import Plain
 from small_floors import floor
 
 from sysmlc.robots import validation as validating
-from sysmlc.robots.merging import States
+from sysmlc.robots.merging import StateSet
 from sysmlc.robots.run_sets import digit_patterns, starts_without_collision
 from sysmlc.robots.starts import iter_start_chunks, symbolic_starts
 from sysmlc.robots.validation import Simulation, validate_allocation, validate_symbolically
@@ -126,7 +126,7 @@ def test_states_are_fewer_than_runs():
     (runs,) = iter_start_chunks(study)
     world = World(study, allocation, greedy_answers(study), runs)
     assert Simulation(world).run(until=6) is None
-    states = States(len(study.robots))
+    states = StateSet(len(study.robots))
     states.add(world, range(runs.all.bit_length()))
     assert 1 < len(states) < runs.all.bit_count() / 2
     (batch,) = states.batches(1 << 17, world)

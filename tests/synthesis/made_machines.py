@@ -11,7 +11,7 @@ from sysmlc.logic.contract import Class, Owner
 from sysmlc.logic.evaluate import compile_evaluation, find_violation
 from sysmlc.logic.formula import Const, negate
 from sysmlc.synthesis import Manager, make_game
-from sysmlc.synthesis.controller_synthesis import Form, made
+from sysmlc.synthesis.controller_synthesis import Form, build_controller_form
 from sysmlc.synthesis.controllers.mealy import Machine
 from sysmlc.synthesis.controllers.strategy import extract_strategy
 from sysmlc.synthesis.controllers.verification import find_faults
@@ -32,7 +32,7 @@ def planned(contract, engine="", is_encoded=True):
 def controller(contract, form=Form.ANY, engine="", is_encoded=True):
     """A controller that is not checked, or None when there is none."""
     found = planned(contract, engine, is_encoded)
-    return found and made(contract, *found, form)
+    return found and build_controller_form(contract, *found, form)
 
 
 def said(machine, contract):

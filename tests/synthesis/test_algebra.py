@@ -154,7 +154,7 @@ DEAD_END = "sys a: bool\nsys b: bool\npromise always a & a'"
 
 
 def test_an_example_begins_where_a_run_goes_on():
-    found = asked(DEAD_END).example()
+    found = asked(DEAD_END).find_example()
     assert all(one["a"] for one in found.steps)
 
 

@@ -5,8 +5,8 @@ from made_machines import said
 from msgspec.structs import replace
 
 from sysmlc.logic.printing import print_formula
+from sysmlc.support.disjoint_sets import group_related
 from sysmlc.synthesis import Manager, make_game
-from sysmlc.synthesis.bdd.groups import tied
 from sysmlc.synthesis.controllers.independent_games import (
     combine_independent_strategies,
     split_game,
@@ -46,7 +46,7 @@ def broken(table, text):
 
 
 def test_names_are_tied_by_what_speaks_of_two():
-    groups = tied("abcde", [("a", "c"), ("c", "e"), ("d",), ("b", "other")])
+    groups = group_related("abcde", [("a", "c"), ("c", "e"), ("d",), ("b", "other")])
     assert groups == [frozenset("ace"), frozenset("b"), frozenset("d")]
 
 

@@ -8,7 +8,7 @@ from test_routes import LIFT, fleet
 
 from sysmlc.diagnostics import Sink, Subject
 from sysmlc.synthesis import Manager, make_game
-from sysmlc.synthesis.deadline import deadline
+from sysmlc.synthesis.deadline import find_deadline
 from sysmlc.synthesis.decision import Options, decide
 from sysmlc.synthesis.games import search_reductions as reach
 from sysmlc.synthesis.games import single_moves as routes
@@ -65,4 +65,4 @@ def test_a_deadline_is_found():
         "assume always due -> !due'\npromise always !due -> late'=0\n"
         "promise always due & late!=3 -> late'=late + 1\npromise always due & late=3 -> late'=3"
     )
-    assert deadline(made, ["late"], lambda origin: Subject(), Sink(), PURE).bound == 1
+    assert find_deadline(made, ["late"], lambda origin: Subject(), Sink(), PURE).bound == 1

@@ -7,7 +7,7 @@ from sysmlc.ir.text import parse_text
 from sysmlc.logic.contract import Contract
 from sysmlc.passes import pipeline
 from sysmlc.synthesis.bdd.limits import LimitError
-from sysmlc.synthesis.contract_checks import BREAKS, check
+from sysmlc.synthesis.contract_checks import BREAKS, check_contracts
 from sysmlc.synthesis.decision import Options
 
 CODES = ("SM560", "SM561", "SM562")
@@ -18,7 +18,9 @@ def checked(text):
     pipeline.run(graph, sink, verify_each=True)
     sink = Sink()
     made = graph.derived(Contract)
-    results = check(made, made, lambda origin: graph.subject(graph[origin]), sink, Options())
+    results = check_contracts(
+        made, made, lambda origin: graph.subject(graph[origin]), sink, Options()
+    )
     return {one.verdict.component: one for one in results}, list(sink)
 
 

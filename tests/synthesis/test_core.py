@@ -71,7 +71,7 @@ def test_a_core_of_many_takes_few_games(monkeypatch):
 
 def test_the_search_ends_with_too_many_rather_than_too_few():
     made = contract(LIFT)
-    most = unrealizable_core(make_game(made, Manager()), most=2)
+    most = unrealizable_core(make_game(made, Manager()), max_checks=2)
     assert set(found(made)) <= set(most)
     assert not Explicit(replace(made, guarantees=most)).is_realizable()
 

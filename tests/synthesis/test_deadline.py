@@ -11,7 +11,7 @@ from sysmlc.diagnostics import Sink, Subject
 from sysmlc.logic import formats
 from sysmlc.logic.printing import print_formula
 from sysmlc.synthesis import Limits, rules
-from sysmlc.synthesis.deadline import bounded, deadline
+from sysmlc.synthesis.deadline import find_deadline, set_bound
 from sysmlc.synthesis.decision import Options
 
 CORPUS = os.environ.get("SYSMLC_CORPUS")
@@ -33,7 +33,7 @@ CART = """
 
 def found(made, *timers, options=Options()):  # noqa: B008 - a value
     sink = Sink()
-    return deadline(made, timers, lambda origin: Subject(origin), sink, options), list(sink)
+    return find_deadline(made, timers, lambda origin: Subject(origin), sink, options), list(sink)
 
 
 def cart(last: int, speed: int, more: str = ""):
@@ -61,7 +61,9 @@ def test_bounds_that_are_promised_already_are_what_is_looked_for():
 
 
 def test_a_bounded_contract_says_so_once():
-    made = bounded(cart(3, 1, "promise always timer < 9\npromise always 7 >= timer"), ["timer"], 4)
+    made = set_bound(
+        cart(3, 1, "promise always timer < 9\npromise always 7 >= timer"), ["timer"], 4
+    )
     said = [print_formula(one.formula) for one in made.guarantees]
     assert [one for one in said if "timer" in one] == ["timer<=4"]
 

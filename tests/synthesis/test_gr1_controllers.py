@@ -8,7 +8,7 @@ import pytest
 from sysmlc.diagnostics import Sink, Subject
 from sysmlc.logic import formats
 from sysmlc.synthesis import Limits
-from sysmlc.synthesis.controller_synthesis import Form, synthesised
+from sysmlc.synthesis.controller_synthesis import Form, synthesise_controller
 from sysmlc.synthesis.controllers.mealy import Machine
 from sysmlc.synthesis.controllers.table import Table
 from sysmlc.synthesis.decision import Options
@@ -38,7 +38,9 @@ def controllers(name):
     """What is made of the contracts of a file, and what is said."""
     sink = Sink()
     contracts = formats.read((FOLDER / name).read_text(encoding="utf-8"), name, sink)
-    made = [synthesised(one, lambda origin: Subject(), sink, OPTIONS) for one in contracts]
+    made = [
+        synthesise_controller(one, lambda origin: Subject(), sink, OPTIONS) for one in contracts
+    ]
     return made, [finding.rule.code for finding in sink]
 
 
@@ -62,6 +64,8 @@ def test_what_consists_of_parts_has_a_table_of_their_strategies():
     name = "chase/Robotic_Arm_Joints.ltl"
     contracts = formats.read((FOLDER / name).read_text(encoding="utf-8"), name, Sink())
     joints = next(one for one in contracts if one.component.endswith(".Joints"))
-    made = synthesised(joints, lambda origin: Subject(), Sink(), OPTIONS, Form.TABLE).machine
+    made = synthesise_controller(
+        joints, lambda origin: Subject(), Sink(), OPTIONS, Form.TABLE
+    ).machine
     assert isinstance(made, Table)
     assert (len(made.modes), len(made.nodes) < 2_000) == (1, True)

@@ -8,7 +8,7 @@ import pytest
 from sysmlc.diagnostics import Sink, Subject
 from sysmlc.logic import formats
 from sysmlc.synthesis import Limits
-from sysmlc.synthesis.controller_synthesis import synthesised
+from sysmlc.synthesis.controller_synthesis import synthesise_controller
 from sysmlc.synthesis.controllers.mealy import Machine
 from sysmlc.synthesis.decision import Options
 
@@ -41,7 +41,7 @@ pytestmark = [
 def test_a_machine_is_made_and_small(name):
     text, sink = Path(CORPUS, "gr1", f"{name}.json").read_text(encoding="utf-8"), Sink()
     (contract,) = formats.read(text, f"{name}.json", sink)
-    made = synthesised(contract, lambda origin: Subject(), sink, OPTIONS)
+    made = synthesise_controller(contract, lambda origin: Subject(), sink, OPTIONS)
     assert list(sink) == []
     assert isinstance(made.machine, Machine)
     states, registers = MOST[name]

@@ -14,7 +14,7 @@ from sysmlc.support import resources
 from sysmlc.synthesis import LimitError
 from sysmlc.synthesis import controller_synthesis as synthesise
 from sysmlc.synthesis.controller_files import FORMS, write_controllers
-from sysmlc.synthesis.controller_synthesis import Form, synthesised
+from sysmlc.synthesis.controller_synthesis import Form, synthesise_controller
 from sysmlc.synthesis.controllers import controller_formats
 from sysmlc.synthesis.controllers.controller_formats import (
     gr1c_json,
@@ -52,7 +52,9 @@ TABLE = json.loads(resources.read_text("metamodels", "sysmlc-controller.schema.j
 
 def made(contract, form=Form.ANY):
     sink = Sink()
-    return synthesised(contract, lambda origin: Subject(), sink, Options(), form), list(sink)
+    return synthesise_controller(contract, lambda origin: Subject(), sink, Options(), form), list(
+        sink
+    )
 
 
 def names(contract, form):

@@ -167,7 +167,7 @@ def test_the_controller_is_the_same_in_any_order_of_bits(form):
 
 
 def written_in(made, game, plan, form):
-    controller = synthesise.made(made, game, plan, form)
+    controller = synthesise.build_controller_form(made, game, plan, form)
     return rebuild_in_variable_order(controller, Manager()) if form is Form.TABLE else controller
 
 

@@ -10,7 +10,7 @@ from sysmlc.cli import options
 if TYPE_CHECKING:
     from sysmlc.cli.contract_files import ContractFile
     from sysmlc.cli.session import Settings
-    from sysmlc.synthesis.contract_checks import Checked
+    from sysmlc.synthesis.contract_checks import CheckedContract
     from sysmlc.synthesis.decision import Options
 
 
@@ -88,14 +88,14 @@ def _check(
     from sysmlc.cli.result_files import write_files
     from sysmlc.diagnostics import Severity
     from sysmlc.synthesis.composition_check import check_compositions
-    from sysmlc.synthesis.contract_checks import check
+    from sysmlc.synthesis.contract_checks import check_contracts
     from sysmlc.synthesis.witnesses import witness_files
 
     contracts = (
         select_contracts(read.contracts, component, read.composites) if read.contracts else ()
     )
     composites = [contract for contract in read.composites if component in ("", contract.component)]
-    alone = list(check(contracts, read.contracts, read.place, read.sink, options))
+    alone = list(check_contracts(contracts, read.contracts, read.place, read.sink, options))
     together = list(check_compositions(composites, read.place, read.sink, options))
     if output is not None:
         runs = [
@@ -113,7 +113,7 @@ def _check(
     return int(has_errors) if is_done else 2
 
 
-def _format_line(result: "Checked") -> str:
+def _format_line(result: "CheckedContract") -> str:
     additions = {None: "", True: ", keeps its requirements", False: ", breaks its requirements"}
     words = {None: "not decided", True: "realizable", False: "unrealizable"}
     verdict = result.verdict

@@ -90,8 +90,8 @@ def _study(
     from sysmlc.cli.result_files import write_files
     from sysmlc.diagnostics import Severity, Sink, Subject
     from sysmlc.diagnostics.render import make_report
-    from sysmlc.robots.outcome import studied
-    from sysmlc.robots.report import files, summary
+    from sysmlc.robots.outcome import run_study
+    from sysmlc.robots.report import study_files, summarise_outcome
     from sysmlc.robots.study import Study
 
     def place(origin: str) -> Subject:
@@ -102,14 +102,14 @@ def _study(
     studies = compilation.graph.derived(Study) if code < 2 else ()
     if not studies and not code:
         session.fail("the model has no floor with robots: nothing specialises 'Floors::Floor'")
-    outcomes = [studied(study, place, sink, chosen, has_relations, keeper) for study in studies]
+    outcomes = [run_study(study, place, sink, chosen, has_relations, keeper) for study in studies]
     if output is not None:
-        write_files([file for outcome in outcomes for file in files(outcome)], output)
+        write_files([file for outcome in outcomes for file in study_files(outcome)], output)
     of_model = reports.list_findings(compilation, only_errors=not settings.verbose)
     findings = reports.localize(compilation.root, make_report(sink, compilation.sources).findings)
     reports.print_findings([*of_model, *findings], settings)
     for outcome in outcomes:
-        terminal.echo(summary(outcome), err=not reports.allows_sentences(settings))
+        terminal.echo(summarise_outcome(outcome), err=not reports.allows_sentences(settings))
     has_errors = any(d.severity is Severity.ERROR for d in sink)
     return max(code, _compute_exit_code(outcomes, has_errors))
 

@@ -146,10 +146,10 @@ def _find_deadlines(
     options: "Options",
 ) -> int:
     from sysmlc.cli.contract_files import select_contracts
-    from sysmlc.synthesis.deadline import deadline
+    from sysmlc.synthesis.deadline import find_deadline
 
     contracts = select_contracts(read.contracts, component) if read.contracts else ()
-    results = [deadline(c, timers, read.place, read.sink, options) for c in contracts]
+    results = [find_deadline(c, timers, read.place, read.sink, options) for c in contracts]
     return _report(read, settings, results)
 
 
@@ -164,12 +164,13 @@ def _synthesize(
     from sysmlc.cli.contract_files import select_contracts
     from sysmlc.cli.result_files import write_files
     from sysmlc.synthesis.controller_files import TABLE, write_controllers
-    from sysmlc.synthesis.controller_synthesis import Form, synthesised
+    from sysmlc.synthesis.controller_synthesis import Form, synthesise_controller
 
     contracts = select_contracts(read.contracts, component) if read.contracts else ()
     kind = Form.TABLE if form == TABLE else Form.ANY
     controllers = [
-        synthesised(contract, read.place, read.sink, options, kind) for contract in contracts
+        synthesise_controller(contract, read.place, read.sink, options, kind)
+        for contract in contracts
     ]
     written = write_controllers(controllers, read.place, read.sink, form)
     if output is not None:

@@ -1,10 +1,12 @@
-"""Who reaches which target: the thesis's Algorithm 1, with its defects settled (thesis 4.4.2).
+"""Allocation of targets to robots: the thesis's Algorithm 1 with its defects settled (thesis
+4.4.2), and branch and bound.
 
-Line 10 adds to a robot's costs what already contains them, so that costs double with each target;
-here the robot's costs become the costs of having reached it. The paths of line 8 always begin at
-the robot's start; here a robot goes on from where it is. The order of the targets and 'same robot'
-are not in the algorithm; here targets are taken in an order that keeps the partial one, and what is
-carried stays with its robot. A direct way is the shortest one, so that no graph is searched.
+Line 10 of the algorithm adds to a robot's costs what they already contain, so costs double with
+each target; here the costs of a robot become the costs of having reached the target. The paths of
+line 8 always begin at the robot's start; here a robot continues from its last target. The order of
+the targets and 'same robot' are not in the algorithm; here targets are taken in an order that
+respects the partial order, and carried targets stay with their robot. A direct way is the shortest
+one, so no graph is searched.
 """
 
 from collections.abc import Iterator
@@ -16,65 +18,71 @@ from sysmlc.robots.study import Study
 
 
 def sort_targets(study: Study) -> Iterator[int]:
-    """The targets, each behind those that come before it; what is carried follows at once."""
-    left = list(range(len(study.targets)))
-    done: set[int] = set()
+    """Yield the targets in an order that respects the partial order; carried ones follow at
+    once.
+    """
+    remaining = list(range(len(study.targets)))
+    visited: set[int] = set()
     carried = study.carried
-    while left:
-        ready = (one for one in left if done.issuperset(study.earlier(one)))
-        target: int | None = next(ready, None)
-        while target is not None and target in left:
+    while remaining:
+        ready_targets = (
+            candidate for candidate in remaining if visited.issuperset(study.earlier(candidate))
+        )
+        target: int | None = next(ready_targets, None)
+        while target is not None and target in remaining:
             yield target
-            left.remove(target)
-            done.add(target)
-            later = carried.get(target)
-            is_ready = later is not None and done.issuperset(study.earlier(later))
-            target = later if is_ready else None
-        if not done:
+            remaining.remove(target)
+            visited.add(target)
+            carried_target = carried.get(target)
+            is_ready = carried_target is not None and visited.issuperset(
+                study.earlier(carried_target)
+            )
+            target = carried_target if is_ready else None
+        if not visited:
             return
 
 
 def allocate_greedily(study: Study, travel: TravelTimes) -> Schedule | None:
-    """The allocation of Algorithm 1; None when some target is given to nobody."""
+    """Return the allocation of Algorithm 1, or None if some target remains without a robot."""
     robots = range(len(study.robots))
     lists: list[list[int]] = [[] for _ in robots]
     costs = [0] * len(lists)
     carriers: dict[int, int] = {}
     for target in _sort_carried_chains(study):
         options = [carriers[target]] if target in carriers else list(robots)
-        known = {
+        costs_by_robot = {
             robot: costs[robot] + steps
             for robot in options
             if (steps := travel.get(robot, _last_place(lists[robot]), target)) is not None
         }
-        if not known:
+        if not costs_by_robot:
             return None
-        best = min(known, key=lambda robot: (known[robot], robot))
-        costs[best] = known[best]
+        best = min(costs_by_robot, key=lambda robot: (costs_by_robot[robot], robot))
+        costs[best] = costs_by_robot[best]
         lists[best].append(target)
         if target in study.carried:
             carriers[study.carried[target]] = best
     return build_schedule(study, travel, tuple(map(tuple, lists)))
 
 
-def _last_place(own: list[int]) -> int:
-    return own[-1] if own else START
+def _last_place(targets: list[int]) -> int:
+    return targets[-1] if targets else START
 
 
 def _sort_carried_chains(study: Study) -> Iterator[int]:
-    """The targets in order; what is carried right behind what it is carried from."""
+    """Yield the targets in order; carried ones directly behind their origin."""
     carried = study.carried
-    given: set[int] = set()
+    visited: set[int] = set()
     for target in sort_targets(study):
-        here: int | None = None if target in carried.values() else target
-        while here is not None and here not in given:
-            yield here
-            given.add(here)
-            here = carried.get(here)
+        target_in_chain: int | None = None if target in carried.values() else target
+        while target_in_chain is not None and target_in_chain not in visited:
+            yield target_in_chain
+            visited.add(target_in_chain)
+            target_in_chain = carried.get(target_in_chain)
 
 
 MAX_NODES = 10_000
-"""Partial allocations that are looked at before the best one found counts as good enough."""
+"""Partial allocations that are examined before the best one found counts as good enough."""
 
 
 class BestAllocation(Struct, frozen=True):
@@ -82,92 +90,103 @@ class BestAllocation(Struct, frozen=True):
 
     schedule: Schedule
     is_proven: bool
-    """Whether there is none better."""
+    """Whether no allocation is better."""
     nodes: int
 
 
 def allocate_optimally(
-    study: Study, travel: TravelTimes, most: int = MAX_NODES
+    study: Study, travel: TravelTimes, max_nodes: int = MAX_NODES
 ) -> BestAllocation | None:
-    """The allocation that is done first, then with the fewest steps; None when there is none."""
-    search = _Search(study, travel, most)
-    found = allocate_greedily(study, travel)
-    if found is not None:
-        search.offer(_improve_by_local_search(study, travel, found))
+    """Return the allocation with the earliest end, then the fewest steps; None if there is none."""
+    search = _BranchAndBound(study, travel, max_nodes)
+    greedy_schedule = allocate_greedily(study, travel)
+    if greedy_schedule is not None:
+        search.offer(_improve_by_local_search(study, travel, greedy_schedule))
     search.run()
     if search.best is None:
         return None
-    return BestAllocation(search.best, search.nodes < most, search.nodes)
+    return BestAllocation(search.best, search.nodes < max_nodes, search.nodes)
 
 
-def _improve_by_local_search(study: Study, travel: TravelTimes, start: Schedule) -> Schedule:
-    """The first neighbour that is better, and so on."""
-    found = start
+def _improve_by_local_search(study: Study, travel: TravelTimes, initial: Schedule) -> Schedule:
+    """Move to the best neighbour allocation while that is an improvement."""
+    schedule = initial
     while True:
-        better = min(
-            neighbour_allocations(study, travel, found), key=lambda one: one.cost, default=found
+        neighbour = min(
+            neighbour_allocations(study, travel, schedule),
+            key=lambda candidate: candidate.cost,
+            default=schedule,
         )
-        if better.cost >= found.cost:
-            return found
-        found = better
+        if neighbour.cost >= schedule.cost:
+            return schedule
+        schedule = neighbour
 
 
-def neighbour_allocations(study: Study, travel: TravelTimes, start: Schedule) -> Iterator[Schedule]:
-    """Allocations in which one chain of targets that are carried on is somewhere else."""
+def neighbour_allocations(
+    study: Study, travel: TravelTimes, schedule: Schedule
+) -> Iterator[Schedule]:
+    """Yield allocations in which one chain of carried targets has another position."""
     carried = study.carried
-    for head in range(len(study.targets)):
-        if head in carried.values():
+    for chain_head in range(len(study.targets)):
+        if chain_head in carried.values():
             continue
-        chain = [head]
+        chain = [chain_head]
         while chain[-1] in carried:
             chain.append(carried[chain[-1]])
-        rest = [tuple(one for one in own if one not in chain) for own in start.allocation]
-        for robot, own in enumerate(rest):
-            for place in range(len(own) + 1):
-                moved = (*own[:place], *chain, *own[place:])
-                made = build_schedule(study, travel, (*rest[:robot], moved, *rest[robot + 1 :]))
-                if made is not None and made.allocation != start.allocation:
-                    yield made
+        other_targets = [
+            tuple(target for target in targets if target not in chain)
+            for targets in schedule.allocation
+        ]
+        for robot, targets in enumerate(other_targets):
+            for index in range(len(targets) + 1):
+                extended = (*targets[:index], *chain, *targets[index:])
+                neighbour = build_schedule(
+                    study, travel, (*other_targets[:robot], extended, *other_targets[robot + 1 :])
+                )
+                if neighbour is not None and neighbour.allocation != schedule.allocation:
+                    yield neighbour
 
 
-class _Search:
-    """Targets are added in the order in which they are reached; what cannot be better is left."""
+class _BranchAndBound:
+    """Adds targets in the order in which they are reached, and prunes by lower bounds."""
 
-    def __init__(self, study: Study, travel: TravelTimes, most: int) -> None:
-        self.study, self.travel, self.most = study, travel, most
+    def __init__(self, study: Study, travel: TravelTimes, max_nodes: int) -> None:
+        self.study, self.travel, self.max_nodes = study, travel, max_nodes
         self.best: Schedule | None = None
         self.nodes = 0
         self.lists: list[list[int]] = [[] for _ in study.robots]
         self.reached: dict[int, int] = {}
         self.carried = study.carried
         self.carrying = {later: earlier for earlier, later in self.carried.items()}
-        self.earlier = [study.earlier(one) for one in range(len(study.targets))]
-        self.least = [self._least(target) for target in range(len(study.targets))]
+        self.earlier = [study.earlier(target) for target in range(len(study.targets))]
+        self.fewest_steps = [self._fewest_steps_to(target) for target in range(len(study.targets))]
 
-    def _least(self, target: int) -> int:
-        """The fewest steps in which any robot gets there from anywhere."""
-        known = (steps for (_, _, goal), steps in self.travel.steps.items() if goal == target)
-        return min(known, default=0)
+    def _fewest_steps_to(self, target: int) -> int:
+        """Return the fewest steps in which any robot reaches the target from anywhere."""
+        steps_to_target = (
+            steps for (_, _, goal), steps in self.travel.steps.items() if goal == target
+        )
+        return min(steps_to_target, default=0)
 
     def offer(self, schedule: Schedule) -> None:
-        """Keep it when it is better."""
+        """Store the schedule if it is better."""
         if self.best is None or schedule.cost < self.best.cost:
             self.best = schedule
 
-    def run(self, total: int = 0, last: tuple[int, int] = (0, -1)) -> None:
-        """Look at all ways to go on; ``last`` is the time and the robot of what was added last."""
+    def run(self, total: int = 0, last_assignment: tuple[int, int] = (0, -1)) -> None:
+        """Try all continuations; *last* is the time and robot of the last assignment."""
         self.nodes += 1
-        if self.nodes >= self.most:
+        if self.nodes >= self.max_nodes:
             return
         if len(self.reached) == len(self.study.targets):
-            made = build_schedule(self.study, self.travel, tuple(map(tuple, self.lists)))
-            if made is not None:
-                self.offer(made)
+            schedule = build_schedule(self.study, self.travel, tuple(map(tuple, self.lists)))
+            if schedule is not None:
+                self.offer(schedule)
             return
-        left, soonest = self._left(), self._soonest()
-        for time, robot, target, steps in sorted(self._options(last)):
-            more = left - self.least[target]
-            if self._is_hopeless(max(time, soonest), total + steps + more):
+        remaining, earliest_end = self._remaining_steps(), self._earliest_end()
+        for time, robot, target, steps in sorted(self._list_options(last_assignment)):
+            steps_after = remaining - self.fewest_steps[target]
+            if self._can_prune(max(time, earliest_end), total + steps + steps_after):
                 continue
             self.lists[robot].append(target)
             self.reached[target] = time
@@ -175,45 +194,57 @@ class _Search:
             self.lists[robot].pop()
             del self.reached[target]
 
-    def _options(self, last: tuple[int, int]) -> Iterator[tuple[int, int, int, int]]:
-        """Time, robot, target and steps of what can be reached next, not before the last one."""
-        fresh: set[int | None] = set()
-        for robot, own in enumerate(self.lists):
-            if not own:
+    def _list_options(
+        self, last_assignment: tuple[int, int]
+    ) -> Iterator[tuple[int, int, int, int]]:
+        """Yield time, robot, target and steps of each possible next assignment, not before the last
+        one.
+        """
+        starts_seen: set[int | None] = set()
+        for robot, targets in enumerate(self.lists):
+            if not targets:
                 start = self.study.robots[robot].start
-                if start is None and start in fresh:
+                if start is None and start in starts_seen:
                     continue
-                fresh.add(start)
-            for target in self._next(own):
-                steps = self.travel.get(robot, own[-1] if own else START, target)
+                starts_seen.add(start)
+            for target in self._next_targets(targets):
+                steps = self.travel.get(robot, targets[-1] if targets else START, target)
                 if steps is None or not self._is_ready(target):
                     continue
-                earlier = (self.reached[one] for one in self.earlier[target])
-                time = max(self.reached[own[-1]] if own else 0, *earlier, 0) + steps
-                if (time, robot) >= last:
+                earlier_times = (
+                    self.reached[earlier_target] for earlier_target in self.earlier[target]
+                )
+                time = max(self.reached[targets[-1]] if targets else 0, *earlier_times, 0) + steps
+                if (time, robot) >= last_assignment:
                     yield time, robot, target, steps
 
-    def _next(self, own: list[int]) -> list[int]:
-        """What a robot may go to: on with what it carries, else to what nobody carries."""
-        if own and own[-1] in self.carried:
-            return [self.carried[own[-1]]]
-        open_ = range(len(self.study.targets))
-        return [one for one in open_ if one not in self.reached and one not in self.carrying]
+    def _next_targets(self, targets: list[int]) -> list[int]:
+        """Return the targets to which a robot may go: the carried one, else all that nobody
+        carries.
+        """
+        if targets and targets[-1] in self.carried:
+            return [self.carried[targets[-1]]]
+        all_targets = range(len(self.study.targets))
+        return [
+            candidate
+            for candidate in all_targets
+            if candidate not in self.reached and candidate not in self.carrying
+        ]
 
     def _is_ready(self, target: int) -> bool:
-        return all(one in self.reached for one in self.earlier[target])
+        return all(earlier_target in self.reached for earlier_target in self.earlier[target])
 
-    def _left(self) -> int:
-        """The fewest steps that are still to go to all targets."""
-        every = enumerate(self.least)
-        return sum(steps for target, steps in every if target not in self.reached)
+    def _remaining_steps(self) -> int:
+        """Return a lower bound of the steps to all remaining targets."""
+        steps_by_target = enumerate(self.fewest_steps)
+        return sum(steps for target, steps in steps_by_target if target not in self.reached)
 
-    def _soonest(self) -> int:
-        """When the mission is done at the soonest, when robots share what is left alike."""
-        ends = sum(self.reached[own[-1]] for own in self.lists if own)
-        shared = -(-(ends + self._left()) // len(self.lists))
-        return max(shared, *self.reached.values(), 0)
+    def _earliest_end(self) -> int:
+        """Return a lower bound of the duration, with the remaining steps shared evenly."""
+        end_times = sum(self.reached[targets[-1]] for targets in self.lists if targets)
+        even_end = -(-(end_times + self._remaining_steps()) // len(self.lists))
+        return max(even_end, *self.reached.values(), 0)
 
-    def _is_hopeless(self, duration: int, total: int) -> bool:
-        """Whether nothing better than the best can come of it."""
-        return self.best is not None and (duration, total) >= self.best.cost
+    def _can_prune(self, duration: int, total_steps: int) -> bool:
+        """Return whether the lower bound reaches the cost of the best schedule."""
+        return self.best is not None and (duration, total_steps) >= self.best.cost

@@ -1,91 +1,93 @@
-"""What a robot's machine answers where one way at most is offered to it."""
+"""Answers of a robot's controller if at most one direction is offered to it."""
 
 from collections.abc import Callable, Mapping
 from typing import NamedTuple
 
 from sysmlc.logic.evaluate import compile_evaluation
 from sysmlc.logic.formula import Literal
-from sysmlc.robots import contract_terms as words
+from sysmlc.robots import contract_terms as terms
 from sysmlc.robots.study import WAYS, Grid, Robot, next_move
 from sysmlc.synthesis.controllers.mealy import Machine
 from sysmlc.synthesis.controllers.table import Table
 
 
 class Memory(NamedTuple):
-    """What is known of a robot between two steps."""
+    """The state of a robot between two steps."""
 
     cell: int
-    """Where its command brings it."""
+    """The cell to which the command leads."""
     goal: int
-    """Its target, which stays unless the robot was in it."""
-    is_home: bool = True
-    """Whether it was in its target."""
+    """The target, which stays unless the robot was in it."""
+    was_at_target: bool = True
+    """Whether the robot was in its target."""
     state: int = 0
-    """Of its machine."""
+    """The state of the machine."""
     registers: tuple[Literal, ...] = ()
-    """Of its machine, in their order."""
+    """The values of the machine's registers, in their order."""
 
 
 class Answer(NamedTuple):
-    """The command, and what is known then."""
+    """The command of a controller, and the memory after it."""
 
     command: str
     memory: Memory
 
 
 class Answers:
-    """The machine of a robot, each answer looked up once."""
+    """The controller of a robot with memoised answers."""
 
     def __init__(self, machine: Machine | Table, robot: Robot, grid: Grid) -> None:
-        """Nothing is asked yet. The machine is one of the robot's contract without counters."""
+        """The machine must be one of the robot's contract without step counters."""
         self._robot, self._grid = robot, grid
-        self._step = _steps(machine)
-        known = (*machine.inputs, *machine.outputs)
-        kept = machine.registers if isinstance(machine, Machine) else known
-        self._registers = tuple(one.name for one in kept)
-        self._known: dict[tuple[Memory, int, str], Answer | None] = {}
+        self._step = _compile_step(machine)
+        variables = (*machine.inputs, *machine.outputs)
+        register_variables = machine.registers if isinstance(machine, Machine) else variables
+        self._registers = tuple(variable.name for variable in register_variables)
+        self._cache: dict[tuple[Memory, int, str], Answer | None] = {}
 
     def get(self, memory: Memory, goal: int, way: str = "") -> Answer | None:
-        """The answer to a target and the way that is offered, if one is.
+        """Return the answer to a target and the offered direction, if there is one.
 
-        None when the machine has none: the assumptions of its contract exclude that.
+        None if the machine has no move, which the assumptions of its contract exclude.
         """
         key = memory, goal, way
-        if key not in self._known:
-            self._known[key] = self._asked(memory, goal, (way,) if way else ())
-        return self._known[key]
+        if key not in self._cache:
+            self._cache[key] = self._ask_machine(memory, goal, (way,) if way else ())
+        return self._cache[key]
 
-    def _asked(self, memory: Memory, goal: int, ways: tuple[str, ...]) -> Answer | None:
+    def _ask_machine(self, memory: Memory, goal: int, ways: tuple[str, ...]) -> Answer | None:
         robot, cell = self._robot, memory.cell
-        last: Mapping[str, Literal] = dict(zip(self._registers, memory.registers, strict=False))
-        now: dict[str, Literal] = {words.position(robot): cell, words.target(robot): goal}
-        now |= {words.sensor(robot, way): way in ways for way in WAYS}
+        registers: Mapping[str, Literal] = dict(
+            zip(self._registers, memory.registers, strict=False)
+        )
+        values: dict[str, Literal] = {terms.position(robot): cell, terms.target(robot): goal}
+        values |= {terms.sensor(robot, way): way in ways for way in WAYS}
         try:
-            outputs, state = self._step(memory.state, last, now)
+            outputs, state = self._step(memory.state, registers, values)
         except LookupError:
             return None
-        now |= outputs
-        kept = tuple(now[name] for name in self._registers)
-        command = str(now[words.command(robot)])
-        there = self._grid.after(cell, command)
-        after = cell if there is None else there
-        return Answer(command, Memory(after, goal, cell == goal, state, kept))
+        values |= outputs
+        register_values = tuple(values[name] for name in self._registers)
+        command = str(values[terms.command(robot)])
+        next_cell = self._grid.cell_after(cell, command)
+        reached_cell = cell if next_cell is None else next_cell
+        return Answer(command, Memory(reached_cell, goal, cell == goal, state, register_values))
 
 
 Values = Mapping[str, Literal]
 Step = Callable[[int, Values, Values], tuple[Values, int]]
-"""The outputs and the next state, for a state, what was known before, and inputs."""
+"""Returns outputs and next state for a state, the previous values, and inputs."""
 
 
-def _steps(machine: Machine | Table) -> Step:
-    """How a machine is asked; raises LookupError where it has no move.
+def _compile_step(machine: Machine | Table) -> Step:
+    """Return the step function of a machine, which raises LookupError if there is no move.
 
-    Its conditions, which are long, are walked through once and not for each question.
+    The conditions are long, so they are compiled once.
     """
     if isinstance(machine, Table):
         return machine.step
-    names = [one.name for one in machine.outputs]
-    rows = [
+    names = [variable.name for variable in machine.outputs]
+    compiled_states = [
         [
             (compile_evaluation(move.when), tuple(map(compile_evaluation, move.output)), move.state)
             for move in moves
@@ -94,27 +96,29 @@ def _steps(machine: Machine | Table) -> Step:
     ]
 
     def step(state: int, last: Values, now: Values) -> tuple[Values, int]:
-        for when, outputs, after in rows[state]:
+        for when, outputs, next_state in compiled_states[state]:
             if when(last, now):
                 values = (output(last, None) for output in outputs)
-                return dict(zip(names, values, strict=True)), after
+                return dict(zip(names, values, strict=True)), next_state
         raise LookupError(state)
 
     return step
 
 
 def exceeds_travel_limit(grid: Grid, answers: Answers, cell: int, goal: int, within: int) -> bool:
-    """Whether a robot that is given a target has it for more steps than that.
+    """Return whether a robot has a target for more than *within* steps before it reaches the
+    target.
 
-    It is not stopped on its way (``traffic``), so that the steps are those of one that is alone.
+    A robot is not stopped on its way (``traffic``), so the steps are those of a robot that is
+    alone.
     """
-    known = Memory(cell, cell)
+    memory = Memory(cell, cell)
     for _ in range(within + 1):
-        step = next_move(grid, known.cell, goal)
+        step = next_move(grid, memory.cell, goal)
         if step is None:
-            return known.cell != goal
-        answer = answers.get(known, goal, step[0])
+            return memory.cell != goal
+        answer = answers.get(memory, goal, step[0])
         if answer is None:
             return False
-        known = answer.memory
+        memory = answer.memory
     return True

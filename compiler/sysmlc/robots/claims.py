@@ -1,4 +1,4 @@
-"""What the thesis says of its four contracts, decided (MOOD4I thesis, 4.3.2 to 4.3.4)."""
+"""The claims of the thesis about its four contracts, decided (MOOD4I thesis, 4.3.2 to 4.3.4)."""
 
 from collections.abc import Callable, Iterator, Mapping
 from functools import partial
@@ -8,7 +8,7 @@ from msgspec.structs import replace
 
 from sysmlc.logic.contract import Conjunct, Contract
 from sysmlc.logic.formula import variables
-from sysmlc.robots import contract_terms as words
+from sysmlc.robots import contract_terms as terms
 from sysmlc.robots.environment_contract import Sharing, environment_contract
 from sysmlc.robots.joint_proof import Counterexample, JointProof, UndecidedError
 from sysmlc.robots.mission_contract import mission_contract
@@ -26,17 +26,17 @@ from sysmlc.synthesis.decision import Options
 from sysmlc.synthesis.witnesses import describe_run, manager_factory
 
 ManagerFactory = Callable[[], Manager]
-"""A manager for each question, within the limits."""
+"""Creates a manager within the limits for each question."""
 
 
 class Claim(Struct, frozen=True):
-    """A claim and what became of it; ``holds`` is None when it was not decided."""
+    """A claim and its result; ``holds`` is None if it is not decided."""
 
     claim: str
     holds: bool | None
     reason: str = ""
     run: tuple[str, ...] = ()
-    """A run that shows why not, a line a step."""
+    """A run that refutes the claim, a line for each step."""
 
 
 MISSION_CLAIM = "C_S refines C_M"
@@ -45,23 +45,23 @@ _Procedure = Callable[[str, ManagerFactory], Claim]
 
 
 def decide_claims(
-    study: Study, travel: TravelTimes, options: Options, known: Mapping[str, Claim] = _NONE
+    study: Study, travel: TravelTimes, options: Options, known_claims: Mapping[str, Claim] = _NONE
 ) -> Iterator[Claim]:
-    """The claims of the thesis for the first robot, which the others are like, from any start.
+    """Decide the claims for the first robot, which represents all, from any start.
 
-    What is known of a floor stays; only what is said of its mission is decided anew.
+    Known results of the floor are reused; only the claim about its mission is decided again.
     """
-    open_ = tuple(replace(one, start=None) for one in study.robots)
-    study = replace(study, robots=open_)
+    robots_without_starts = tuple(replace(robot, start=None) for robot in study.robots)
+    study = replace(study, robots=robots_without_starts)
     for claim, decide in _claim_procedures(study, travel).items():
         if claim == MISSION_CLAIM and not study.targets:
             continue
-        is_known = claim in known and claim != MISSION_CLAIM
-        yield known[claim] if is_known else _decide_within_limits(claim, options, decide)
+        is_known = claim in known_claims and claim != MISSION_CLAIM
+        yield known_claims[claim] if is_known else _decide_within_limits(claim, options, decide)
 
 
 def _claim_procedures(study: Study, travel: TravelTimes) -> dict[str, _Procedure]:
-    """How each claim is decided; nothing is made before it is asked for."""
+    """Return the decision procedure of each claim; contracts are built on demand."""
     robot = study.robots[0]
     literal, once = Sharing.LITERAL, Sharing.ARBITRATED
     return {
@@ -92,11 +92,16 @@ def _claim_procedures(study: Study, travel: TravelTimes) -> dict[str, _Procedure
 
 
 def _decide_refinement(
-    study: Study, of: Callable[[], Contract], claim: str, new_manager: ManagerFactory
+    study: Study,
+    build_abstract_contract: Callable[[], Contract],
+    claim: str,
+    new_manager: ManagerFactory,
 ) -> Claim:
-    concrete, abstract = system_contract(study), of()
-    shared = {one.name for one in concrete.variables} & {one.name for one in abstract.variables}
-    if not shared:
+    concrete, abstract = system_contract(study), build_abstract_contract()
+    shared_names = {variable.name for variable in concrete.variables} & {
+        variable.name for variable in abstract.variables
+    }
+    if not shared_names:
         return Claim(claim, False, "they have no variable in common")
     failure = next(find_refinement_failures(concrete, abstract, new_manager()), None)
     if failure is None:
@@ -109,53 +114,69 @@ def _decide_refinement(
 def _decide_discharge(
     study: Study, sharing: Sharing, is_alone: bool, claim: str, new_manager: ManagerFactory
 ) -> Claim:
-    """Whether all that the environment decides and the first robot assumes of it follows.
+    """Decide whether the environment's contract entails everything that the first robot assumes of
+    it.
 
-    A run in which it does not is looked for with as few robots as it takes.
+    A violating run is searched with as few robots as possible.
     """
     environment = environment_contract(study, sharing)
-    kept = (*environment.assumptions, *environment.guarantees)
-    found = None
-    for few, is_still in _iter_attempts(study):
-        found = _find_undischarged(few, sharing, is_alone, new_manager(), is_still)
-        if found is None:
+    environment_conjuncts = (*environment.assumptions, *environment.guarantees)
+    violation = None
+    for smaller_study, others_stay in _iter_attempts(study):
+        violation = _find_undischarged(smaller_study, sharing, is_alone, new_manager(), others_stay)
+        if violation is None:
             continue
-        conjunct, few_run = found
+        conjunct, smaller_run = violation
         is_exact = sharing is Sharing.LITERAL
-        for run in extend_to_all_robots(study, few.robots, few_run, is_exact):
-            if not any(violated_conjuncts(run, kept)) and any(violated_conjuncts(run, (conjunct,))):
+        for run in extend_to_all_robots(study, smaller_study.robots, smaller_run, is_exact):
+            if not any(violated_conjuncts(run, environment_conjuncts)) and any(
+                violated_conjuncts(run, (conjunct,))
+            ):
                 reason = f"C_E does not promise: {conjunct.text}"
                 return Claim(claim, False, reason, _describe_trace(run, conjunct))
-    if found is None:
+    if violation is None:
         return Claim(claim, True)
     return Claim(claim, None, "what some robots are shown is not so when all are there")
 
 
 def _iter_attempts(study: Study) -> Iterator[tuple[Study, bool]]:
-    """With one robot, two, and so on: first such that stay, which is enough for most runs, and is
-    explored at once."""
+    """Yield studies with one robot, two robots and so on.
+
+    Each comes first with other robots that stay, which suffices for most runs and is explored
+    quickly.
+    """
     for count in range(1, len(study.robots) + 1):
         few = replace(study, robots=study.robots[:count])
         yield from ((few, True), (few, False))
 
 
 def _find_undischarged(
-    study: Study, sharing: Sharing, is_alone: bool, manager: Manager, is_still: bool
+    study: Study, sharing: Sharing, is_alone: bool, manager: Manager, others_stay: bool
 ) -> tuple[Conjunct, Trace] | None:
-    """What the first robot assumes and does not follow; targets are the mission's to give."""
-    goals = {words.target(one) for one in study.robots}
+    """Return an assumption of the first robot that is not entailed; targets belong to the
+    mission.
+    """
+    target_names = {terms.target(assumption) for assumption in study.robots}
     environment = environment_contract(study, sharing)
     robot = robot_contract(study, study.robots[0], is_alone)
-    of_targets = [one for one in robot.assumptions if _names_of(one) & goals]
-    open_ = [one for one in of_targets if _is_about_offers(one)]
-    asked = [one for one in robot.assumptions if one not in of_targets]
-    given = [*environment.assumptions, *environment.guarantees]
-    given += [one for one in of_targets if one not in open_]
-    given += [words.stays(one) for one in study.robots if is_still]
+    target_assumptions = [
+        assumption for assumption in robot.assumptions if _names_of(assumption) & target_names
+    ]
+    offer_assumptions = [
+        assumption for assumption in target_assumptions if _is_about_offers(assumption)
+    ]
+    other_assumptions = [
+        assumption for assumption in robot.assumptions if assumption not in target_assumptions
+    ]
+    facts = [*environment.assumptions, *environment.guarantees]
+    facts += [
+        assumption for assumption in target_assumptions if assumption not in offer_assumptions
+    ]
+    facts += [terms.stay_forever(assumption) for assumption in study.robots if others_stay]
     with manager.guard():
         universe = Universe((environment, robot), manager)
-        runs = Entailment(universe, universe.system(given))
-        for conjunct in (*asked, *open_):
+        runs = Entailment(universe, universe.system(facts))
+        for conjunct in (*other_assumptions, *offer_assumptions):
             trace = runs.find_violation(conjunct)
             if trace is not None:
                 return conjunct, trace
@@ -163,20 +184,22 @@ def _find_undischarged(
 
 
 def _decide_steps(study: Study, claim: str, new_manager: ManagerFactory) -> Claim:
-    found = JointProof(study, new_manager).stepwise_failure()
-    return Claim(claim, True) if found is None else _failed_claim(claim, found)
+    counterexample = JointProof(study, new_manager).find_safety_failure()
+    return Claim(claim, True) if counterexample is None else _failed_claim(claim, counterexample)
 
 
 def _decide_with_offers(study: Study, claim: str, new_manager: ManagerFactory) -> Claim:
-    asked = JointProof(study, new_manager)
-    found = asked.stepwise_failure() or asked.recurring_failure()
-    return Claim(claim, True) if found is None else _failed_claim(claim, found)
+    proof = JointProof(study, new_manager)
+    counterexample = proof.find_safety_failure() or proof.find_liveness_failure()
+    return Claim(claim, True) if counterexample is None else _failed_claim(claim, counterexample)
 
 
 def _decide_whole(study: Study, claim: str, new_manager: ManagerFactory) -> Claim:
-    asked = JointProof(study, new_manager)
-    found = asked.stepwise_failure() or asked.recurring_failure() or asked.offered_failure()
-    return Claim(claim, True) if found is None else _failed_claim(claim, found)
+    proof = JointProof(study, new_manager)
+    counterexample = (
+        proof.find_safety_failure() or proof.find_liveness_failure() or proof.find_offer_failure()
+    )
+    return Claim(claim, True) if counterexample is None else _failed_claim(claim, counterexample)
 
 
 def _decide_travel_time(study: Study, claim: str, new_manager: ManagerFactory) -> Claim:
@@ -187,11 +210,11 @@ def _decide_travel_time(study: Study, claim: str, new_manager: ManagerFactory) -
     return Claim(claim, False, reason, tuple(describe_run(run)))
 
 
-def _failed_claim(claim: str, found: Counterexample) -> Claim:
-    if found.run is None:
-        return Claim(claim, None, f"no run was found that breaks: {found.conjunct.text}")
-    reason = f"nothing promises: {found.conjunct.text}"
-    return Claim(claim, False, reason, _describe_trace(found.run, found.conjunct))
+def _failed_claim(claim: str, counterexample: Counterexample) -> Claim:
+    if counterexample.run is None:
+        return Claim(claim, None, f"no run was found that breaks: {counterexample.conjunct.text}")
+    reason = f"nothing promises: {counterexample.conjunct.text}"
+    return Claim(claim, False, reason, _describe_trace(counterexample.run, counterexample.conjunct))
 
 
 def _describe_trace(trace: Trace | None, broken: Conjunct) -> tuple[str, ...]:
@@ -199,11 +222,11 @@ def _describe_trace(trace: Trace | None, broken: Conjunct) -> tuple[str, ...]:
 
 
 def _names_of(conjunct: Conjunct) -> set[str]:
-    return {one.name for one in variables(conjunct.formula)}
+    return {variable.name for variable in variables(conjunct.formula)}
 
 
 def _is_about_offers(conjunct: Conjunct) -> bool:
-    """Whether it speaks of sensors, too: the environment has its part in it."""
+    """Return whether the conjunct reads sensors too, so that it depends on the environment."""
     return any("_sensor_" in name for name in _names_of(conjunct))
 
 

@@ -1,4 +1,4 @@
-"""Variables of the contracts of a floor, and what is said of them again and again."""
+"""Variables of the contracts of a floor, and conjuncts that several contracts share."""
 
 from collections.abc import Callable, Iterable, Iterator
 from itertools import combinations
@@ -14,85 +14,86 @@ from sysmlc.logic.contract import (
     Variable,
 )
 from sysmlc.logic.formula import Formula, Op
-from sysmlc.robots import contract_terms as words
 from sysmlc.robots.study import COMMANDS, STAY, WAYS, Grid, Robot, Study, Target
 
 
-def _of(what: str) -> Callable[[Robot], str]:
+def _variable_namer(suffix: str) -> Callable[[Robot], str]:
     """The name of something of a robot."""
-    return lambda robot: f"{robot.word}_{what}"
+    return lambda robot: f"{robot.word}_{suffix}"
 
 
-position = _of("position")
-"""The cell that a robot is in."""
-target = _of("target")
-"""The cell that it is to reach."""
-command = _of("command")
-"""What it does."""
-steps = _of("steps")
-"""How many cells it has gone (thesis 4.3.1)."""
-timer = _of("timer")
-"""How many steps it has had its target."""
-place = _of("place")
-"""The target that it reached last."""
-goal = _of("goal")
-"""The target that it is to reach next."""
-clock = _of("clock")
-"""How many steps it has been on its way."""
+position = _variable_namer("position")
+"""The cell in which a robot is."""
+target = _variable_namer("target")
+"""The cell that the robot shall reach."""
+command = _variable_namer("command")
+"""The command of the robot."""
+steps = _variable_namer("steps")
+"""The number of cells that the robot has passed (thesis 4.3.1)."""
+timer = _variable_namer("timer")
+"""The number of steps since the robot got its target."""
+place = _variable_namer("place")
+"""The target that the robot reached last."""
+goal = _variable_namer("goal")
+"""The target that the robot shall reach next."""
+clock = _variable_namer("clock")
+"""The number of steps that the robot has been on its way."""
 
 
 def sensor(robot: Robot, way: str) -> str:
-    """Whether the cell next to it on that side is offered to it."""
+    """Return the variable that tells whether the neighbour cell on that side is offered to the
+    robot.
+    """
     return f"{robot.word}_sensor_{way}"
 
 
 def done(target: Target) -> str:
-    """Whether a target has been reached."""
+    """Return the variable that tells whether a target has been reached."""
     return f"{target.word}_done"
 
 
 def free(cell: int) -> str:
-    """Whether no robot is in a cell."""
+    """Return the variable that tells whether no robot is in a cell."""
     return f"free_{cell}"
 
 
-def is_(name: str, value: int | str) -> Formula:
-    """That a variable has a value."""
+def equals(name: str, value: int | str) -> Formula:
+    """Return the predicate that a variable has a value."""
     return f.eq(f.var(name), f.const(value))
 
 
-def at(robot: Robot, cell: int) -> Formula:
-    """That a robot is in a cell."""
-    return is_(position(robot), cell)
+def is_in_cell(robot: Robot, cell: int) -> Formula:
+    """Return the predicate that a robot is in a cell."""
+    return equals(position(robot), cell)
 
 
-def one_of(name: str, values: Iterable[int]) -> Formula:
-    """That a variable has one of some values."""
-    return f.either(*(is_(name, value) for value in values))
+def is_in_any(name: str, values: Iterable[int]) -> Formula:
+    """Return the predicate that a variable has one of the values."""
+    return f.either(*(equals(name, value) for value in values))
 
 
 # -- variables ---------------------------------------------------------------------------------
 
 
-def cells(name: str, owner: Owner, grid: Grid, origin: str) -> Variable:
-    """A variable whose values are cells."""
+def cell_variable(name: str, owner: Owner, grid: Grid, origin: str) -> Variable:
+    """Declare a variable whose values are cells."""
     return Variable(name, owner, IntegerDomain(0, grid.size - 1), origin)
 
 
-def places(study: Study, robot: Robot, owner: Owner) -> Iterator[Variable]:
-    """Position and sensors of a robot."""
-    yield cells(position(robot), owner, study.grid, robot.origin)
+def position_and_sensors(study: Study, robot: Robot, owner: Owner) -> Iterator[Variable]:
+    """Declare position and sensors of a robot."""
+    yield cell_variable(position(robot), owner, study.grid, robot.origin)
     for way in WAYS:
         yield Variable(sensor(robot, way), owner, BooleanDomain(), robot.origin)
 
 
-def commands(robot: Robot, owner: Owner) -> Variable:
-    """The command of a robot."""
+def command_variable(robot: Robot, owner: Owner) -> Variable:
+    """Declare the command of a robot."""
     return Variable(command(robot), owner, EnumerationDomain(COMMANDS), robot.origin)
 
 
-def free_cells(study: Study, owner: Owner) -> Iterator[Variable]:
-    """A Boolean for each cell that robots can be in."""
+def free_cell_variables(study: Study, owner: Owner) -> Iterator[Variable]:
+    """Declare a Boolean for each cell that robots can enter."""
     for cell in study.grid.cells:
         yield Variable(free(cell), owner, BooleanDomain(), study.origin)
 
@@ -100,147 +101,167 @@ def free_cells(study: Study, owner: Owner) -> Iterator[Variable]:
 # -- conjuncts ---------------------------------------------------------------------------------
 
 
-def first(formula: Formula, origin: str, text: str) -> Conjunct:
-    """What holds in the first step."""
+def initial_conjunct(formula: Formula, origin: str, text: str) -> Conjunct:
+    """State that a formula holds in the first step."""
     return Conjunct(formula, Class.INIT, origin, text)
 
 
-def each(formula: Formula, origin: str, text: str) -> Conjunct:
-    """What holds in every step."""
+def safety_conjunct(formula: Formula, origin: str, text: str) -> Conjunct:
+    """State that a formula holds in every step."""
     return Conjunct(formula, Class.SAFETY, origin, text)
 
 
-def again(formula: Formula, origin: str, text: str) -> Conjunct:
-    """What holds again and again."""
+def liveness_conjunct(formula: Formula, origin: str, text: str) -> Conjunct:
+    """State that a formula holds infinitely often."""
     return Conjunct(formula, Class.LIVENESS, origin, text)
 
 
-def in_all(conjuncts: Iterable[Conjunct]) -> Iterator[Conjunct]:
-    """What holds in one step, said of the first and of every next one."""
-    known = list(conjuncts)
-    yield from known
-    for one in known:
-        yield each(f.primed(one.formula), one.origin, one.text)
+def repeat_in_every_step(conjuncts: Iterable[Conjunct]) -> Iterator[Conjunct]:
+    """Yield conjuncts about one step for the first step and for every next one."""
+    all_conjuncts = list(conjuncts)
+    yield from all_conjuncts
+    for conjunct in all_conjuncts:
+        yield safety_conjunct(f.primed(conjunct.formula), conjunct.origin, conjunct.text)
 
 
-def stays(robot: Robot) -> Conjunct:
-    """A robot stays for ever."""
+def stay_forever(robot: Robot) -> Conjunct:
+    """State that a robot never moves."""
     text = f"'{robot.name}' stays."
-    return each(is_(command(robot), STAY), robot.origin, text)
+    return safety_conjunct(equals(command(robot), STAY), robot.origin, text)
 
 
-def starts(robots: Iterable[Robot]) -> Iterator[Conjunct]:
-    """Where robots are at first, as far as that is given."""
+def start_positions(robots: Iterable[Robot]) -> Iterator[Conjunct]:
+    """State the given start positions."""
     for robot in robots:
         if robot.start is not None:
             text = f"'{robot.name}' starts in cell {robot.start}."
-            yield first(at(robot, robot.start), robot.origin, text)
+            yield initial_conjunct(is_in_cell(robot, robot.start), robot.origin, text)
 
 
-def on_floor(study: Study, robot: Robot) -> Iterator[Conjunct]:
-    """A robot is not in an obstacle, and targets are where it can go."""
+def place_on_floor(study: Study, robot: Robot) -> Iterator[Conjunct]:
+    """State that a robot is not in an obstacle and that its targets are reachable."""
     for cell, origin in zip(study.grid.blocked, study.obstacles, strict=True):
         text = f"An obstacle is in cell {cell}."
-        yield first(f.negate(at(robot, cell)), origin, text)
-    yield from targets_in_reach(study, robot)
+        yield initial_conjunct(f.negate(is_in_cell(robot, cell)), origin, text)
+    yield from reachable_targets(study, robot)
 
 
-def targets_in_reach(study: Study, robot: Robot) -> Iterator[Conjunct]:
-    """Targets are in cells to which a way leads."""
+def reachable_targets(study: Study, robot: Robot) -> Iterator[Conjunct]:
+    """State that targets are in cells that the robot can reach."""
     grid = study.grid
     regions = list(dict.fromkeys(tuple(sorted(grid.distances(cell))) for cell in grid.cells))
     text = f"What '{robot.name}' is to reach can be reached."
     if len(regions) > 1:
         for region in regions:
-            here = one_of(position(robot), region)
-            yield first(f.implies(here, one_of(target(robot), region)), robot.origin, text)
+            in_region = is_in_any(position(robot), region)
+            yield initial_conjunct(
+                f.implies(in_region, is_in_any(target(robot), region)), robot.origin, text
+            )
     else:
         for cell in grid.blocked:
-            yield first(f.negate(is_(target(robot), cell)), robot.origin, text)
+            yield initial_conjunct(f.negate(equals(target(robot), cell)), robot.origin, text)
 
 
-def motion(study: Study, robot: Robot, is_total: bool) -> Iterator[Conjunct]:
-    """Commands move the robot; with ``is_total`` one into a wall or obstacle leaves it there."""
+def motion_rules(study: Study, robot: Robot, is_total: bool) -> Iterator[Conjunct]:
+    """State that commands move the robot; with ``is_total`` a blocked command leaves it in its
+    cell.
+    """
     for cell in study.grid.cells:
         for way in COMMANDS:
-            there = cell if way == STAY else study.grid.after(cell, way)
-            if there is None and not is_total:
+            next_cell = cell if way == STAY else study.grid.cell_after(cell, way)
+            if next_cell is None and not is_total:
                 continue
-            before = f.both(at(robot, cell), is_(command(robot), way))
-            after = f.primed(at(robot, cell if there is None else there))
+            before = f.both(is_in_cell(robot, cell), equals(command(robot), way))
+            after = f.primed(is_in_cell(robot, cell if next_cell is None else next_cell))
             text = f"'{way}' moves '{robot.name}' on from cell {cell}."
-            yield each(f.implies(before, after), robot.origin, text)
+            yield safety_conjunct(f.implies(before, after), robot.origin, text)
 
 
-def stable_target(study: Study, robot: Robot) -> Iterator[Conjunct]:
-    """A target stays until it is reached: without that none could be (not said in the thesis)."""
+def stable_target_by_cell(study: Study, robot: Robot) -> Iterator[Conjunct]:
+    """State that a target stays until it is reached, by cell.
+
+    Without this no target could be reached. The thesis does not state it.
+    """
     text = f"The target of '{robot.name}' stays until it is reached."
     for cell in study.grid.cells:
-        here = is_(target(robot), cell)
-        yield each(f.implies(f.both(away(robot), here), f.primed(here)), robot.origin, text)
+        target_here = equals(target(robot), cell)
+        yield safety_conjunct(
+            f.implies(f.both(is_away_from_target(robot), target_here), f.primed(target_here)),
+            robot.origin,
+            text,
+        )
 
 
-def stable_as_whole(robot: Robot) -> Conjunct:
-    """The same in one formula."""
+def stable_target_formula(robot: Robot) -> Conjunct:
+    """State that a target stays until it is reached, in one formula."""
     text = f"The target of '{robot.name}' stays until it is reached."
-    goal = f.var(target(robot))
-    return each(f.implies(away(robot), f.eq(f.primed(goal), goal)), robot.origin, text)
+    target_value = f.var(target(robot))
+    return safety_conjunct(
+        f.implies(is_away_from_target(robot), f.eq(f.primed(target_value), target_value)),
+        robot.origin,
+        text,
+    )
 
 
-def obedience(robot: Robot) -> Iterator[Conjunct]:
-    """A robot goes only where its sensor says that it can."""
+def sensor_obedience(robot: Robot) -> Iterator[Conjunct]:
+    """State that a robot moves only in directions that its sensors offer."""
     for way in WAYS:
-        goes = is_(command(robot), way)
+        moves = equals(command(robot), way)
         text = f"'{robot.name}' goes {way} only when the way is free."
-        yield each(f.primed(f.implies(goes, f.var(sensor(robot, way)))), robot.origin, text)
+        yield safety_conjunct(
+            f.primed(f.implies(moves, f.var(sensor(robot, way)))), robot.origin, text
+        )
 
 
-def reached(robot: Robot) -> Formula:
-    """That a robot is in its target."""
+def is_at_target(robot: Robot) -> Formula:
+    """Return the predicate that a robot is in its target."""
     return f.eq(f.var(position(robot)), f.var(target(robot)))
 
 
-def away(robot: Robot) -> Formula:
-    """That a robot is not in its target."""
+def is_away_from_target(robot: Robot) -> Formula:
+    """Return the predicate that a robot is not in its target."""
     return f.compare(Op.NE, f.var(position(robot)), f.var(target(robot)))
 
 
 def forbid_shared_cells(study: Study) -> Iterator[Conjunct]:
-    """No two robots are in one cell (thesis 4.3.1)."""
-    for one, other in combinations(study.robots, 2):
-        text = f"'{one.name}' and '{other.name}' are never in one cell."
+    """State that no two robots are in one cell (thesis 4.3.1)."""
+    for first, second in combinations(study.robots, 2):
+        text = f"'{first.name}' and '{second.name}' are never in one cell."
         for cell in study.grid.cells:
-            both = f.both(words.at(other, cell), words.at(one, cell))
-            yield words.first(f.negate(both), other.origin, text)
+            share_cell = f.both(is_in_cell(second, cell), is_in_cell(first, cell))
+            yield initial_conjunct(f.negate(share_cell), second.origin, text)
 
 
 def define_free_cells(study: Study) -> Iterator[Conjunct]:
-    """A cell is free when no robot is in it. (The thesis prints a double negation too many.)"""
+    """State that a cell is free if no robot is in it.
+
+    The thesis prints a double negation too many.
+    """
     for cell in study.grid.cells:
-        there = f.either(*(words.at(robot, cell) for robot in study.robots))
+        is_occupied = f.either(*(is_in_cell(robot, cell) for robot in study.robots))
         text = f"Cell {cell} is free when no robot is in it."
-        yield words.first(f.iff(f.var(words.free(cell)), f.negate(there)), study.origin, text)
+        yield initial_conjunct(f.iff(f.var(free(cell)), f.negate(is_occupied)), study.origin, text)
 
 
 def define_sensors(study: Study, robot: Robot, is_exact: bool = True) -> Iterator[Conjunct]:
-    """A sensor shows whether the next cell is free; unless ``is_exact`` it may hide that it is."""
+    """State that a sensor shows whether the next cell is free, or hides it unless ``is_exact``."""
     for way in WAYS:
         for cell in study.grid.cells:
-            there = study.grid.after(cell, way)
-            here, shown = words.at(robot, cell), f.var(words.sensor(robot, way))
+            neighbour = study.grid.cell_after(cell, way)
+            stands_here, sensor_value = is_in_cell(robot, cell), f.var(sensor(robot, way))
             text = f"From cell {cell} '{robot.name}' sees what is {way} of it."
-            if there is None:
-                formula = f.implies(here, f.negate(shown))
+            if neighbour is None:
+                formula = f.implies(stands_here, f.negate(sensor_value))
             elif is_exact:
-                formula = f.implies(here, f.iff(shown, f.var(words.free(there))))
+                formula = f.implies(stands_here, f.iff(sensor_value, f.var(free(neighbour))))
             else:
-                formula = f.implies(f.both(here, shown), f.var(words.free(there)))
-            yield words.first(formula, robot.origin, text)
+                formula = f.implies(f.both(stands_here, sensor_value), f.var(free(neighbour)))
+            yield initial_conjunct(formula, robot.origin, text)
 
 
 def forbid_obstacle_cells(study: Study) -> Iterator[Conjunct]:
-    """No robot is in the cell of an obstacle."""
+    """State that no robot is in the cell of an obstacle."""
     for cell, origin in zip(study.grid.blocked, study.obstacles, strict=True):
         for robot in study.robots:
             text = f"An obstacle is in cell {cell}."
-            yield words.first(f.negate(words.at(robot, cell)), origin, text)
+            yield initial_conjunct(f.negate(is_in_cell(robot, cell)), origin, text)

@@ -1,4 +1,4 @@
-"""All contracts of a floor, by the names under which they are written (thesis, 4.3)."""
+"""All contracts of a floor, under the names of their files (thesis, 4.3)."""
 
 from collections.abc import Iterator
 
@@ -12,9 +12,9 @@ from sysmlc.robots.system_contract import system_contract
 
 
 def study_contracts(study: Study, travel: TravelTimes | None = None) -> Iterator[Contract]:
-    """C_S, C_E, C_R of each robot (alone, and among others), and C_M when there are targets.
+    """Yield C_S, C_E, C_R of each robot (alone, and among others), and C_M if there are targets.
 
-    Without travel times that were measured the mission assumes those of shortest ways.
+    Without measured travel times, the mission assumes those of shortest paths.
     """
     yield system_contract(study)
     yield environment_contract(study)

@@ -1,7 +1,9 @@
-"""What is known of the robots of a floor whatever their mission is, and where it is kept.
+"""The cache of robot crews: everything about the robots of a floor that does not depend on the
+mission.
 
-New targets on the same floor ask for nothing but another allocation (MOOD4I thesis, 4.6.1): the
-controller, the times that robots travel and what was decided of the contracts stay.
+New targets on the same floor only need another allocation (MOOD4I thesis, 4.6.1): the controller,
+the measured travel times and the decided claims about contracts are reused. In the stored JSON a
+formula is a list of its parts.
 """
 
 from collections.abc import Mapping, Sequence
@@ -28,43 +30,56 @@ from sysmlc.synthesis.decision import Verdict
 EncodedController = Mapping[str, Any]
 
 
-def encode_controller(made: Controller) -> EncodedController:
-    """A controller as JSON; variables by their names."""
-    names = {"inputs": _variable_names(made.inputs), "outputs": _variable_names(made.outputs)}
-    if isinstance(made, Machine):
-        states = [[_encode_move(one) for one in moves] for moves in made.states]
-        return names | {"registers": _variable_names(made.registers), "states": states}
+def encode_controller(controller: Controller) -> EncodedController:
+    """Encode a controller as a JSON value; variables are encoded by name."""
+    names = {
+        "inputs": _variable_names(controller.inputs),
+        "outputs": _variable_names(controller.outputs),
+    }
+    if isinstance(controller, Machine):
+        states = [[_encode_move(item) for item in moves] for moves in controller.states]
+        return names | {"registers": _variable_names(controller.registers), "states": states}
     return names | {
-        "bits": [[one.variable, one.place, one.is_before] for one in made.bits],
-        "nodes": made.nodes,
-        "entries": [[one.outputs, one.successors] for one in (made.first, *made.modes)],
+        "bits": [[item.variable, item.place, item.is_before] for item in controller.bits],
+        "nodes": controller.nodes,
+        "entries": [
+            [item.outputs, item.successors] for item in (controller.first, *controller.modes)
+        ],
     }
 
 
-def decode_controller(form: EncodedController, variables: Sequence[Variable]) -> Controller:
-    """The controller over variables of its contract. Raises LookupError, ValueError, TypeError."""
-    known = {one.name: one for one in variables}
-    inputs, outputs = (tuple(known[one] for one in form[side]) for side in ("inputs", "outputs"))
-    if "states" in form:
-        registers = tuple(known[one] for one in form["registers"])
-        states = tuple(tuple(map(_decode_move, moves)) for moves in form["states"])
+def decode_controller(encoded: EncodedController, variables: Sequence[Variable]) -> Controller:
+    """Decode a controller over variables of its contract. Raises LookupError, ValueError,
+    TypeError.
+    """
+    variables_by_name = {item.name: item for item in variables}
+    inputs, outputs = (
+        tuple(variables_by_name[item] for item in encoded[side]) for side in ("inputs", "outputs")
+    )
+    if "states" in encoded:
+        registers = tuple(variables_by_name[item] for item in encoded["registers"])
+        states = tuple(tuple(map(_decode_move, moves)) for moves in encoded["states"])
         return Machine(inputs, outputs, registers, states)
-    first, *modes = (Entry(tuple(done), tuple(onward)) for done, onward in form["entries"])
-    nodes = tuple((bit, low, high) for bit, low, high in form["nodes"])
-    bits = tuple(Bit(*one) for one in form["bits"])
+    first, *modes = (Entry(tuple(outputs), tuple(onward)) for outputs, onward in encoded["entries"])
+    nodes = tuple((bit, low, high) for bit, low, high in encoded["nodes"])
+    bits = tuple(Bit(*item) for item in encoded["bits"])
     return Table(inputs, outputs, bits, nodes, first, tuple(modes))
 
 
 def _variable_names(variables: Sequence[Variable]) -> list[str]:
-    return [one.name for one in variables]
+    return [variable.name for variable in variables]
 
 
 def _encode_move(move: Move) -> list[Any]:
-    return [_encode_formula(move.when), [_encode_formula(one) for one in move.output], move.state]
+    return [
+        _encode_formula(move.when),
+        [_encode_formula(output_term) for output_term in move.output],
+        move.state,
+    ]
 
 
-def _decode_move(form: Sequence[Any]) -> Move:
-    when, output, state = form
+def _decode_move(encoded: Sequence[Any]) -> Move:
+    when, output, state = encoded
     return Move(_decode_formula(when), tuple(map(_decode_formula, output)), state)
 
 
@@ -78,8 +93,8 @@ def _encode_formula(formula: Formula) -> Any:  # noqa: ANN401 - JSON
             return [op.value, *map(_encode_formula, args)]
 
 
-def _decode_formula(form: Any) -> Formula:  # noqa: ANN401 - JSON
-    match form:
+def _decode_formula(encoded: Any) -> Formula:  # noqa: ANN401 - JSON
+    match encoded:
         case [value]:
             return Const(value)
         case ["'" | "" as prime, str(name)]:
@@ -87,7 +102,7 @@ def _decode_formula(form: Any) -> Formula:  # noqa: ANN401 - JSON
         case [op, *args]:
             return Apply(Op(op), tuple(map(_decode_formula, args)))
         case _:
-            raise ValueError(form)
+            raise ValueError(encoded)
 
 
 _FORMAT = 2
@@ -99,7 +114,7 @@ class RobotCrew(Struct, frozen=True):
     controller: Synthesis
     times: Times
     claims: Mapping[str, Claim] = field(default_factory=dict)
-    """What was decided of the contracts of the floor."""
+    """Decided claims about the contracts of the floor."""
 
 
 class _Entry(msgspec.Struct, array_like=True):
@@ -111,7 +126,7 @@ class _Entry(msgspec.Struct, array_like=True):
 
 
 class CrewCache(Struct, frozen=True):
-    """Stores crews in a cache, by floor and robots; ``tool`` is the digest of the tool."""
+    """Stores crews by floor and robots; ``tool`` is the digest of the tool."""
 
     cache: Cache
     tool: str
@@ -136,8 +151,10 @@ class CrewCache(Struct, frozen=True):
 
 
 def cache_identity(study: Study) -> Study:
-    """The study without what a crew does not depend on: mission, starts, and ids in the model."""
-    robots = tuple(replace(one, start=None, origin="") for one in study.robots)
+    """Return the study without what a crew does not depend on: mission, starts, ids in the
+    model.
+    """
+    robots = tuple(replace(robot, start=None, origin="") for robot in study.robots)
     floor = replace(study, robots=robots, origin="", obstacles=())
     return replace(floor, targets=(), orders=(), deadline=None)
 
@@ -157,9 +174,9 @@ def _encode_crew(crew: RobotCrew) -> "_Entry":
 
 def _decode_crew(entry: "_Entry", study: Study) -> RobotCrew:
     contract = controller_contract(study)
-    told = reduced(contract).contract
-    machine = decode_controller(entry.controller, told.variables)
+    reduced_contract = reduced(contract).contract
+    machine = decode_controller(entry.controller, reduced_contract.variables)
     times = {goal: dict(steps) for goal, steps in entry.times}
     claims = {claim: Claim(claim, holds, reason, run) for claim, holds, reason, run in entry.claims}
     verdict = Verdict(contract.component, is_realizable=True)
-    return RobotCrew(Synthesis(verdict, told, machine), times, claims)
+    return RobotCrew(Synthesis(verdict, reduced_contract, machine), times, claims)

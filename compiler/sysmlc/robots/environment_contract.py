@@ -1,7 +1,8 @@
-"""The contract of the environment, C_E (MOOD4I thesis, 4.3.3): what moves robots and shows ways.
+"""The contract of the environment, C_E (MOOD4I thesis, 4.3.3), which moves robots and offers free
+cells.
 
-As the thesis has it, it cannot be kept by two robots or more: both may be told that one cell is
-free and go there. Either it is assumed that they do not, or the cell is offered to one of them.
+As the thesis states it, two or more robots make it unrealizable: both may be told that one cell is
+free, and go there. Either it is assumed that they do not, or the cell is offered to one of them.
 """
 
 from collections.abc import Iterator
@@ -11,7 +12,7 @@ from itertools import combinations, permutations
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import Conjunct, Contract, Owner
 from sysmlc.logic.formula import Formula
-from sysmlc.robots import contract_terms as words
+from sysmlc.robots import contract_terms as terms
 from sysmlc.robots.contract_terms import (
     define_free_cells,
     define_sensors,
@@ -22,103 +23,119 @@ from sysmlc.robots.study import STAY, WAYS, Robot, Study
 
 
 class Sharing(StrEnum):
-    """What becomes of a free cell next to two robots."""
+    """How a free cell next to two robots is treated."""
 
     LITERAL = "literal"
-    """Both are told that it is free (thesis)."""
+    """Both robots are told that it is free (thesis)."""
     ASSUMED = "assumed"
-    """Both are told so, and it is assumed that they do not go there together."""
+    """Both robots are told that it is free, and they are assumed not to enter it together."""
     ARBITRATED = "arbitrated"
-    """It is offered to one of them."""
+    """It is offered to one of the robots."""
 
 
 def environment_contract(study: Study, sharing: Sharing = Sharing.ARBITRATED) -> Contract:
-    """What robots can rely on: motion by command, sensors, cells that are never shared."""
+    """Return what robots can rely on: motion by command, sensors, cells that are never shared."""
     is_exact = sharing is not Sharing.ARBITRATED
-    sensed = [one for robot in study.robots for one in define_sensors(study, robot, is_exact)]
+    sensed = [
+        conjunct for robot in study.robots for conjunct in define_sensors(study, robot, is_exact)
+    ]
     rules = [*forbid_shared_cells(study), *define_free_cells(study), *sensed]
     if not is_exact:
-        rules += _offered_once(study)
+        rules += _offer_once(study)
     name = f"{study.component}.environment"
     return Contract(
         name if sharing is Sharing.ARBITRATED else f"{name}.{sharing}",
         study.origin,
         (
-            *(words.commands(robot, Owner.ENVIRONMENT) for robot in study.robots),
-            *(one for robot in study.robots for one in words.places(study, robot, Owner.SYSTEM)),
-            *words.free_cells(study, Owner.SYSTEM),
+            *(terms.command_variable(robot, Owner.ENVIRONMENT) for robot in study.robots),
+            *(
+                conjunct
+                for robot in study.robots
+                for conjunct in terms.position_and_sensors(study, robot, Owner.SYSTEM)
+            ),
+            *terms.free_cell_variables(study, Owner.SYSTEM),
         ),
-        tuple(_assumed(study, sharing)),
+        tuple(_list_assumptions(study, sharing)),
         (
-            *words.starts(study.robots),
+            *terms.start_positions(study.robots),
             *forbid_obstacle_cells(study),
-            *words.in_all(rules),
-            *(one for robot in study.robots for one in words.motion(study, robot, False)),
-            *(() if is_exact else _ways_offered(study)),
+            *terms.repeat_in_every_step(rules),
+            *(
+                conjunct
+                for robot in study.robots
+                for conjunct in terms.motion_rules(study, robot, False)
+            ),
+            *(() if is_exact else _guarantee_offers(study)),
         ),
     )
 
 
-def _assumed(study: Study, sharing: Sharing) -> Iterator[Conjunct]:
+def _list_assumptions(study: Study, sharing: Sharing) -> Iterator[Conjunct]:
     for robot in study.robots:
         text = f"At first '{robot.name}' stays."
-        yield words.first(words.is_(words.command(robot), STAY), robot.origin, text)
+        yield terms.initial_conjunct(terms.equals(terms.command(robot), STAY), robot.origin, text)
     for robot in study.robots:
         for way in WAYS:
-            goes = words.is_(words.command(robot), way)
+            moves = terms.equals(terms.command(robot), way)
             text = f"'{robot.name}' goes {way} only when the way is free."
-            formula = f.implies(goes, f.var(words.sensor(robot, way)))
-            yield words.each(formula, robot.origin, text)
+            formula = f.implies(moves, f.var(terms.sensor(robot, way)))
+            yield terms.safety_conjunct(formula, robot.origin, text)
     if sharing is Sharing.ASSUMED:
-        yield from _never_together(study)
+        yield from _forbid_meeting(study)
 
 
-def _never_together(study: Study) -> Iterator[Conjunct]:
-    for one, other in combinations(study.robots, 2):
-        text = f"'{one.name}' and '{other.name}' do not go to one cell."
+def _forbid_meeting(study: Study) -> Iterator[Conjunct]:
+    for first, second in combinations(study.robots, 2):
+        text = f"'{first.name}' and '{second.name}' do not go to one cell."
         for cell in study.grid.cells:
-            both = f.both(_goes_to(study, other, cell), _goes_to(study, one, cell))
-            yield words.each(f.negate(both), other.origin, text)
+            meet = f.both(_moves_to(study, second, cell), _moves_to(study, first, cell))
+            yield terms.safety_conjunct(f.negate(meet), second.origin, text)
 
 
-def _goes_to(study: Study, robot: Robot, cell: int) -> Formula:
-    found = [f.both(words.at(robot, cell), words.is_(words.command(robot), STAY))]
-    for near, way in _from(study, cell):
-        found.append(f.both(words.at(robot, near), words.is_(words.command(robot), way)))
-    return f.either(*found)
+def _moves_to(study: Study, robot: Robot, cell: int) -> Formula:
+    ways = [f.both(terms.is_in_cell(robot, cell), terms.equals(terms.command(robot), STAY))]
+    for neighbour, way in _entries_of(study, cell):
+        ways.append(
+            f.both(terms.is_in_cell(robot, neighbour), terms.equals(terms.command(robot), way))
+        )
+    return f.either(*ways)
 
 
-def _from(study: Study, cell: int) -> Iterator[tuple[int, str]]:
-    """Neighbours of a cell, by number, with the commands that lead from them into it."""
-    back = dict(zip(WAYS, ("down", "up", "right", "left"), strict=True))
-    yield from sorted((near, back[way]) for way, near in study.grid.neighbours(cell))
+def _entries_of(study: Study, cell: int) -> Iterator[tuple[int, str]]:
+    """Yield the neighbours of a cell, by number, with the commands that lead into the cell."""
+    opposite = dict(zip(WAYS, ("down", "up", "right", "left"), strict=True))
+    yield from sorted((neighbour, opposite[way]) for way, neighbour in study.grid.neighbours(cell))
 
 
-def _offered_once(study: Study) -> Iterator[Conjunct]:
-    for one, other in combinations(study.robots, 2):
-        text = f"No cell is offered to both '{one.name}' and '{other.name}'."
+def _offer_once(study: Study) -> Iterator[Conjunct]:
+    for first, second in combinations(study.robots, 2):
+        text = f"No cell is offered to both '{first.name}' and '{second.name}'."
         for cell in study.grid.cells:
-            for (near, way), (far, back) in permutations(_from(study, cell), 2):
+            for (second_cell, second_way), (first_cell, first_way) in permutations(
+                _entries_of(study, cell), 2
+            ):
                 offered = f.both(
-                    words.at(other, near),
-                    f.var(words.sensor(other, way)),
-                    words.at(one, far),
-                    f.var(words.sensor(one, back)),
+                    terms.is_in_cell(second, second_cell),
+                    f.var(terms.sensor(second, second_way)),
+                    terms.is_in_cell(first, first_cell),
+                    f.var(terms.sensor(first, first_way)),
                 )
-                yield words.first(f.negate(offered), other.origin, text)
+                yield terms.initial_conjunct(f.negate(offered), second.origin, text)
 
 
-def _ways_offered(study: Study) -> Iterator[Conjunct]:
-    """Again and again a robot that is not shut in is offered a way."""
+def _guarantee_offers(study: Study) -> Iterator[Conjunct]:
+    """State that a robot that is not shut in is offered a direction infinitely often."""
     for robot in study.robots:
         text = f"Again and again a way is offered to '{robot.name}', if one is free."
-        shown = (f.var(words.sensor(robot, way)) for way in WAYS)
-        yield words.again(f.either(*shown, *_shut_in(study, robot)), robot.origin, text)
+        offers = (f.var(terms.sensor(robot, way)) for way in WAYS)
+        yield terms.liveness_conjunct(
+            f.either(*offers, *_blocked_positions(study, robot)), robot.origin, text
+        )
 
 
-def _shut_in(study: Study, robot: Robot) -> Iterator[Formula]:
+def _blocked_positions(study: Study, robot: Robot) -> Iterator[Formula]:
     for cell in study.grid.cells:
-        near = [there for _, there in study.grid.neighbours(cell)]
-        if len(near) < len(study.robots):
-            taken = (f.negate(f.var(words.free(there))) for there in near)
-            yield f.both(words.at(robot, cell), *taken)
+        neighbours = [neighbour for _, neighbour in study.grid.neighbours(cell)]
+        if len(neighbours) < len(study.robots):
+            occupied = (f.negate(f.var(terms.free(neighbour))) for neighbour in neighbours)
+            yield f.both(terms.is_in_cell(robot, cell), *occupied)

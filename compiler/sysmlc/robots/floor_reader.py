@@ -1,4 +1,4 @@
-"""Studies of a model: what specialises the definitions of the library ``Floors``."""
+"""Reader of floors: elements of a model that specialise definitions of the library ``Floors``."""
 
 from collections.abc import Iterable, Iterator, Sequence
 from math import isqrt
@@ -15,29 +15,31 @@ from sysmlc.robots.study import Grid, Order, Robot, Study, Target
 
 LIBRARY = "Floors"
 MAX_CELLS = 400
-"""Cells of a floor: contracts list them one by one."""
+"""Cells of a floor at most: contracts list them one by one."""
 MAX_ROBOT_PAIR_CELLS = 10_000
-"""Pairs of robots times cells: contracts say of each pair that it is not in one cell."""
+"""Pairs of robots times cells at most: contracts have a conjunct for each pair and cell."""
 
 
 def read_studies(graph: Graph, sink: Sink) -> Iterator[Study]:
-    """The floors of a model that robots are on; what is wrong with one is reported."""
-    if not any(one.name == LIBRARY for one in graph.of_kind(Kind.PACKAGE)):
+    """Yield the floors of a model that have robots; faulty ones are reported."""
+    if not any(package.name == LIBRARY for package in graph.of_kind(Kind.PACKAGE)):
         return
-    known: set[str] = set()
+    names: set[str] = set()
     for block in graph.of_kind(Kind.CLASS):
         is_drawn = not block.attrs.get("external") and not block.attrs.get("abstract")
-        if is_drawn and is_a(graph, block, "Floor"):
-            reading = _FloorReader(graph, block, sink)
-            yield from reading.study() if reading.is_first(known) else ()
+        if is_drawn and specialises_library(graph, block, "Floor"):
+            reader = _FloorReader(graph, block, sink)
+            yield from reader.read_study() if reader.check_name(names) else ()
 
 
-def is_a(graph: Graph, element: Element, name: str) -> bool:
-    """Whether a classifier specialises one of the library."""
-    return any(_is_ours(graph, one, name) for one in query.generals(graph, element))
+def specialises_library(graph: Graph, element: Element, name: str) -> bool:
+    """Return whether a classifier specialises the named definition of the library."""
+    return any(
+        _is_library_element(graph, general, name) for general in query.generals(graph, element)
+    )
 
 
-def _is_ours(graph: Graph, element: Element, name: str) -> bool:
+def _is_library_element(graph: Graph, element: Element, name: str) -> bool:
     if element.name != name:
         return False
     return f"::{graph.qualified_name(element)}".endswith(f"::{LIBRARY}::{name}")
@@ -49,138 +51,150 @@ class _PlacedPart(Struct, frozen=True):
 
 
 class _FloorReader:
-    """One floor; ``is_good`` is false from the first error on."""
+    """Reads one floor; ``is_good`` is false from the first error on."""
 
     def __init__(self, graph: Graph, block: Element, sink: Sink) -> None:
         self.graph, self.block, self.sink = graph, block, sink
         self.is_good = True
 
-    def is_first(self, known: set[str]) -> bool:
-        """Whether no floor before has its name, which is added to them."""
+    def check_name(self, names: set[str]) -> bool:
+        """Return whether the floor's name is new, and add it to *names*."""
         name = query.component_name(self.graph, self.block)
-        if name in known:
+        if name in names:
             self.fail(rules.SAME_FLOOR, self.block, name=name)
-        known.add(name)
+        names.add(name)
         return self.is_good
 
-    def study(self) -> Iterator[Study]:
-        """The floor as a value; nothing when it is none, or something is wrong with it."""
-        grid = Grid(self._size("columns"), self._size("rows"))
-        robots = self._all_robots(grid)
+    def read_study(self) -> Iterator[Study]:
+        """Yield the study of the floor, or nothing if it has no robots or an error."""
+        grid = Grid(self._read_size("columns"), self._read_size("rows"))
+        robots = self._list_robots(grid)
         if robots and self.is_good:
-            made = self._mission(self._floor(grid, robots))
-            if made is not None:
-                self._check_ways(made)
-            if made is not None and self.is_good:
-                yield made
+            study = self._read_mission(self._read_floor(grid, robots))
+            if study is not None:
+                self._check_reachability(study)
+            if study is not None and self.is_good:
+                yield study
 
-    def _all_robots(self, grid: Grid) -> list[Element]:
-        """The parts that are robots, each as often as it says."""
-        found: list[Element] = []
-        most = isqrt(MAX_ROBOT_PAIR_CELLS // grid.size)
-        for part in self._parts(self.block, "Robot"):
-            count = self._count(part)
-            if len(found) + count > most:
-                problem = f"gives too many robots, more than {most} on {grid.size} cells"
-                self._refuse(part, part, "multiplicity", problem)
-                return found
-            found += [part] * count
-        return found
+    def _list_robots(self, grid: Grid) -> list[Element]:
+        """Return the parts that are robots, repeated by their multiplicity."""
+        robots: list[Element] = []
+        max_robots = isqrt(MAX_ROBOT_PAIR_CELLS // grid.size)
+        for part in self._parts_of_kind(self.block, "Robot"):
+            count = self._read_count(part)
+            if len(robots) + count > max_robots:
+                problem = f"gives too many robots, more than {max_robots} on {grid.size} cells"
+                self._report_attribute(part, part, "multiplicity", problem)
+                return robots
+            robots += [part] * count
+        return robots
 
-    def _floor(self, grid: Grid, robots: list[Element]) -> Study:
-        """Robots and obstacles."""
-        starts = [self._placed(grid, one, is_needed=False) for one in robots]
-        obstacles = [self._placed(grid, one) for one in self._parts(self.block, "Obstacle")]
+    def _read_floor(self, grid: Grid, robots: list[Element]) -> Study:
+        """Return the floor with robots and obstacles."""
+        starts = [self._read_place(grid, part, is_needed=False) for part in robots]
+        obstacles = [
+            self._read_place(grid, part) for part in self._parts_of_kind(self.block, "Obstacle")
+        ]
         self._check_cells(grid, obstacles, starts)
-        blocked = sorted((one.cell or 0, one.element.id) for one in obstacles)
+        blocked = sorted((part.cell or 0, part.element.id) for part in obstacles)
         return Study(
             query.component_name(self.graph, self.block),
             self.block.id,
             Grid(grid.columns, grid.rows, tuple(cell for cell, _ in blocked)),
-            tuple(self._robots(starts)),
-            within=self._number(self.block, "within"),
-            counted=self._number(self.block, "counted") or 0,
+            tuple(self._build_robots(starts)),
+            within=self._read_number(self.block, "within"),
+            counter_size=self._read_number(self.block, "counted") or 0,
             obstacles=tuple(id for _, id in blocked),
         )
 
-    def _mission(self, floor: Study) -> Study | None:
-        """The floor with its targets; None when something is wrong with one of them."""
-        missions = self._parts(self.block, "Mission")
-        wanted = [one for mission in missions for one in self._parts(self._type(mission), "Target")]
-        targets = [self._placed(floor.grid, one) for one in wanted]
+    def _read_mission(self, floor: Study) -> Study | None:
+        """Return the floor with its targets, or None if there is an error."""
+        missions = self._parts_of_kind(self.block, "Mission")
+        target_parts = [
+            part
+            for mission in missions
+            for part in self._parts_of_kind(self._type_of(mission), "Target")
+        ]
+        targets = [self._read_place(floor.grid, part) for part in target_parts]
         cells = zip(floor.grid.blocked, floor.obstacles, strict=True)
-        barred = [_PlacedPart(self.graph[id], cell) for cell, id in cells]
-        self._check_cells(floor.grid, barred, targets)
-        orders = tuple(read_orders(self, missions, wanted))
-        deadlines = [self._number(self._type(one), "deadline") for one in missions]
+        placed_obstacles = [_PlacedPart(self.graph[id], cell) for cell, id in cells]
+        self._check_cells(floor.grid, placed_obstacles, targets)
+        orders = tuple(read_orders(self, missions, target_parts))
+        deadlines = [self._read_number(self._type_of(part), "deadline") for part in missions]
         if not self.is_good:
             return None
         return replace(
             floor,
-            targets=tuple(self._targets(targets)),
+            targets=tuple(self._build_targets(targets)),
             orders=orders,
-            deadline=max((one for one in deadlines if one is not None), default=None),
+            deadline=max((part for part in deadlines if part is not None), default=None),
         )
 
     def fail(self, found: Rule, element: Element, **facts: str | int) -> None:
-        """Report what is wrong with an element; the floor gives no study."""
+        """Report an error of an element; the floor then yields no study."""
         self.is_good = False
         self.sink.report(found, self.graph.subject(element), notes=(), help="", **facts)
 
-    def _parts(self, block: Element | None, kind: str) -> list[Element]:
+    def _parts_of_kind(self, block: Element | None, kind: str) -> list[Element]:
         if block is None:
             return []
-        return [one for one in query.parts(self.graph, block) if self.is_typed(one, kind)]
+        return [part for part in query.parts(self.graph, block) if self.is_typed(part, kind)]
 
     def is_typed(self, part: Element, kind: str) -> bool:
-        """Whether the type of a feature is, or specialises, a definition of the library."""
-        type_ = self._type(part)
+        """Return whether the type of a feature is or specialises a definition of the library."""
+        type_ = self._type_of(part)
         if type_ is None:
             return False
-        return _is_ours(self.graph, type_, kind) or is_a(self.graph, type_, kind)
+        return _is_library_element(self.graph, type_, kind) or specialises_library(
+            self.graph, type_, kind
+        )
 
-    def _type(self, part: Element) -> Element | None:
+    def _type_of(self, part: Element) -> Element | None:
         return query.type_of(self.graph, part)
 
-    def _count(self, part: Element) -> int:
+    def _read_count(self, part: Element) -> int:
         low, high = query.bounds(part.attrs.get("multiplicity")) or (1, 1)
         if high != low:
             problem = "leaves open how many robots there are"
-            self._refuse(part, part, "multiplicity", problem)
+            self._report_attribute(part, part, "multiplicity", problem)
         return low
 
-    def _size(self, attribute: str) -> int:
-        value = self._number(self.block, attribute)
+    def _read_size(self, attribute: str) -> int:
+        value = self._read_number(self.block, attribute)
         if value is None or not 1 <= value <= MAX_CELLS // 2:
             problem = "is missing" if value is None else f"is {value}, not 1 to {MAX_CELLS // 2}"
-            self._refuse(self.block, self.block, attribute, problem)
+            self._report_attribute(self.block, self.block, attribute, problem)
         return value or 1
 
-    def _number(self, block: Element | None, attribute: str) -> int | None:
-        """The value of an attribute; None when it has none, or no number, which is reported."""
-        known = query.features(self.graph, block) if block is not None else []
-        found = next((one for one in known if one.name == attribute), None)
-        value = None if found is None else found.attrs.get("default")
-        if found is None or value is None:
+    def _read_number(self, block: Element | None, attribute: str) -> int | None:
+        """Return the value of an attribute, or None; a value that is no natural number is
+        reported.
+        """
+        features = query.features(self.graph, block) if block is not None else []
+        feature = next((candidate for candidate in features if candidate.name == attribute), None)
+        value = None if feature is None else feature.attrs.get("default")
+        if feature is None or value is None:
             return None
         number = _parse_whole_number(value)
         if number is None or number < 0:
             problem = "is negative" if number is not None else f"is no whole number but '{value}'"
-            self._refuse(found, block or found, attribute, problem)
+            self._report_attribute(feature, block or feature, attribute, problem)
         return number
 
-    def _refuse(self, place: Element, block: Element, attribute: str, problem: str) -> None:
+    def _report_attribute(
+        self, place: Element, block: Element, attribute: str, problem: str
+    ) -> None:
         self.fail(rules.NO_NUMBER, place, attribute=attribute, name=block.name, problem=problem)
 
-    def _placed(self, grid: Grid, part: Element, is_needed: bool = True) -> _PlacedPart:
+    def _read_place(self, grid: Grid, part: Element, is_needed: bool = True) -> _PlacedPart:
         was_good = self.is_good
-        row, column = (self._number(self._type(part), name) for name in ("row", "column"))
+        row, column = (self._read_number(self._type_of(part), name) for name in ("row", "column"))
         if self.is_good != was_good:
             return _PlacedPart(part, None)
         if row is None or column is None:
             if is_needed or (row, column) != (None, None):
                 missing = "row" if row is None else "column"
-                self._refuse(part, part, missing, "is missing")
+                self._report_attribute(part, part, missing, "is missing")
             return _PlacedPart(part, None)
         if row >= grid.rows or column >= grid.columns:
             self.fail(
@@ -197,40 +211,42 @@ class _FloorReader:
         return _PlacedPart(part, row * grid.columns + column)
 
     def _check_cells(
-        self, grid: Grid, obstacles: list[_PlacedPart], others: list[_PlacedPart]
+        self, grid: Grid, obstacles: list[_PlacedPart], other_parts: list[_PlacedPart]
     ) -> None:
-        """No two of them are in one cell."""
-        known: dict[int, _PlacedPart] = {}
-        for one in (*obstacles, *others):
-            if one.cell is None or known.setdefault(one.cell, one) is one:
+        """Report parts that share a cell."""
+        parts_by_cell: dict[int, _PlacedPart] = {}
+        for part in (*obstacles, *other_parts):
+            if part.cell is None or parts_by_cell.setdefault(part.cell, part) is part:
                 continue
-            row, column = divmod(one.cell, grid.columns)
+            row, column = divmod(part.cell, grid.columns)
             self.fail(
                 rules.CELL_TAKEN,
-                one.element,
-                name=one.element.name,
-                other=known[one.cell].element.name,
+                part.element,
+                name=part.element.name,
+                other=parts_by_cell[part.cell].element.name,
                 row=row,
                 column=column,
             )
 
-    def _robots(self, starts: Iterable[_PlacedPart]) -> Iterator[Robot]:
+    def _build_robots(self, starts: Iterable[_PlacedPart]) -> Iterator[Robot]:
         names = Names()
-        for one in starts:
-            yield Robot(one.element.name, names.new(one.element.name), one.element.id, one.cell)
+        for placed in starts:
+            yield Robot(
+                placed.element.name, names.new(placed.element.name), placed.element.id, placed.cell
+            )
 
-    def _targets(self, targets: Iterable[_PlacedPart]) -> Iterator[Target]:
+    def _build_targets(self, targets: Iterable[_PlacedPart]) -> Iterator[Target]:
         names = Names("none")
-        for one in targets:
-            part = one.element
-            deadline = self._number(self._type(part), "deadline")
-            yield Target(part.name, names.new(part.name), one.cell or 0, part.id, deadline)
+        for placed in targets:
+            part = placed.element
+            deadline = self._read_number(self._type_of(part), "deadline")
+            yield Target(part.name, names.new(part.name), placed.cell or 0, part.id, deadline)
 
-    def _check_ways(self, study: Study) -> None:
-        starts = {one.start for one in study.robots}
+    def _check_reachability(self, study: Study) -> None:
+        start_cells = {robot.start for robot in study.robots}
         for target in study.targets:
-            reached = study.grid.distances(target.cell)
-            if None not in starts and starts.isdisjoint(reached):
+            reachable = study.grid.distances(target.cell)
+            if None not in start_cells and start_cells.isdisjoint(reachable):
                 self.fail(rules.OUT_OF_REACH, self.graph[target.origin], name=target.name)
 
 
@@ -258,49 +274,51 @@ class Reader(Protocol):
 def read_orders(
     reader: Reader, missions: Sequence[Element], targets: Sequence[Element]
 ) -> Iterator[Order]:
-    """The orders that missions ask for, by numbers of targets; circles are reported."""
-    found = [one for mission in missions for one in _iter_orders(reader, mission, targets)]
-    _check_circles(reader, found, targets)
-    _check_carrying(reader, found, targets)
-    return iter(found)
+    """Return the orders between targets of the missions; cycles and double carrying are
+    reported.
+    """
+    orders = [order for mission in missions for order in _iter_orders(reader, mission, targets)]
+    _check_circles(reader, orders, targets)
+    _check_carrying(reader, orders, targets)
+    return iter(orders)
 
 
 def _iter_orders(reader: Reader, mission: Element, targets: Sequence[Element]) -> Iterator[Order]:
     graph = reader.graph
-    numbers = {one.id: at for at, one in enumerate(targets)}
+    numbers = {target.id: number for number, target in enumerate(targets)}
     block = query.type_of(graph, mission)
     family = () if block is None else (block, *query.generals(graph, block))
-    for connector in (one for owner in family for one in graph.owned(owner)):
+    for connector in (element for owner in family for element in graph.owned(owner)):
         if connector.kind is not Kind.CONNECTOR or not reader.is_typed(connector, "Before"):
             continue
         roles = [query.role_of(graph, end) for end in query.ends(graph, connector)]
-        ends = [numbers[one.id] for one in roles if one is not None and one.id in numbers]
+        ends = [numbers[role.id] for role in roles if role is not None and role.id in numbers]
         if len(ends) == 2:
             is_carried = reader.is_typed(connector, "Carry")
             yield Order(ends[0], ends[1], is_carried, connector.id)
 
 
 def _check_circles(reader: Reader, orders: Sequence[Order], targets: Sequence[Element]) -> None:
-    """Report the first target that waits for itself."""
+    """Report the first target that has to be reached before itself."""
     for start in range(len(targets)):
         circle = _find_order_path(orders, start, start)
         if circle:
-            names = " before ".join(f"'{targets[at].name}'" for at in circle)
+            names = " before ".join(f"'{targets[number].name}'" for number in circle)
             name = targets[start].name
             reader.fail(rules.CIRCULAR_ORDER, targets[start], name=name, circle=names)
             return
 
 
 def _find_order_path(orders: Sequence[Order], start: int, end: int) -> list[int]:
-    """Targets from one to another, by what is later; empty when none leads there."""
+    """Return the targets on a path of orders, or nothing if there is no path."""
     came: dict[int, int] = {}
     waiting = [start]
     while waiting:
-        here = waiting.pop(0)
-        for one in orders:
-            if one.earlier == here and one.later not in came:
-                came[one.later] = here
-                waiting.append(one.later)
+        target = waiting.pop(0)
+        for order in orders:
+            if order.earlier == target and order.later not in came:
+                came[order.later] = target
+                waiting.append(order.later)
     if end not in came:
         return []
     way = [end]
@@ -310,20 +328,20 @@ def _find_order_path(orders: Sequence[Order], start: int, end: int) -> list[int]
 
 
 def _check_carrying(reader: Reader, orders: Sequence[Order], targets: Sequence[Element]) -> None:
-    for side, other, words in (
+    for side, other, prepositions in (
         ("earlier", "later", ("from", "to")),
         ("later", "earlier", ("to", "from")),
     ):
-        known: dict[int, int] = {}
-        for one in orders:
-            here, there = getattr(one, side), getattr(one, other)
-            if one.is_carried and known.setdefault(here, there) != there:
+        targets_by_end: dict[int, int] = {}
+        for order in orders:
+            end, opposite_end = getattr(order, side), getattr(order, other)
+            if order.is_carried and targets_by_end.setdefault(end, opposite_end) != opposite_end:
                 reader.fail(
                     rules.CARRIED_TWICE,
-                    reader.graph[one.origin],
-                    way=words[0],
-                    there=words[1],
-                    name=targets[here].name,
-                    one=targets[known[here]].name,
-                    other=targets[there].name,
+                    reader.graph[order.origin],
+                    way=prepositions[0],
+                    there=prepositions[1],
+                    name=targets[end].name,
+                    one=targets[targets_by_end[end]].name,
+                    other=targets[opposite_end].name,
                 )

@@ -1,7 +1,7 @@
-"""Runs that have come to the same: from then on one of them stands for all (decision 0037).
+"""Merging of runs that reached the same state, of which one then represents all (decision 0037).
 
-After a few steps most robots are on their way between targets, wherever they started. What will
-become of a run depends on its state only, so that each state is gone on with once.
+After a few steps most robots are on their way between targets, wherever they started. The future of
+a run depends only on its state, so each state is simulated once.
 """
 
 from collections.abc import Iterable, Iterator, Sequence
@@ -16,188 +16,211 @@ from sysmlc.robots.run_sets import RunSpace, difference
 from sysmlc.robots.world import Body, State, World
 
 _T = TypeVar("_T")
-_BYTE = 8
-_WIDTH = 3
-"""Bytes for the number of what is known of a robot: sixteen million things."""
+_BITS_PER_BYTE = 8
+_STATE_BYTES = 3
+"""Bytes for the number of a robot's state, enough for sixteen million states."""
 
 
-class _Known(NamedTuple):
-    """What is known of one robot in one run: its body without all the others."""
+class _RobotState(NamedTuple):
+    """The state of one robot in one run."""
 
     memory: Memory | None
     command: str | None
     cell: int | None
-    sent: int | None
-    aside: int | None
+    assigned: int | None
+    evasion: int | None
 
 
 class Batch(Struct, frozen=True):
-    """Some states to go on with; a bit of a condition is one of them."""
+    """States to continue with; a bit of a run set is one state."""
 
     runs: RunSpace[int]
     state: State[int]
     origins: Sequence[int]
-    """By bit a run that came to this state."""
+    """By bit, a run that reached this state."""
 
 
-class States:
-    """The states that runs have come to, each once.
+class StateSet:
+    """The distinct states that runs have reached.
 
-    A state is a row of bytes: what is known of each robot, as a number, then which targets have
-    been reached.
+    A state is a row of bytes: the state of each robot as a number, then the reached targets.
     """
 
     def __init__(self, robots: int) -> None:
-        """Nothing is known yet."""
-        self._numbers: list[dict[_Known, int]] = [{} for _ in range(robots)]
+        """Create an empty set."""
+        self._numbers: list[dict[_RobotState, int]] = [{} for _ in range(robots)]
         self._origins: dict[bytes, int] = {}
 
     def __len__(self) -> int:
-        """How many states there are."""
+        """Return the number of states."""
         return len(self._origins)
 
     def add(self, world: World[int], origins: Sequence[int]) -> None:
-        """Note the states of all runs; ``origins`` are where the runs themselves come from."""
+        """Add the states of all runs; *origins* are the runs from which they originate."""
         count = world.runs.all.bit_length()
-        bits = [bit for robot in range(len(world.bodies)) for bit in self._bits(robot, world)]
+        bits = [
+            bit for robot in range(len(world.bodies)) for bit in self._encode_robot(robot, world)
+        ]
         bits += world.done
-        columns = [_column(bits[at : at + _BYTE], count) for at in range(0, len(bits), _BYTE)]
-        found = dict(zip(_rows(columns, count), reversed(origins), strict=True))
-        found.pop(bytes(len(columns)), None)
-        self._origins.update(found)
+        columns = [
+            _byte_column(bits[index : index + _BITS_PER_BYTE], count)
+            for index in range(0, len(bits), _BITS_PER_BYTE)
+        ]
+        origins_by_state = dict(zip(_transpose(columns, count), reversed(origins), strict=True))
+        origins_by_state.pop(bytes(len(columns)), None)
+        self._origins.update(origins_by_state)
 
-    def _bits(self, robot: int, world: World[int]) -> list[int]:
-        """The bits of the number of what is known of a robot; 0 is for runs that are none."""
+    def _encode_robot(self, robot: int, world: World[int]) -> list[int]:
+        """Return the bits of the number of a robot's state; 0 marks bits that are no run."""
         numbers = self._numbers[robot]
-        found = [0] * (_WIDTH * _BYTE)
-        for known, plane in _split(world.bodies[robot], world.runs.all):
-            number = numbers.setdefault(known, len(numbers) + 1)
+        bits = [0] * (_STATE_BYTES * _BITS_PER_BYTE)
+        for robot_state, run_set in _split_by_robot_state(world.bodies[robot], world.runs.all):
+            number = numbers.setdefault(robot_state, len(numbers) + 1)
             for place in range(number.bit_length()):
                 if number >> place & 1:
-                    found[place] |= plane
-        return found
+                    bits[place] |= run_set
+        return bits
 
-    def batches(self, most: int, like: World[int]) -> Iterator[Batch]:
-        """All states, so many at once, in a world ``like`` one that was added."""
+    def batches(self, max_states: int, model: World[int]) -> Iterator[Batch]:
+        """Yield all states in batches, for worlds like *like*, one of the added worlds."""
         rows = list(self._origins)
-        for start in range(0, len(rows), most):
-            chosen = rows[start : start + most]
-            yield self._batch(chosen, like)
+        for start in range(0, len(rows), max_states):
+            batch_rows = rows[start : start + max_states]
+            yield self._build_batch(batch_rows, model)
 
-    def _batch(self, rows: Sequence[bytes], like: World[int]) -> Batch:
+    def _build_batch(self, rows: Sequence[bytes], model: World[int]) -> Batch:
         table, width = b"".join(rows), len(rows[0])
-        columns = [table[at::width] for at in range(width)]
+        columns = [table[index::width] for index in range(width)]
         bodies = []
-        for robot, (body, numbers) in enumerate(zip(like.bodies, self._numbers, strict=True)):
-            known = list(numbers)
-            planes = _planes(columns[robot * _WIDTH : (robot + 1) * _WIDTH])
-            bodies.append(_body(body, [(known[at - 1], planes[at]) for at in sorted(planes)]))
-        reached = columns[len(bodies) * _WIDTH :]
-        done = [_bit_plane(column, bit) for column in reached for bit in range(_BYTE)]
+        for robot, (body, numbers) in enumerate(zip(model.bodies, self._numbers, strict=True)):
+            robot_states = list(numbers)
+            runs_by_number = _runs_by_number(
+                columns[robot * _STATE_BYTES : (robot + 1) * _STATE_BYTES]
+            )
+            bodies.append(
+                _build_body(
+                    body,
+                    [
+                        (robot_states[index - 1], runs_by_number[index])
+                        for index in sorted(runs_by_number)
+                    ],
+                )
+            )
+        done_columns = columns[len(bodies) * _STATE_BYTES :]
+        reached_sets = [
+            _runs_with_bit(column, bit) for column in done_columns for bit in range(_BITS_PER_BYTE)
+        ]
         starts = tuple(tuple(body.places) for body in bodies)
         runs = RunSpace((1 << len(rows)) - 1, 0, starts, difference)
-        state = State(bodies, done[: len(like.done)])
+        state = State(bodies, reached_sets[: len(model.done)])
         return Batch(runs, state, [self._origins[row] for row in reversed(rows)])
 
 
-def _split(body: Body[int], whole: int) -> Iterator[tuple[_Known, int]]:
-    """All that is known of a robot, with the runs in which it is."""
-    commands, cells = _some(body.commands.items()), _some(enumerate(body.places))
-    sent, aside = _some(enumerate(body.sent)), _some(enumerate(body.aside))
-    for memory, known in _told(_some(body.memory.items()), whole):
-        # A robot is where its machine will have it, or next to it.
-        end = 0 if memory is None else memory.cell
-        near = sorted(cells, key=lambda one: abs(one[0] - end))
-        for command, ordered in _told(commands, known):
-            for cell, here in _told(near, ordered):
-                for goal, going in _told(sent, here):
-                    for side, plane in _told(aside, going):
-                        yield _Known(memory, command, cell, goal, side), plane
+def _split_by_robot_state(body: Body[int], every_run: int) -> Iterator[tuple[_RobotState, int]]:
+    """Yield the states of a robot, with the runs in which it has them."""
+    commands, cells = _non_empty(body.commands.items()), _non_empty(enumerate(body.places))
+    sent, aside = _non_empty(enumerate(body.assigned)), _non_empty(enumerate(body.evasions))
+    for memory, memory_runs in _split_by_condition(_non_empty(body.memory.items()), every_run):
+        # A robot is in the cell that its controller expects, or in a neighbour of that cell.
+        expected_cell = 0 if memory is None else memory.cell
+        nearby_cells = sorted(cells, key=lambda pair: abs(pair[0] - expected_cell))
+        for command, command_runs in _split_by_condition(commands, memory_runs):
+            for cell, cell_runs in _split_by_condition(nearby_cells, command_runs):
+                for goal, target_runs in _split_by_condition(sent, cell_runs):
+                    for evasion, run_set in _split_by_condition(aside, target_runs):
+                        yield _RobotState(memory, command, cell, goal, evasion), run_set
 
 
-def _some(conditions: Iterable[tuple[_T, int]]) -> list[tuple[_T, int]]:
-    return [one for one in conditions if one[1]]
+def _non_empty(conditions: Iterable[tuple[_T, int]]) -> list[tuple[_T, int]]:
+    return [pair for pair in conditions if pair[1]]
 
 
-def _told(conditions: Sequence[tuple[_T, int]], left: int) -> Iterator[tuple[_T | None, int]]:
-    """Some runs, split by which condition holds; None where none does."""
-    for name, plane in conditions:
-        both = left & plane
-        if both:
-            yield name, both
-            left ^= both
-            if not left:
+def _split_by_condition(
+    conditions: Sequence[tuple[_T, int]], remaining: int
+) -> Iterator[tuple[_T | None, int]]:
+    """Split runs by the condition that holds; None where none does."""
+    for value, run_set in conditions:
+        overlap = remaining & run_set
+        if overlap:
+            yield value, overlap
+            remaining ^= overlap
+            if not remaining:
                 return
-    if left:
-        yield None, left
+    if remaining:
+        yield None, remaining
 
 
-def _body(like: Body[int], known: Iterable[tuple[_Known, int]]) -> Body[int]:
-    """A robot made of what is known of it in each run; its lists are as long as another one's."""
-    places, sent, aside = ([0] * len(one) for one in (like.places, like.sent, like.aside))
-    made: Body[int] = Body(places, sent, aside, {}, {})
-    for one, plane in known:
-        _add(made.places, one.cell, plane)
-        _add(made.sent, one.sent, plane)
-        _add(made.aside, one.aside, plane)
-        if one.memory is not None:
-            made.memory[one.memory] = made.memory.get(one.memory, 0) | plane
-        if one.command is not None:
-            made.commands[one.command] = made.commands.get(one.command, 0) | plane
-    return made
+def _build_body(model: Body[int], robot_states: Iterable[tuple[_RobotState, int]]) -> Body[int]:
+    """Build a robot from its states; the lists have the lengths of those of *like*."""
+    places, sent, aside = (
+        [0] * len(robot_state) for robot_state in (model.places, model.assigned, model.evasions)
+    )
+    body: Body[int] = Body(places, sent, aside, {}, {})
+    for robot_state, run_set in robot_states:
+        _add_runs(body.places, robot_state.cell, run_set)
+        _add_runs(body.assigned, robot_state.assigned, run_set)
+        _add_runs(body.evasions, robot_state.evasion, run_set)
+        if robot_state.memory is not None:
+            body.memory[robot_state.memory] = body.memory.get(robot_state.memory, 0) | run_set
+        if robot_state.command is not None:
+            body.commands[robot_state.command] = body.commands.get(robot_state.command, 0) | run_set
+    return body
 
 
-def _add(planes: list[int], at: int | None, plane: int) -> None:
-    if at is not None:
-        planes[at] |= plane
+def _add_runs(run_sets: list[int], index: int | None, run_set: int) -> None:
+    if index is not None:
+        run_sets[index] |= run_set
 
 
-def _column(bits: Sequence[int], count: int) -> bytes:
-    """A byte for each run, the last run first, of eight conditions."""
+def _byte_column(bits: Sequence[int], count: int) -> bytes:
+    """Pack eight conditions into a byte for each run, the last run first."""
     zeros = int.from_bytes(b"0" * count, "big") if any(bits) else 0
     total = 0
-    for place, plane in enumerate(bits):
-        if plane:
-            spread = int.from_bytes(f"{plane:0{count}b}".encode(), "big") ^ zeros
-            total |= spread << place
+    for bit_number, run_set in enumerate(bits):
+        if run_set:
+            spread = int.from_bytes(f"{run_set:0{count}b}".encode(), "big") ^ zeros
+            total |= spread << bit_number
     return total.to_bytes(count, "big") if total else b""
 
 
-def _rows(columns: Sequence[bytes], count: int) -> Iterator[bytes]:
-    """The bytes of each run in one row; an empty column is one of zeros."""
+def _transpose(columns: Sequence[bytes], count: int) -> Iterator[bytes]:
+    """Yield the bytes of each run as one row; an empty column consists of zeros."""
     width = len(columns)
     table = bytearray(count * width)
-    for at, column in enumerate(columns):
+    for index, column in enumerate(columns):
         if column:
-            table[at::width] = column
+            table[index::width] = column
     return map(itemgetter(0), iter_unpack(f"{width}s", table))
 
 
-_IS = [
+_DIGITS_BY_VALUE = [
     bytes(ord("1") if value == wanted else ord("0") for value in range(256))
     for wanted in range(256)
 ]
-"""By number the digits that say of each byte whether it is that number."""
-_HAS = [
+"""By value, a translation of bytes to the digit whether they have that value."""
+_DIGITS_BY_BIT = [
     bytes(ord("1") if value >> bit & 1 else ord("0") for value in range(256))
-    for bit in range(_BYTE)
+    for bit in range(_BITS_PER_BYTE)
 ]
-"""By bit the digits that say of each byte whether it has that bit."""
+"""By bit, a translation of bytes to the digit whether they have that bit."""
 
 
-def _bit_plane(column: bytes, bit: int) -> int:
-    return int(column.translate(_HAS[bit]), 2)
+def _runs_with_bit(column: bytes, bit: int) -> int:
+    return int(column.translate(_DIGITS_BY_BIT[bit]), 2)
 
 
-def _planes(columns: Sequence[bytes]) -> dict[int, int]:
-    """By number the rows in which some bytes, the lowest one first, are that number."""
-    found = {0: -1}
-    for at, column in enumerate(columns):
-        more = {value: int(column.translate(_IS[value]), 2) for value in sorted(set(column))}
-        found = {
-            low + (value << _BYTE * at): both
-            for low, plane in found.items()
-            for value, other in more.items()
-            if (both := plane & other)
+def _runs_by_number(columns: Sequence[bytes]) -> dict[int, int]:
+    """Return the rows by the number that some bytes, lowest first, encode."""
+    runs = {0: -1}
+    for index, column in enumerate(columns):
+        runs_by_byte = {
+            value: int(column.translate(_DIGITS_BY_VALUE[value]), 2)
+            for value in sorted(set(column))
         }
-    return found
+        runs = {
+            low + (value << _BITS_PER_BYTE * index): overlap
+            for low, run_set in runs.items()
+            for value, byte_runs in runs_by_byte.items()
+            if (overlap := run_set & byte_runs)
+        }
+    return runs

@@ -1,7 +1,7 @@
 """The contract of the mission, C_M (MOOD4I thesis, 4.3.4): targets, their order, and deadlines.
 
-The environment is robots that reach each target within the time that they travel; the system is
-whoever gives them targets. That the contract can be kept says that the mission can be done.
+The environment consists of robots that reach each target within their travel time; the system
+assigns targets to them. If the contract is realizable, the mission can be done.
 """
 
 from collections.abc import Iterator
@@ -18,7 +18,7 @@ from sysmlc.logic.contract import (
     Variable,
 )
 from sysmlc.logic.formula import Formula, Op
-from sysmlc.robots import contract_terms as words
+from sysmlc.robots import contract_terms as terms
 from sysmlc.robots.schedule import START, TravelTimes
 from sysmlc.robots.study import Robot, Study, Target
 
@@ -27,171 +27,184 @@ TIMER = "timer"
 
 
 def mission_contract(study: Study, travel: TravelTimes) -> Contract:
-    """Every robot travels no longer than it is known to; all targets are reached in order, in time.
+    """Return the contract: robots travel no longer than known; all targets are reached in order and
+    in time.
 
-    Without a deadline all targets are reached at some time.
+    Without deadlines all targets are reached eventually.
     """
     return Contract(
         f"{study.component}.mission",
         study.origin,
-        tuple(_variables(study, travel)),
-        tuple(_assumed(study, travel)),
-        tuple(_promised(study, travel)),
+        tuple(_declare_variables(study, travel)),
+        tuple(_list_assumptions(study, travel)),
+        tuple(_list_guarantees(study, travel)),
     )
 
 
-def _variables(study: Study, travel: TravelTimes) -> Iterator[Variable]:
+def _declare_variables(study: Study, travel: TravelTimes) -> Iterator[Variable]:
     names = tuple(target.word for target in study.targets)
-    if last := _last(study):
-        domain = IntegerDomain(0, last + 1)
+    if last_deadline := _last_deadline(study):
+        domain = IntegerDomain(0, last_deadline + 1)
         yield Variable(TIMER, Owner.ENVIRONMENT, domain, study.origin)
     for robot in study.robots:
         places = EnumerationDomain((START_WORD, *names))
-        yield Variable(words.place(robot), Owner.ENVIRONMENT, places, robot.origin)
+        yield Variable(terms.place(robot), Owner.ENVIRONMENT, places, robot.origin)
         longest = IntegerDomain(0, travel.longest)
-        yield Variable(words.clock(robot), Owner.ENVIRONMENT, longest, robot.origin)
+        yield Variable(terms.clock(robot), Owner.ENVIRONMENT, longest, robot.origin)
         goals = EnumerationDomain((NONE, *names))
-        yield Variable(words.goal(robot), Owner.SYSTEM, goals, robot.origin)
+        yield Variable(terms.goal(robot), Owner.SYSTEM, goals, robot.origin)
     for target in study.targets:
-        yield Variable(words.done(target), Owner.SYSTEM, BooleanDomain(), target.origin)
+        yield Variable(terms.done(target), Owner.SYSTEM, BooleanDomain(), target.origin)
 
 
-def _last(study: Study) -> int:
-    """The last deadline; 0 when there is none."""
-    known = (study.deadline, *(target.deadline for target in study.targets))
-    return max((one for one in known if one is not None), default=0)
+def _last_deadline(study: Study) -> int:
+    """Return the last deadline, or 0 if there is none."""
+    deadlines = (study.deadline, *(target.deadline for target in study.targets))
+    return max((deadline for deadline in deadlines if deadline is not None), default=0)
 
 
 # -- assumptions -------------------------------------------------------------------------------
 
 
-def _assumed(study: Study, travel: TravelTimes) -> Iterator[Conjunct]:
-    if last := _last(study):
+def _list_assumptions(study: Study, travel: TravelTimes) -> Iterator[Conjunct]:
+    if last_deadline := _last_deadline(study):
         text = "The timer counts the steps of the mission."
-        yield words.first(words.is_(TIMER, 0), study.origin, text)
-        for number in range(last + 2):
-            after = f.primed(words.is_(TIMER, min(number + 1, last + 1)))
-            yield words.each(f.implies(words.is_(TIMER, number), after), study.origin, text)
+        yield terms.initial_conjunct(terms.equals(TIMER, 0), study.origin, text)
+        for number in range(last_deadline + 2):
+            after = f.primed(terms.equals(TIMER, min(number + 1, last_deadline + 1)))
+            yield terms.safety_conjunct(
+                f.implies(terms.equals(TIMER, number), after), study.origin, text
+            )
     for number, robot in enumerate(study.robots):
         text = f"'{robot.name}' starts where it is."
         at_start = f.both(
-            words.is_(words.place(robot), START_WORD), words.is_(words.clock(robot), 0)
+            terms.equals(terms.place(robot), START_WORD), terms.equals(terms.clock(robot), 0)
         )
-        yield words.first(at_start, robot.origin, text)
-        yield _idle(robot)
-        for from_ in (START, *range(len(study.targets))):
-            for to in range(len(study.targets)):
-                yield _travelling(study, travel, number, from_, to)
+        yield terms.initial_conjunct(at_start, robot.origin, text)
+        yield _rest_without_target(robot)
+        for start_place in (START, *range(len(study.targets))):
+            for target_number in range(len(study.targets)):
+                yield _limit_travel_time(study, travel, number, start_place, target_number)
 
 
-def _idle(robot: Robot) -> Conjunct:
+def _rest_without_target(robot: Robot) -> Conjunct:
     text = f"Without a target '{robot.name}' stays where it is."
-    here = f.var(words.place(robot))
-    rests = f.both(f.eq(f.primed(here), here), f.primed(words.is_(words.clock(robot), 0)))
-    return words.each(f.implies(words.is_(words.goal(robot), NONE), rests), robot.origin, text)
-
-
-def _travelling(study: Study, travel: TravelTimes, number: int, from_: int, to: int) -> Conjunct:
-    """A robot on its way arrives in time, or goes on and counts."""
-    robot, name = study.robots[number], study.targets[to].word
-    most = travel.get(number, from_, to)
-    origin = START_WORD if from_ == START else study.targets[from_].word
-    under_way = f.both(words.is_(words.place(robot), origin), words.is_(words.goal(robot), name))
-    arrives = f.primed(
-        f.both(words.is_(words.place(robot), name), words.is_(words.clock(robot), 0))
+    place = f.var(terms.place(robot))
+    stays = f.both(f.eq(f.primed(place), place), f.primed(terms.equals(terms.clock(robot), 0)))
+    return terms.safety_conjunct(
+        f.implies(terms.equals(terms.goal(robot), NONE), stays), robot.origin, text
     )
-    count = f.var(words.clock(robot))
-    if from_ == to:
+
+
+def _limit_travel_time(
+    study: Study, travel: TravelTimes, number: int, start_place: int, target_number: int
+) -> Conjunct:
+    """State that a robot on its way arrives in time, or continues and counts."""
+    robot, name = study.robots[number], study.targets[target_number].word
+    max_steps = travel.get(number, start_place, target_number)
+    origin = START_WORD if start_place == START else study.targets[start_place].word
+    under_way = f.both(
+        terms.equals(terms.place(robot), origin), terms.equals(terms.goal(robot), name)
+    )
+    arrives = f.primed(
+        f.both(terms.equals(terms.place(robot), name), terms.equals(terms.clock(robot), 0))
+    )
+    count = f.var(terms.clock(robot))
+    if start_place == target_number:
         text = f"'{robot.name}' is in '{name}' already."
-        return words.each(f.implies(under_way, arrives), robot.origin, text)
-    stays = f.primed(words.is_(words.place(robot), origin))
-    if most is None:
+        return terms.safety_conjunct(f.implies(under_way, arrives), robot.origin, text)
+    stays_at_origin = f.primed(terms.equals(terms.place(robot), origin))
+    if max_steps is None:
         text = f"'{robot.name}' cannot get from '{origin}' to '{name}'."
-        never = f.both(stays, f.primed(words.is_(words.clock(robot), 0)))
-        return words.each(f.implies(under_way, never), robot.origin, text)
-    goes_on = f.both(
-        f.compare(Op.LT, count, f.const(most - 1)),
-        stays,
+        never = f.both(stays_at_origin, f.primed(terms.equals(terms.clock(robot), 0)))
+        return terms.safety_conjunct(f.implies(under_way, never), robot.origin, text)
+    continues = f.both(
+        f.compare(Op.LT, count, f.const(max_steps - 1)),
+        stays_at_origin,
         f.eq(f.primed(count), f.Apply(Op.ADD, (count, f.const(1)))),
     )
-    text = f"'{robot.name}' gets from '{origin}' to '{name}' in {most} steps at most."
-    return words.each(f.implies(under_way, f.either(arrives, goes_on)), robot.origin, text)
+    text = f"'{robot.name}' gets from '{origin}' to '{name}' in {max_steps} steps at most."
+    return terms.safety_conjunct(
+        f.implies(under_way, f.either(arrives, continues)), robot.origin, text
+    )
 
 
 # -- guarantees --------------------------------------------------------------------------------
 
 
-def _promised(study: Study, travel: TravelTimes) -> Iterator[Conjunct]:
+def _list_guarantees(study: Study, travel: TravelTimes) -> Iterator[Conjunct]:
     for target in study.targets:
         text = f"At first '{target.name}' has not been reached."
-        yield words.first(f.negate(f.var(words.done(target))), target.origin, text)
+        yield terms.initial_conjunct(f.negate(f.var(terms.done(target))), target.origin, text)
     for robot in study.robots:
         text = f"At first '{robot.name}' has no target."
-        yield words.first(words.is_(words.goal(robot), NONE), robot.origin, text)
+        yield terms.initial_conjunct(terms.equals(terms.goal(robot), NONE), robot.origin, text)
     for number in range(len(study.targets)):
-        yield from _of_target(study, number)
-    yield from _orders(study)
-    yield from _deadlines(study)
+        yield from _target_guarantees(study, number)
+    yield from _respect_orders(study)
+    yield from _meet_deadlines(study)
 
 
-def _of_target(study: Study, number: int) -> Iterator[Conjunct]:
+def _target_guarantees(study: Study, number: int) -> Iterator[Conjunct]:
     target = study.targets[number]
-    is_done = f.var(words.done(target))
-    arrivals = [_arrival(robot, target) for robot in study.robots]
+    is_done = f.var(terms.done(target))
+    arrivals = [_arrives_at(robot, target) for robot in study.robots]
     text = f"'{target.name}' has been reached when a robot has."
-    becomes = f.iff(f.primed(is_done), f.either(is_done, *arrivals))
-    yield words.each(becomes, target.origin, text)
+    definition = f.iff(f.primed(is_done), f.either(is_done, *arrivals))
+    yield terms.safety_conjunct(definition, target.origin, text)
     for robot in study.robots:
-        goes = words.is_(words.goal(robot), target.word)
-        arrives = f.primed(words.is_(words.place(robot), target.word))
+        is_sent = terms.equals(terms.goal(robot), target.word)
+        arrives = f.primed(terms.equals(terms.place(robot), target.word))
         text = f"'{robot.name}' keeps a target until it has reached it."
-        keeps = f.implies(f.both(goes, f.negate(arrives)), f.primed(goes))
-        yield words.each(keeps, robot.origin, text)
+        keeps_target = f.implies(f.both(is_sent, f.negate(arrives)), f.primed(is_sent))
+        yield terms.safety_conjunct(keeps_target, robot.origin, text)
         text = f"'{target.name}' is reached once."
-        once = f.primed(f.implies(is_done, f.negate(goes)))
-        yield words.each(once, target.origin, text)
-    for one, other in combinations(study.robots, 2):
+        is_reached_once = f.primed(f.implies(is_done, f.negate(is_sent)))
+        yield terms.safety_conjunct(is_reached_once, target.origin, text)
+    for first, second in combinations(study.robots, 2):
         text = f"One robot goes to '{target.name}'."
-        both = f.both(*(words.is_(words.goal(robot), target.word) for robot in (one, other)))
-        yield words.each(f.primed(f.negate(both)), target.origin, text)
+        both_are_sent = f.both(
+            *(terms.equals(terms.goal(robot), target.word) for robot in (first, second))
+        )
+        yield terms.safety_conjunct(f.primed(f.negate(both_are_sent)), target.origin, text)
 
 
-def _arrival(robot: Robot, target: Target) -> Formula:
-    goes = words.is_(words.goal(robot), target.word)
-    return f.both(goes, f.primed(words.is_(words.place(robot), target.word)))
+def _arrives_at(robot: Robot, target: Target) -> Formula:
+    is_sent = terms.equals(terms.goal(robot), target.word)
+    return f.both(is_sent, f.primed(terms.equals(terms.place(robot), target.word)))
 
 
-def _orders(study: Study) -> Iterator[Conjunct]:
+def _respect_orders(study: Study) -> Iterator[Conjunct]:
     for order in study.orders:
         earlier, later = study.targets[order.earlier], study.targets[order.later]
         for robot in study.robots:
-            goes = words.is_(words.goal(robot), later.word)
+            is_sent = terms.equals(terms.goal(robot), later.word)
             text = f"'{later.name}' comes after '{earlier.name}'."
-            waits = f.primed(f.implies(goes, f.var(words.done(earlier))))
-            yield words.each(waits, order.origin, text)
+            waits_for_earlier = f.primed(f.implies(is_sent, f.var(terms.done(earlier))))
+            yield terms.safety_conjunct(waits_for_earlier, order.origin, text)
             if order.is_carried:
-                yield from _carrying(robot, earlier, later, order.origin)
+                yield from _carry(robot, earlier, later, order.origin)
 
 
-def _carrying(robot: Robot, earlier: Target, later: Target, origin: str) -> Iterator[Conjunct]:
+def _carry(robot: Robot, earlier: Target, later: Target, origin: str) -> Iterator[Conjunct]:
     text = f"Who was in '{earlier.name}' goes on to '{later.name}', nobody else does."
-    goes = f.primed(words.is_(words.goal(robot), later.word))
-    is_there = f.primed(words.is_(words.place(robot), earlier.word))
-    yield words.each(f.implies(goes, is_there), origin, text)
-    is_open = f.negate(f.primed(f.var(words.done(later))))
-    waits = f.primed(words.is_(words.goal(robot), NONE))
-    going_on = f.implies(f.both(is_there, is_open), f.either(goes, waits))
-    yield words.each(going_on, origin, text)
+    is_sent = f.primed(terms.equals(terms.goal(robot), later.word))
+    has_arrived = f.primed(terms.equals(terms.place(robot), earlier.word))
+    yield terms.safety_conjunct(f.implies(is_sent, has_arrived), origin, text)
+    is_not_done = f.negate(f.primed(f.var(terms.done(later))))
+    has_no_target = f.primed(terms.equals(terms.goal(robot), NONE))
+    continues = f.implies(f.both(has_arrived, is_not_done), f.either(is_sent, has_no_target))
+    yield terms.safety_conjunct(continues, origin, text)
 
 
-def _deadlines(study: Study) -> Iterator[Conjunct]:
+def _meet_deadlines(study: Study) -> Iterator[Conjunct]:
     for target in study.targets:
         limit = study.limit(target)
-        is_done = f.var(words.done(target))
+        is_done = f.var(terms.done(target))
         if limit is None:
             text = f"'{target.name}' is reached."
-            yield words.again(is_done, target.origin, text)
+            yield terms.liveness_conjunct(is_done, target.origin, text)
             continue
         text = f"'{target.name}' is reached within {limit} steps."
         is_late = f.compare(Op.GE, f.var(TIMER), f.const(limit))
-        yield words.each(f.implies(is_late, is_done), target.origin, text)
+        yield terms.safety_conjunct(f.implies(is_late, is_done), target.origin, text)

@@ -1,4 +1,6 @@
-"""One run, told: who is where, who goes where, and what was reached."""
+"""The record of one run of a mission: positions, journeys and reached targets, as text and as a
+diagram.
+"""
 
 from collections.abc import Iterator, Sequence
 
@@ -12,14 +14,14 @@ from sysmlc.support.plantuml_text import label, plain
 
 
 class Moment(Struct, frozen=True):
-    """A step of one run, by robot."""
+    """One step of a run, by robot."""
 
     cells: tuple[int, ...]
     goals: tuple[int | None, ...]
-    """The cell that a robot is sent to; None for one that rests."""
+    """The cell to which a robot is sent; None for a resting robot."""
     commands: tuple[str, ...]
     reached: tuple[tuple[int, int], ...]
-    """Robot and target of what has been reached in this step."""
+    """Robot and target of each target that was reached in this step."""
 
 
 def record_run(
@@ -29,95 +31,106 @@ def record_run(
     starts: Sequence[int],
     steps: int,
 ) -> tuple[Moment, ...]:
-    """The run from some starts, for so many steps."""
+    """Simulate the run from some starts for a number of steps."""
     cells = range(study.grid.size)
-    placed = tuple(tuple(int(cell == start) for cell in cells) for start in starts)
-    runs = RunSpace(1, 0, placed, difference)
+    start_sets = tuple(tuple(int(cell == start) for cell in cells) for start in starts)
+    runs = RunSpace(1, 0, start_sets, difference)
     world = World(study, allocation, answers, runs)
-    done = list(world.done)
-    found = [_capture_moment(world, done)]
+    done_before = list(world.done)
+    moments = [_capture_moment(world, done_before)]
     for _ in range(steps):
         world.step()
-        found.append(_capture_moment(world, done))
-        done = list(world.done)
-    return tuple(found)
+        moments.append(_capture_moment(world, done_before))
+        done_before = list(world.done)
+    return tuple(moments)
 
 
-def _capture_moment(world: World[int], before: list[int]) -> Moment:
+def _capture_moment(world: World[int], done_before: list[int]) -> Moment:
     cells, goals, commands = [], [], []
     for number, body in enumerate(world.bodies):
         cells.append(body.places.index(1))
         goals.append(_current_goal(world, number))
-        commands.append(next((way for way, one in body.commands.items() if one), STAY))
-    new = [at for at, one in enumerate(world.done) if one and not before[at]]
-    owner = {target: robot for robot, own in enumerate(world.allocation) for target in own}
-    reached = tuple((owner[target], target) for target in new)
+        commands.append(next((way for way, run_set in body.commands.items() if run_set), STAY))
+    new_targets = [
+        target_number
+        for target_number, run_set in enumerate(world.done)
+        if run_set and not done_before[target_number]
+    ]
+    robot_by_target = {
+        target: robot for robot, targets in enumerate(world.allocation) for target in targets
+    }
+    reached = tuple((robot_by_target[target], target) for target in new_targets)
     return Moment(tuple(cells), tuple(goals), tuple(commands), reached)
 
 
 def _current_goal(world: World[int], number: int) -> int | None:
     body = world.bodies[number]
-    sent = (world.study.targets[target].cell for target in _active_targets(world, number))
-    aside = (cell for cell, one in enumerate(body.aside) if one)
-    return next((*sent, *aside).__iter__(), None)
+    targets = (world.study.targets[target].cell for target in _active_targets(world, number))
+    evasions = (cell for cell, run_set in enumerate(body.evasions) if run_set)
+    return next(iter((*targets, *evasions)), None)
 
 
 def _active_targets(world: World[int], number: int) -> Iterator[int]:
-    pairs = zip(world.allocation[number], world.bodies[number].sent, strict=True)
-    return (target for target, one in pairs if one)
+    pairs = zip(world.allocation[number], world.bodies[number].assigned, strict=True)
+    return (target for target, run_set in pairs if run_set)
 
 
 def describe_cell(study: Study, cell: int) -> str:
-    """A cell as the model names it: a target, or its row and column."""
-    name = next((one.name for one in study.targets if one.cell == cell), "")
+    """Return a cell in the model's words: a target, or row and column."""
+    target_name = next((target.name for target in study.targets if target.cell == cell), "")
     row, column = divmod(cell, study.grid.columns)
-    return f"'{name}'" if name else f"row {row}, column {column}"
+    return f"'{target_name}'" if target_name else f"row {row}, column {column}"
 
 
-def describe_moments(study: Study, moments: Sequence[Moment], most: int = 40) -> Iterator[str]:
-    """What changes in each step, a line a step; steps without a change are left out."""
+def describe_moments(study: Study, moments: Sequence[Moment], max_lines: int = 40) -> Iterator[str]:
+    """Yield a line for each step with changes."""
     shown = 0
     for step, moment in enumerate(moments):
-        before = moments[step - 1] if step else None
-        told = [text for _, text in _describe_changes(study, before, moment)]
+        previous = moments[step - 1] if step else None
+        events = [text for _, text in _describe_changes(study, previous, moment)]
         if step == 0:
             pairs = zip(study.robots, moment.cells, strict=True)
-            told = [f"'{robot.name}' is at {describe_cell(study, cell)}" for robot, cell in pairs]
-        if told:
+            events = [f"'{robot.name}' is at {describe_cell(study, cell)}" for robot, cell in pairs]
+        if events:
             shown += 1
-            if shown > most:
+            if shown > max_lines:
                 yield "and so on"
                 return
-            yield f"step {step}: {'; '.join(told)}"
+            yield f"step {step}: {'; '.join(events)}"
 
 
 def _describe_changes(
-    study: Study, before: Moment | None, now: Moment
+    study: Study, previous: Moment | None, moment: Moment
 ) -> Iterator[tuple[int, str]]:
-    """Robot and words for new targets and for what was reached."""
-    goals = {one.cell for one in study.targets}
-    for robot, goal in enumerate(now.goals):
-        if before is not None and goal is not None and before.goals[robot] != goal:
-            verb = "goes to" if goal in goals else "makes way to"
+    """Yield robot and text for new targets and reached targets."""
+    target_cells = {target.cell for target in study.targets}
+    for robot, goal in enumerate(moment.goals):
+        if previous is not None and goal is not None and previous.goals[robot] != goal:
+            verb = "goes to" if goal in target_cells else "makes way to"
             yield robot, f"'{study.robots[robot].name}' {verb} {describe_cell(study, goal)}"
-    for robot, target in now.reached:
+    for robot, target in moment.reached:
         yield robot, f"'{study.robots[robot].name}' reaches '{study.targets[target].name}'"
 
 
 def sequence_diagram(study: Study, moments: Sequence[Moment], title: str) -> str:
-    """The run as a sequence diagram in PlantUML: targets given, commands, targets reached."""
-    text = ["@startuml", f"title {plain(title)}", "hide footbox", 'participant "mission" as m']
-    text += [f'participant "{label(one.name)}" as r{at}' for at, one in enumerate(study.robots)]
-    goals = {one.cell for one in study.targets}
+    """Return the run as a PlantUML sequence diagram: assigned targets, evasions, reached
+    targets.
+    """
+    lines = ["@startuml", f"title {plain(title)}", "hide footbox", 'participant "mission" as m']
+    lines += [
+        f'participant "{label(one.name)}" as r{robot_number}'
+        for robot_number, one in enumerate(study.robots)
+    ]
+    target_cells = {one.cell for one in study.targets}
     for step, moment in enumerate(moments):
-        found: list[str] = []
+        messages: list[str] = []
         for robot, goal in enumerate(moment.goals):
             if step and goal is not None and moments[step - 1].goals[robot] != goal:
-                arrow = "->" if goal in goals else "-[dashed]>"
-                where = describe_cell(study, goal).strip("'")
-                found.append(f"m {arrow} r{robot} : {plain(where)}")
+                arrow = "->" if goal in target_cells else "-[dashed]>"
+                place_name = describe_cell(study, goal).strip("'")
+                messages.append(f"m {arrow} r{robot} : {plain(place_name)}")
         for robot, target in moment.reached:
-            found.append(f"r{robot} --> m : {plain(study.targets[target].name)} reached")
-        if found:
-            text += [f"== step {step} ==", *found]
-    return "\n".join((*text, "@enduml", ""))
+            messages.append(f"r{robot} --> m : {plain(study.targets[target].name)} reached")
+        if messages:
+            lines += [f"== step {step} ==", *messages]
+    return "\n".join((*lines, "@enduml", ""))

@@ -1,4 +1,4 @@
-"""The whole flow of the thesis's figure 4.3: from a study to a mission that is validated."""
+"""The whole workflow of the thesis's figure 4.3: from a study to a validated mission."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import islice
@@ -18,17 +18,23 @@ from sysmlc.robots.claims import Claim, decide_claims
 from sysmlc.robots.crew_cache import CrewCache, RobotCrew
 from sysmlc.robots.environment_contract import Sharing, environment_contract
 from sysmlc.robots.mission_run import Moment, describe_moments, record_run
-from sysmlc.robots.robot_controller import Times, answers_of, measured, synthesise, travels
+from sysmlc.robots.robot_controller import (
+    Times,
+    build_answers,
+    measure_travel_times,
+    synthesise_robot,
+    travel_times_of,
+)
 from sysmlc.robots.schedule import Schedule, TravelTimes, meets_deadlines
 from sysmlc.robots.study import Study
 from sysmlc.robots.validation import Validation, validate_allocation
 from sysmlc.synthesis.controller_synthesis import Synthesis
 from sysmlc.synthesis.decision import Options, Place, decide
 
-MOST_TRIED = 12
-"""Allocations that are validated before it is given up."""
-SHARED = "C_E can be kept as the thesis has it"
-"""The claim that is settled by offering a cell to one robot."""
+MAX_TRIED = 12
+"""Allocations that are validated at most."""
+SHARED_CELL_CLAIM = "C_E can be kept as the thesis has it"
+"""The claim that fails unless a cell is offered to one robot only."""
 
 SHARED_CELL = rule(
     "SM570",
@@ -69,188 +75,234 @@ NOT_DECIDED = rule(
 )
 
 
-class Tried(Struct, frozen=True):
-    """An allocation and what its simulation came to."""
+class TriedAllocation(Struct, frozen=True):
+    """An allocation and the result of its simulation."""
 
     schedule: Schedule
     validation: Validation
 
 
 class Outcome(Struct, frozen=True):
-    """What became of a study."""
+    """The results of a study."""
 
     study: Study
     controller: Synthesis
     travel: TravelTimes
     answers: tuple[Answers, ...] = ()
-    """Of the controller, for each robot: what was asked once is known."""
+    """Memoised answers of the controller, for each robot."""
     times: Times = field(default_factory=dict)
-    """How long a robot travels from any cell to any other."""
+    """Measured travel times between all cells."""
     relations: tuple[Claim, ...] = ()
     greedy: Schedule | None = None
     best: BestAllocation | None = None
-    tried: tuple[Tried, ...] = ()
+    tried: tuple[TriedAllocation, ...] = ()
     run: tuple[Moment, ...] = ()
-    """The longest mission of the allocation that does, from one start; or a failing one."""
+    """A run of the successful allocation from one start, or a failing run."""
 
     @property
     def is_good(self) -> bool:
         """Whether the mission is done from every admissible start."""
         if self.controller.machine is None:
             return False
-        return not self.study.targets or any(one.validation.is_good for one in self.tried)
+        return not self.study.targets or any(tried.validation.is_good for tried in self.tried)
 
     @property
-    def chosen(self) -> Tried | None:
-        """The allocation that was validated, else the last one that was tried."""
-        good = (one for one in self.tried if one.validation.is_good)
-        return next(good, self.tried[-1] if self.tried else None)
+    def chosen(self) -> TriedAllocation | None:
+        """The validated allocation, or the last one that was tried."""
+        successful = (tried for tried in self.tried if tried.validation.is_good)
+        return next(successful, self.tried[-1] if self.tried else None)
 
 
-def studied(
+def run_study(
     study: Study,
     place: Place,
     sink: Sink,
     options: Options,
     has_relations: bool = True,
-    keeper: CrewCache | None = None,
+    crew_cache: CrewCache | None = None,
 ) -> Outcome:
-    """Synthesise, measure, decide what is claimed, allocate, validate; what fails is reported.
+    """Synthesise the controller, measure travel times, decide claims, allocate and validate.
 
-    What a keeper has of this floor and its robots is taken as it is.
+    Failures are reported. A crew of this floor in the cache is reused.
     """
-    known = keeper.get(study) if keeper else None
-    crew = known or _crew(study, place, sink, options)
-    answers = answers_of(study, crew.controller)
-    made = Outcome(study, crew.controller, travels(study, crew.times), answers, crew.times)
+    known_crew = crew_cache.get(study) if crew_cache else None
+    crew = known_crew or _build_crew(study, place, sink, options)
+    answers = build_answers(study, crew.controller)
+    outcome = Outcome(
+        study, crew.controller, travel_times_of(study, crew.times), answers, crew.times
+    )
     if has_relations:
-        claims = {one.claim: one for one in _related(made, crew.claims, options)}
+        claims = {claim.claim: claim for claim in _decide_all_claims(outcome, crew.claims, options)}
         _report_claims(study, claims.values(), place, sink)
-        made = replace(made, relations=tuple(one for one in claims.values() if one.claim != SHARED))
+        outcome = replace(
+            outcome,
+            relations=tuple(claim for claim in claims.values() if claim.claim != SHARED_CELL_CLAIM),
+        )
         crew = replace(crew, claims={**crew.claims, **claims})
-    if keeper and crew != known:
-        keeper.put(study, crew)
-    return allocated(made, place, sink)
+    if crew_cache and crew != known_crew:
+        crew_cache.put(study, crew)
+    return allocate_mission(outcome, place, sink)
 
 
-def _crew(study: Study, place: Place, sink: Sink, options: Options) -> RobotCrew:
-    controller = synthesise(study, place, sink, options)
-    return RobotCrew(controller, measured(study, answers_of(study, controller)))
+def _build_crew(study: Study, place: Place, sink: Sink, options: Options) -> RobotCrew:
+    controller = synthesise_robot(study, place, sink, options)
+    return RobotCrew(controller, measure_travel_times(study, build_answers(study, controller)))
 
 
-def allocated(made: Outcome, place: Place, sink: Sink, study: Study | None = None) -> Outcome:
-    """Allocate and validate; another study with new targets on the same floor does with this one's
-    robots: nothing is synthesised again (thesis 4.6.1)."""
-    study = study or made.study
-    answers = made.answers[:1] * len(study.robots)
+def allocate_mission(
+    outcome: Outcome, place: Place, sink: Sink, study: Study | None = None
+) -> Outcome:
+    """Allocate targets and validate the mission.
+
+    Another study with new targets on the same floor reuses the robots: nothing is synthesised again
+    (thesis 4.6.1).
+    """
+    study = study or outcome.study
+    answers = outcome.answers[:1] * len(study.robots)
     if not answers or not study.targets:
-        return replace(made, study=study)
-    travel = travels(study, made.times)
-    first, found = allocate_greedily(study, travel), allocate_optimally(study, travel)
-    made = replace(made, study=study, travel=travel, greedy=first, best=found, tried=(), run=())
-    if found is None or not meets_deadlines(study, found.schedule):
-        _report_no_allocation(study, found, place, sink)
-        return made
-    return _validated(made, answers, _candidates(study, travel, found.schedule, first), place, sink)
+        return replace(outcome, study=study)
+    travel = travel_times_of(study, outcome.times)
+    greedy_schedule, best_allocation = (
+        allocate_greedily(study, travel),
+        allocate_optimally(study, travel),
+    )
+    outcome = replace(
+        outcome,
+        study=study,
+        travel=travel,
+        greedy=greedy_schedule,
+        best=best_allocation,
+        tried=(),
+        run=(),
+    )
+    if best_allocation is None or not meets_deadlines(study, best_allocation.schedule):
+        _report_no_allocation(study, best_allocation, place, sink)
+        return outcome
+    return _validate_candidates(
+        outcome,
+        answers,
+        _candidate_schedules(study, travel, best_allocation.schedule, greedy_schedule),
+        place,
+        sink,
+    )
 
 
-def _validated(
-    made: Outcome,
+def _validate_candidates(
+    outcome: Outcome,
     answers: Sequence[Answers],
     candidates: Iterator[Schedule],
     place: Place,
     sink: Sink,
 ) -> Outcome:
-    """Simulate allocations until one does; a run of the last one tells how, or why not."""
-    study = made.study
-    tried: list[Tried] = []
-    for schedule in islice(candidates, MOST_TRIED):
-        tried.append(Tried(schedule, validate_allocation(study, schedule.allocation, answers)))
+    """Simulate allocations until one succeeds, and record a run of the last one."""
+    study = outcome.study
+    tried: list[TriedAllocation] = []
+    for schedule in islice(candidates, MAX_TRIED):
+        tried.append(
+            TriedAllocation(schedule, validate_allocation(study, schedule.allocation, answers))
+        )
         if tried[-1].validation.is_good:
             break
-    last = tried[-1]
-    starts = last.validation.failed or _some_start(study)
-    told = record_run(study, last.schedule.allocation, answers, starts, last.validation.steps)
-    made = replace(made, tried=tuple(tried), run=told)
-    if not last.validation.is_good:
-        _report_failure(made, place, sink)
-    return made
-
-
-def _candidates(
-    study: Study, travel: TravelTimes, found: Schedule, first: Schedule | None
-) -> Iterator[Schedule]:
-    """The best allocation, the thesis's, and those near the best one, the better ones first."""
-    known: set[object] = set()
-    others = sorted(
-        neighbour_allocations(study, travel, found), key=lambda one: (one.cost, one.allocation)
+    last_tried = tried[-1]
+    starts = last_tried.validation.failed or _some_start(study)
+    run_moments = record_run(
+        study, last_tried.schedule.allocation, answers, starts, last_tried.validation.steps
     )
-    for one in (found, *(() if first is None else (first,)), *others):
-        if one.allocation not in known and meets_deadlines(study, one):
-            known.add(one.allocation)
-            yield one
+    outcome = replace(outcome, tried=tuple(tried), run=run_moments)
+    if not last_tried.validation.is_good:
+        _report_failure(outcome, place, sink)
+    return outcome
+
+
+def _candidate_schedules(
+    study: Study, travel: TravelTimes, best_schedule: Schedule, greedy_schedule: Schedule | None
+) -> Iterator[Schedule]:
+    """Yield the best allocation, the thesis's, and neighbours of the best one by cost."""
+    known_allocations: set[object] = set()
+    neighbours = sorted(
+        neighbour_allocations(study, travel, best_schedule),
+        key=lambda schedule: (schedule.cost, schedule.allocation),
+    )
+    for schedule in (
+        best_schedule,
+        *(() if greedy_schedule is None else (greedy_schedule,)),
+        *neighbours,
+    ):
+        if schedule.allocation not in known_allocations and meets_deadlines(study, schedule):
+            known_allocations.add(schedule.allocation)
+            yield schedule
 
 
 def _some_start(study: Study) -> tuple[int, ...]:
-    """One admissible start: where robots are drawn, the others in the first cells that are left."""
-    taken = {one.start for one in study.robots}
-    left = (cell for cell in study.grid.cells if cell not in taken)
-    return tuple(next(left) if one.start is None else one.start for one in study.robots)
+    """Return an admissible start: given cells, else the first free cells."""
+    given_starts = {robot.start for robot in study.robots}
+    free_cells = (cell for cell in study.grid.cells if cell not in given_starts)
+    return tuple(next(free_cells) if robot.start is None else robot.start for robot in study.robots)
 
 
-def _related(made: Outcome, known: Mapping[str, Claim], options: Options) -> Iterator[Claim]:
-    study = made.study
+def _decide_all_claims(
+    outcome: Outcome, known_claims: Mapping[str, Claim], options: Options
+) -> Iterator[Claim]:
+    study = outcome.study
     if len(study.robots) > 1:
-        yield known[SHARED] if SHARED in known else _arbitrated(study, options)
-    yield from decide_claims(study, made.travel, options, known)
+        yield (
+            known_claims[SHARED_CELL_CLAIM]
+            if SHARED_CELL_CLAIM in known_claims
+            else _decide_shared_cell_claim(study, options)
+        )
+    yield from decide_claims(study, outcome.travel, options, known_claims)
 
 
-def _arbitrated(study: Study, options: Options) -> Claim:
-    """Decide C_E as the thesis has it, for two of the robots: with more it is no easier."""
-    two = replace(study, robots=tuple(replace(one, start=None) for one in study.robots[:2]))
-    literal = environment_contract(two, Sharing.LITERAL)
-    # Nobody is told why: that would take longer than all the rest.
-    short = replace(options, is_explained=False)
-    verdict = decide(literal, lambda origin: Subject(), Sink(), short)
-    return Claim(SHARED, verdict.is_realizable)
+def _decide_shared_cell_claim(study: Study, options: Options) -> Claim:
+    """Decide the thesis's C_E for two of the robots; with more it is no easier."""
+    two_robots = replace(
+        study, robots=tuple(replace(robot, start=None) for robot in study.robots[:2])
+    )
+    literal = environment_contract(two_robots, Sharing.LITERAL)
+    # The explanation is not shown, and computing it would take longer than everything else.
+    unexplained = replace(options, is_explained=False)
+    verdict = decide(literal, lambda origin: Subject(), Sink(), unexplained)
+    return Claim(SHARED_CELL_CLAIM, verdict.is_realizable)
 
 
 def _report_claims(study: Study, claims: Iterable[Claim], place: Place, sink: Sink) -> None:
     subject, floor = place(study.origin), study.component
-    for one in claims:
-        facts = {"floor": floor, "claim": one.claim, "reason": one.reason}
-        if one.claim == SHARED and one.holds is False:
-            first, other = (robot.name for robot in study.robots[:2])
-            sink.report(SHARED_CELL, subject, floor=floor, one=first, other=other)
-        elif one.claim != SHARED and one.holds is None:
-            sink.report(NOT_DECIDED, subject, notes=(), help="", **facts)
-        elif one.claim != SHARED and not one.holds:
-            sink.report(NO_RELATION, subject, notes=one.run, help="", **facts)
+    for claim in claims:
+        fields = {"floor": floor, "claim": claim.claim, "reason": claim.reason}
+        if claim.claim == SHARED_CELL_CLAIM and claim.holds is False:
+            first_robot, second_robot = (robot.name for robot in study.robots[:2])
+            sink.report(SHARED_CELL, subject, floor=floor, one=first_robot, other=second_robot)
+        elif claim.claim != SHARED_CELL_CLAIM and claim.holds is None:
+            sink.report(NOT_DECIDED, subject, notes=(), help="", **fields)
+        elif claim.claim != SHARED_CELL_CLAIM and not claim.holds:
+            sink.report(NO_RELATION, subject, notes=claim.run, help="", **fields)
 
 
 def _report_no_allocation(
-    study: Study, found: BestAllocation | None, place: Place, sink: Sink
+    study: Study, best_allocation: BestAllocation | None, place: Place, sink: Sink
 ) -> None:
     reason = "some target is out of the reach of all robots, or waits for what is never done"
-    if found is not None:
-        reason = f"the best one that was found takes {told_steps(found.schedule.duration)}"
+    if best_allocation is not None:
+        reason = (
+            f"the best one that was found takes {print_steps(best_allocation.schedule.duration)}"
+        )
     sink.report(NO_ALLOCATION, place(study.origin), floor=study.component, reason=reason)
 
 
-def told_steps(number: int) -> str:
-    """A number of steps, in words."""
+def print_steps(number: int) -> str:
+    """Return a number of steps as text."""
     return f"{number} step{'' if number == 1 else 's'}"
 
 
-def _report_failure(made: Outcome, place: Place, sink: Sink) -> None:
-    study, last = made.study, made.tried[-1]
-    late = last.validation.late
+def _report_failure(outcome: Outcome, place: Place, sink: Sink) -> None:
+    study, last_tried = outcome.study, outcome.tried[-1]
+    late_target = last_tried.validation.late
     reason = "robots meet, or one has no answer"
-    if late is not None:
-        name = study.targets[late].name
-        reason = f"'{name}' is not reached within {told_steps(last.validation.steps)}"
-        if last.validation.is_slow:
+    if late_target is not None:
+        name = study.targets[late_target].name
+        reason = f"'{name}' is not reached within {print_steps(last_tried.validation.steps)}"
+        if last_tried.validation.is_slow:
             reason = f"a robot that is sent to '{name}' takes more than {study.within} steps"
-    subject = place(study.targets[late].origin if late is not None else study.origin)
-    notes = tuple(describe_moments(study, made.run))
+    subject = place(study.targets[late_target].origin if late_target is not None else study.origin)
+    notes = tuple(describe_moments(study, outcome.run))
     sink.report(NOT_VALIDATED, subject, notes=notes, floor=study.component, reason=reason)

@@ -1,4 +1,4 @@
-"""What became of a study, for people: Markdown, a sequence diagram, the machine, the mission."""
+"""Reports on studies for people: Markdown, a sequence diagram, the controller, the mission."""
 
 from collections.abc import Iterator
 
@@ -7,7 +7,7 @@ from msgspec.structs import replace
 from sysmlc.logic.formats import write
 from sysmlc.robots.mission_contract import mission_contract
 from sysmlc.robots.mission_run import describe_cell, describe_moments, sequence_diagram
-from sysmlc.robots.outcome import Outcome, told_steps
+from sysmlc.robots.outcome import Outcome, print_steps
 from sysmlc.robots.schedule import START, Schedule
 from sysmlc.robots.study import Study
 from sysmlc.support.escapes import escape_markdown
@@ -16,12 +16,12 @@ from sysmlc.synthesis.controller_files import controller_files
 from sysmlc.synthesis.controllers.mealy import Machine
 
 
-def files(outcome: Outcome) -> Iterator[tuple[str, str]]:
-    """Paths and texts of all files about one study."""
+def study_files(outcome: Outcome) -> Iterator[tuple[str, str]]:
+    """Yield paths and texts of all files about one study."""
     study = outcome.study
     names = assign_file_names([study.component, outcome.controller.contract.component])
     name = names[study.component]
-    yield f"robots/{name}.md", markdown(outcome)
+    yield f"robots/{name}.md", study_markdown(outcome)
     if outcome.run:
         title = f"{study.component}: one run of the mission"
         yield f"robots/{name}.seq.puml", sequence_diagram(study, outcome.run, title)
@@ -29,7 +29,7 @@ def files(outcome: Outcome) -> Iterator[tuple[str, str]]:
         contract = outcome.controller.contract
         machine = names[contract.component]
         for file, text in controller_files(machine, outcome.controller.machine, contract, "own"):
-            # Conditions over all cells make arrows that nobody can read.
+            # Conditions over all cells make the arrows of a diagram unreadable.
             if file.endswith(".json"):
                 yield f"robots/{file}", text
     if study.targets and outcome.travel.steps:
@@ -37,11 +37,13 @@ def files(outcome: Outcome) -> Iterator[tuple[str, str]]:
         yield f"robots/{name}.mission.contract.json", write(mission, "contract")
 
 
-def summary(outcome: Outcome) -> str:
-    """The outcome on one line."""
+def summarise_outcome(outcome: Outcome) -> str:
+    """Return the outcome on one line."""
     study = outcome.study
-    head = f"{study.component}: {_count(study.grid.size, 'cell')}, "
-    head += f"{_count(len(study.robots), 'robot')}, {_count(len(study.targets), 'target')}"
+    head = f"{study.component}: {_count_noun(study.grid.size, 'cell')}, "
+    head += (
+        f"{_count_noun(len(study.robots), 'robot')}, {_count_noun(len(study.targets), 'target')}"
+    )
     if outcome.controller.machine is None:
         return f"{head}: no controller"
     if not study.targets:
@@ -49,32 +51,32 @@ def summary(outcome: Outcome) -> str:
     tried = outcome.chosen
     if tried is None:
         return f"{head}: no allocation keeps the deadlines"
-    starts = _count(tried.validation.starts, "start")
+    starts = _count_noun(tried.validation.starts, "start")
     if not tried.validation.is_good:
-        return f"{head}: the mission fails ({_count(len(outcome.tried), 'allocation')} tried)"
-    return f"{head}: done in {told_steps(tried.validation.steps)} at most, from {starts}"
+        return f"{head}: the mission fails ({_count_noun(len(outcome.tried), 'allocation')} tried)"
+    return f"{head}: done in {print_steps(tried.validation.steps)} at most, from {starts}"
 
 
-def _count(number: int, what: str) -> str:
-    return f"{number:,} {what}{'' if number == 1 else 's'}"
+def _count_noun(number: int, noun: str) -> str:
+    return f"{number:,} {noun}{'' if number == 1 else 's'}"
 
 
-def markdown(outcome: Outcome) -> str:
-    """Return the report on one study, names of the model escaped."""
+def study_markdown(outcome: Outcome) -> str:
+    """Return the report on one study, with the model's names escaped."""
     study = _escape_names(outcome.study)
     outcome = replace(outcome, study=study)
-    text = [f"# {study.component}", "", f"{summary(outcome)}.", "", *_floor(study)]
-    text += _controller(outcome)
+    text = [f"# {study.component}", "", f"{summarise_outcome(outcome)}.", "", *_draw_floor(study)]
+    text += _describe_controller(outcome)
     if study.targets and outcome.travel.steps:
-        text += [*_travel(outcome), *_allocations(outcome)]
+        text += [*_describe_travel_times(outcome), *_describe_allocations(outcome)]
     if outcome.relations:
-        text += _claims(outcome)
+        text += _describe_claims(outcome)
     if outcome.run:
         text += [
             "",
             "## One run",
             "",
-            *(f"- {one}" for one in describe_moments(study, outcome.run)),
+            *(f"- {line}" for line in describe_moments(study, outcome.run)),
         ]
     return "\n".join((*text, ""))
 
@@ -83,85 +85,94 @@ def _escape_names(study: Study) -> Study:
     return replace(
         study,
         component=escape_markdown(study.component),
-        robots=tuple(replace(one, name=escape_markdown(one.name)) for one in study.robots),
-        targets=tuple(replace(one, name=escape_markdown(one.name)) for one in study.targets),
+        robots=tuple(replace(item, name=escape_markdown(item.name)) for item in study.robots),
+        targets=tuple(replace(item, name=escape_markdown(item.name)) for item in study.targets),
     )
 
 
-def _floor(study: Study) -> Iterator[str]:
-    """The floor as a drawing: obstacles, first letters of robots' and numbers of targets."""
-    starts = {one.start: chr(ord("A") + at % 26) for at, one in enumerate(study.robots)}
-    goals = {one.cell: str((at + 1) % 10) for at, one in enumerate(study.targets)}
+def _draw_floor(study: Study) -> Iterator[str]:
+    """Draw the floor as text: obstacles, letters of robots and numbers of targets."""
+    robot_letters = {
+        item.start: chr(ord("A") + number % 26) for number, item in enumerate(study.robots)
+    }
+    target_digits = {item.cell: str((number + 1) % 10) for number, item in enumerate(study.targets)}
     yield "```"
     for row in range(study.grid.rows):
         cells = range(row * study.grid.columns, (row + 1) * study.grid.columns)
         yield " ".join(
-            "#" if cell in study.grid.blocked else starts.get(cell, goals.get(cell, "."))
+            "#"
+            if cell in study.grid.blocked
+            else robot_letters.get(cell, target_digits.get(cell, "."))
             for cell in cells
         )
     yield "```"
-    robots = (f"{chr(ord('A') + at % 26)} {one.name}" for at, one in enumerate(study.robots))
-    targets = (f"{(at + 1) % 10} {one.name}" for at, one in enumerate(study.targets))
+    robots = (
+        f"{chr(ord('A') + number % 26)} {item.name}" for number, item in enumerate(study.robots)
+    )
+    targets = (f"{(number + 1) % 10} {item.name}" for number, item in enumerate(study.targets))
     yield f"Robots: {', '.join(robots)}. Targets: {', '.join(targets) or 'none'}."
 
 
-def _controller(outcome: Outcome) -> Iterator[str]:
-    """What the machine is like; times would make the file another one in each run."""
+def _describe_controller(outcome: Outcome) -> Iterator[str]:
+    """Describe the controller without times, which would make the file irreproducible."""
     yield from ("", "## Controller of the robots", "")
     machine = outcome.controller.machine
     if machine is None:
         yield "There is none."
     elif isinstance(machine, Machine):
-        size = _count(machine.size, "state")
+        size = _count_noun(machine.size, "state")
         yield f"A machine of {size}, the same for all robots, checked against their contract."
     else:
-        nodes = _count(len(machine.nodes), "decision node")
+        nodes = _count_noun(len(machine.nodes), "decision node")
         yield f"A table of {nodes}, the same for all robots, checked against their contract."
 
 
-def _travel(outcome: Outcome) -> Iterator[str]:
-    """Measured steps between places, robots that travel alike once."""
+def _describe_travel_times(outcome: Outcome) -> Iterator[str]:
+    """Yield a table of measured steps between places; equal robots occur once."""
     study = outcome.study
     yield from ("", "## Travel times", "", "Steps, measured in the simulation of one robot.", "")
-    yield f"| from | {' | '.join(one.name for one in study.targets)} |"
+    yield f"| from | {' | '.join(robot_or_target.name for robot_or_target in study.targets)} |"
     yield f"|---|{'---|' * len(study.targets)}"
-    for robot, one in enumerate(study.robots):
-        where = "any start" if one.start is None else describe_cell(study, one.start)
-        yield f"| {one.name}: {where} | {_row(outcome, robot, START)} |"
+    for number, robot in enumerate(study.robots):
+        start = "any start" if robot.start is None else describe_cell(study, robot.start)
+        yield f"| {robot.name}: {start} | {_travel_times_row(outcome, number, START)} |"
     for place, target in enumerate(study.targets):
-        yield f"| {target.name} | {_row(outcome, 0, place)} |"
+        yield f"| {target.name} | {_travel_times_row(outcome, 0, place)} |"
 
 
-def _row(outcome: Outcome, robot: int, place: int) -> str:
+def _travel_times_row(outcome: Outcome, robot: int, place: int) -> str:
     goals = range(len(outcome.study.targets))
     return " | ".join(str(outcome.travel.get(robot, place, goal) or "") for goal in goals)
 
 
-def _allocations(outcome: Outcome) -> Iterator[str]:
+def _describe_allocations(outcome: Outcome) -> Iterator[str]:
     yield from ("", "## Allocation", "")
     if outcome.greedy is not None:
-        yield f"- Algorithm 1: {_allocation(outcome.study, outcome.greedy)}"
+        yield f"- Algorithm 1: {_describe_allocation(outcome.study, outcome.greedy)}"
     if outcome.best is not None:
-        how = "the best there is" if outcome.best.is_proven else "the best that was found"
-        yield f"- Branch and bound ({how}): {_allocation(outcome.study, outcome.best.schedule)}"
+        quality = "the best there is" if outcome.best.is_proven else "the best that was found"
+        allocation = _describe_allocation(outcome.study, outcome.best.schedule)
+        yield f"- Branch and bound ({quality}): {allocation}"
     yield from ("", "## Simulation of robots and environment together", "")
     for tried in outcome.tried:
-        found = tried.validation
-        words = f"done in {told_steps(found.steps)} at most" if found.is_good else "fails"
-        told = _allocation(outcome.study, tried.schedule)
-        yield f"- {told}: {words}, from {_count(found.starts, 'start')}"
+        validation = tried.validation
+        result = (
+            f"done in {print_steps(validation.steps)} at most" if validation.is_good else "fails"
+        )
+        allocation_text = _describe_allocation(outcome.study, tried.schedule)
+        yield f"- {allocation_text}: {result}, from {_count_noun(validation.starts, 'start')}"
 
 
-def _allocation(study: Study, schedule: Schedule) -> str:
+def _describe_allocation(study: Study, schedule: Schedule) -> str:
     names = [
-        f"{robot.name} {', '.join(study.targets[one].name for one in own) or 'nothing'}"
-        for robot, own in zip(study.robots, schedule.allocation, strict=True)
+        f"{robot.name} {', '.join(study.targets[target].name for target in targets) or 'nothing'}"
+        for robot, targets in zip(study.robots, schedule.allocation, strict=True)
     ]
     return f"{'; '.join(names)} ({schedule.duration} steps, {schedule.total} travelled)"
 
 
-def _claims(outcome: Outcome) -> Iterator[str]:
+def _describe_claims(outcome: Outcome) -> Iterator[str]:
     yield from ("", "## What the thesis claims", "", "| claim | holds | |", "|---|---|---|")
-    words = {True: "yes", False: "no", None: "not decided"}
-    for one in outcome.relations:
-        yield f"| {one.claim} | {words[one.holds]} | {one.reason} |"
+    answers = {True: "yes", False: "no", None: "not decided"}
+    for claim in outcome.relations:
+        yield f"| {claim.claim} | {answers[claim.holds]} | {claim.reason} |"

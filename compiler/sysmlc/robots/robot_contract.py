@@ -5,109 +5,117 @@ from collections.abc import Iterator
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import Conjunct, Contract, IntegerDomain, Owner, Variable
 from sysmlc.logic.formula import Formula
-from sysmlc.robots import contract_terms as words
+from sysmlc.robots import contract_terms as terms
 from sysmlc.robots.study import STAY, WAYS, Robot, Study
 
 _ENVIRONMENT, _SYSTEM = Owner.ENVIRONMENT, Owner.SYSTEM
 
 
 def robot_contract(study: Study, robot: Robot, is_alone: bool = True) -> Contract:
-    """What a robot promises: to go on free ways only, and to reach its targets.
+    """Return what a robot guarantees: to move only in free directions, and to reach its targets.
 
-    ``is_alone`` is the thesis's: all ways but those into walls and obstacles are always free.
-    Otherwise other robots may be in the way, and it is assumed that again and again a way that
-    brings the robot nearer is offered to it.
+    With ``is_alone``, as in the thesis, all directions except those into walls and obstacles are
+    always free. Otherwise other robots may be in the way, and the contract assumes that a direction
+    that leads nearer to the target is offered infinitely often.
     """
-    seen = _walls(study, robot) if not is_alone else _free_ways(study, robot)
-    assumed = [
-        *words.starts((robot,)),
-        *words.in_all((*words.on_floor(study, robot), *seen)),
-        *words.motion(study, robot, is_total=False),
-        *words.stable_target(study, robot),
+    sensor_conjuncts = _barred_ways(study, robot) if not is_alone else _all_ways(study, robot)
+    assumptions = [
+        *terms.start_positions((robot,)),
+        *terms.repeat_in_every_step((*terms.place_on_floor(study, robot), *sensor_conjuncts)),
+        *terms.motion_rules(study, robot, is_total=False),
+        *terms.stable_target_by_cell(study, robot),
     ]
     if not is_alone:
         text = f"Again and again '{robot.name}' is in its target, or may go nearer."
-        is_nearer = f.either(words.reached(robot), nearer_offered(study, robot))
-        assumed.append(words.again(is_nearer, robot.origin, text))
+        is_nearer = f.either(terms.is_at_target(robot), nearer_offered(study, robot))
+        assumptions.append(terms.liveness_conjunct(is_nearer, robot.origin, text))
     variables = (
-        words.cells(words.position(robot), _ENVIRONMENT, study.grid, robot.origin),
-        words.cells(words.target(robot), _ENVIRONMENT, study.grid, robot.origin),
-        *tuple(words.places(study, robot, _ENVIRONMENT))[1:],
-        words.commands(robot, _SYSTEM),
-        *counters(study, robot),
+        terms.cell_variable(terms.position(robot), _ENVIRONMENT, study.grid, robot.origin),
+        terms.cell_variable(terms.target(robot), _ENVIRONMENT, study.grid, robot.origin),
+        *tuple(terms.position_and_sensors(study, robot, _ENVIRONMENT))[1:],
+        terms.command_variable(robot, _SYSTEM),
+        *declare_counter(study, robot),
     )
     name = f"{study.component}.{robot.word}"
     return Contract(
         f"{name}.shared" if not is_alone else name,
         robot.origin,
         variables,
-        tuple(assumed),
-        tuple(_promised(study, robot)),
+        tuple(assumptions),
+        tuple(_list_guarantees(study, robot)),
     )
 
 
-def _promised(study: Study, robot: Robot) -> Iterator[Conjunct]:
-    yield words.first(words.is_(words.command(robot), STAY), robot.origin, "At first it stays.")
-    yield from words.obedience(robot)
-    rests = f.primed(words.is_(words.command(robot), STAY))
+def _list_guarantees(study: Study, robot: Robot) -> Iterator[Conjunct]:
+    yield terms.initial_conjunct(
+        terms.equals(terms.command(robot), STAY), robot.origin, "At first it stays."
+    )
+    yield from terms.sensor_obedience(robot)
+    stays_next = f.primed(terms.equals(terms.command(robot), STAY))
     text = f"In its target '{robot.name}' stays for a step."
-    yield words.each(f.implies(words.reached(robot), rests), robot.origin, text)
-    yield from counting(study, robot)
+    yield terms.safety_conjunct(
+        f.implies(terms.is_at_target(robot), stays_next), robot.origin, text
+    )
+    yield from count_steps(study, robot)
     text = f"'{robot.name}' reaches its targets."
-    yield words.again(words.reached(robot), robot.origin, text)
+    yield terms.liveness_conjunct(terms.is_at_target(robot), robot.origin, text)
 
 
-def _walls(study: Study, robot: Robot) -> Iterator[Conjunct]:
+def _barred_ways(study: Study, robot: Robot) -> Iterator[Conjunct]:
     for way in WAYS:
         for cell in study.grid.cells:
-            if study.grid.after(cell, way) is None:
-                yield _seen(robot, cell, way, is_free=False)
+            if study.grid.cell_after(cell, way) is None:
+                yield _state_sensor(robot, cell, way, is_free=False)
 
 
-def _free_ways(study: Study, robot: Robot) -> Iterator[Conjunct]:
+def _all_ways(study: Study, robot: Robot) -> Iterator[Conjunct]:
     for way in WAYS:
         for cell in study.grid.cells:
-            yield _seen(robot, cell, way, study.grid.after(cell, way) is not None)
+            yield _state_sensor(robot, cell, way, study.grid.cell_after(cell, way) is not None)
 
 
-def _seen(robot: Robot, cell: int, way: str, is_free: bool) -> Conjunct:
-    seen: Formula = f.var(words.sensor(robot, way))
+def _state_sensor(robot: Robot, cell: int, way: str, is_free: bool) -> Conjunct:
+    sensor_value: Formula = f.var(terms.sensor(robot, way))
     text = f"From cell {cell} the way {way} is {'free' if is_free else 'barred'}."
-    value = seen if is_free else f.negate(seen)
-    return words.first(f.implies(words.at(robot, cell), value), robot.origin, text)
+    value = sensor_value if is_free else f.negate(sensor_value)
+    return terms.initial_conjunct(
+        f.implies(terms.is_in_cell(robot, cell), value), robot.origin, text
+    )
 
 
 def nearer_offered(study: Study, robot: Robot) -> Formula:
-    """That a sensor shows a way which brings the robot nearer to its target."""
-    found: list[Formula] = []
+    """Return the predicate that a sensor offers a direction nearer to the target."""
+    ways: list[Formula] = []
     for cell in study.grid.cells:
         for way in WAYS:
-            goals = [goal for goal in study.grid.cells if way in study.grid.nearer(cell, goal)]
+            goals = [
+                goal for goal in study.grid.cells if way in study.grid.commands_nearer(cell, goal)
+            ]
             if goals:
-                there = words.one_of(words.target(robot), goals)
-                seen = f.var(words.sensor(robot, way))
-                found.append(f.both(words.at(robot, cell), seen, there))
-    return f.either(*found)
+                is_target = terms.is_in_any(terms.target(robot), goals)
+                sensor_value = f.var(terms.sensor(robot, way))
+                ways.append(f.both(terms.is_in_cell(robot, cell), sensor_value, is_target))
+    return f.either(*ways)
 
 
-def counters(study: Study, robot: Robot) -> Iterator[Variable]:
-    """The step counter of a robot, if the floor has any."""
-    if study.counted:
-        domain = IntegerDomain(0, study.counted - 1)
-        yield Variable(words.steps(robot), _SYSTEM, domain, robot.origin)
+def declare_counter(study: Study, robot: Robot) -> Iterator[Variable]:
+    """Declare the step counter of a robot, if the floor has step counters."""
+    if study.counter_size:
+        domain = IntegerDomain(0, study.counter_size - 1)
+        yield Variable(terms.steps(robot), _SYSTEM, domain, robot.origin)
 
 
-def counting(study: Study, robot: Robot) -> Iterator[Conjunct]:
-    """A step counter counts changes of position (thesis 4.3.1), and begins again at its end."""
-    if not study.counted:
+def count_steps(study: Study, robot: Robot) -> Iterator[Conjunct]:
+    """State that the step counter counts changes of position and wraps around (thesis 4.3.1)."""
+    if not study.counter_size:
         return
-    here, count = f.var(words.position(robot)), f.var(words.steps(robot))
-    is_moved = f.negate(f.eq(f.primed(here), here))
+    position, count = f.var(terms.position(robot)), f.var(terms.steps(robot))
+    is_moved = f.negate(f.eq(f.primed(position), position))
     text = f"'{robot.name}' counts its steps."
-    yield words.first(words.is_(words.steps(robot), 0), robot.origin, text)
-    stays = f.implies(f.negate(is_moved), f.eq(f.primed(count), count))
-    yield words.each(stays, robot.origin, text)
-    for number in range(study.counted):
-        before = f.both(is_moved, words.is_(words.steps(robot), number))
-        after = f.primed(words.is_(words.steps(robot), (number + 1) % study.counted))
-        yield words.each(f.implies(before, after), robot.origin, text)
+    yield terms.initial_conjunct(terms.equals(terms.steps(robot), 0), robot.origin, text)
+    unchanged = f.implies(f.negate(is_moved), f.eq(f.primed(count), count))
+    yield terms.safety_conjunct(unchanged, robot.origin, text)
+    for number in range(study.counter_size):
+        before = f.both(is_moved, terms.equals(terms.steps(robot), number))
+        after = f.primed(terms.equals(terms.steps(robot), (number + 1) % study.counter_size))
+        yield terms.safety_conjunct(f.implies(before, after), robot.origin, text)

@@ -1,7 +1,7 @@
-"""A run of some robots as a run of all: the others rest where they are in nobody's way.
+"""Extension of a run of some robots to a run of all, in which the others rest in nobody's way.
 
-What is decided for one or two robots so becomes a run of the whole floor, and is held to the
-contracts of all robots, conjunct by conjunct, before it is told.
+Results for one or two robots become runs of the whole floor in this way. Before such a run is
+reported it is checked against the contracts of all robots, conjunct by conjunct.
 """
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence, Set
@@ -10,7 +10,7 @@ from functools import partial
 from sysmlc.logic.contract import Conjunct, Contract
 from sysmlc.logic.evaluate import find_violation
 from sysmlc.logic.formula import Literal
-from sysmlc.robots import contract_terms as words
+from sysmlc.robots import contract_terms as terms
 from sysmlc.robots.joint_contracts import liveness_conjuncts, safety_conjuncts
 from sysmlc.robots.mission_contract import NONE
 from sysmlc.robots.study import STAY, WAYS, Grid, Robot, Study
@@ -20,11 +20,11 @@ Values = Mapping[str, Literal]
 
 
 Offers = Mapping[Robot, Set[str]]
-"""The ways that robots at rest are shown."""
+"""The directions that are offered to resting robots."""
 
 
 def extend_to_all_robots(
-    study: Study, few: Sequence[Robot], run: Trace, is_exact: bool = False
+    study: Study, active_robots: Sequence[Robot], run: Trace, is_exact: bool = False
 ) -> Iterator[Trace]:
     """Extend a run of a few robots to all robots: the others rest in nobody's way.
 
@@ -33,104 +33,131 @@ def extend_to_all_robots(
     every free cell. If there is no room for them, the result violates a contract
     (``violated_conjuncts``).
     """
-    grid, others = study.grid, [one for one in study.robots if one not in few]
-    used = {cell for step in run.steps for cell in _occupied_cells(grid, step, few)}
-    near = {there for cell in used for _, there in grid.neighbours(cell)}
-    rests, doors = _choose_parking(grid, used | near, others)
-    shown: Offers = {one: {way} for one, way in doors.items()}
-    ways = (lambda step, turn: _free_ways(grid, step, rests)) if is_exact else lambda *_: shown
-    yield _extend_run(study, run, rests, ways, 1)
-    cells = [cell for cell in reversed(grid.cells) if cell not in used]
-    rests = dict(zip(others, cells, strict=False))
-    if not is_exact and len(rests) == len(others) > 0:
-        yield _extend_run(study, run, rests, partial(_offer_in_turn, grid, few, rests), len(others))
+    grid, resting_robots = (
+        study.grid,
+        [robot for robot in study.robots if robot not in active_robots],
+    )
+    used_cells = {cell for step in run.steps for cell in _occupied_cells(grid, step, active_robots)}
+    nearby_cells = {neighbour for cell in used_cells for _, neighbour in grid.neighbours(cell)}
+    parking, free_directions = _choose_parking(grid, used_cells | nearby_cells, resting_robots)
+    offers: Offers = {robot: {way} for robot, way in free_directions.items()}
+    offers_of_step = (
+        (lambda step, turn: _free_ways(grid, step, parking)) if is_exact else lambda *_: offers
+    )
+    yield _extend_run(study, run, parking, offers_of_step, 1)
+    cells = [cell for cell in reversed(grid.cells) if cell not in used_cells]
+    parking = dict(zip(resting_robots, cells, strict=False))
+    if not is_exact and len(parking) == len(resting_robots) > 0:
+        yield _extend_run(
+            study,
+            run,
+            parking,
+            partial(_offer_in_turn, grid, active_robots, parking),
+            len(resting_robots),
+        )
 
 
-def _occupied_cells(grid: Grid, step: Values, few: Iterable[Robot]) -> Iterator[int]:
-    """The cells that robots are in, and those that are offered to them."""
-    for robot in few:
-        here = int(step[words.position(robot)])
-        ways = grid.neighbours(here)
-        yield here
-        yield from (there for way, there in ways if step[words.sensor(robot, way)])
+def _occupied_cells(grid: Grid, step: Values, robots: Iterable[Robot]) -> Iterator[int]:
+    """Yield the cells in which robots are, and the cells that are offered to them."""
+    for robot in robots:
+        cell = int(step[terms.position(robot)])
+        neighbours = grid.neighbours(cell)
+        yield cell
+        yield from (neighbour for way, neighbour in neighbours if step[terms.sensor(robot, way)])
 
 
 def _choose_parking(
-    grid: Grid, avoided: Set[int], others: Iterable[Robot]
+    grid: Grid, avoided: Set[int], robots: Iterable[Robot]
 ) -> tuple[dict[Robot, int], dict[Robot, str]]:
-    """Cells apart from some, each with a way into a cell that is nobody else's."""
-    rests: dict[Robot, int] = {}
-    doors: dict[Robot, str] = {}
-    taken = set(avoided)
-    for robot in others:
-        free = [cell for cell in reversed(grid.cells) if cell not in taken]
-        found = (
-            (cell, way, there)
-            for cell in free
-            for way, there in grid.neighbours(cell)
-            if there not in taken
+    """Choose unused cells for robots, each with a direction into a cell that nobody else uses."""
+    parking: dict[Robot, int] = {}
+    free_directions: dict[Robot, str] = {}
+    used_cells = set(avoided)
+    for robot in robots:
+        free_cells = [cell for cell in reversed(grid.cells) if cell not in used_cells]
+        choices = (
+            (cell, way, neighbour)
+            for cell in free_cells
+            for way, neighbour in grid.neighbours(cell)
+            if neighbour not in used_cells
         )
-        cell, way, door = next(found, (grid.cells[-1], "", grid.cells[-1]))
-        taken |= {cell, door}
-        rests[robot], doors[robot] = cell, way
-    return rests, doors
+        cell, way, door = next(choices, (grid.cells[-1], "", grid.cells[-1]))
+        used_cells |= {cell, door}
+        parking[robot], free_directions[robot] = cell, way
+    return parking, free_directions
 
 
-def _free_ways(grid: Grid, step: Values, rests: Mapping[Robot, int]) -> Offers:
-    """All ways that are free."""
+def _free_ways(grid: Grid, step: Values, parking: Mapping[Robot, int]) -> Offers:
+    """Return all free directions of resting robots."""
     return {
-        one: {way for way, there in grid.neighbours(cell) if step[words.free(there)]}
-        for one, cell in rests.items()
+        robot: {way for way, neighbour in grid.neighbours(cell) if step[terms.free(neighbour)]}
+        for robot, cell in parking.items()
     }
 
 
 def _offer_in_turn(
-    grid: Grid, few: Sequence[Robot], rests: Mapping[Robot, int], step: Values, turn: int
+    grid: Grid,
+    active_robots: Sequence[Robot],
+    parking: Mapping[Robot, int],
+    step: Values,
+    turn: int,
 ) -> Offers:
-    """A free way for one of the robots at rest, into a cell that is offered to nobody."""
-    offered = set(_occupied_cells(grid, step, few))
-    robot = [*rests][turn]
-    near = grid.neighbours(rests[robot])
-    free = [way for way, there in near if step[words.free(there)] and there not in offered]
-    return {robot: set(free[:1])}
+    """Return a free direction for one resting robot, into a cell that is offered to nobody else."""
+    offered = set(_occupied_cells(grid, step, active_robots))
+    robot = [*parking][turn]
+    neighbours = grid.neighbours(parking[robot])
+    free_directions = [
+        way
+        for way, neighbour in neighbours
+        if step[terms.free(neighbour)] and neighbour not in offered
+    ]
+    return {robot: set(free_directions[:1])}
 
 
 def _extend_run(
     study: Study,
     run: Trace,
-    rests: Mapping[Robot, int],
-    ways: Callable[[Values, int], Offers],
+    parking: Mapping[Robot, int],
+    offers_of_step: Callable[[Values, int], Offers],
     turns: int,
 ) -> Trace:
-    """The run with a loop for each turn, and what is said of robots at rest in each step."""
+    """Repeat the loop for each turn, and add the values of the resting robots to each step."""
     loops = [(step, turn) for turn in range(turns) for step in run.steps[run.loop :]]
     steps = []
-    for known, turn in (*((one, 0) for one in run.steps[: run.loop]), *loops):
-        now = _rest_values(study, known, rests)
-        offers = ways(now, turn)
-        now |= {words.sensor(one, way): way in offers.get(one, ()) for one in rests for way in WAYS}
-        steps.append(now)
+    for values, turn in (*((robot, 0) for robot in run.steps[: run.loop]), *loops):
+        extended = _rest_values(study, values, parking)
+        offers = offers_of_step(extended, turn)
+        extended |= {
+            terms.sensor(robot, way): way in offers.get(robot, ())
+            for robot in parking
+            for way in WAYS
+        }
+        steps.append(extended)
     return Trace(tuple(steps), run.loop)
 
 
-def _rest_values(study: Study, known: Values, rests: Mapping[Robot, int]) -> dict[str, Literal]:
-    now = dict(known)
-    for robot, cell in rests.items():
-        now |= {words.position(robot): cell, words.target(robot): cell}
-        now |= {words.command(robot): STAY, words.goal(robot): NONE}
-        now |= {words.steps(robot): 0, words.timer(robot): 0}
-    taken = {now[words.position(one)] for one in study.robots}
-    return now | {words.free(cell): cell not in taken for cell in study.grid.cells}
+def _rest_values(study: Study, values: Values, parking: Mapping[Robot, int]) -> dict[str, Literal]:
+    extended = dict(values)
+    for robot, cell in parking.items():
+        extended |= {terms.position(robot): cell, terms.target(robot): cell}
+        extended |= {terms.command(robot): STAY, terms.goal(robot): NONE}
+        extended |= {terms.steps(robot): 0, terms.timer(robot): 0}
+    occupied = {extended[terms.position(robot)] for robot in study.robots}
+    return extended | {terms.free(cell): cell not in occupied for cell in study.grid.cells}
 
 
 def violated_conjuncts(run: Trace, conjuncts: Iterable[Conjunct]) -> Iterator[Conjunct]:
-    """The conjuncts that do not hold in a run."""
-    return (one for one in conjuncts if find_violation(one, run.steps, run.loop) is not None)
+    """Return the conjuncts that a run violates."""
+    return (rule for rule in conjuncts if find_violation(rule, run.steps, run.loop) is not None)
 
 
 def satisfies_contract(run: Trace, contract: Contract) -> bool:
-    """Whether a run keeps what a contract promises: what recurs only if what is assumed does."""
+    """Return whether a run satisfies a contract; liveness is owed only if the liveness assumptions
+    hold.
+    """
     if any(violated_conjuncts(run, safety_conjuncts(contract.guarantees))):
         return False
-    owes = not any(violated_conjuncts(run, liveness_conjuncts(contract.assumptions)))
-    return not owes or not any(violated_conjuncts(run, liveness_conjuncts(contract.guarantees)))
+    owes_liveness = not any(violated_conjuncts(run, liveness_conjuncts(contract.assumptions)))
+    return not owes_liveness or not any(
+        violated_conjuncts(run, liveness_conjuncts(contract.guarantees))
+    )

@@ -1,8 +1,10 @@
-"""Many runs at once: a condition is one value that says in which of them it holds.
+"""Sets of runs: many runs are simulated at once, and a condition is the set of runs in which it
+holds.
 
-A plane is an integer with a bit for each run, or a decision diagram over what tells runs apart.
-Both have ``&`` and ``|``; a negation is only ever used behind ``&``, as ``Runs.but``: an integer
-would become negative by it, and Python computes with those five times as slowly.
+A set is an integer with a bit for each run, or a decision diagram over the starts of the robots.
+Both have ``&`` and ``|``. Complements occur only after ``&``, as ``RunSpace.without``, because the
+complement of an integer is negative, and Python computes with negative numbers five times as
+slowly.
 """
 
 from collections.abc import Callable, Sequence
@@ -15,7 +17,7 @@ from msgspec import Struct
 
 
 class RunSet(Protocol):
-    """What conditions are made of; it must tell equal ones."""
+    """A set of runs, comparable for equality."""
 
     def __and__(self: "P", other: "P", /) -> "P": ...
     def __or__(self: "P", other: "P", /) -> "P": ...
@@ -25,68 +27,70 @@ P = TypeVar("P", bound=RunSet)
 
 
 class RunSpace(Struct, Generic[P], frozen=True):
-    """Some runs: all of them, none of them, and in which a robot starts in a cell."""
+    """All runs of a simulation, and the sets of runs in which a robot starts in a cell."""
 
     all: P
     none: P
     starts: tuple[tuple[P, ...], ...]
-    """By robot and cell."""
-    but: Callable[[P, P], P]
-    """The runs of the first condition in which the second one does not hold."""
+    """The sets by robot and cell."""
+    without: Callable[[P, P], P]
+    """Returns the runs of the first set that are not in the second one."""
 
 
-def difference(one: int, other: int) -> int:
-    """``Runs.but`` for integers."""
-    return one ^ (one & other)
+def difference(minuend: int, subtrahend: int) -> int:
+    """``RunSpace.without`` for integers."""
+    return minuend ^ (minuend & subtrahend)
 
 
 def digit_patterns(choices: Sequence[int]) -> list[list[int]]:
-    """For each of some digits with so many values the numbers of which it has a value, as bits.
+    """Return for each digit and each of its values the set of numbers whose digit has this value.
 
-    The bit at place n belongs to the number n, written with the digits, the first one lowest.
+    Bit n of a set represents the number n, written with the digits, the first one least
+    significant.
     """
-    whole = prod(choices)
+    total = prod(choices)
     strides = accumulate(choices, mul, initial=1)
     return [
-        _digit_pattern(stride, one, whole) for stride, one in zip(strides, choices, strict=False)
+        _digit_pattern(stride, choice, total)
+        for stride, choice in zip(strides, choices, strict=False)
     ]
 
 
-def _digit_pattern(stride: int, choices: int, whole: int) -> list[int]:
-    found = []
+def _digit_pattern(stride: int, choices: int, total: int) -> list[int]:
+    patterns = []
     for value in range(choices):
         bits, length = ((1 << stride) - 1) << (value * stride), stride * choices
-        while length < whole:
+        while length < total:
             bits |= bits << length
             length *= 2
-        found.append(bits & ((1 << whole) - 1))
-    return found
+        patterns.append(bits & ((1 << total) - 1))
+    return patterns
 
 
-def starts_without_collision(starts: Sequence[Sequence[int]], whole: int) -> int:
-    """The runs in which no two robots start in one cell."""
-    together = 0
+def starts_without_collision(starts: Sequence[Sequence[int]], every_run: int) -> int:
+    """Return the runs in which no two robots start in one cell."""
+    colliding = 0
     for cell in range(len(starts[0])):
-        taken = 0
+        occupied = 0
         for robot in starts:
-            together |= taken & robot[cell]
-            taken |= robot[cell]
-    return difference(whole, together)
+            colliding |= occupied & robot[cell]
+            occupied |= robot[cell]
+    return difference(every_run, colliding)
 
 
-def runs_with_several(planes: Sequence[P], none: P) -> P:
-    """In which runs two or more of the conditions hold."""
-    seen, found = none, none
-    for one in planes:
-        found = found | (seen & one)
-        seen = seen | one
-    return found
+def runs_with_several(run_sets: Sequence[P], none: P) -> P:
+    """Return the runs in which two or more of the conditions hold."""
+    any_seen, several = none, none
+    for run_set in run_sets:
+        several = several | (any_seen & run_set)
+        any_seen = any_seen | run_set
+    return several
 
 
-def union(planes: Sequence[P], none: P) -> P:
-    """In which runs one of the conditions holds."""
-    found = none
-    for one in planes:
-        if one != none:
-            found = found | one
-    return found
+def union(run_sets: Sequence[P], none: P) -> P:
+    """Return the runs in which some condition holds."""
+    result = none
+    for run_set in run_sets:
+        if run_set != none:
+            result = result | run_set
+    return result

@@ -1,4 +1,6 @@
-"""When targets are reached, for lists of targets by robot and known travel times."""
+"""Travel times of robots (thesis, 4.3.4), and schedules: when the targets of an allocation are
+reached.
+"""
 
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import pairwise
@@ -9,46 +11,46 @@ from sysmlc.robots.study import Study, possible_starts
 from sysmlc.robots.world import Allocation
 
 START = -1
-"""The place of a robot that has reached no target yet; other places are numbers of targets."""
+"""The place of a robot that has not reached a target; other places are numbers of targets."""
 REACTION = 2
-"""Steps in which a robot that has a new target does not move yet: the one in which it learns of
-it, and stays because it was in its last target, and the one in which its first command is given."""
+"""Steps in which a robot with a new target does not move yet: the step in which it gets the target
+and still stays in the previous one, and the step in which its first command is given."""
 
 
 class TravelTimes(Struct, frozen=True):
-    """Steps by (robot, place, target), all numbers; what is not there cannot be reached."""
+    """Steps by robot, place and target (numbers); unreachable targets are missing."""
 
     steps: Mapping[tuple[int, int, int], int]
     is_simulated: bool = False
-    """Whether they were measured in the simulation of synthesised robots."""
+    """Whether the times were measured in a simulation of synthesised controllers."""
 
     def get(self, robot: int, place: int, target: int) -> int | None:
-        """The steps of one way; None when no way leads there."""
+        """Return the steps of one journey, or None if there is no path."""
         return self.steps.get((robot, place, target))
 
     @property
     def longest(self) -> int:
-        """The steps of the longest way, at least 1."""
+        """The steps of the longest journey, at least 1."""
         return max(self.steps.values(), default=1)
 
 
 def shortest_travel_times(study: Study) -> TravelTimes:
-    """The steps that a robot needs when nothing is in its way."""
-    found: dict[tuple[int, int, int], int] = {}
+    """Return the steps that robots need if nothing is in their way."""
+    steps: dict[tuple[int, int, int], int] = {}
     for robot in range(len(study.robots)):
-        places = {START: possible_starts(study, robot)}
-        places |= {at: (target.cell,) for at, target in enumerate(study.targets)}
-        for place, cells in places.items():
+        starts_by_place = {START: possible_starts(study, robot)}
+        starts_by_place |= {number: (target.cell,) for number, target in enumerate(study.targets)}
+        for place, cells in starts_by_place.items():
             for goal, target in enumerate(study.targets):
-                known = study.grid.distances(target.cell)
-                if goal != place and all(cell in known for cell in cells):
-                    way = max((known[cell] for cell in cells), default=0)
-                    found[robot, place, goal] = way + REACTION if way else 1
-    return TravelTimes(found)
+                distances = study.grid.distances(target.cell)
+                if goal != place and all(cell in distances for cell in cells):
+                    distance = max((distances[cell] for cell in cells), default=0)
+                    steps[robot, place, goal] = distance + REACTION if distance else 1
+    return TravelTimes(steps)
 
 
 class Schedule(Struct, frozen=True):
-    """An allocation with the steps in which its targets are reached when no robot waits for way."""
+    """An allocation with the steps in which its targets are reached if no robot has to wait."""
 
     allocation: Allocation
     reached: tuple[int, ...]
@@ -63,54 +65,64 @@ class Schedule(Struct, frozen=True):
 
     @property
     def cost(self) -> tuple[int, int]:
-        """What is to be least: the duration, then what all robots travel."""
+        """The cost to minimise: the duration, then the steps of all robots."""
         return self.duration, self.total
 
 
 def build_schedule(study: Study, travel: TravelTimes, allocation: Allocation) -> Schedule | None:
-    """The times of an allocation; None when it cannot be done in the order that is asked for."""
+    """Return the times of an allocation, or None if the order of the targets makes it
+    impossible.
+    """
     if not respects_orders(study, allocation):
         return None
     reached: dict[int, int] = {}
     total = 0
-    left = [list(own) for own in allocation]
-    at = [(START, 0)] * len(allocation)
-    while any(left):
-        ready = next(_ready_robots(study, left, reached), None)
-        if ready is None:
+    remaining = [list(targets) for targets in allocation]
+    positions = [(START, 0)] * len(allocation)
+    while any(remaining):
+        robot = next(_ready_robots(study, remaining, reached), None)
+        if robot is None:
             return None
-        target = left[ready].pop(0)
-        place, free_at = at[ready]
-        steps = travel.get(ready, place, target)
+        target = remaining[robot].pop(0)
+        last_place, free_at = positions[robot]
+        steps = travel.get(robot, last_place, target)
         if steps is None:
             return None
-        begun = max(free_at, *(reached[one] for one in study.earlier(target)), 0)
+        start_time = max(
+            free_at, *(reached[target_number] for target_number in study.earlier(target)), 0
+        )
         total += steps
-        reached[target] = begun + steps
-        at[ready] = target, begun + steps
-    return Schedule(allocation, tuple(reached[one] for one in sorted(reached)), total)
+        reached[target] = start_time + steps
+        positions[robot] = target, start_time + steps
+    return Schedule(
+        allocation, tuple(reached[target_number] for target_number in sorted(reached)), total
+    )
 
 
 def _ready_robots(
-    study: Study, left: Sequence[Sequence[int]], reached: dict[int, int]
+    study: Study, remaining: Sequence[Sequence[int]], reached: dict[int, int]
 ) -> Iterator[int]:
-    """Robots whose next target waits for no other."""
-    for robot, own in enumerate(left):
-        if own and all(one in reached for one in study.earlier(own[0])):
+    """Yield the robots whose next target waits for no other target."""
+    for robot, targets in enumerate(remaining):
+        if targets and all(
+            earlier_target in reached for earlier_target in study.earlier(targets[0])
+        ):
             yield robot
 
 
 def respects_orders(study: Study, allocation: Allocation) -> bool:
-    """Whether every target is reached once, and what is carried is carried by one robot."""
-    given = sorted(target for own in allocation for target in own)
-    if given != list(range(len(study.targets))):
+    """Return whether every target is reached once and carried targets stay with one robot."""
+    allocated = sorted(target for targets in allocation for target in targets)
+    if allocated != list(range(len(study.targets))):
         return False
-    following = {one: other for own in allocation for one, other in pairwise(own)}
-    return all(following.get(one) == later for one, later in study.carried.items())
+    successors = {
+        target: next_target for targets in allocation for target, next_target in pairwise(targets)
+    }
+    return all(successors.get(target) == later for target, later in study.carried.items())
 
 
 def meets_deadlines(study: Study, schedule: Schedule) -> bool:
-    """Whether all deadlines are kept if no robot has to wait for its way."""
+    """Return whether all deadlines are met if no robot has to wait."""
     pairs = zip(study.targets, schedule.reached, strict=True)
-    limits = ((study.limit(target), step) for target, step in pairs)
-    return all(limit is None or step <= limit for limit, step in limits)
+    limits_and_steps = ((study.limit(target), step) for target, step in pairs)
+    return all(limit is None or step <= limit for limit, step in limits_and_steps)

@@ -1,4 +1,4 @@
-"""A floor with robots and a mission, as values: what everything else of the study is made of."""
+"""A floor with robots and a mission as values, and shortest paths on the floor."""
 
 from collections.abc import Iterator
 from functools import lru_cache
@@ -7,12 +7,12 @@ from msgspec import Struct, field
 
 STAY = "stay"
 WAYS = {"up": (-1, 0), "down": (1, 0), "left": (0, -1), "right": (0, 1)}
-"""Commands that move a robot, with the change of row and column (thesis, 4.1.2)."""
+"""Commands that move a robot, with the changes of row and column (thesis, 4.1.2)."""
 COMMANDS = (STAY, *WAYS)
 
 
 class Grid(Struct, frozen=True):
-    """Cells in rows and columns, numbered row by row from 0; no robot enters ``blocked`` ones."""
+    """Cells in rows and columns, numbered by row from 0; robots cannot enter *blocked* cells."""
 
     columns: int
     rows: int
@@ -25,62 +25,70 @@ class Grid(Struct, frozen=True):
 
     @property
     def cells(self) -> tuple[int, ...]:
-        """The cells that a robot can be in."""
+        """The cells that a robot can enter."""
         return tuple(cell for cell in range(self.size) if cell not in self.blocked)
 
-    def after(self, cell: int, command: str) -> int | None:
-        """Where a command leads to; None into a wall or an obstacle."""
-        return _after(self, cell, command)
+    def cell_after(self, cell: int, command: str) -> int | None:
+        """Return the cell to which a command leads, or None for a wall or an obstacle."""
+        return _neighbour_after(self, cell, command)
 
     def neighbours(self, cell: int) -> Iterator[tuple[str, int]]:
-        """Commands that lead somewhere, and where."""
-        return iter(_near(self)[cell])
+        """Yield the possible commands with the cells to which they lead."""
+        return iter(_neighbours(self)[cell])
 
     def distances(self, target: int) -> dict[int, int]:
-        """Steps to the target from every cell from which a way leads there."""
-        return _distances(self, target)
+        """Return the steps to the target from every cell that is connected to it."""
+        return _compute_distances(self, target)
 
-    def nearer(self, cell: int, target: int) -> tuple[str, ...]:
-        """The commands that bring a robot nearer to the target."""
-        known = self.distances(target)
-        here = known.get(cell, 0)
-        return tuple(way for way, there in self.neighbours(cell) if known.get(there, here) < here)
+    def commands_nearer(self, cell: int, target: int) -> tuple[str, ...]:
+        """Return the commands that bring a robot nearer to the target."""
+        distances = self.distances(target)
+        distance = distances.get(cell, 0)
+        return tuple(
+            way
+            for way, neighbour in self.neighbours(cell)
+            if distances.get(neighbour, distance) < distance
+        )
 
 
 @lru_cache(1 << 14)
-def _after(grid: Grid, cell: int, command: str) -> int | None:
+def _neighbour_after(grid: Grid, cell: int, command: str) -> int | None:
     row, column = divmod(cell, grid.columns)
-    rows, columns = WAYS.get(command, (0, 0))
-    row, column = row + rows, column + columns
-    there = row * grid.columns + column
+    row_change, column_change = WAYS.get(command, (0, 0))
+    row, column = row + row_change, column + column_change
+    neighbour = row * grid.columns + column
     is_inside = 0 <= row < grid.rows and 0 <= column < grid.columns
-    return there if is_inside and there not in grid.blocked else None
+    return neighbour if is_inside and neighbour not in grid.blocked else None
 
 
 @lru_cache(64)
-def _near(grid: Grid) -> tuple[tuple[tuple[str, int], ...], ...]:
+def _neighbours(grid: Grid) -> tuple[tuple[tuple[str, int], ...], ...]:
     """By cell the commands that lead somewhere, and where."""
     return tuple(
-        tuple((way, there) for way in WAYS if (there := grid.after(cell, way)) is not None)
+        tuple(
+            (way, neighbour)
+            for way in WAYS
+            if (neighbour := grid.cell_after(cell, way)) is not None
+        )
         for cell in range(grid.size)
     )
 
 
 @lru_cache(1 << 12)
-def _distances(grid: Grid, target: int) -> dict[int, int]:
-    found = {target: 0}
-    front = [target]
-    while front:
-        known = len(found)
-        for cell in front:
-            for _, there in grid.neighbours(cell):
-                found.setdefault(there, found[cell] + 1)
-        front = list(found)[known:]
-    return found
+def _compute_distances(grid: Grid, target: int) -> dict[int, int]:
+    distances = {target: 0}
+    frontier = [target]
+    while frontier:
+        visited = len(distances)
+        for cell in frontier:
+            for _, neighbour in grid.neighbours(cell):
+                distances.setdefault(neighbour, distances[cell] + 1)
+        frontier = list(distances)[visited:]
+    return distances
 
 
 class Robot(Struct, frozen=True):
-    """A robot; ``word`` begins the names of its variables, ``start`` is None for any cell."""
+    """A robot; *word* begins the names of its variables, *start* is None for any cell."""
 
     name: str
     word: str
@@ -89,7 +97,7 @@ class Robot(Struct, frozen=True):
 
 
 class Target(Struct, frozen=True):
-    """A cell to be reached, and within how many steps of the start of the mission."""
+    """A cell to be reached, and the step by which it must be reached."""
 
     name: str
     word: str
@@ -99,9 +107,9 @@ class Target(Struct, frozen=True):
 
 
 class Order(Struct, frozen=True):
-    """Numbers of two targets of which one is reached before the other.
+    """The order of two targets, by their numbers.
 
-    With ``is_carried`` the same robot goes on from the earlier one to the later one.
+    With ``is_carried`` the same robot continues from the earlier to the later target.
     """
 
     earlier: int
@@ -111,7 +119,7 @@ class Order(Struct, frozen=True):
 
 
 class Study(Struct, frozen=True):
-    """What is known of a floor, its robots and their mission."""
+    """A floor, its robots and their mission."""
 
     component: str
     origin: str
@@ -120,58 +128,68 @@ class Study(Struct, frozen=True):
     targets: tuple[Target, ...] = ()
     orders: tuple[Order, ...] = ()
     deadline: int | None = None
-    """Steps within which the mission is done."""
+    """Steps within which the mission must be done."""
     within: int | None = None
-    """Steps within which a robot reaches a target once it has it."""
-    counted: int = 0
-    """What step counters count to before they begin again; 0 is for none."""
+    """Steps within which a robot must reach a target after it got it."""
+    counter_size: int = 0
+    """Number of values of the step counters, which wrap around; 0 for no counters."""
     obstacles: tuple[str, ...] = field(default=())
     """Ids of the obstacles, in the order of ``grid.blocked``."""
 
     def earlier(self, target: int) -> tuple[int, ...]:
-        """The targets that are reached before this one."""
-        return tuple(sorted({one.earlier for one in self.orders if one.later == target}))
+        """Return the targets that must be reached before this one."""
+        return tuple(sorted({order.earlier for order in self.orders if order.later == target}))
 
     def limit(self, target: Target) -> int | None:
-        """The steps within which a target is to be reached: its own, and those of the mission."""
-        known = (self.deadline, target.deadline)
-        return min((one for one in known if one is not None), default=None)
+        """Return the step by which a target must be reached, by its own or the mission's
+        deadline.
+        """
+        deadlines = (self.deadline, target.deadline)
+        return min((deadline for deadline in deadlines if deadline is not None), default=None)
 
     @property
     def carried(self) -> dict[int, int]:
-        """The target that the robot goes on to, by the one that it has reached."""
-        return {one.earlier: one.later for one in self.orders if one.is_carried}
+        """The target at which the same robot must continue, by the target that it has reached."""
+        return {order.earlier: order.later for order in self.orders if order.is_carried}
 
 
 def possible_starts(study: Study, robot: int) -> tuple[int, ...]:
-    """The cells that a robot may start in."""
-    taken = {one.start for at, one in enumerate(study.robots) if at != robot}
+    """Return the cells in which a robot may start."""
+    other_starts = {
+        placed_robot.start for number, placed_robot in enumerate(study.robots) if number != robot
+    }
     start = study.robots[robot].start
-    return (start,) if start is not None else tuple(c for c in study.grid.cells if c not in taken)
+    return (
+        (start,)
+        if start is not None
+        else tuple(cell for cell in study.grid.cells if cell not in other_starts)
+    )
 
 
 @lru_cache(1 << 14)
 def next_move(grid: Grid, cell: int, goal: int) -> tuple[str, int] | None:
-    """The command that leads on to the target, and where it leads; None in it or without a way."""
-    ways = grid.nearer(cell, goal)
-    there = grid.after(cell, ways[0]) if ways else None
-    return None if there is None else (ways[0], there)
+    """Return the command towards the target and the next cell; None at the target or without a
+    path.
+    """
+    commands = grid.commands_nearer(cell, goal)
+    neighbour = grid.cell_after(cell, commands[0]) if commands else None
+    return None if neighbour is None else (commands[0], neighbour)
 
 
 @lru_cache(1 << 12)
 def successors_by_distance(grid: Grid, goal: int) -> tuple[tuple[int, int], ...]:
-    """Each cell with the next one on the way to the target, the farthest first."""
-    known = grid.distances(goal)
-    farthest_first = sorted(known, key=lambda cell: -known[cell])
-    found = ((cell, next_move(grid, cell, goal)) for cell in farthest_first)
-    return tuple((cell, step[1]) for cell, step in found if step is not None)
+    """Return each cell with the next one on the path to the target, the farthest first."""
+    distances = grid.distances(goal)
+    farthest_first = sorted(distances, key=lambda cell: -distances[cell])
+    moves = ((cell, next_move(grid, cell, goal)) for cell in farthest_first)
+    return tuple((cell, move[1]) for cell, move in moves if move is not None)
 
 
 def shortest_path(grid: Grid, cell: int, goal: int) -> tuple[int, ...]:
-    """All cells of the way, both ends included; empty when there is none."""
+    """Return all cells of the path, both ends included, or nothing if there is none."""
     if cell not in grid.distances(goal):
         return ()
-    found = [cell]
-    while (step := next_move(grid, found[-1], goal)) is not None:
-        found.append(step[1])
-    return tuple(found)
+    path = [cell]
+    while (move := next_move(grid, path[-1], goal)) is not None:
+        path.append(move[1])
+    return tuple(path)

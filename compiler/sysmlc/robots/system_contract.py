@@ -1,7 +1,7 @@
 """The contract of all robots together, C_S (MOOD4I thesis, 4.3.1), in three encodings.
 
-``THESIS`` has sensors and free cells as inputs; ``COMMANDS`` leaves out what follows from the
-positions; in ``MOVES`` a robot's position is its own choice: the command is the cell it goes to.
+``THESIS`` has sensors and free cells as inputs. ``COMMANDS`` omits what follows from the positions.
+In ``MOVES`` a robot chooses its position: the command is the cell that it enters.
 """
 
 from collections.abc import Callable, Iterator
@@ -11,21 +11,21 @@ from itertools import combinations, permutations
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import Conjunct, Contract, IntegerDomain, Owner, Variable
 from sysmlc.logic.formula import Formula, Op
-from sysmlc.robots import contract_terms as words
+from sysmlc.robots import contract_terms as terms
 from sysmlc.robots.contract_terms import (
     define_free_cells,
     define_sensors,
     forbid_obstacle_cells,
     forbid_shared_cells,
 )
-from sysmlc.robots.robot_contract import counters, counting
+from sysmlc.robots.robot_contract import count_steps, declare_counter
 from sysmlc.robots.study import STAY, WAYS, Robot, Study
 
 _ENVIRONMENT, _SYSTEM = Owner.ENVIRONMENT, Owner.SYSTEM
 
 
 class Encoding(StrEnum):
-    """How a command and what it does are told."""
+    """How commands and their effects are modelled."""
 
     THESIS = "thesis"
     COMMANDS = "commands"
@@ -33,190 +33,210 @@ class Encoding(StrEnum):
 
 
 def system_contract(study: Study, encoding: Encoding = Encoding.THESIS) -> Contract:
-    """The contract of the whole system: all robots reach their targets and never meet.
+    """Return the contract of the whole system: all robots reach their targets and never meet.
 
-    With ``study.within`` each target is reached within so many steps of the moment in which the
-    robot has it. Read as it stands the thesis's timer never begins again, so that the contract
-    either cannot be kept or stops the environment; it begins anew with each target here.
+    With ``study.within`` each target is reached within so many steps after the robot got it. Taken
+    literally, the thesis's timer never restarts, so the contract either is unrealizable or blocks
+    the environment. Here the timer restarts with each target.
     """
     return Contract(
         study.component,
         study.origin,
-        tuple(_variables(study, encoding)),
-        (*_ASSUMED[encoding](study), *timing(study)),
-        (*_PROMISED[encoding](study), *_limits(study), *_goals(study)),
+        tuple(_declare_variables(study, encoding)),
+        (*_ASSUMPTIONS[encoding](study), *count_timers(study)),
+        (*_GUARANTEES[encoding](study), *_limit_timers(study), *_reach_targets(study)),
     )
 
 
-def _variables(study: Study, encoding: Encoding) -> Iterator[Variable]:
+def _declare_variables(study: Study, encoding: Encoding) -> Iterator[Variable]:
     mover = _SYSTEM if encoding is Encoding.MOVES else _ENVIRONMENT
     for robot in study.robots:
-        place, *sensors = words.places(study, robot, mover)
+        place, *sensors = terms.position_and_sensors(study, robot, mover)
         yield place
-        yield words.cells(words.target(robot), _ENVIRONMENT, study.grid, robot.origin)
+        yield terms.cell_variable(terms.target(robot), _ENVIRONMENT, study.grid, robot.origin)
         if study.within is not None:
             domain = IntegerDomain(0, study.within + 1)
-            yield Variable(words.timer(robot), _ENVIRONMENT, domain, robot.origin)
+            yield Variable(terms.timer(robot), _ENVIRONMENT, domain, robot.origin)
         if encoding is Encoding.THESIS:
             yield from sensors
         if encoding is not Encoding.MOVES:
-            yield words.commands(robot, _SYSTEM)
-        yield from counters(study, robot)
+            yield terms.command_variable(robot, _SYSTEM)
+        yield from declare_counter(study, robot)
     if encoding is Encoding.THESIS:
-        yield from words.free_cells(study, _ENVIRONMENT)
+        yield from terms.free_cell_variables(study, _ENVIRONMENT)
 
 
 # -- assumptions -------------------------------------------------------------------------------
 
 
-def _assumed_in_thesis(study: Study) -> Iterator[Conjunct]:
-    yield from words.starts(study.robots)
-    sensed = (one for robot in study.robots for one in define_sensors(study, robot))
+def _thesis_assumptions(study: Study) -> Iterator[Conjunct]:
+    yield from terms.start_positions(study.robots)
+    sensor_conjuncts = (
+        conjunct for robot in study.robots for conjunct in define_sensors(study, robot)
+    )
     yield from forbid_shared_cells(study)
-    yield from words.in_all((*_placed(study), *define_free_cells(study), *sensed))
+    yield from terms.repeat_in_every_step(
+        (*_place_robots(study), *define_free_cells(study), *sensor_conjuncts)
+    )
     for robot in study.robots:
-        yield from words.motion(study, robot, is_total=True)
-        yield from words.stable_target(study, robot)
+        yield from terms.motion_rules(study, robot, is_total=True)
+        yield from terms.stable_target_by_cell(study, robot)
 
 
-def _assumed_of_commands(study: Study) -> Iterator[Conjunct]:
-    yield from words.starts(study.robots)
-    yield from _pairs(study, words.first)
-    yield from words.in_all(_placed(study))
+def _command_assumptions(study: Study) -> Iterator[Conjunct]:
+    yield from terms.start_positions(study.robots)
+    yield from _forbid_meeting(study, terms.initial_conjunct)
+    yield from terms.repeat_in_every_step(_place_robots(study))
     for robot in study.robots:
-        yield from words.motion(study, robot, is_total=True)
-        yield words.stable_as_whole(robot)
+        yield from terms.motion_rules(study, robot, is_total=True)
+        yield terms.stable_target_formula(robot)
 
 
-def _assumed_of_moves(study: Study) -> Iterator[Conjunct]:
+def _move_assumptions(study: Study) -> Iterator[Conjunct]:
     for robot in study.robots:
-        yield from words.in_all(words.targets_in_reach(study, robot))
-        yield words.stable_as_whole(robot)
+        yield from terms.repeat_in_every_step(terms.reachable_targets(study, robot))
+        yield terms.stable_target_formula(robot)
 
 
-def _placed(study: Study) -> Iterator[Conjunct]:
+def _place_robots(study: Study) -> Iterator[Conjunct]:
     for robot in study.robots:
-        yield from words.on_floor(study, robot)
+        yield from terms.place_on_floor(study, robot)
 
 
-def timing(study: Study) -> Iterator[Conjunct]:
-    """Timers count the steps since a robot has its target."""
+def count_timers(study: Study) -> Iterator[Conjunct]:
+    """State that timers count the steps since a robot got its target."""
     for robot in study.robots if study.within is not None else ():
-        yield from _timer(robot, (study.within or 0) + 1)
+        yield from _count_timer(robot, (study.within or 0) + 1)
 
 
-def _timer(robot: Robot, most: int) -> Iterator[Conjunct]:
+def _count_timer(robot: Robot, most: int) -> Iterator[Conjunct]:
     text = f"The timer of '{robot.name}' counts the steps since it has its target."
-    count = words.timer(robot)
-    yield words.first(words.is_(count, 0), robot.origin, text)
-    anew = f.implies(words.reached(robot), f.primed(words.is_(count, 0)))
-    yield words.each(anew, robot.origin, text)
+    count = terms.timer(robot)
+    yield terms.initial_conjunct(terms.equals(count, 0), robot.origin, text)
+    reset = f.implies(terms.is_at_target(robot), f.primed(terms.equals(count, 0)))
+    yield terms.safety_conjunct(reset, robot.origin, text)
     for number in range(most + 1):
-        before = f.both(words.away(robot), words.is_(count, number))
-        after = f.primed(words.is_(count, min(number + 1, most)))
-        yield words.each(f.implies(before, after), robot.origin, text)
+        before = f.both(terms.is_away_from_target(robot), terms.equals(count, number))
+        after = f.primed(terms.equals(count, min(number + 1, most)))
+        yield terms.safety_conjunct(f.implies(before, after), robot.origin, text)
 
 
 # -- guarantees --------------------------------------------------------------------------------
 
 
-def _promised_in_thesis(study: Study) -> Iterator[Conjunct]:
-    yield from _resting(study)
-    for one in forbid_shared_cells(study):
-        yield words.each(one.formula, one.origin, one.text)
+def _thesis_guarantees(study: Study) -> Iterator[Conjunct]:
+    yield from _start_at_rest(study)
+    for conjunct in forbid_shared_cells(study):
+        yield terms.safety_conjunct(conjunct.formula, conjunct.origin, conjunct.text)
     for robot in study.robots:
-        yield from words.obedience(robot)
-        yield from counting(study, robot)
+        yield from terms.sensor_obedience(robot)
+        yield from count_steps(study, robot)
 
 
-def _promised_of_commands(study: Study) -> Iterator[Conjunct]:
-    yield from _resting(study)
-    yield from _pairs(study, words.each)
+def _command_guarantees(study: Study) -> Iterator[Conjunct]:
+    yield from _start_at_rest(study)
+    yield from _forbid_meeting(study, terms.safety_conjunct)
     for robot in study.robots:
-        yield from _free_ways_only(study, robot)
-        yield from counting(study, robot)
+        yield from _forbid_blocked_commands(study, robot)
+        yield from count_steps(study, robot)
 
 
-def _promised_of_moves(study: Study) -> Iterator[Conjunct]:
-    yield from words.starts(study.robots)
+def _move_guarantees(study: Study) -> Iterator[Conjunct]:
+    yield from terms.start_positions(study.robots)
     yield from forbid_obstacle_cells(study)
-    yield from _pairs(study, words.first)
+    yield from _forbid_meeting(study, terms.initial_conjunct)
     for robot in study.robots:
-        yield from _steps(study, robot)
-        yield from counting(study, robot)
-    yield from _never_into(study)
-    for one in _pairs(study, words.each):
-        yield words.each(f.primed(one.formula), one.origin, one.text)
+        yield from _move_to_neighbours(study, robot)
+        yield from count_steps(study, robot)
+    yield from _forbid_following(study)
+    for conjunct in _forbid_meeting(study, terms.safety_conjunct):
+        yield terms.safety_conjunct(f.primed(conjunct.formula), conjunct.origin, conjunct.text)
 
 
-def _resting(study: Study) -> Iterator[Conjunct]:
+def _start_at_rest(study: Study) -> Iterator[Conjunct]:
     for robot in study.robots:
         text = f"At first '{robot.name}' stays."
-        yield words.first(words.is_(words.command(robot), STAY), robot.origin, text)
+        yield terms.initial_conjunct(terms.equals(terms.command(robot), STAY), robot.origin, text)
 
 
-def _pairs(study: Study, said: Callable[[Formula, str, str], Conjunct]) -> Iterator[Conjunct]:
-    """No two robots are in one cell, a conjunct for each two."""
-    for one, other in combinations(study.robots, 2):
-        text = f"'{one.name}' and '{other.name}' are never in one cell."
-        yield said(_differ(other, one), other.origin, text)
+def _forbid_meeting(
+    study: Study, make_conjunct: Callable[[Formula, str, str], Conjunct]
+) -> Iterator[Conjunct]:
+    """State for each two robots that they are never in one cell."""
+    for first, second in combinations(study.robots, 2):
+        text = f"'{first.name}' and '{second.name}' are never in one cell."
+        yield make_conjunct(_are_in_different_cells(second, first), second.origin, text)
 
 
-def _differ(one: Robot, other: Robot, is_primed: bool = False) -> Formula:
-    """Two robots are in different cells, with ``is_primed`` the first of them in the next step."""
-    here, there = f.var(words.position(one)), f.var(words.position(other))
-    return f.compare(Op.NE, f.primed(here) if is_primed else here, there)
+def _are_in_different_cells(first: Robot, second: Robot, is_primed: bool = False) -> Formula:
+    """Return the predicate that two robots are in different cells; ``is_primed`` refers to the
+    first one's next cell.
+    """
+    first_position, second_position = f.var(terms.position(first)), f.var(terms.position(second))
+    return f.compare(
+        Op.NE, f.primed(first_position) if is_primed else first_position, second_position
+    )
 
 
-def _free_ways_only(study: Study, robot: Robot) -> Iterator[Conjunct]:
-    """No command into a wall, an obstacle or another robot."""
+def _forbid_blocked_commands(study: Study, robot: Robot) -> Iterator[Conjunct]:
+    """Forbid commands into a wall, an obstacle or another robot."""
     text = f"'{robot.name}' goes only where nothing is."
-    others = [one for one in study.robots if one != robot]
+    other_robots = [condition for condition in study.robots if condition != robot]
     for way in WAYS:
         for cell in study.grid.cells:
-            goes = f.both(words.is_(words.command(robot), way), words.at(robot, cell))
-            there = study.grid.after(cell, way)
-            taken = [f.TRUE] if there is None else [words.at(other, there) for other in others]
-            for one in taken:
-                yield words.each(f.primed(f.negate(f.both(goes, one))), robot.origin, text)
+            moves = f.both(terms.equals(terms.command(robot), way), terms.is_in_cell(robot, cell))
+            neighbour = study.grid.cell_after(cell, way)
+            blocked = (
+                [f.TRUE]
+                if neighbour is None
+                else [terms.is_in_cell(other_robot, neighbour) for other_robot in other_robots]
+            )
+            for condition in blocked:
+                yield terms.safety_conjunct(
+                    f.primed(f.negate(f.both(moves, condition))), robot.origin, text
+                )
 
 
-def _steps(study: Study, robot: Robot) -> Iterator[Conjunct]:
-    """From a cell a robot goes to a neighbour, or stays."""
+def _move_to_neighbours(study: Study, robot: Robot) -> Iterator[Conjunct]:
+    """State that a robot moves to a neighbour cell or stays."""
     for cell in study.grid.cells:
-        there = (cell, *(one for _, one in study.grid.neighbours(cell)))
-        goes = f.primed(words.one_of(words.position(robot), there))
+        reachable = (cell, *(neighbour for _, neighbour in study.grid.neighbours(cell)))
+        moves = f.primed(terms.is_in_any(terms.position(robot), reachable))
         text = f"From cell {cell} '{robot.name}' goes to a neighbour, or stays."
-        yield words.each(f.implies(words.at(robot, cell), goes), robot.origin, text)
+        yield terms.safety_conjunct(
+            f.implies(terms.is_in_cell(robot, cell), moves), robot.origin, text
+        )
 
 
-def _never_into(study: Study) -> Iterator[Conjunct]:
-    """No robot goes into the cell that another one is about to leave."""
-    for robot, other in permutations(study.robots, 2):
-        text = f"'{robot.name}' does not go where '{other.name}' is."
-        yield words.each(_differ(robot, other, is_primed=True), robot.origin, text)
+def _forbid_following(study: Study) -> Iterator[Conjunct]:
+    """Forbid that a robot enters the cell that another one is about to leave."""
+    for robot, other_robot in permutations(study.robots, 2):
+        text = f"'{robot.name}' does not go where '{other_robot.name}' is."
+        yield terms.safety_conjunct(
+            _are_in_different_cells(robot, other_robot, is_primed=True), robot.origin, text
+        )
 
 
-def _limits(study: Study) -> Iterator[Conjunct]:
+def _limit_timers(study: Study) -> Iterator[Conjunct]:
     for robot in study.robots if study.within is not None else ():
         text = f"'{robot.name}' reaches a target within {study.within} steps."
-        limit = f.compare(Op.LE, f.var(words.timer(robot)), f.const(study.within or 0))
-        yield words.each(limit, robot.origin, text)
+        limit = f.compare(Op.LE, f.var(terms.timer(robot)), f.const(study.within or 0))
+        yield terms.safety_conjunct(limit, robot.origin, text)
 
 
-def _goals(study: Study) -> Iterator[Conjunct]:
+def _reach_targets(study: Study) -> Iterator[Conjunct]:
     for robot in study.robots:
         text = f"'{robot.name}' reaches its targets."
-        yield words.again(words.reached(robot), robot.origin, text)
+        yield terms.liveness_conjunct(terms.is_at_target(robot), robot.origin, text)
 
 
-_ASSUMED = {
-    Encoding.THESIS: _assumed_in_thesis,
-    Encoding.COMMANDS: _assumed_of_commands,
-    Encoding.MOVES: _assumed_of_moves,
+_ASSUMPTIONS = {
+    Encoding.THESIS: _thesis_assumptions,
+    Encoding.COMMANDS: _command_assumptions,
+    Encoding.MOVES: _move_assumptions,
 }
-_PROMISED = {
-    Encoding.THESIS: _promised_in_thesis,
-    Encoding.COMMANDS: _promised_of_commands,
-    Encoding.MOVES: _promised_of_moves,
+_GUARANTEES = {
+    Encoding.THESIS: _thesis_guarantees,
+    Encoding.COMMANDS: _command_guarantees,
+    Encoding.MOVES: _move_guarantees,
 }

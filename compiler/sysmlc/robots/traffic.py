@@ -1,8 +1,8 @@
-"""Who may set out, and who has to make way: the rules of the compiled environment.
+"""Traffic rules of the compiled environment: which robots depart, and which ones make way.
 
-A robot sets out when its whole way is free of other robots and of the ways that others are on.
-The first robot with a target leads: while it cannot set out nobody sets out across its way, and
-robots that stand in its way are sent aside, with those who stand in their way (docs/robots.md).
+A robot departs if its whole path is free of other robots and of the paths of other robots. The
+first robot with a target leads: while it cannot depart, nobody departs across its path, and robots
+on its path are sent aside, together with the robots that block these (docs/robots.md).
 """
 
 from dataclasses import dataclass
@@ -13,13 +13,13 @@ from sysmlc.robots.study import Grid, successors_by_distance
 
 
 @dataclass(slots=True)
-class Sent(Generic[P]):
-    """What was decided in one step."""
+class Decision(Generic[P]):
+    """The decisions of one step."""
 
-    out: list[list[P]]
-    """By robot and place in its list: it sets out to that target."""
-    aside: list[list[P]]
-    """By robot and cell: it is sent there to make way."""
+    departures: list[list[P]]
+    """By robot and index in its list: the robot departs for that target."""
+    evasions: list[list[P]]
+    """By robot and cell: the robot is sent there to make way."""
 
 
 class Traffic(Generic[P]):
@@ -34,182 +34,216 @@ class Traffic(Generic[P]):
         is_idle: list[P],
         goals: list[list[int]],
     ) -> None:
-        """``places`` by robot and cell, ``taken`` by cell, ``is_idle`` by robot: it is in its
-        target; ``goals``: the cells of its list."""
-        self.grid, self.none, self.but = grid, runs.none, runs.but
+        """Store the situation of the step.
+
+        *places* are run sets by robot and cell, *taken* by cell, *is_idle* by robot (it is in its
+        target). *goals* are the cells of each robot's targets.
+        """
+        self.grid, self.none, self.without = grid, runs.none, runs.without
         self.places, self.is_idle = places, is_idle
         self.goals = goals
-        self.taken = taken
+        self.occupied = taken
         self.reserved = [runs.none] * grid.size
 
-    def ways(self, robot: int, wanted: list[P]) -> list[P]:
-        """By cell: it is on the robot's way to its target; ``wanted`` by place in its list."""
-        found = [self.none] * self.grid.size
-        for goal, wants in zip(self.goals[robot], wanted, strict=True):
-            if wants == self.none:
+    def path_cells(self, robot: int, wanted_by_target: list[P]) -> list[P]:
+        """Return for each cell the runs in which it is on the robot's path to a wanted target."""
+        path_cells = [self.none] * self.grid.size
+        for goal, run_set in zip(self.goals[robot], wanted_by_target, strict=True):
+            if run_set == self.none:
                 continue
-            one = [wants & here for here in self.places[robot]]
-            for cell, after in successors_by_distance(self.grid, goal):
-                if one[cell] != self.none:
-                    one[after] = one[after] | one[cell]
-            found = self._joined(found, one)
-        return found
+            positions = [run_set & position for position in self.places[robot]]
+            for cell, next_cell in successors_by_distance(self.grid, goal):
+                if positions[cell] != self.none:
+                    positions[next_cell] = positions[next_cell] | positions[cell]
+            path_cells = self._union_pairwise(path_cells, positions)
+        return path_cells
 
     def reserve(self, cells: list[P]) -> None:
-        """Keep cells free for a robot."""
-        self.reserved = self._joined(self.reserved, cells)
+        """Reserve cells for a robot."""
+        self.reserved = self._union_pairwise(self.reserved, cells)
 
-    def _joined(self, left: list[P], right: list[P]) -> list[P]:
-        """Either, one by one; an integer with nothing more would be copied."""
+    def _union_pairwise(self, left: list[P], right: list[P]) -> list[P]:
+        """Return the pairwise unions; adding an empty set would copy an integer."""
         pairs = zip(left, right, strict=True)
-        return [one if more == self.none else one | more for one, more in pairs]
+        return [run_set if added == self.none else run_set | added for run_set, added in pairs]
 
-    def send(self, open_: list[list[P]]) -> Sent[P]:
-        """Who sets out and who is sent aside; ``open_`` by robot and place in its list."""
+    def send(self, open_targets: list[list[P]]) -> Decision[P]:
+        """Decide who departs and who is sent aside; *open_targets* by robot and index in its
+        list.
+        """
         robots = range(len(self.places))
-        wants = [union(one, self.none) for one in open_]
-        ways = [self.ways(robot, open_[robot]) for robot in robots]
-        leads = self._leading(wants)
-        leading = [
-            union([leads[robot] & ways[robot][cell] for robot in robots], self.none)
+        wanting = [union(target_set, self.none) for target_set in open_targets]
+        paths = [self.path_cells(robot, open_targets[robot]) for robot in robots]
+        leaders = self._find_leaders(wanting)
+        leader_path = [
+            union([leaders[robot] & paths[robot][cell] for robot in robots], self.none)
             for cell in range(self.grid.size)
         ]
-        waits = self.none
-        sent: Sent[P] = Sent([[] for _ in robots], [])
+        waiting = self.none
+        decision: Decision[P] = Decision([[] for _ in robots], [])
         for is_first in (True, False):
             for robot in robots:
-                asks = wants[robot] & leads[robot]
-                asks = asks if is_first else self.but(wants[robot], leads[robot])
-                starts = self._starting(robot, asks, ways[robot], leading, waits, is_first)
-                waits = waits | self.but(asks, starts) if is_first else waits
-                if starts != self.none:
-                    self.reserve([starts & cell for cell in ways[robot]])
-                sent.out[robot] = _joined(sent.out[robot], [starts & one for one in open_[robot]])
-                self.is_idle[robot] = self.but(self.is_idle[robot], starts)
-        held = [waits & cell for cell in leading]
-        sent.aside = _Aside(self, held, leads, open_).sent()
-        return sent
+                asking = wanting[robot] & leaders[robot]
+                asking = asking if is_first else self.without(wanting[robot], leaders[robot])
+                departing = self._can_depart(
+                    robot, asking, paths[robot], leader_path, waiting, is_first
+                )
+                waiting = waiting | self.without(asking, departing) if is_first else waiting
+                if departing != self.none:
+                    self.reserve([departing & cell for cell in paths[robot]])
+                decision.departures[robot] = _union_pairwise(
+                    decision.departures[robot],
+                    [departing & target_set for target_set in open_targets[robot]],
+                )
+                self.is_idle[robot] = self.without(self.is_idle[robot], departing)
+        blocked_path = [waiting & cell for cell in leader_path]
+        decision.evasions = _EvasionPlanner(self, blocked_path, leaders, open_targets).plan()
+        return decision
 
-    def _leading(self, wants: list[P]) -> list[P]:
-        found, before = [], self.none
-        for one in wants:
-            found.append(self.but(one, before))
-            before = before | one
-        return found
+    def _find_leaders(self, wants: list[P]) -> list[P]:
+        leaders, earlier = [], self.none
+        for wanting in wants:
+            leaders.append(self.without(wanting, earlier))
+            earlier = earlier | wanting
+        return leaders
 
-    def _starting(
-        self, robot: int, asks: P, way: list[P], leading: list[P], waits: P, is_first: bool
+    def _can_depart(
+        self, robot: int, asking: P, path: list[P], leader_path: list[P], waiting: P, is_first: bool
     ) -> P:
-        """In which runs a robot that asks may set out."""
-        if asks == self.none:
-            return asks
-        barred = self.none
-        for cell, on_way in enumerate(way):
+        """Return the runs in which a robot that wants to depart may do so."""
+        if asking == self.none:
+            return asking
+        blocked = self.none
+        for cell, on_way in enumerate(path):
             if on_way == self.none:
                 continue
-            others = self.but(self.taken[cell], self.places[robot][cell]) | self.reserved[cell]
+            obstacles = (
+                self.without(self.occupied[cell], self.places[robot][cell]) | self.reserved[cell]
+            )
             if not is_first:
-                others = others | (leading[cell] & waits)
-            barred = barred | (on_way & others)
-        return self.but(asks, barred)
+                obstacles = obstacles | (leader_path[cell] & waiting)
+            blocked = blocked | (on_way & obstacles)
+        return self.without(asking, blocked)
 
 
-def _joined(left: list[P], right: list[P]) -> list[P]:
-    return [one | other for one, other in zip(left, right, strict=True)] if left else right
+def _union_pairwise(left: list[P], right: list[P]) -> list[P]:
+    return [run_set | added for run_set, added in zip(left, right, strict=True)] if left else right
 
 
-class _Aside(Generic[P]):
-    """Sends robots aside that stand on the way of a leader that cannot set out."""
+class _EvasionPlanner(Generic[P]):
+    """Sends robots aside that stand on the path of a leader that cannot depart."""
 
     def __init__(
-        self, traffic: Traffic[P], held: list[P], leads: list[P], open_: list[list[P]]
+        self,
+        traffic: Traffic[P],
+        blocked_path: list[P],
+        leaders: list[P],
+        open_targets: list[list[P]],
     ) -> None:
-        self.traffic, self.held, self.leads, self.open = traffic, held, leads, open_
+        self.traffic, self.blocked_path, self.leaders, self.open_targets = (
+            traffic,
+            blocked_path,
+            leaders,
+            open_targets,
+        )
         self.robots = range(len(traffic.places))
         none, size = traffic.none, traffic.grid.size
-        pairs = zip(traffic.taken, traffic.reserved, strict=True)
-        self.barred = [one | other for one, other in pairs]
-        self.chosen = [none] * size
-        self.gone = [none for _ in self.robots]
-        self.found = [[none] * size for _ in self.robots]
+        pairs = zip(traffic.occupied, traffic.reserved, strict=True)
+        self.barred_cells = [run_set | other for run_set, other in pairs]
+        self.chosen_cells = [none] * size
+        self.moved = [none for _ in self.robots]
+        self.evasions = [[none] * size for _ in self.robots]
 
-    def sent(self) -> list[list[P]]:
-        """By robot and cell: it goes there."""
-        none, but = self.traffic.none, self.traffic.but
-        if all(one == none for one in self.held):
-            return self.found
-        wanted = [self._standing(robot, self.held) for robot in self.robots]
-        asked = list(wanted)
-        while any(one != none for one in wanted):
+    def plan(self) -> list[list[P]]:
+        """Return the evasions by robot and cell."""
+        none, but = self.traffic.none, self.traffic.without
+        if all(run_set == none for run_set in self.blocked_path):
+            return self.evasions
+        must_move = [self._standing_in(robot, self.blocked_path) for robot in self.robots]
+        asked_before = list(must_move)
+        while any(run_set != none for run_set in must_move):
             for robot in self.robots:
-                if wanted[robot] != none:
-                    self._move(robot, wanted[robot])
-            # Cells do not become free within a step: who could not go is not asked again.
-            stuck = [but(one, gone) for one, gone in zip(wanted, self.gone, strict=True)]
-            beside = self._beside(stuck)
-            wanted = [but(self._standing(robot, beside), asked[robot]) for robot in self.robots]
-            asked = [one | more for one, more in zip(asked, wanted, strict=True)]
-        return self.found
+                if must_move[robot] != none:
+                    self._move(robot, must_move[robot])
+            # Cells do not become free within a step, so a stuck robot is not asked again.
+            stuck = [
+                but(run_set, moved) for run_set, moved in zip(must_move, self.moved, strict=True)
+            ]
+            cells_beside = self._cells_beside(stuck)
+            must_move = [
+                but(self._standing_in(robot, cells_beside), asked_before[robot])
+                for robot in self.robots
+            ]
+            asked_before = [
+                run_set | added for run_set, added in zip(asked_before, must_move, strict=True)
+            ]
+        return self.evasions
 
-    def _standing(self, robot: int, cells: list[P]) -> P:
-        """In which runs an idle robot that does not lead stands in one of the cells."""
+    def _standing_in(self, robot: int, cells: list[P]) -> P:
+        """Return the runs in which an idle robot that does not lead stands in one of the cells."""
         places = self.traffic.places[robot]
-        standing = union(
-            [one & cell for one, cell in zip(places, cells, strict=True)], self.traffic.none
+        idle_there = union(
+            [position & cell for position, cell in zip(places, cells, strict=True)],
+            self.traffic.none,
         )
-        return self.traffic.but(standing & self.traffic.is_idle[robot], self.leads[robot])
+        return self.traffic.without(idle_there & self.traffic.is_idle[robot], self.leaders[robot])
 
-    def _beside(self, stuck: list[P]) -> list[P]:
-        """By cell: it is next to a robot that has to make way and cannot."""
+    def _cells_beside(self, stuck: list[P]) -> list[P]:
+        """Return for each cell the runs in which it is next to a robot that cannot make way."""
         grid, none = self.traffic.grid, self.traffic.none
-        them = [robot for robot in self.robots if stuck[robot] != none]
-        here = [
-            union([stuck[robot] & self.traffic.places[robot][cell] for robot in them], none)
+        stuck_robots = [robot for robot in self.robots if stuck[robot] != none]
+        stuck_positions = [
+            union([stuck[robot] & self.traffic.places[robot][cell] for robot in stuck_robots], none)
             for cell in range(grid.size)
         ]
         return [
-            union([here[near] for _, near in grid.neighbours(cell)], none)
+            union([stuck_positions[neighbour] for _, neighbour in grid.neighbours(cell)], none)
             for cell in range(grid.size)
         ]
 
-    def _move(self, robot: int, wanted: P) -> None:
-        """Send it to the first neighbour that is free: off the leader's way, else ahead on it."""
-        traffic, none, but = self.traffic, self.traffic.none, self.traffic.but
-        barred = [
-            taken | kept | chosen
-            for taken, kept, chosen in zip(
-                traffic.taken, traffic.reserved, self.chosen, strict=True
+    def _move(self, robot: int, must_move: P) -> None:
+        """Move a robot to a free cell off the leader's path, else to one ahead on the path."""
+        traffic, none, but = self.traffic, self.traffic.none, self.traffic.without
+        barred_cells = [
+            occupied | reserved | chosen_cells
+            for occupied, reserved, chosen_cells in zip(
+                traffic.occupied, traffic.reserved, self.chosen_cells, strict=True
             )
         ]
         for cell in traffic.grid.cells:
-            left = wanted & traffic.places[robot][cell]
-            if left == none:
+            remaining = must_move & traffic.places[robot][cell]
+            if remaining == none:
                 continue
-            near = [there for _, there in traffic.grid.neighbours(cell)]
-            for there in near:
-                left = self._step(
-                    robot, there, left, but(but(left, barred[there]), self.held[there])
+            neighbours = [neighbour for _, neighbour in traffic.grid.neighbours(cell)]
+            for neighbour in neighbours:
+                remaining = self._move_to(
+                    robot,
+                    neighbour,
+                    remaining,
+                    but(but(remaining, barred_cells[neighbour]), self.blocked_path[neighbour]),
                 )
-            for there in near if left != none else ():
-                goes = but(left, barred[there])
-                if goes != none:
-                    left = self._step(robot, there, left, goes & self._ahead(cell, there))
+            for neighbour in neighbours if remaining != none else ():
+                moving = but(remaining, barred_cells[neighbour])
+                if moving != none:
+                    remaining = self._move_to(
+                        robot, neighbour, remaining, moving & self._is_ahead(cell, neighbour)
+                    )
 
-    def _step(self, robot: int, there: int, left: P, goes: P) -> P:
-        """Send it there; in which runs it still stands."""
-        if goes == self.traffic.none:
-            return left
-        self.found[robot][there] = self.found[robot][there] | goes
-        self.chosen[there] = self.chosen[there] | goes
-        self.gone[robot] = self.gone[robot] | goes
-        return self.traffic.but(left, goes)
+    def _move_to(self, robot: int, cell: int, remaining: P, moving: P) -> P:
+        """Move the robot to a cell, and return the runs in which it still stands."""
+        if moving == self.traffic.none:
+            return remaining
+        self.evasions[robot][cell] = self.evasions[robot][cell] | moving
+        self.chosen_cells[cell] = self.chosen_cells[cell] | moving
+        self.moved[robot] = self.moved[robot] | moving
+        return self.traffic.without(remaining, moving)
 
-    def _ahead(self, cell: int, there: int) -> P:
-        """In which runs a cell is nearer to the leader's target than another one."""
-        traffic, found = self.traffic, self.traffic.none
+    def _is_ahead(self, cell: int, neighbour: int) -> P:
+        """Return the runs in which *there* is nearer to the leader's target than *cell*."""
+        traffic, ahead = self.traffic, self.traffic.none
         for robot in self.robots:
-            for goal, wants in zip(traffic.goals[robot], self.open[robot], strict=True):
-                known = traffic.grid.distances(goal)
-                if known.get(there, 0) < known.get(cell, 0):
-                    found = found | (wants & self.leads[robot])
-        return found
+            for goal, wanting in zip(traffic.goals[robot], self.open_targets[robot], strict=True):
+                distances = traffic.grid.distances(goal)
+                if distances.get(neighbour, 0) < distances.get(cell, 0):
+                    ahead = ahead | (wanting & self.leaders[robot])
+        return ahead

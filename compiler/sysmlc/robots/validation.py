@@ -1,4 +1,9 @@
-"""The mission in some runs, step by step, until it is done everywhere or something is wrong."""
+"""Validation of a mission: robots and environment are simulated from every admissible start.
+
+Thousands of starts are simulated in one operation (``run_sets``), and states that many of them
+reach are continued once (``merging``). If the starts are too many to enumerate, the same steps are
+computed on decision diagrams over the starts (MOOD4I thesis, 4.4.3).
+"""
 
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
@@ -8,31 +13,31 @@ from typing import Generic
 from msgspec import Struct
 
 from sysmlc.robots.answers import Answers
-from sysmlc.robots.merging import Batch, States
+from sysmlc.robots.merging import Batch, StateSet
 from sysmlc.robots.run_sets import P
 from sysmlc.robots.starts import MAX_CHUNK_RUNS, count_starts, iter_start_chunks, pick_start
 from sysmlc.robots.study import Study
 from sysmlc.robots.world import Allocation, World
 
 MAX_STEPS = 1_000
-"""Steps after which a mission without a deadline is given up."""
+"""Steps after which a mission without a deadline fails."""
 
 
 class Validation(Struct, frozen=True):
-    """What the simulation of all admissible starts came to."""
+    """The result of simulating all admissible starts."""
 
     starts: int
-    """How many there are."""
+    """Number of admissible starts."""
     steps: int
-    """Steps of the longest mission; of the failed one when there is one."""
+    """Steps of the longest mission, or of the failed one."""
     reached: tuple[int | None, ...]
-    """By target the latest step in which it was reached; None when it was not."""
+    """By target, the latest step in which it was reached; None if it was not."""
     failed: tuple[int, ...] = ()
-    """The cells in which robots start when the mission fails; empty when it never does."""
+    """The cells in which robots start if the mission fails; empty if it never fails."""
     late: int | None = None
-    """The target that was not reached in time; None when robots met or had no answer."""
+    """The target that was not reached in time; None if robots met or had no answer."""
     is_slow: bool = False
-    """Whether it is one that a robot has for longer than C_S allows."""
+    """Whether a robot has the late target for longer than C_S allows."""
 
     @property
     def is_good(self) -> bool:
@@ -41,7 +46,7 @@ class Validation(Struct, frozen=True):
 
 
 class Failure(Struct, Generic[P], frozen=True):
-    """What goes wrong: in which runs, and which target is late."""
+    """A failure: the runs in which it occurs, and the late target."""
 
     runs: P
     late: int | None = None
@@ -50,64 +55,67 @@ class Failure(Struct, Generic[P], frozen=True):
 
 
 class Simulation(Generic[P]):
-    """Runs that are stepped together; ``reached`` has by target the last step it was reached in."""
+    """Runs that are simulated together; ``reached`` is the last step in which each target was
+    reached.
+    """
 
     def __init__(self, world: World[P]) -> None:
-        """The world may be one that has gone some steps."""
+        """The world may already have been simulated for some steps."""
         self.world = world
         self.reached: list[int | None] = [None] * len(world.done)
         self._rested = 0
 
     def run(self, until: int | None = None) -> Failure[P] | None:
-        """Step until all is done and all robots have rested, ``until`` some step, or to a failure.
+        """Simulate until all is done and all robots have rested, until step *until*, or until a
+        failure.
 
-        Robots have rested when each of them has had its turn to be shown a way and has stayed:
-        from then on the run goes on for ever as it was.
+        Robots have rested if each of them was offered a cell in its turn and stayed: from then on
+        the run repeats itself forever.
         """
-        known = list(self.world.done)
+        done_before = list(self.world.done)
         while True:
-            failure = self._failure()
+            failure = self._find_failure()
             if failure is not None or self.is_over or self.world.time == until:
                 return failure
             self.world.step()
             for number, done in enumerate(self.world.done):
-                if done != known[number]:
-                    self.reached[number], known[number] = self.world.time, done
-            is_still = self.world.over == self.world.runs.all
+                if done != done_before[number]:
+                    self.reached[number], done_before[number] = self.world.time, done
+            is_still = self.world.finished == self.world.runs.all
             self._rested = self._rested + 1 if is_still else 0
 
     @property
     def is_over(self) -> bool:
-        """Whether nothing new will happen in any of the runs."""
+        """Whether nothing new happens in any of the runs."""
         return self._rested > len(self.world.bodies)
 
-    def _failure(self) -> Failure[P] | None:
-        """What is wrong by now."""
+    def _find_failure(self) -> Failure[P] | None:
+        """Return the present failure, if there is one."""
         world, runs = self.world, self.world.runs
         if world.wrong != runs.none:
             return Failure(world.wrong)
-        for number, slow in enumerate(world.slow):
+        for number, slow in enumerate(world.exceeds_limit):
             if slow != runs.none:
                 return Failure(slow, number, is_slow=True)
         study = world.study
         for number, target in enumerate(study.targets):
-            left = runs.but(runs.all, world.done[number])
+            open_runs = runs.without(runs.all, world.done[number])
             limit = study.limit(target)
-            if left != runs.none and world.time >= min(
+            if open_runs != runs.none and world.time >= min(
                 MAX_STEPS, MAX_STEPS if limit is None else limit
             ):
-                return Failure(left, number)
-        is_endless = world.time > MAX_STEPS + len(world.near)
-        return Failure(runs.but(runs.all, world.over)) if is_endless else None
+                return Failure(open_runs, number)
+        is_endless = world.time > MAX_STEPS + len(world.neighbours)
+        return Failure(runs.without(runs.all, world.finished)) if is_endless else None
 
 
 MAX_EXPLICIT_STARTS = 50_000_000
-"""Starts up to which each has a bit of its own."""
+"""Starts up to which each start has its own bit."""
 FIRST_MERGE_STEP = 8
-"""Steps after which states are first gone on with once: most robots are under way then. Later ones
-are twice as far apart each time."""
+"""Step after which equal states are first merged: most robots are on their way then. The distance
+to the next merge doubles each time."""
 MIN_MERGED_STARTS = 1 << 12
-"""Starts up to which that costs more than it saves."""
+"""Starts up to which merging costs more than it saves."""
 _CHUNK_BITS = 32
 """Bits for the place in a chunk, in the number of a start."""
 
@@ -115,7 +123,7 @@ _CHUNK_BITS = 32
 def validate_allocation(
     study: Study, allocation: Allocation, answers: Sequence[Answers]
 ) -> Validation:
-    """Simulate the mission from all admissible starts; the first failure ends it."""
+    """Simulate the mission from all admissible starts; the first failure ends the simulation."""
     if count_starts(study) > MAX_EXPLICIT_STARTS:
         return validate_symbolically(study, allocation, answers)
     return _ExplicitValidation(study, partial(World, study, allocation, answers)).run()
@@ -124,41 +132,41 @@ def validate_allocation(
 def validate_symbolically(
     study: Study, allocation: Allocation, answers: Sequence[Answers]
 ) -> Validation:
-    """The same on decision diagrams over the cells in which robots start. Raises LimitError."""
+    """Validate on decision diagrams over the starts of the robots. Raises LimitError."""
     from sysmlc.robots.starts import symbolic_starts
 
-    runs, number = symbolic_starts(study)
+    runs, start_count = symbolic_starts(study)
     simulation = Simulation(World(study, allocation, answers, runs))
     failure = simulation.run()
     failed = pick_start(runs, failure.runs) if failure else ()
-    return _make_validation(number, simulation, simulation.reached, failure, failed)
+    return _make_validation(start_count, simulation, simulation.reached, failure, failed)
 
 
 def _make_validation(
-    number: int,
+    start_count: int,
     simulation: Simulation[P],
     reached: Sequence[int | None],
     failure: Failure[P] | None,
     failed: tuple[int, ...],
 ) -> Validation:
-    known = (one for one in reached if one is not None)
-    steps = simulation.world.time if failure else max(known, default=0)
+    reached_steps = (step for step in reached if step is not None)
+    steps = simulation.world.time if failure else max(reached_steps, default=0)
     late = failure.late if failure else None
     is_slow = failure.is_slow if failure else False
-    return Validation(number, steps, tuple(reached), failed, late, is_slow)
+    return Validation(start_count, steps, tuple(reached), failed, late, is_slow)
 
 
 class _RunBatch(Struct, frozen=True):
-    """Runs to be stepped together, and where they come from, by bit."""
+    """Runs to simulate together, and their origins by bit."""
 
     world: World[int]
     origins: Sequence[int]
     start: Callable[[int], tuple[int, ...]]
-    """Where robots start in one of some runs."""
+    """Returns the start of one of the runs."""
 
 
 class _ExplicitValidation:
-    """All starts with a bit each; after some steps all states with a bit each, and so on."""
+    """All starts with a bit each; later all states with a bit each, and so on."""
 
     def __init__(self, study: Study, world: Callable[..., World[int]]) -> None:
         self.study, self.world = study, world
@@ -166,51 +174,55 @@ class _ExplicitValidation:
         self.reached: list[int | None] = [None] * len(study.targets)
 
     def run(self) -> Validation:
-        """Step all parts to some step, then what they come to."""
+        """Simulate all batches up to a step, then the states that they reached."""
         until = FIRST_MERGE_STEP if count_starts(self.study) > MIN_MERGED_STARTS else None
-        parts = self._first()
+        batches = self._first_batches()
         while True:
-            states = States(len(self.study.robots))
-            part = None
-            for part in parts:
-                found = self._stepped(part, until, states)
-                if found is not None:
-                    return found
-            if part is None or not len(states) or until is None:
-                known = (one for one in self.reached if one is not None)
-                return Validation(self.number, max(known, default=0), tuple(self.reached))
-            parts = self._later(states.batches(MAX_CHUNK_RUNS, part.world), until)
+            states = StateSet(len(self.study.robots))
+            batch = None
+            for batch in batches:
+                failure_result = self._run_batch(batch, until, states)
+                if failure_result is not None:
+                    return failure_result
+            if batch is None or not len(states) or until is None:
+                reached_steps = (step for step in self.reached if step is not None)
+                return Validation(self.number, max(reached_steps, default=0), tuple(self.reached))
+            batches = self._next_batches(states.batches(MAX_CHUNK_RUNS, batch.world), until)
             until *= 2
 
-    def _stepped(self, part: _RunBatch, until: int | None, states: States) -> Validation | None:
-        """What fails; what is not over at that step is among the states."""
-        simulation = Simulation(part.world)
+    def _run_batch(
+        self, batch: _RunBatch, until: int | None, states: StateSet
+    ) -> Validation | None:
+        """Return the failure of a batch, if any; otherwise add its unfinished states."""
+        simulation = Simulation(batch.world)
         failure = simulation.run(until)
         pairs = zip(self.reached, simulation.reached, strict=True)
-        self.reached = [old if new is None else max(old or 0, new) for old, new in pairs]
+        self.reached = [
+            earlier if later is None else max(earlier or 0, later) for earlier, later in pairs
+        ]
         if failure is not None:
-            failed = part.start(failure.runs)
-            starts = part.world.runs.all.bit_count()
+            failed = batch.start(failure.runs)
+            starts = batch.world.runs.all.bit_count()
             return _make_validation(starts, simulation, self.reached, failure, failed)
         if not simulation.is_over:
-            states.add(part.world, part.origins)
+            states.add(batch.world, batch.origins)
         return None
 
-    def _first(self) -> Iterator[_RunBatch]:
-        for at, runs in enumerate(iter_start_chunks(self.study, MAX_CHUNK_RUNS)):
+    def _first_batches(self) -> Iterator[_RunBatch]:
+        for chunk_number, runs in enumerate(iter_start_chunks(self.study, MAX_CHUNK_RUNS)):
             self.number += runs.all.bit_count()
-            base = at << _CHUNK_BITS
+            base = chunk_number << _CHUNK_BITS
             origins = range(base, base + runs.all.bit_length())
             yield _RunBatch(self.world(runs), origins, partial(pick_start, runs))
 
-    def _later(self, batches: Iterator[Batch], time: int) -> Iterator[_RunBatch]:
-        for one in batches:
-            start = partial(self._start, one.origins)
-            yield _RunBatch(self.world(one.runs, one.state, time), one.origins, start)
+    def _next_batches(self, batches: Iterator[Batch], time: int) -> Iterator[_RunBatch]:
+        for batch in batches:
+            start = partial(self._find_start, batch.origins)
+            yield _RunBatch(self.world(batch.runs, batch.state, time), batch.origins, start)
 
-    def _start(self, origins: Sequence[int], some: int) -> tuple[int, ...]:
-        """Where robots start in a run that came to one of some states."""
-        origin = origins[(some & -some).bit_length() - 1]
-        at = origin >> _CHUNK_BITS
-        runs = next(islice(iter_start_chunks(self.study, MAX_CHUNK_RUNS), at, None))
-        return pick_start(runs, 1 << (origin - (at << _CHUNK_BITS)))
+    def _find_start(self, origins: Sequence[int], states: int) -> tuple[int, ...]:
+        """Return the start of a run that reached one of the states."""
+        origin = origins[(states & -states).bit_length() - 1]
+        chunk_number = origin >> _CHUNK_BITS
+        runs = next(islice(iter_start_chunks(self.study, MAX_CHUNK_RUNS), chunk_number, None))
+        return pick_start(runs, 1 << (origin - (chunk_number << _CHUNK_BITS)))

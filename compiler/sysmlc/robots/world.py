@@ -1,7 +1,8 @@
-"""Robots and compiled environment together, step by step, in many runs at once.
+"""The robots and the compiled environment together, simulated step by step in many runs at once.
 
-A step is that of the contracts: the environment moves the robots by their commands, gives targets
-and shows ways; then each robot's machine answers with a command (MOOD4I thesis, 4.4.1).
+A step is a step of the contracts: the environment moves the robots by their commands, assigns
+targets and offers free cells, then the controller of each robot answers with a command (MOOD4I
+thesis, 4.4.1).
 """
 
 from collections.abc import Iterator, Sequence
@@ -16,32 +17,34 @@ from sysmlc.robots.study import WAYS, Study, next_move
 from sysmlc.robots.traffic import Traffic
 
 Allocation = tuple[tuple[int, ...], ...]
-"""For each robot the numbers of its targets, in the order in which it reaches them."""
+"""For each robot the numbers of its targets, in the order in which the robot reaches them."""
 
 
 @dataclass(slots=True)
 class Body(Generic[P]):
-    """A robot: conditions by cell, by place in its list, by what its machine knows, by command."""
+    """A robot: run sets by cell, by index in its list of targets, by memory of its controller, by
+    command.
+    """
 
     places: list[P]
-    sent: list[P]
-    """On the way to a target of its list; the target stays its own until it has another one."""
-    aside: list[P]
-    """Sent to a cell to make way."""
+    assigned: list[P]
+    """By index in its list, runs with the target assigned, until another one is."""
+    evasions: list[P]
+    """Runs in which the robot is sent to a cell to make way."""
     memory: dict[Memory, P]
     commands: dict[str, P]
 
 
 class State(Struct, Generic[P], frozen=True):
-    """All that is known between two steps: what will become of a run depends on nothing else."""
+    """Everything that is known between two steps; the future of a run depends on nothing else."""
 
     bodies: list[Body[P]]
     done: list[P]
-    """By target: it has been reached."""
+    """By target, the runs in which it has been reached."""
 
 
 class World(Generic[P]):
-    """All robots; ``step`` is one step of the contracts."""
+    """All robots of a floor; ``step`` simulates one step of the contracts."""
 
     def __init__(
         self,
@@ -52,251 +55,266 @@ class World(Generic[P]):
         state: State[P] | None = None,
         time: int = 0,
     ) -> None:
-        """The first step, in which robots are in their starts and stay, or a ``state`` later on."""
+        """Start with robots that stay in their starts, or continue from a *state*."""
         self.study, self.allocation, self.answers, self.runs = study, allocation, answers, runs
         none, size = runs.none, study.grid.size
-        self._but = runs.but
-        known = state or _first(study, allocation, runs)
-        self.bodies, self.done = known.bodies, known.done[: len(study.targets)]
+        self._without = runs.without
+        initial = state or _initial_state(study, allocation, runs)
+        self.bodies, self.done = initial.bodies, initial.done[: len(study.targets)]
         self.time = time
-        self.near = [tuple(study.grid.neighbours(cell)) for cell in range(size)]
-        self.hops: dict[tuple[int, int], tuple[str, int] | None] = {}
+        self.neighbours = [tuple(study.grid.neighbours(cell)) for cell in range(size)]
+        self.moves_by_cell: dict[tuple[int, int], tuple[str, int] | None] = {}
         self.wrong = none
-        """In which runs two robots met, one was offered a cell that is taken or offered to another
-        one, one left its target without another one, or a machine had no answer."""
-        self.slow = [none] * len(study.targets)
-        """By target: a robot sets out to it that will have it for longer than C_S allows."""
-        self.taken = self._taken()
-        """By cell: a robot is there."""
-        self.over = none
-        """In which runs nothing is left to do: all targets are reached, and all robots rest."""
+        """Runs with an error: two robots met, an offered cell was occupied or offered to another
+        robot, a robot left its target without a new one, or a controller had no answer."""
+        self.exceeds_limit = [none] * len(study.targets)
+        """By target, the runs in which a robot has it for longer than C_S allows."""
+        self.occupied = self._compute_occupied()
+        """By cell, the runs in which a robot is there."""
+        self.finished = none
+        """Runs in which all targets are reached and all robots rest."""
         if state is None:
             self._answer_all()
 
     # -- one step ------------------------------------------------------------------------------
 
     def step(self) -> None:
-        """Move, note what was reached, decide who goes where, let the robots answer."""
+        """Move the robots, record reached targets, assign targets, and let the controllers
+        answer.
+        """
         self.time += 1
-        idle = [self._at_goal(number) for number in range(len(self.bodies))]
+        idle_runs = [self._runs_at_target(number) for number in range(len(self.bodies))]
         self._move()
         for number, body in enumerate(self.bodies):
-            stays = idle[number]
-            body.sent = [self._but(one, stays) for one in body.sent]
-            body.aside = [self._but(one, stays) for one in body.aside]
+            idle = idle_runs[number]
+            body.assigned = [
+                self._without(runs_under_way, idle) for runs_under_way in body.assigned
+            ]
+            body.evasions = [
+                self._without(runs_under_way, idle) for runs_under_way in body.evasions
+            ]
         self._note_reached()
-        self._dispatch(idle)
+        self._dispatch(idle_runs)
         self._note_reached()
         self._answer_all()
 
     def _answer_all(self) -> None:
-        self._offered = list(self.taken)
-        resting = [self._resting(number) for number in range(len(self.bodies))]
-        self.over = self._all_of((*self.done, *resting))
-        for number, rests in enumerate(resting):
-            self._answer(number, rests)
+        self._offered = list(self.occupied)
+        resting_runs = [self._runs_at_rest(number) for number in range(len(self.bodies))]
+        self.finished = self._intersect((*self.done, *resting_runs))
+        for number, resting in enumerate(resting_runs):
+            self._update_memory(number, resting)
 
-    def _all_of(self, planes: Sequence[P]) -> P:
-        found = self.runs.all
-        for one in planes:
-            if found == self.runs.none:
+    def _intersect(self, planes: Sequence[P]) -> P:
+        result = self.runs.all
+        for run_set in planes:
+            if result == self.runs.none:
                 break
-            found = found & one
-        return found
+            result = result & run_set
+        return result
 
     def _move(self) -> None:
         for body in self.bodies:
-            body.places = self._moved(body)
-        self.taken = self._taken()
+            body.places = self._positions_after_commands(body)
+        self.occupied = self._compute_occupied()
 
-    def _moved(self, body: Body[P]) -> list[P]:
+    def _positions_after_commands(self, body: Body[P]) -> list[P]:
         none, grid = self.runs.none, self.study.grid
-        goes = union(list(body.commands.values()), none)
-        if goes == none:
+        moving = union(list(body.commands.values()), none)
+        if moving == none:
             return body.places
-        found = [self._but(one, goes) for one in body.places]
+        positions = [self._without(run_set, moving) for run_set in body.places]
         for cell in grid.cells:
-            here = body.places[cell] & goes
-            if here == none:
+            moving_from = body.places[cell] & moving
+            if moving_from == none:
                 continue
-            for way, there in self.near[cell]:
-                moves = here & body.commands.get(way, none)
-                if moves == none:
+            for command, neighbour in self.neighbours[cell]:
+                moving_this_way = moving_from & body.commands.get(command, none)
+                if moving_this_way == none:
                     continue
-                self.wrong = self.wrong | (moves & self.taken[there])
-                found[there] = found[there] | moves
-        return found
+                self.wrong = self.wrong | (moving_this_way & self.occupied[neighbour])
+                positions[neighbour] = positions[neighbour] | moving_this_way
+        return positions
 
-    def _taken(self) -> list[P]:
-        """By cell: a robot is there; where there are two, something is wrong."""
-        none, found = self.runs.none, []
+    def _compute_occupied(self) -> list[P]:
+        """Return the occupied runs by cell; two robots in one cell are an error."""
+        none, occupied = self.runs.none, []
         for cell in range(self.study.grid.size):
-            seen = none
+            already_occupied = none
             for body in self.bodies:
-                here = body.places[cell]
-                if here != none:
-                    self.wrong = self.wrong | (seen & here)
-                    seen = seen | here
-            found.append(seen)
-        return found
+                present = body.places[cell]
+                if present != none:
+                    self.wrong = self.wrong | (already_occupied & present)
+                    already_occupied = already_occupied | present
+            occupied.append(already_occupied)
+        return occupied
 
     def _note_reached(self) -> None:
         for number, body in enumerate(self.bodies):
-            for place, target in enumerate(self.allocation[number]):
+            for index, target in enumerate(self.allocation[number]):
                 cell = self.study.targets[target].cell
-                arrived = body.sent[place] & body.places[cell]
+                arrived = body.assigned[index] & body.places[cell]
                 if arrived != self.runs.none:
                     self.done[target] = self.done[target] | arrived
 
     # -- targets -------------------------------------------------------------------------------
 
-    def _resting(self, number: int) -> P:
-        """In which runs a robot has no target but the cell that it is in."""
+    def _runs_at_rest(self, number: int) -> P:
+        """Return the runs in which a robot has no target except its own cell."""
         body, none = self.bodies[number], self.runs.none
-        return self._but(self.runs.all, union([*body.sent, *body.aside], none))
+        return self._without(self.runs.all, union([*body.assigned, *body.evasions], none))
 
-    def _at_goal(self, number: int) -> P:
-        """In which runs a robot is in its target."""
+    def _runs_at_target(self, number: int) -> P:
+        """Return the runs in which a robot is in its target."""
         body = self.bodies[number]
-        found = self._resting(number)
-        for place, target in enumerate(self.allocation[number]):
-            is_there = body.sent[place] & body.places[self.study.targets[target].cell]
-            found = found if is_there == self.runs.none else found | is_there
+        runs = self._runs_at_rest(number)
+        for index, target in enumerate(self.allocation[number]):
+            arrived = body.assigned[index] & body.places[self.study.targets[target].cell]
+            runs = runs if arrived == self.runs.none else runs | arrived
         for cell in self.study.grid.cells:
-            is_there = body.aside[cell] & body.places[cell]
-            found = found if is_there == self.runs.none else found | is_there
-        return found
+            arrived = body.evasions[cell] & body.places[cell]
+            runs = runs if arrived == self.runs.none else runs | arrived
+        return runs
 
-    def _dispatch(self, idle: list[P]) -> None:
-        goals = [[self.study.targets[one].cell for one in own] for own in self.allocation]
+    def _dispatch(self, idle_runs: list[P]) -> None:
+        goals = [
+            [self.study.targets[target].cell for target in targets] for targets in self.allocation
+        ]
         places = [body.places for body in self.bodies]
-        traffic = Traffic(self.study.grid, self.runs, places, self.taken, list(idle), goals)
+        traffic = Traffic(self.study.grid, self.runs, places, self.occupied, list(idle_runs), goals)
         for number, body in enumerate(self.bodies):
-            traffic.reserve(traffic.ways(number, body.sent))
-            traffic.reserve(body.aside)
-        open_ = [self._open(number, idle[number]) for number in range(len(self.bodies))]
-        decided = traffic.send(open_)
+            traffic.reserve(traffic.path_cells(number, body.assigned))
+            traffic.reserve(body.evasions)
+        open_targets = [
+            self._open_targets(number, idle_runs[number]) for number in range(len(self.bodies))
+        ]
+        decision = traffic.send(open_targets)
         if self.study.within is not None:
-            self._note_slow(decided.out, self.study.within)
+            self._note_slow(decision.departures, self.study.within)
         for number, body in enumerate(self.bodies):
-            pairs = zip(body.sent, decided.out[number], strict=True)
-            body.sent = [one | more for one, more in pairs]
-            sides = zip(body.aside, decided.aside[number], strict=True)
-            body.aside = [one | more for one, more in sides]
+            pairs = zip(body.assigned, decision.departures[number], strict=True)
+            body.assigned = [target | departing for target, departing in pairs]
+            evasion_pairs = zip(body.evasions, decision.evasions[number], strict=True)
+            body.evasions = [target | departing for target, departing in evasion_pairs]
 
-    def _note_slow(self, out: Sequence[Sequence[P]], within: int) -> None:
-        """In which runs robots set out on ways that are too long (the timer of C_S)."""
-        for number, own in enumerate(self.allocation):
-            for target, sent in zip(own, out[number], strict=True):
-                for cell, here in enumerate(self.bodies[number].places):
-                    both, goal = here & sent, self.study.targets[target].cell
-                    if both != self.runs.none and exceeds_travel_limit(
+    def _note_slow(self, departures: Sequence[Sequence[P]], within: int) -> None:
+        """Record the runs in which robots depart on paths that are too long (the timer of C_S)."""
+        for number, targets in enumerate(self.allocation):
+            for target, departing in zip(targets, departures[number], strict=True):
+                for cell, present in enumerate(self.bodies[number].places):
+                    slow_runs, goal = present & departing, self.study.targets[target].cell
+                    if slow_runs != self.runs.none and exceeds_travel_limit(
                         self.study.grid, self.answers[number], cell, goal, within
                     ):
-                        self.slow[target] = self.slow[target] | both
+                        self.exceeds_limit[target] = self.exceeds_limit[target] | slow_runs
 
-    def _open(self, number: int, idle: P) -> list[P]:
-        """By place in its list: the robot could set out to that target now."""
-        found: list[P] = []
-        before = idle
+    def _open_targets(self, number: int, idle_runs: P) -> list[P]:
+        """Return for each target in its list the runs in which the robot could depart for it
+        now.
+        """
+        open_targets: list[P] = []
+        previous_done = idle_runs
         for target in self.allocation[number]:
-            ready = self._but(before, self.done[target])
+            departure_runs = self._without(previous_done, self.done[target])
             for earlier in self.study.earlier(target):
-                ready = ready & self.done[earlier]
-            found.append(ready)
-            before = before & self.done[target]
-        return found
+                departure_runs = departure_runs & self.done[earlier]
+            open_targets.append(departure_runs)
+            previous_done = previous_done & self.done[target]
+        return open_targets
 
     # -- answers -------------------------------------------------------------------------------
 
-    def _answer(self, number: int, resting: P) -> None:
-        """The command of a robot's machine, and what it knows then."""
+    def _update_memory(self, number: int, resting_runs: P) -> None:
+        """Compute command and memory of a robot's controller in all runs."""
         body = self.bodies[number]
-        memory, body.memory, body.commands = body.memory, {}, {}
-        for known, is_so in memory.items():
-            if not known.is_home:
-                self._row(number, known, known.goal, is_so)
-            elif is_so != self.runs.none:
-                for goal, has in self._targets(number, known.cell, resting):
-                    self._row(number, known, goal, is_so & has)
+        previous_memory, body.memory, body.commands = body.memory, {}, {}
+        for robot_memory, run_set in previous_memory.items():
+            if not robot_memory.was_at_target:
+                self._answer_target(number, robot_memory, robot_memory.goal, run_set)
+            elif run_set != self.runs.none:
+                for goal, runs_with_target in self._possible_targets(
+                    number, robot_memory.cell, resting_runs
+                ):
+                    self._answer_target(number, robot_memory, goal, run_set & runs_with_target)
 
-    def _targets(self, number: int, cell: int, resting: P) -> Iterator[tuple[int, P]]:
-        """The targets that a robot in a cell can be given, with the runs in which it is."""
+    def _possible_targets(self, number: int, cell: int, resting_runs: P) -> Iterator[tuple[int, P]]:
+        """Yield the targets that a robot in a cell can have, with the runs in which it has them."""
         body = self.bodies[number]
-        yield cell, resting
-        for place, target in enumerate(self.allocation[number]):
-            yield self.study.targets[target].cell, body.sent[place]
-        for _, there in self.near[cell]:
-            yield there, body.aside[there]
+        yield cell, resting_runs
+        for index, target in enumerate(self.allocation[number]):
+            yield self.study.targets[target].cell, body.assigned[index]
+        for _, neighbour in self.neighbours[cell]:
+            yield neighbour, body.evasions[neighbour]
 
-    def _row(self, number: int, known: Memory, goal: int, given: P) -> None:
+    def _answer_target(self, number: int, memory: Memory, goal: int, runs: P) -> None:
         none = self.runs.none
-        if given == none:
+        if runs == none:
             return
-        step = self._hop(known.cell, goal)
-        if step is not None:
-            self._shown(number, known, goal, step, given)
+        move = self._next_move(memory.cell, goal)
+        if move is not None:
+            self._offer_and_answer(number, memory, goal, move, runs)
             return
-        if self.over != none and number == self.time % len(self.bodies):
-            given = self._in_turn(number, known, given)
-        self._told(number, known, goal, "", given)
+        if self.finished != none and number == self.time % len(self.bodies):
+            runs = self._offer_in_turn(number, memory, runs)
+        self._record_answer(number, memory, goal, "", runs)
 
-    def _in_turn(self, number: int, known: Memory, given: P) -> P:
-        """Offer a way to a robot that rests when nothing is left to do; where none is free.
+    def _offer_in_turn(self, number: int, memory: Memory, runs: P) -> P:
+        """Offer a cell to a robot that rests after the mission, and return the runs without a free
+        cell.
 
-        Each robot has its turn again and again, as C_E promises it, and stays as C_R promises.
+        Each robot gets its turn infinitely often, as C_E guarantees, and stays, as C_R guarantees.
         """
-        for step in self.near[known.cell]:
-            free = self._but(given & self.over, self.taken[step[1]])
-            if free != self.runs.none:
-                self._shown(number, known, known.cell, step, free)
-                given = self._but(given, free)
-        return given
+        for move in self.neighbours[memory.cell]:
+            runs_with_free_cell = self._without(runs & self.finished, self.occupied[move[1]])
+            if runs_with_free_cell != self.runs.none:
+                self._offer_and_answer(number, memory, memory.cell, move, runs_with_free_cell)
+                runs = self._without(runs, runs_with_free_cell)
+        return runs
 
-    def _shown(
-        self, number: int, known: Memory, goal: int, step: tuple[str, int], given: P
+    def _offer_and_answer(
+        self, number: int, memory: Memory, goal: int, move: tuple[str, int], runs: P
     ) -> None:
-        self._offer(step[1], given)
-        self._told(number, known, goal, step[0], given)
+        self._offer(move[1], runs)
+        self._record_answer(number, memory, goal, move[0], runs)
 
-    def _told(self, number: int, known: Memory, goal: int, way: str, given: P) -> None:
-        """What a robot answers to its target and the way that it is shown."""
+    def _record_answer(self, number: int, memory: Memory, goal: int, way: str, runs: P) -> None:
+        """Record the controller's answer to a target and an offered direction."""
         none, body = self.runs.none, self.bodies[number]
-        if given == none:
+        if runs == none:
             return
-        answer = self.answers[number].get(known, goal, way)
+        answer = self.answers[number].get(memory, goal, way)
         if answer is None:
-            self.wrong = self.wrong | given
+            self.wrong = self.wrong | runs
             return
-        body.memory[answer.memory] = body.memory.get(answer.memory, none) | given
+        body.memory[answer.memory] = body.memory.get(answer.memory, none) | runs
         if answer.command in WAYS:
-            if goal == known.cell:
-                self.wrong = self.wrong | given
-            body.commands[answer.command] = body.commands.get(answer.command, none) | given
+            if goal == memory.cell:
+                self.wrong = self.wrong | runs
+            body.commands[answer.command] = body.commands.get(answer.command, none) | runs
 
-    def _hop(self, cell: int, goal: int) -> tuple[str, int] | None:
+    def _next_move(self, cell: int, goal: int) -> tuple[str, int] | None:
         key = cell, goal
-        if key not in self.hops:
-            self.hops[key] = next_move(self.study.grid, cell, goal)
-        return self.hops[key]
+        if key not in self.moves_by_cell:
+            self.moves_by_cell[key] = next_move(self.study.grid, cell, goal)
+        return self.moves_by_cell[key]
 
-    def _offer(self, cell: int, given: P) -> None:
-        """Offer a cell to a robot: one that is free, and offered to no other (C_E)."""
-        self.wrong = self.wrong | (given & self._offered[cell])
-        self._offered[cell] = self._offered[cell] | given
+    def _offer(self, cell: int, runs: P) -> None:
+        """Offer a cell, which must be free and not offered to another robot (C_E)."""
+        self.wrong = self.wrong | (runs & self._offered[cell])
+        self._offered[cell] = self._offered[cell] | runs
 
 
-def _first(study: Study, allocation: Allocation, runs: RunSpace[P]) -> State[P]:
-    """Robots in their starts, which are their targets."""
+def _initial_state(study: Study, allocation: Allocation, runs: RunSpace[P]) -> State[P]:
+    """Return the state with all robots in their starts, which are their targets."""
     none, size = runs.none, study.grid.size
     bodies: list[Body[P]] = [
         Body(
-            list(runs.starts[at]),
-            [none] * len(allocation[at]),
+            list(runs.starts[robot]),
+            [none] * len(allocation[robot]),
             [none] * size,
-            {Memory(cell, cell): one for cell, one in enumerate(runs.starts[at])},
+            {Memory(cell, cell): run_set for cell, run_set in enumerate(runs.starts[robot])},
             {},
         )
-        for at in range(len(study.robots))
+        for robot in range(len(study.robots))
     ]
     return State(bodies, [none] * len(study.targets))

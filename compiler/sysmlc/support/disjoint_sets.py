@@ -1,6 +1,6 @@
 """Disjoint sets (union-find) over hashable items."""
 
-from collections.abc import Hashable, Iterable
+from collections.abc import Collection, Hashable, Iterable
 from typing import Generic, TypeVar
 
 T = TypeVar("T", bound=Hashable)
@@ -38,3 +38,17 @@ class DisjointSets(Generic[T]):
         for item in items:
             groups.setdefault(self.find(item), []).append(item)
         return list(groups.values())
+
+
+def group_related(items: Iterable[T], relations: Iterable[Collection[T]]) -> list[frozenset[T]]:
+    """Group *items* that a relation connects, in the order of the first item of each group.
+
+    Each relation connects those of its members that are among the items.
+    """
+    members = dict.fromkeys(items)
+    sets: DisjointSets[T] = DisjointSets()
+    for relation in relations:
+        related = [item for item in relation if item in members]
+        for item in related[1:]:
+            sets.union(related[0], item)
+    return [frozenset(group) for group in sets.group_items(members)]

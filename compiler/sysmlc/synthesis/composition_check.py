@@ -1,11 +1,16 @@
-"""Checks of blocks with parts: whether the parts fit together, and keep what the block promises."""
+"""Checks of blocks with parts: whether the parts fit together and keep the guarantees of the block.
+
+Parts that share no variable, directly or through others, neither help nor harm one another and are
+composed separately: a line of forty machines is many small questions instead of one that is too
+large.
+"""
 
 from collections.abc import Iterable, Iterator
 
 from msgspec import Struct
 from msgspec.structs import replace
 
-from sysmlc.diagnostics import Sink
+from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import Composite, Conjunct, Contract
 from sysmlc.logic.printing import print_formula
@@ -13,9 +18,7 @@ from sysmlc.support.disjoint_sets import DisjointSets
 from sysmlc.synthesis.algebra.composition import Composition, DriverError, compose_parts
 from sysmlc.synthesis.algebra.discharge import OpenAssumption
 from sysmlc.synthesis.algebra.fair_systems import DomainError
-from sysmlc.synthesis.algebra.traces import Trace
 from sysmlc.synthesis.bdd.limits import LimitError
-from sysmlc.synthesis.composition_rules import BREAK, CIRCLE, CONTRADICT, LOST, NOT_COMPOSED, OPEN
 from sysmlc.synthesis.decision import Options, Place
 from sysmlc.synthesis.games.game import OutsideGr1Error
 from sysmlc.synthesis.witnesses import (
@@ -28,9 +31,55 @@ from sysmlc.synthesis.witnesses import (
     text_in_parentheses,
 )
 
+OPEN = rule(
+    "SM595",
+    "part-assumption-open",
+    Severity.ERROR,
+    "part '{part}' of '{component}' assumes '{formula}', which nothing around it promises{said}",
+    help=(
+        "let another part promise it, let the block assume it, or let the part do without it; the "
+        "run shows what happens"
+    ),
+)
+CIRCLE = rule(
+    "SM596",
+    "parts-wait-for-one-another",
+    Severity.WARNING,
+    "part '{part}' of '{component}' assumes '{formula}', kept by others only after it{said}",
+    help="let one of the parts begin: promise it without that assumption",
+)
+BREAK = rule(
+    "SM597",
+    "parts-break-whole",
+    Severity.ERROR,
+    "the parts of '{component}' together do not keep '{formula}'{said}",
+    help="let a part promise more, or the block less; the run shows what happens",
+)
+CONTRADICT = rule(
+    "SM548",
+    "parts-contradict",
+    Severity.ERROR,
+    "there is no run in which all parts of '{component}' keep what they promise",
+    help="change one of the promises, or what joins the parts",
+)
+LOST = rule(
+    "SM506",
+    "sent-in-one-step",
+    Severity.WARNING,
+    "in '{component}' two things are sent in one step, and one of them is lost{said}",
+    help="let one wait until the other was taken; the run shows how it comes about",
+)
+NOT_COMPOSED = rule(
+    "SM598",
+    "parts-not-composed",
+    Severity.WARNING,
+    "the parts of '{component}' are not put together: {reason}",
+    help="give more time (--question-limit), or say it in the patterns that are known",
+)
+
 
 class CompositionVerdict(Struct, frozen=True):
-    """What was found out about a block with parts."""
+    """The result for one block with parts."""
 
     component: str
     parts: int
@@ -43,7 +92,7 @@ class CompositionVerdict(Struct, frozen=True):
     witnesses: tuple[Witness, ...] = ()
 
     def text(self) -> str:
-        """The verdict on one line."""
+        """Return the verdict on one line."""
         return f"{self.component}: {self._verdict()}"
 
     def _verdict(self) -> str:
@@ -60,113 +109,137 @@ class CompositionVerdict(Struct, frozen=True):
 def check_compositions(
     composites: Iterable[Composite], place: Place, sink: Sink, options: Options
 ) -> Iterator[CompositionVerdict]:
-    """Compose the parts of each block; what is open and what is broken is reported."""
-    for one in composites:
-        found = [(group, _compose(group, place, sink, options)) for group in _list_questions(one)]
-        made = [(group, each) for group, each in found if each is not None]
-        is_broken = any(each.open or each.failures or each.conflict for _, each in made)
-        kept = None if len(made) < len(found) and not is_broken else not is_broken
-        witnesses = tuple(w for group, each in made for w in _witnesses(group, each))
-        has_whole, joined = one.whole is not None, has_shared_variables(one)
-        yield CompositionVerdict(one.component, len(one.parts), has_whole, joined, kept, witnesses)
+    """Compose the parts of each block; open assumptions and violations are reported."""
+    for composite in composites:
+        results = [
+            (group, _compose(group, place, sink, options)) for group in _list_questions(composite)
+        ]
+        decided = [
+            (group, composition) for group, composition in results if composition is not None
+        ]
+        is_broken = any(
+            composition.open or composition.failures or composition.conflict
+            for _, composition in decided
+        )
+        is_kept = None if len(decided) < len(results) and not is_broken else not is_broken
+        witnesses = tuple(
+            witness
+            for group, composition in decided
+            for witness in _build_witnesses(group, composition)
+        )
+        has_whole, has_shared = composite.whole is not None, has_shared_variables(composite)
+        yield CompositionVerdict(
+            composite.component, len(composite.parts), has_whole, has_shared, is_kept, witnesses
+        )
 
 
 def _list_questions(composite: Composite) -> list[Composite]:
-    """What has to be composed: a part alone fits, where the block promises nothing."""
+    """Return the groups to compose; a single part needs no check if the block guarantees
+    nothing.
+    """
     groups = split_composite(composite)
-    return [one for one in groups if len(one.parts) > 1 or one.whole is not None]
+    return [group for group in groups if len(group.parts) > 1 or group.whole is not None]
 
 
 def _compose(
     composite: Composite, place: Place, sink: Sink, options: Options
 ) -> Composition | None:
     try:
-        found = compose_parts(composite, manager_factory(options)())
+        composition = compose_parts(composite, manager_factory(options)())
     except (OutsideGr1Error, DomainError, DriverError, LimitError) as problem:
         subject, reason = place(composite.origin), describe_problem(problem)
         sink.report(NOT_COMPOSED, subject, component=composite.component, reason=reason)
         return None
-    if found.conflict:
-        _report_conflict(composite, found, place, sink)
-    for one in found.open:
-        _report_open(composite, one, place, sink)
-    for failure in found.failures:
+    if composition.conflict:
+        _report_conflict(composite, composition, place, sink)
+    for assumption in composition.open:
+        _report_open(composite, assumption, place, sink)
+    for failure in composition.failures:
         subject = place(failure.conjunct.origin or composite.origin)
-        report_failure(BREAK, failure, composite.component, subject, sink, _unreliable(found))
-    for loss in found.losses:
+        report_failure(
+            BREAK, failure, composite.component, subject, sink, _note_open_assumptions(composition)
+        )
+    for loss in composition.losses:
         report_failure(LOST, loss, composite.component, place(composite.origin), sink)
-    return found
+    return composition
 
 
-def _unreliable(found: Composition) -> tuple[str, ...]:
-    """That runs do not count on parts whose assumptions are open."""
-    names = " and ".join(dict.fromkeys(f"'{one.part.name}'" for one in found.open))
+def _note_open_assumptions(composition: Composition) -> tuple[str, ...]:
+    """Return a note that runs do not rely on parts with open assumptions."""
+    names = " and ".join(
+        dict.fromkeys(f"'{assumption.part.name}'" for assumption in composition.open)
+    )
     if not names:
         return ()
     return (f"what {names} may promise is not counted on: what it takes for granted is open",)
 
 
-def _report_conflict(composite: Composite, found: Composition, place: Place, sink: Sink) -> None:
-    names = {one: part.name for part in composite.parts for one in part.contract.guarantees}
+def _report_conflict(
+    composite: Composite, composition: Composition, place: Place, sink: Sink
+) -> None:
+    names = {
+        guarantee: part.name for part in composite.parts for guarantee in part.contract.guarantees
+    }
     notes = (
         f"{names.get(conjunct, composite.component)}: "
         f"'{print_formula(conjunct.formula)}'{text_in_parentheses(conjunct)}"
-        for conjunct in found.conflict
+        for conjunct in composition.conflict
     )
     subject = place(composite.origin)
     sink.report(CONTRADICT, subject, notes=tuple(notes), component=composite.component)
 
 
-def _report_open(composite: Composite, one: OpenAssumption, place: Place, sink: Sink) -> None:
+def _report_open(
+    composite: Composite, assumption: OpenAssumption, place: Place, sink: Sink
+) -> None:
     sink.report(
-        CIRCLE if one.is_circular else OPEN,
-        place(one.conjunct.origin or one.part.origin),
-        notes=() if one.trace is None else tuple(describe_run(one.trace, one.conjunct)),
-        part=one.part.name,
+        CIRCLE if assumption.is_circular else OPEN,
+        place(assumption.conjunct.origin or assumption.part.origin),
+        notes=()
+        if assumption.trace is None
+        else tuple(describe_run(assumption.trace, assumption.conjunct)),
+        part=assumption.part.name,
         component=composite.component,
-        formula=print_formula(one.conjunct.formula),
-        said=text_in_parentheses(one.conjunct),
+        formula=print_formula(assumption.conjunct.formula),
+        said=text_in_parentheses(assumption.conjunct),
     )
 
 
-def _witnesses(composite: Composite, found: Composition) -> Iterator[Witness]:
-    parties = tuple(Party(one.name, one.contract) for one in composite.parts)
-    for one in found.open:
-        if one.trace is not None:
-            yield _witness(composite, one.conjunct, one.trace, parties)
-    for failure in (*found.failures, *found.losses):
-        yield _witness(composite, failure.conjunct, failure.trace, parties)
-
-
-def _witness(
-    composite: Composite, broken: Conjunct, trace: Trace, parties: tuple[Party, ...]
-) -> Witness:
-    return Witness(composite.component, broken, trace, parties)
+def _build_witnesses(composite: Composite, composition: Composition) -> Iterator[Witness]:
+    parties = tuple(Party(part.name, part.contract) for part in composite.parts)
+    for assumption in composition.open:
+        if assumption.trace is not None:
+            yield Witness(composite.component, assumption.conjunct, assumption.trace, parties)
+    for failure in (*composition.failures, *composition.losses):
+        yield Witness(composite.component, failure.conjunct, failure.trace, parties)
 
 
 def split_composite(composite: Composite) -> list[Composite]:
-    """The sets of parts that share something, in the order of the first of each.
+    """Return the groups of parts that share variables, in the order of their first parts.
 
-    The whole is with those that it speaks of; beside the others stands one that promises nothing
-    and assumes nothing.
+    The whole belongs to the group with its variables; the other groups have a whole without
+    conjuncts.
     """
-    shared: DisjointSets[str] = DisjointSets()
+    variable_sets: DisjointSets[str] = DisjointSets()
     for names in _shared_variable_groups(composite):
-        for other in names[1:]:
-            shared.union(names[0], other)
-    groups: dict[str, list[int]] = {}
+        for name in names[1:]:
+            variable_sets.union(names[0], name)
+    part_numbers: dict[str, list[int]] = {}
     for number, part in enumerate(composite.parts):
-        first = next((one.name for one in part.contract.variables), f"#{number}")
-        groups.setdefault(shared.find(first), []).append(number)
+        key_variable = next((variable.name for variable in part.contract.variables), f"#{number}")
+        part_numbers.setdefault(variable_sets.find(key_variable), []).append(number)
     if composite.whole is not None and composite.whole.variables:
-        groups.setdefault(shared.find(composite.whole.variables[0].name), [])
-    return [_restrict_composite(composite, group, shared, key) for key, group in groups.items()]
+        part_numbers.setdefault(variable_sets.find(composite.whole.variables[0].name), [])
+    return [
+        _restrict_composite(composite, group, variable_sets, key)
+        for key, group in part_numbers.items()
+    ]
 
 
 def has_shared_variables(composite: Composite) -> bool:
-    """Whether any two of the parts, or a part and the whole, share anything."""
+    """Return whether two parts, or a part and the whole, share variables."""
     return any(
-        len(one.parts) > 1 or _has_variables(one.whole) for one in split_composite(composite)
+        len(group.parts) > 1 or _has_variables(group.whole) for group in split_composite(composite)
     )
 
 
@@ -175,37 +248,43 @@ def _has_variables(whole: Contract | None) -> bool:
 
 
 def _shared_variable_groups(composite: Composite) -> Iterator[list[str]]:
-    """The variables that each contract and each wire brings together."""
+    """Yield the variables that each contract and each wire relates."""
     for part in composite.parts:
-        yield [one.name for one in part.contract.variables]
+        yield [variable.name for variable in part.contract.variables]
     for wire in composite.wiring:
         yield _variable_names(wire)
     if composite.whole is not None:
-        yield [one.name for one in composite.whole.variables]
+        yield [variable.name for variable in composite.whole.variables]
 
 
 def _variable_names(conjunct: Conjunct) -> list[str]:
-    return list(dict.fromkeys(one.name for one in f.variables(conjunct.formula)))
+    return list(dict.fromkeys(variable.name for variable in f.variables(conjunct.formula)))
 
 
 def _restrict_composite(
-    composite: Composite, group: list[int], shared: DisjointSets[str], key: str
+    composite: Composite, group: list[int], variable_sets: DisjointSets[str], key: str
 ) -> Composite:
-    def ours(conjuncts: tuple[Conjunct, ...]) -> tuple[Conjunct, ...]:
-        return tuple(one for one in conjuncts if shared.find(_variable_names(one)[0]) == key)
+    def select_conjuncts(conjuncts: tuple[Conjunct, ...]) -> tuple[Conjunct, ...]:
+        return tuple(
+            conjunct
+            for conjunct in conjuncts
+            if variable_sets.find(_variable_names(conjunct)[0]) == key
+        )
 
     return replace(
         composite,
         parts=tuple(composite.parts[number] for number in group),
-        wiring=ours(composite.wiring),
-        crowding=ours(composite.crowding),
-        whole=_restrict_whole(composite.whole, shared, key),
+        wiring=select_conjuncts(composite.wiring),
+        crowding=select_conjuncts(composite.crowding),
+        whole=_restrict_whole(composite.whole, variable_sets, key),
     )
 
 
-def _restrict_whole(whole: Contract | None, shared: DisjointSets[str], key: str) -> Contract | None:
+def _restrict_whole(
+    whole: Contract | None, variable_sets: DisjointSets[str], key: str
+) -> Contract | None:
     if whole is None or not whole.variables:
         return whole
-    if shared.find(whole.variables[0].name) == key:
+    if variable_sets.find(whole.variables[0].name) == key:
         return whole
     return replace(whole, variables=(), assumptions=(), guarantees=())

@@ -6,14 +6,17 @@ from msgspec import Struct
 
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.logic.contract import Contract
+from sysmlc.logic.printing import print_formula
 from sysmlc.logic.reduction.reduce import reduced
 from sysmlc.synthesis.algebra.fair_systems import DomainError
 from sysmlc.synthesis.algebra.refinement import Failure, find_refinement_failures
+from sysmlc.synthesis.algebra.viewpoints import conjoin_viewpoints
 from sysmlc.synthesis.bdd.limits import LimitError
+from sysmlc.synthesis.bdd.manager import Manager
 from sysmlc.synthesis.decision import Options, Place, Verdict, decide
-from sysmlc.synthesis.games.game import OutsideGr1Error
+from sysmlc.synthesis.games.game import OutsideGr1Error, make_game
 from sysmlc.synthesis.lints import lint
-from sysmlc.synthesis.requirement_check import check_viewpoints
+from sysmlc.synthesis.unrealizable.core import is_won, unrealizable_core
 from sysmlc.synthesis.witnesses import (
     Party,
     Witness,
@@ -23,7 +26,7 @@ from sysmlc.synthesis.witnesses import (
 )
 
 SUFFIX = ".requirements"
-"""What the contract of a component's requirements has behind the name of its behaviour's."""
+"""Suffix of the name of a requirements' contract, behind the name of the component."""
 
 
 BREAKS = rule(
@@ -57,8 +60,8 @@ GIVEN_UP = rule(
 )
 
 
-class Checked(Struct, frozen=True):
-    """What was found out about one contract; the pairs that were compared by name."""
+class CheckedContract(Struct, frozen=True):
+    """The result of checking one contract."""
 
     verdict: Verdict
     is_implemented: bool | None
@@ -66,35 +69,48 @@ class Checked(Struct, frozen=True):
     witnesses: tuple[Witness, ...] = ()
 
 
-def check(
+def check_contracts(
     chosen: Iterable[Contract],
     contracts: Iterable[Contract],
     place: Place,
     sink: Sink,
     options: Options,
-) -> Iterator[Checked]:
-    """Decide the chosen contracts, tell what is suspicious in them, compare them with requirements.
+) -> Iterator[CheckedContract]:
+    """Decide and lint the chosen contracts, and compare behaviours with their requirements.
 
-    ``contracts`` are all that there are: the requirements of a chosen behaviour may not be chosen.
+    *contracts* are all contracts, because the requirements of a chosen behaviour may not be chosen.
     """
-    demanded = {one.component.removesuffix(SUFFIX): one for one in contracts if _is_demand(one)}
+    requirement_contracts = {
+        contract.component.removesuffix(SUFFIX): contract
+        for contract in contracts
+        if _is_requirement_contract(contract)
+    }
     for contract in chosen:
         verdict = decide(contract, place, sink, options)
         if verdict.is_realizable is not None:
-            _lint(contract, place, sink, options)
+            _lint_within_limits(contract, place, sink, options)
         if verdict.is_realizable:
             check_viewpoints(contract, place, sink, options)
-        other = None if _is_demand(contract) else demanded.get(contract.component)
-        failures = None if other is None else _failures(contract, other, place, sink, options)
-        kept = None if failures is None else not failures
-        yield Checked(verdict, kept, tuple(_witness(contract, one) for one in failures or ()))
+        requirements = (
+            None
+            if _is_requirement_contract(contract)
+            else requirement_contracts.get(contract.component)
+        )
+        failures = (
+            None
+            if requirements is None
+            else _find_requirement_failures(contract, requirements, place, sink, options)
+        )
+        is_implemented = None if failures is None else not failures
+        witnesses = tuple(_build_witness(contract, failure) for failure in failures or ())
+        yield CheckedContract(verdict, is_implemented, witnesses)
 
 
-def _is_demand(contract: Contract) -> bool:
+def _is_requirement_contract(contract: Contract) -> bool:
     return contract.component.endswith(SUFFIX)
 
 
-def _lint(contract: Contract, place: Place, sink: Sink, options: Options) -> None:
+def _lint_within_limits(contract: Contract, place: Place, sink: Sink, options: Options) -> None:
     try:
         lint(reduced(contract).contract, place, sink, manager_factory(options))
     except LimitError as problem:
@@ -102,15 +118,14 @@ def _lint(contract: Contract, place: Place, sink: Sink, options: Options) -> Non
         sink.report(GIVEN_UP, place(contract.origin), component=contract.component, reached=reached)
 
 
-def _failures(
-    behaviour: Contract, demanded: Contract, place: Place, sink: Sink, options: Options
+def _find_requirement_failures(
+    behaviour: Contract, requirements: Contract, place: Place, sink: Sink, options: Options
 ) -> tuple[Failure, ...] | None:
-    """Where the behaviour's contract does not refine that of the requirements; all reported.
-
-    None when that is not decided.
-    """
+    """Report and return the failures of refinement; None if that is not decided."""
     try:
-        failures = tuple(find_refinement_failures(behaviour, demanded, manager_factory(options)()))
+        failures = tuple(
+            find_refinement_failures(behaviour, requirements, manager_factory(options)())
+        )
     except (OutsideGr1Error, DomainError, LimitError) as problem:
         subject = place(behaviour.origin)
         reason = describe_problem(problem)
@@ -122,6 +137,43 @@ def _failures(
     return failures
 
 
-def _witness(behaviour: Contract, failure: Failure) -> Witness:
+def _build_witness(behaviour: Contract, failure: Failure) -> Witness:
     parties = (Party(behaviour.component, behaviour),)
     return Witness(behaviour.component, failure.conjunct, failure.trace, parties)
+
+
+LEANS = rule(
+    "SM599",
+    "requirements-lean-on-one-another",
+    Severity.WARNING,
+    "the requirements of '{component}' can be kept together only where all that any of them "
+    "assumes holds",
+    help="let each requirement assume what it needs itself",
+)
+
+
+def check_viewpoints(contract: Contract, place: Place, sink: Sink, options: Options) -> bool | None:
+    """Return whether the conjunction of the requirements is realizable; None if that is not
+    decided.
+
+    *contract* is the realizable contract of all requirements together.
+    """
+    try:
+        game = make_game(
+            conjoin_viewpoints(reduced(contract).contract),
+            Manager(options.engine, options.limits, options.progress),
+        )
+        is_kept = is_won(game)
+        core = () if is_kept else unrealizable_core(game)
+    except (OutsideGr1Error, LimitError):
+        return None
+    if not is_kept:
+        origins = {conjunct.origin for conjunct in core if conjunct.viewpoint}
+        notes = dict.fromkeys(
+            f"'{conjunct.viewpoint}' demands '{print_formula(conjunct.formula)}'"
+            for conjunct in contract.guarantees
+            if conjunct.viewpoint and conjunct.origin in origins
+        )
+        subject = place(contract.origin)
+        sink.report(LEANS, subject, notes=tuple(notes), component=contract.component)
+    return is_kept

@@ -1,4 +1,4 @@
-"""From a contract to a controller that is known to keep it."""
+"""Synthesis of a controller that is verified against its contract."""
 
 from enum import StrEnum
 
@@ -21,34 +21,33 @@ from sysmlc.synthesis.controllers.strategy import Strategy, extract_strategy
 from sysmlc.synthesis.controllers.strategy_memory import choose_registers, explore_strategy
 from sysmlc.synthesis.controllers.table import Table, build_table, rebuild_in_variable_order
 from sysmlc.synthesis.controllers.verification import Fault, find_faults
-from sysmlc.synthesis.decision import Options, Place, Verdict, decided
+from sysmlc.synthesis.decision import Options, Place, Verdict, decide_game
 from sysmlc.synthesis.games.arena import Arena, nodes_of
 from sysmlc.synthesis.games.game import Game
 from sysmlc.synthesis.games.solver import solve_arena
 
-MOST_NODES = 500_000
-"""Nodes of diagrams that looking for a machine may take: where they are more, there is none that
-anybody could read."""
-_LEAST = 0.01
-"""CPU seconds that a check has when all that were given are used up."""
+MAX_MACHINE_NODES = 500_000
+"""Live nodes that the search for a machine may use; a machine that needs more is unreadable."""
+_MIN_CHECK_SECONDS = 0.01
+"""CPU seconds for verification if the time limit is used up."""
 
 
 class Form(StrEnum):
-    """What a controller is made as."""
+    """Representation of a controller."""
 
     ANY = "any"
-    """A machine; a table when there are too many states or conditions."""
+    """A machine, or a table if there are too many states or conditions."""
     LISTED = "listed"
     """A machine without registers, or none."""
     TABLE = "table"
 
 
 class Synthesis(Struct, frozen=True):
-    """A verdict, and the controller when there is one that passes the check."""
+    """A verdict, and the controller if there is one that passes verification."""
 
     verdict: Verdict
     contract: Contract
-    """With history bits where it needs them."""
+    """The contract, with history bits if it needs them."""
     machine: Controller | None = None
 
     @property
@@ -57,89 +56,99 @@ class Synthesis(Struct, frozen=True):
         return self.verdict.exit_code or 2 * (self.machine is None)
 
     def text(self) -> str:
-        """The verdict on one line, with figures of the controller behind it."""
+        """Return the verdict on one line, followed by the size of the controller."""
         if self.machine is None:
             return self.verdict.text()
-        return f"{self.verdict.text()}; {_figures(self.machine)}, checked"
+        return f"{self.verdict.text()}; {_describe_size(self.machine)}, checked"
 
 
-def _figures(made: Controller) -> str:
-    if not isinstance(made, Machine):
-        modes = "1 mode" if len(made.modes) == 1 else f"{len(made.modes)} modes"
-        return f"controller: {len(made.nodes):,} nodes, {modes}"
-    states = "1 state" if made.size == 1 else f"{made.size:,} states"
-    known = len(made.registers)
-    kept = f", {known} register{'s' * (known > 1)}" if known else ""
-    return f"machine: {states}, {made.count:,} moves{kept}"
+def _describe_size(controller: Controller) -> str:
+    if not isinstance(controller, Machine):
+        modes = "1 mode" if len(controller.modes) == 1 else f"{len(controller.modes)} modes"
+        return f"controller: {len(controller.nodes):,} nodes, {modes}"
+    states = "1 state" if controller.size == 1 else f"{controller.size:,} states"
+    register_count = len(controller.registers)
+    registers = f", {register_count} register{'s' * (register_count > 1)}" if register_count else ""
+    return f"machine: {states}, {controller.count:,} moves{registers}"
 
 
-def synthesised(
+def synthesise_controller(
     contract: Contract, place: Place, sink: Sink, options: Options, form: Form = Form.ANY
 ) -> Synthesis:
-    """Decide a contract, and make a controller that keeps it; what fails is reported."""
-    decision = decided(contract, place, sink, options)
+    """Decide a contract and build a controller for it; failures are reported."""
+    decision = decide_game(contract, place, sink, options)
     if not decision.verdict.is_realizable or decision.game is None or decision.arena is None:
         return Synthesis(decision.verdict, contract)
-    told = reduced(contract).contract
+    reduced_contract = reduced(contract).contract
     try:
-        found = controller(told, decision.game, decision.arena, options, form)
+        controller_or_reason = build_controller(
+            reduced_contract, decision.game, decision.arena, options, form
+        )
     except LimitError as problem:
-        found = str(problem)
-    if not isinstance(found, str):
-        return Synthesis(decision.verdict, told, found)
+        controller_or_reason = str(problem)
+    if not isinstance(controller_or_reason, str):
+        return Synthesis(decision.verdict, reduced_contract, controller_or_reason)
     component = contract.component
-    sink.report(rules.NO_MACHINE, place(contract.origin), component=component, why=found)
-    return Synthesis(decision.verdict, told)
+    sink.report(
+        rules.NO_MACHINE, place(contract.origin), component=component, why=controller_or_reason
+    )
+    return Synthesis(decision.verdict, reduced_contract)
 
 
-def controller(
+def build_controller(
     contract: Contract, game: Game, arena: Arena, options: Options, form: Form = Form.ANY
 ) -> Controller | str:
-    """A controller that keeps the contract, or why the one that was made is none.
+    """Return a verified controller, or the reason why the one that was built is none.
 
-    ``game`` and ``arena`` are the contract's, encoded (``decide.Decision``), and won. Raises
-    LimitError.
+    ``game`` and ``arena`` are the contract's encoded game (``decision.Decision``), which is won.
+    Raises LimitError.
     """
     with game.manager.guard():
-        plan = extract_strategy(game, solve_arena(arena))
-        found = made(contract, game, plan, form)
-    if isinstance(found, Table):
-        found = rebuild_in_variable_order(found, _fresh(game.manager, options))
-    fault = next(find_faults(found, contract, _fresh(game.manager, options)), None)
-    return _said(fault) if fault else found
+        winning_strategy = extract_strategy(game, solve_arena(arena))
+        result = build_controller_form(contract, game, winning_strategy, form)
+    if isinstance(result, Table):
+        result = rebuild_in_variable_order(result, _new_manager(game.manager, options))
+    fault = next(find_faults(result, contract, _new_manager(game.manager, options)), None)
+    return _describe_fault(fault) if fault else result
 
 
-def made(contract: Contract, game: Game, plan: Strategy, form: Form = Form.ANY) -> Controller:
-    """A strategy in the form that is wanted, not checked yet. Raises LimitError."""
+def build_controller_form(
+    contract: Contract, game: Game, winning_strategy: Strategy, form: Form = Form.ANY
+) -> Controller:
+    """Return an unverified controller of a strategy in the requested form. Raises LimitError."""
     if form is Form.TABLE:
-        return build_table(combine_independent_strategies(game) or plan)
+        return build_table(combine_independent_strategies(game) or winning_strategy)
     try:
-        with game.manager.limit_nodes(MOST_NODES):
-            return _listed(contract, game, plan, form)
+        with game.manager.limit_nodes(MAX_MACHINE_NODES):
+            return _build_machine(contract, game, winning_strategy, form)
     except TooLargeError:
         if form is Form.LISTED:
             raise
-    return build_table(combine_independent_strategies(game) or plan)
+    return build_table(combine_independent_strategies(game) or winning_strategy)
 
 
-def _listed(contract: Contract, game: Game, plan: Strategy, form: Form) -> Machine:
-    found = explore_strategy(plan, nodes_of(game.init_assumptions), nodes_of(game.assumptions))
-    counting = () if form is Form.LISTED else choose_registers(found)
-    # What is listed are many small diagrams: to look for a better order takes longer than they do.
+def _build_machine(
+    contract: Contract, game: Game, winning_strategy: Strategy, form: Form
+) -> Machine:
+    reachable = explore_strategy(
+        winning_strategy, nodes_of(game.init_assumptions), nodes_of(game.assumptions)
+    )
+    register_names = () if form is Form.LISTED else choose_registers(reachable)
+    # Enumeration builds many small diagrams; reordering would take longer than their construction.
     with game.manager.without_reordering():
-        return build_machine(minimise(enumerate_states(found, counting)), contract)
+        return build_machine(minimise(enumerate_states(reachable, register_names)), contract)
 
 
-def _fresh(manager: Manager, options: Options) -> Manager:
-    """Another manager, with what is left of the time."""
+def _new_manager(manager: Manager, options: Options) -> Manager:
+    """Create another manager with the rest of the time."""
     limits = options.limits
     if limits.seconds:
-        left = max(_LEAST, limits.seconds - manager.usage().seconds)
-        limits = Limits(limits.nodes, limits.memory, left)
+        seconds_left = max(_MIN_CHECK_SECONDS, limits.seconds - manager.usage().seconds)
+        limits = Limits(limits.nodes, limits.memory, seconds_left)
     return Manager(options.engine, limits, options.progress)
 
 
-def _said(fault: Fault) -> str:
+def _describe_fault(fault: Fault) -> str:
     if fault.conjunct is None:
         return "the one that was made has no answer to inputs that are allowed"
     formula = print_formula(fault.conjunct.formula)

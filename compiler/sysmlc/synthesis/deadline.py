@@ -1,8 +1,8 @@
-"""The smallest bound of a timer that a contract can promise, found by deciding bounded contracts.
+"""The smallest bound of a timer that a contract can guarantee, found by deciding bounded contracts.
 
-A timer is a number of the contract that something counts up and sets back: the steps since a target
-was given. A larger bound is never harder to keep, so that half of what is left goes with each
-decision. The top of the range is no bound: a timer that stops there promises nothing.
+A timer is an integer of the contract that something increments and resets: the steps since a target
+was given. A larger bound is never harder to keep, so binary search applies. The upper end of the
+range is no bound, because a timer that saturates there guarantees nothing.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
@@ -19,7 +19,7 @@ from sysmlc.synthesis.decision import Options, Place, Verdict, decide
 
 
 class Deadline(Struct, frozen=True):
-    """What is known of the smallest bound."""
+    """The result of the search for the smallest bound."""
 
     component: str
     timers: tuple[str, ...]
@@ -32,7 +32,7 @@ class Deadline(Struct, frozen=True):
     """0 found, 1 there is none, 2 not decided."""
 
     def text(self) -> str:
-        """The bound on one line."""
+        """Return the bound on one line."""
         names = ", ".join(self.timers)
         if self.bound is not None:
             return f"{self.component}: {names} <= {self.bound} can be promised, no less"
@@ -40,36 +40,39 @@ class Deadline(Struct, frozen=True):
         return f"{self.component}: {names}: {words.get(self.exit_code, 'not decided')}"
 
 
-def deadline(
+def find_deadline(
     contract: Contract, timers: Sequence[str], place: Place, sink: Sink, options: Options
 ) -> Deadline:
-    """The smallest bound that the system can keep for all the timers at once.
+    """Return the smallest bound that the system can guarantee for all timers at once.
 
-    Bounds of theirs that the contract promises already are left out: they are what is looked for.
-    What is no number of the contract, what cannot be decided and that there is no bound is reported
-    (SM575, SM576; SM530, SM531).
+    Bounds that the contract already guarantees for them are dropped. Unknown timers, undecided
+    contracts and missing bounds are reported (SM575, SM576; SM530, SM531).
     """
-    named = {one.name: one.domain for one in contract.variables}
-    numbers = [domain for one in timers if isinstance(domain := named.get(one), IntegerDomain)]
+    domains_by_name = {variable.name: variable.domain for variable in contract.variables}
+    numbers = [
+        domain for one in timers if isinstance(domain := domains_by_name.get(one), IntegerDomain)
+    ]
     if not timers or len(numbers) < len(timers):
-        _report_strangers(contract, timers, named, place, sink)
+        _report_unknown_timers(contract, timers, domains_by_name, place, sink)
         return Deadline(contract.component, tuple(timers), None, {}, 2)
-    bounds = range(min(one.low for one in numbers), max(one.high for one in numbers))
-    return _searched(contract, tuple(timers), bounds, place, sink, options)
+    bounds = range(min(domain.low for domain in numbers), max(domain.high for domain in numbers))
+    return _search_bound(contract, tuple(timers), bounds, place, sink, options)
 
 
-def bounded(contract: Contract, timers: Iterable[str], bound: int) -> Contract:
-    """The contract that promises this bound of the timers, and no other one of theirs."""
-    named = frozenset(timers)
-    kept = (one for one in contract.guarantees if not _bounds(one, named))
-    added = (
-        Conjunct(f.compare(Op.LE, Var(one), Const(bound)), Class.SAFETY, contract.origin)
-        for one in sorted(named)
+def set_bound(contract: Contract, timers: Iterable[str], bound: int) -> Contract:
+    """Return the contract with this bound of the timers instead of its own bounds."""
+    timer_names = frozenset(timers)
+    other_guarantees = (
+        guarantee for guarantee in contract.guarantees if not _is_bound_of(guarantee, timer_names)
     )
-    return replace(contract, guarantees=(*kept, *added))
+    bounds = (
+        Conjunct(f.compare(Op.LE, Var(guarantee), Const(bound)), Class.SAFETY, contract.origin)
+        for guarantee in sorted(timer_names)
+    )
+    return replace(contract, guarantees=(*other_guarantees, *bounds))
 
 
-def _searched(
+def _search_bound(
     contract: Contract,
     timers: tuple[str, ...],
     bounds: range,
@@ -78,19 +81,21 @@ def _searched(
     options: Options,
 ) -> Deadline:
     options = replace(options, is_explained=False)
-    tried: dict[int, Verdict] = {}
+    verdicts: dict[int, Verdict] = {}
     low, high = bounds.start, bounds.stop
     while low < high:
         middle = (low + high) // 2
-        found = Sink()
-        tried[middle] = decide(bounded(contract, timers, middle), place, found, options)
-        if tried[middle].is_realizable is None:
-            # What stands in the way of one bound stands in the way of the others.
-            decide(bounded(contract, timers, middle), place, sink, options)
-            return Deadline(contract.component, timers, None, tried, 2)
-        low, high = (low, middle) if tried[middle].is_realizable else (middle + 1, high)
+        discarded_sink = Sink()
+        verdicts[middle] = decide(
+            set_bound(contract, timers, middle), place, discarded_sink, options
+        )
+        if verdicts[middle].is_realizable is None:
+            # The obstacle is the same for all bounds: decide again to report it.
+            decide(set_bound(contract, timers, middle), place, sink, options)
+            return Deadline(contract.component, timers, None, verdicts, 2)
+        low, high = (low, middle) if verdicts[middle].is_realizable else (middle + 1, high)
     if low < bounds.stop:
-        return Deadline(contract.component, timers, low, tried, 0)
+        return Deadline(contract.component, timers, low, verdicts, 0)
     names = ", ".join(timers)
     sink.report(
         rules.NO_DEADLINE,
@@ -99,11 +104,11 @@ def _searched(
         timers=names,
         most=bounds.stop - 1,
     )
-    return Deadline(contract.component, timers, None, tried, 1)
+    return Deadline(contract.component, timers, None, verdicts, 1)
 
 
-def _bounds(conjunct: Conjunct, timers: frozenset[str]) -> bool:
-    """Whether the conjunct says nothing but that a timer is at most some number."""
+def _is_bound_of(conjunct: Conjunct, timers: frozenset[str]) -> bool:
+    """Return whether the conjunct only states that a timer is at most some number."""
     if conjunct.class_ is not Class.SAFETY:
         return False
     match conjunct.formula:
@@ -115,14 +120,16 @@ def _bounds(conjunct: Conjunct, timers: frozenset[str]) -> bool:
             return False
 
 
-def _report_strangers(
+def _report_unknown_timers(
     contract: Contract,
     timers: Sequence[str],
-    named: Mapping[str, Domain],
+    domains_by_name: Mapping[str, Domain],
     place: Place,
     sink: Sink,
 ) -> None:
-    numbers = [one for one, domain in named.items() if isinstance(domain, IntegerDomain)]
+    numbers = [
+        timer for timer, domain in domains_by_name.items() if isinstance(domain, IntegerDomain)
+    ]
     for name in timers:
         if name not in numbers:
             sink.report(

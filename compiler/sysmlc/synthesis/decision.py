@@ -1,4 +1,6 @@
-"""Whether a contract can be kept: verdict, figures, and findings for what cannot be decided."""
+"""The decision whether a contract is realizable: verdict, figures, and diagnostics for contracts
+that cannot be decided.
+"""
 
 from collections.abc import Callable
 
@@ -19,37 +21,37 @@ from sysmlc.synthesis.games.variable_elimination import eliminate_determined_var
 from sysmlc.synthesis.unrealizable.explanation import explain_unrealizability
 
 Place = Callable[[str], Subject]
-"""From the origin of a contract or of a conjunct to what findings are about."""
+"""Maps the origin of a contract or conjunct to the subject of diagnostics."""
 
 
 class Options(Struct, frozen=True):
-    """How a contract is decided."""
+    """Options of a decision."""
 
     engine: str = ""
     limits: Limits = Limits()
     progress: Progress | None = None
     is_explained: bool = False
-    """Whether guarantees that cannot be kept together are looked for and named."""
+    """Whether conflicting guarantees are searched and reported."""
 
 
 class Figures(Struct, frozen=True):
-    """What a decision took."""
+    """The costs of a decision."""
 
     variables: int
     bits: int
     """Bits of one step."""
     conjuncts: int
     rounds: int
-    """Times a goal was computed."""
+    """Number of computed attractors."""
     steps: int
-    """Predecessors computed."""
+    """Number of computed predecessors."""
     nodes: int
-    """Most nodes of decision diagrams alive at once."""
+    """Peak of live nodes of decision diagrams."""
     seconds: float
     """CPU time."""
 
     def text(self) -> str:
-        """The figures on one line."""
+        """Return the figures on one line."""
         return (
             f"{self.variables} variables, {self.bits} bits, {self.conjuncts} conjuncts; "
             f"{self.rounds} rounds, {self.steps} steps, {self.nodes:,} nodes, {self.seconds:.2f} s"
@@ -57,7 +59,7 @@ class Figures(Struct, frozen=True):
 
 
 class Verdict(Struct, frozen=True):
-    """Whether a contract can be kept; None when that is not decided."""
+    """Whether a contract is realizable; None if that is not decided."""
 
     component: str
     is_realizable: bool | None
@@ -69,36 +71,37 @@ class Verdict(Struct, frozen=True):
         return 2 if self.is_realizable is None else int(not self.is_realizable)
 
     def text(self) -> str:
-        """The verdict on one line, with figures."""
+        """Return the verdict on one line, with figures."""
         words = {None: "not decided", True: "realizable", False: "unrealizable"}
         figures = f" ({self.figures.text()})" if self.figures else ""
         return f"{self.component}: {words[self.is_realizable]}{figures}"
 
 
 class Decision(Struct, frozen=True):
-    """A verdict, with the game that it is about when one was made."""
+    """A verdict, with the game that it is about if there is one."""
 
     verdict: Verdict
     game: Game | None = None
-    """Without variables that follow from others."""
+    """The game without eliminated variables."""
     arena: Arena | None = None
-    """The game as it was decided."""
+    """The encoded game that was solved."""
 
 
 def decide(contract: Contract, place: Place, sink: Sink, options: Options) -> Verdict:
-    """Decide a contract; what is outside GR(1), beyond the limits or unrealizable is reported.
+    """Decide a contract; what is outside GR(1), exceeds the limits or is unrealizable is reported.
 
-    What LTL says beyond GR(1) is said with history bits where that is known (``logic.reduction``).
+    LTL beyond GR(1) is expressed with history bits where a reduction is known
+    (``logic.reduction``).
     """
-    return decided(contract, place, sink, options).verdict
+    return decide_game(contract, place, sink, options).verdict
 
 
-def decided(contract: Contract, place: Place, sink: Sink, options: Options) -> Decision:
-    """``decide``, with the game for those who go on with it."""
-    doing = ["translating the contract"]
+def decide_game(contract: Contract, place: Place, sink: Sink, options: Options) -> Decision:
+    """Decide a contract like ``decide``, and also return the game for further use."""
+    current_activity = ["translating the contract"]
 
     def progress(step: str) -> None:
-        doing[0] = step
+        current_activity[0] = step
         if options.progress is not None:
             options.progress(step)
 
@@ -113,7 +116,7 @@ def decided(contract: Contract, place: Place, sink: Sink, options: Options) -> D
         _report_outside(contract, problem, place, sink)
         return Decision(Verdict(contract.component, None))
     except LimitError as problem:
-        _report_limit(contract, problem, manager, doing[0], place, sink)
+        _report_limit(contract, problem, manager, current_activity[0], place, sink)
         return Decision(Verdict(contract.component, None))
     if not solution.is_realizable:
         reasons = tuple(explain_unrealizability(game, contract)) if options.is_explained else ()
@@ -123,7 +126,7 @@ def decided(contract: Contract, place: Place, sink: Sink, options: Options) -> D
             notes=reasons,
             component=contract.component,
         )
-    figures = _figures(contract, game, solution)
+    figures = _collect_figures(contract, game, solution)
     return Decision(Verdict(contract.component, solution.is_realizable, figures), encoded, arena)
 
 
@@ -134,13 +137,18 @@ def _report_outside(contract: Contract, problem: OutsideGr1Error, place: Place, 
             rules.OUTSIDE_GR1,
             place(conjunct.origin or contract.origin),
             component=contract.component,
-            formula=_said(conjunct),
+            formula=_print_formula(conjunct),
             why=problem.why,
         )
 
 
 def _report_limit(
-    contract: Contract, problem: LimitError, manager: Manager, doing: str, place: Place, sink: Sink
+    contract: Contract,
+    problem: LimitError,
+    manager: Manager,
+    activity: str,
+    place: Place,
+    sink: Sink,
 ) -> None:
     sink.report(
         rules.LIMIT,
@@ -148,22 +156,22 @@ def _report_limit(
         component=contract.component,
         reached=str(problem),
         seconds=f"{manager.usage().seconds:.1f}",
-        doing=doing,
+        doing=activity,
     )
 
 
-def _said(conjunct: Conjunct) -> str:
+def _print_formula(conjunct: Conjunct) -> str:
     return print_formula(conjunct.formula)
 
 
-def _figures(contract: Contract, game: Game, solution: Solution) -> Figures:
-    used = game.manager.usage()
+def _collect_figures(contract: Contract, game: Game, solution: Solution) -> Figures:
+    usage = game.manager.usage()
     return Figures(
         variables=len(game.symbols.variables),
         bits=len(game.inputs) + len(game.outputs),
         conjuncts=len(contract.assumptions) + len(contract.guarantees),
         rounds=solution.rounds,
         steps=solution.steps,
-        nodes=used.peak,
-        seconds=used.seconds,
+        nodes=usage.peak,
+        seconds=usage.seconds,
     )

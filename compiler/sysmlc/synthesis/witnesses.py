@@ -1,4 +1,6 @@
-"""Runs for people: what changes in each step, as lines and as a sequence diagram in PlantUML."""
+"""Runs as explanations for people: changes in each step as lines and as PlantUML sequence diagrams,
+and reports of conjuncts that a run violates.
+"""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
@@ -18,21 +20,21 @@ from sysmlc.synthesis.decision import Options
 from sysmlc.synthesis.games.game import OutsideGr1Error
 
 _MAX_SHOWN_STEPS = 12
-"""Steps of a run that a message shows."""
+"""Steps of a run that a message lists."""
 _ENVIRONMENT = "environment"
 
 Values = Mapping[str, Literal]
 
 
 class Party(Struct, frozen=True):
-    """Who acts in a run: a name, and the contract that says what it decides."""
+    """A participant of a run: a name, and the contract that lists its variables."""
 
     name: str
     contract: Contract
 
 
 class Witness(Struct, frozen=True):
-    """A run in which a conjunct, which ``component`` relies on or should keep, is broken."""
+    """A run that violates a conjunct which *component* relies on or should guarantee."""
 
     component: str
     broken: Conjunct
@@ -41,48 +43,48 @@ class Witness(Struct, frozen=True):
 
 
 def iter_changes(trace: Trace) -> Iterator[Values]:
-    """What has other values in a step than in the one before; in the first one, everything."""
-    before: Values = {}
+    """Yield the values that change in each step; in the first step all values."""
+    previous: Values = {}
     for values in trace.steps:
-        yield {name: value for name, value in values.items() if before.get(name) != value}
-        before = values
+        yield {name: value for name, value in values.items() if previous.get(name) != value}
+        previous = values
 
 
 def describe_run(trace: Trace, broken: Conjunct | None = None) -> Iterator[str]:
-    """The steps of a run, a line each, with what has changed.
+    """Yield a line for each step with the changed values.
 
-    Where ``broken`` is given, other variables that never change are not told.
+    If *broken* is given, other variables that never change are omitted.
     """
     hidden = _constant_variables(trace, broken) if broken else set()
     for number, changed in enumerate(iter_changes(trace), 1):
         if number > _MAX_SHOWN_STEPS:
             yield f"and {len(trace.steps) - _MAX_SHOWN_STEPS} more"
             break
-        told = [name for name in changed if name not in hidden]
-        yield f"step {number}: {_print_values(changed, told) or 'nothing changes'}"
+        shown_names = [name for name in changed if name not in hidden]
+        yield f"step {number}: {_print_values(changed, shown_names) or 'nothing changes'}"
     is_ended = trace.loop == len(trace.steps)
     yield "then there is no answer" if is_ended else f"then again from step {trace.loop + 1}"
 
 
 def _constant_variables(trace: Trace, broken: Conjunct) -> set[str]:
-    """The variables that keep their value through the run and are not spoken of."""
-    moving = {name for changed in list(iter_changes(trace))[1:] for name in changed}
-    said = {one.name for one in f.variables(broken.formula)}
-    return set(trace.steps[0]) - moving - said
+    """Return the variables that never change and that the conjunct does not read."""
+    changing = {name for changed in list(iter_changes(trace))[1:] for name in changed}
+    read = {variable.name for variable in f.variables(broken.formula)}
+    return set(trace.steps[0]) - changing - read
 
 
 def witness_files(witnesses: Iterable[Witness]) -> Iterator[tuple[str, str]]:
-    """Name and text of a diagram for each run, numbered within its component."""
-    found: dict[str, list[Witness]] = {}
-    for one in witnesses:
-        found.setdefault(one.component, []).append(one)
-    for component, name in assign_file_names(found).items():
-        for number, one in enumerate(found[component], 1):
-            yield f"{name}.run{number}.puml", witness_diagram(one)
+    """Yield name and text of a diagram for each run, numbered within its component."""
+    witnesses_by_component: dict[str, list[Witness]] = {}
+    for witness in witnesses:
+        witnesses_by_component.setdefault(witness.component, []).append(witness)
+    for component, name in assign_file_names(witnesses_by_component).items():
+        for number, witness in enumerate(witnesses_by_component[component], 1):
+            yield f"{name}.run{number}.puml", witness_diagram(witness)
 
 
 def witness_diagram(witness: Witness) -> str:
-    """The run as a sequence diagram, with what is broken as its title."""
+    """Return the run as a sequence diagram, with the violated conjunct as its title."""
     broken = label(print_temporal(witness.broken))
     title = f"{label(witness.component)}\\nnot kept: {broken}"
     hidden = _constant_variables(witness.trace, witness.broken)
@@ -94,15 +96,20 @@ def witness_diagram(witness: Witness) -> str:
 
 
 def run_diagram(title: str, trace: Trace, parties: Sequence[Party]) -> str:
-    """A run as a sequence diagram: inputs are messages, what nobody reads is an invariant."""
+    """Return a run as a sequence diagram: inputs are messages, variables without readers are
+    notes.
+    """
     head = [
         "@startuml",
         f"title {title}",
         "hide footbox",
         f"participant {_ENVIRONMENT} as p0",
-        *(f'participant "{plain(one.name)}" as p{at}' for at, one in enumerate(parties, 1)),
+        *(
+            f'participant "{plain(party.name)}" as p{index}'
+            for index, party in enumerate(parties, 1)
+        ),
     ]
-    contracts = [one.contract for one in parties]
+    contracts = [party.contract for party in parties]
     return "\n".join((*head, *_diagram_steps(trace, contracts), "@enduml", ""))
 
 
@@ -110,7 +117,7 @@ _TEMPORAL_PREFIXES = {Class.INIT: "", Class.SAFETY: "G ", Class.LIVENESS: "G F "
 
 
 def print_temporal(conjunct: Conjunct) -> str:
-    """The conjunct with the temporal operators that its class implies."""
+    """Return the conjunct with the temporal operators that its class implies."""
     formula, operators = print_formula(conjunct.formula), _TEMPORAL_PREFIXES[conjunct.class_]
     return f"{operators}({formula})" if operators else formula
 
@@ -126,22 +133,22 @@ def _diagram_steps(trace: Trace, contracts: Sequence[Contract]) -> Iterator[str]
 
 
 def _diagram_messages(changed: Values, contracts: Sequence[Contract]) -> Iterator[str]:
-    """Who tells whom what, in one step."""
-    told: dict[tuple[int, int], list[str]] = {}
+    """Yield the messages of one step, from the owner of a variable to its readers."""
+    names_by_arrow: dict[tuple[int, int], list[str]] = {}
     for name in changed:
         sender = _find_sender(name, contracts)
         for receiver in _find_receivers(name, contracts) or [sender]:
-            told.setdefault((sender, receiver), []).append(name)
-    for (sender, receiver), names in sorted(told.items()):
-        said = _print_values(changed, names)
+            names_by_arrow.setdefault((sender, receiver), []).append(name)
+    for (sender, receiver), names in sorted(names_by_arrow.items()):
+        text = _print_values(changed, names)
         if sender == receiver:
-            yield f"hnote over p{sender} : {label(said)}"
+            yield f"hnote over p{sender} : {label(text)}"
         else:
-            yield f"p{sender} -> p{receiver} : {label(said)}"
+            yield f"p{sender} -> p{receiver} : {label(text)}"
 
 
 def _find_sender(name: str, contracts: Sequence[Contract]) -> int:
-    """Place of who decides the variable; 0 is the environment."""
+    """Return the number of the party that decides the variable; 0 is the environment."""
     return next(iter(_find_parties(name, contracts, Owner.SYSTEM)), 0)
 
 
@@ -150,9 +157,11 @@ def _find_receivers(name: str, contracts: Sequence[Contract]) -> list[int]:
 
 
 def _find_parties(name: str, contracts: Sequence[Contract], owner: Owner) -> Iterator[int]:
-    for place, contract in enumerate(contracts, 1):
-        if any(one.name == name and one.owner is owner for one in contract.variables):
-            yield place
+    for index, contract in enumerate(contracts, 1):
+        if any(
+            variable.name == name and variable.owner is owner for variable in contract.variables
+        ):
+            yield index
 
 
 def _print_values(values: Values, names: Iterable[str]) -> str:
@@ -160,19 +169,19 @@ def _print_values(values: Values, names: Iterable[str]) -> str:
 
 
 def manager_factory(options: Options) -> Callable[[], Manager]:
-    """A manager within the limits for each question."""
+    """Return a function that creates a manager within the limits for each question."""
     return lambda: Manager(options.engine, options.limits, options.progress)
 
 
 def describe_problem(problem: Exception) -> str:
-    """Why something was not decided, with the formula that stands in the way."""
+    """Return why something was not decided, with the formula that is the reason."""
     if isinstance(problem, OutsideGr1Error):
         return f"'{print_formula(problem.conjunct.formula)}': {problem}"
     return str(problem)
 
 
 def text_in_parentheses(conjunct: Conjunct) -> str:
-    """What a conjunct says in words, in brackets."""
+    """Return the conjunct's text in parentheses."""
     return f" ({conjunct.text.removesuffix('.')})" if conjunct.text else ""
 
 
@@ -184,7 +193,7 @@ def report_failure(
     sink: Sink,
     notes: tuple[str, ...] = (),
 ) -> None:
-    """Report a conjunct that is not kept, with the run that shows it, then what else is noted."""
+    """Report a violated conjunct with the run that shows it and further notes."""
     conjunct = failure.conjunct
     sink.report(
         rule,

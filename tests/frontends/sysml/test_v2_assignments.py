@@ -8,7 +8,7 @@ from sysmlc.ir.text import parse_text
 from sysmlc.logic.contract import Class, Contract, Owner
 from sysmlc.logic.printing import print_formula
 from sysmlc.passes import pipeline
-from sysmlc.synthesis.contract_checks import check
+from sysmlc.synthesis.contract_checks import check_contracts
 from sysmlc.synthesis.decision import Options
 
 pipeline.load("contracts")
@@ -111,7 +111,9 @@ def test_a_loop_that_a_counter_ends_needs_no_assumption():
 
 
 def decided(made, graph):
-    (found,) = check([made], [made], lambda id: graph.subject(graph[id]), Sink(), Options())
+    (found,) = check_contracts(
+        [made], [made], lambda id: graph.subject(graph[id]), Sink(), Options()
+    )
     return found.verdict.is_realizable
 
 

@@ -8,7 +8,7 @@ from sysmlc.config import load
 from sysmlc.diagnostics import Sink
 from sysmlc.driver import Request, compile_model, select_backends
 from sysmlc.logic.contract import Contract
-from sysmlc.synthesis.contract_checks import check
+from sysmlc.synthesis.contract_checks import check_contracts
 from sysmlc.synthesis.decision import Options
 
 pytestmark = pytest.mark.corpus
@@ -190,7 +190,7 @@ def test_every_condition_and_effect_of_the_laboratory_has_a_meaning(laboratory):
 def test_state_machines_and_tasks_can_be_kept_and_are_not_suspicious(laboratory, component):
     graph, sink = laboratory.graph, Sink()
     (contract,) = [one for one in graph.derived(Contract) if one.component == component]
-    (result,) = check(
+    (result,) = check_contracts(
         [contract], [contract], lambda origin: graph.subject(graph[origin]), sink, Options()
     )
     assert result.verdict.is_realizable

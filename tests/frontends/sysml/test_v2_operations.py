@@ -12,7 +12,7 @@ from sysmlc.logic.contract import Contract, Owner
 from sysmlc.logic.printing import print_formula
 from sysmlc.passes import pipeline
 from sysmlc.synthesis import composition_check as together
-from sysmlc.synthesis.contract_checks import check
+from sysmlc.synthesis.contract_checks import check_contracts
 from sysmlc.synthesis.decision import Options
 
 STEPS = {
@@ -131,7 +131,7 @@ def test_a_usage_can_be_kept_and_nothing_is_suspicious_in_it(operation):
     text = f"package P {{ part def Cell {{ action work : DIN8580::{operation}; }} }}"
     graph, sink = compiled(text), Sink()
     made = graph.derived(Contract)
-    (result,) = check(made, made, lambda id: graph.subject(graph[id]), sink, Options())
+    (result,) = check_contracts(made, made, lambda id: graph.subject(graph[id]), sink, Options())
     assert result.verdict.is_realizable
     assert [one.message for one in sink] == []
 

@@ -9,8 +9,8 @@ from sysmlc.logic.contract import Contract
 from sysmlc.passes import pipeline
 from sysmlc.synthesis import Limits
 from sysmlc.synthesis import composition_check as together
-from sysmlc.synthesis import composition_rules as together_rules
-from sysmlc.synthesis.contract_checks import check
+from sysmlc.synthesis import composition_check as together_rules
+from sysmlc.synthesis.contract_checks import check_contracts
 from sysmlc.synthesis.decision import Options
 
 CODES = ("SM506", "SM548", "SM595", "SM596", "SM597", "SM598")
@@ -77,7 +77,7 @@ def told_of_requirements(text):
     pipeline.run(reading.graph, reading.sink, verify_each=True)
     graph, sink = reading.graph, Sink()
     made = graph.derived(Contract)
-    list(check(made, made, lambda it: graph.subject(graph[it]), sink, Options()))
+    list(check_contracts(made, made, lambda it: graph.subject(graph[it]), sink, Options()))
     return {one.rule.code: one for one in sink}
 
 

@@ -58,7 +58,7 @@ def _compose(composite: Composite, manager: Manager) -> Composition:
     _check_drivers(composite.parts)
     whole = composite.whole or _contract_with_environment(composite)
     wiring = Contract("", "", (), composite.wiring, ())
-    observed = observe_histories((*(one.contract for one in composite.parts), wiring, whole))
+    observed = observe_histories((*(part.contract for part in composite.parts), wiring, whole))
     *contracts, wiring_contract, whole_contract = observed.contracts
     parts = tuple(
         _with_contract(part, reduced_contract)
@@ -152,8 +152,8 @@ def _find_violations(conjuncts: Iterable[Conjunct], runs: Entailment) -> Iterato
 
 def _merge_variables(parts: Sequence[Part]) -> tuple[Variable, ...]:
     """All variables; one that a part decides is the composition's own."""
-    found: dict[str, Variable] = {}
-    for one in (one for part in parts for one in part.contract.variables):
-        if one.name not in found or one.owner is Owner.SYSTEM:
-            found[one.name] = one
-    return tuple(found.values())
+    merged: dict[str, Variable] = {}
+    for variable in (variable for part in parts for variable in part.contract.variables):
+        if variable.name not in merged or variable.owner is Owner.SYSTEM:
+            merged[variable.name] = variable
+    return tuple(merged.values())

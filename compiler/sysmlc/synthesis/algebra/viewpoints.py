@@ -48,7 +48,7 @@ def conjoin_viewpoints(contract: Contract) -> Contract:
     OutsideGr1Error if viewpoints with liveness guarantees have different liveness assumptions.
     """
     viewpoints = list_viewpoints(contract)
-    if len({_formulas_of(one.assumptions) for one in viewpoints}) < 2:
+    if len({_formulas_of(viewpoint.assumptions) for viewpoint in viewpoints}) < 2:
         return contract
     _check_liveness(viewpoints)
     names = Names(*(one.name for one in contract.variables))
@@ -93,16 +93,16 @@ def _check_liveness(viewpoints: Sequence[Viewpoint]) -> None:
 
 
 def _liveness_assumptions(view: Viewpoint) -> Iterator[Conjunct]:
-    return (one for one in view.assumptions if one.class_ is Class.LIVENESS)
+    return (conjunct for conjunct in view.assumptions if conjunct.class_ is Class.LIVENESS)
 
 
 def _common_assumptions(contract: Contract, views: Sequence[Viewpoint]) -> Iterator[Conjunct]:
     """Yield the assumptions shared by all viewpoints, and the liveness assumptions that guarantees
     need.
     """
-    yield from (one for one in contract.assumptions if not one.viewpoint)
+    yield from (conjunct for conjunct in contract.assumptions if not conjunct.viewpoint)
     for view in views:
-        if any(one.class_ is Class.LIVENESS for one in view.guarantees):
+        if any(conjunct.class_ is Class.LIVENESS for conjunct in view.guarantees):
             yield from _liveness_assumptions(view)
             return
 
@@ -112,7 +112,7 @@ def _memory_variable(bit: Var) -> Variable:
 
 
 def _has_breakable_assumptions(view: Viewpoint) -> bool:
-    return any(one.class_ is not Class.LIVENESS for one in view.assumptions)
+    return any(conjunct.class_ is not Class.LIVENESS for conjunct in view.assumptions)
 
 
 def _weaken_guarantees(view: Viewpoint, broken: Var | None) -> Iterator[Conjunct]:

@@ -242,9 +242,9 @@ class Manager:
 
     def should_stop(self) -> bool:
         """Return whether a limit is exceeded or Ctrl-C was pressed; CUDD asks during operations."""
-        now = time.process_time()
-        if self._stop_reason is None and now >= self._next_limit_check:
-            self._next_limit_check = now + _SECONDS_BETWEEN_LIMIT_CHECKS
+        time_now = time.process_time()
+        if self._stop_reason is None and time_now >= self._next_limit_check:
+            self._next_limit_check = time_now + _SECONDS_BETWEEN_LIMIT_CHECKS
             usage = self.usage()
             self._nodes, self._stop_reason = (
                 usage.nodes,

@@ -50,7 +50,7 @@ def order_bits(
             bit for name in order_by_force(tuple(bits), tuple(edges)) for bit in bits[name]
         )
     return tuple(
-        bit for names in groups.values() for bit in _interleave([bits[one] for one in names])
+        bit for names in groups.values() for bit in _interleave([bits[member] for member in names])
     )
 
 

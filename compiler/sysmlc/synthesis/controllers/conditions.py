@@ -114,10 +114,10 @@ class _ConditionWriter:
             forbidden = possible & ~condition
             when = either(*self._cover(condition, forbidden, variables))
             self.read_registers.update(
-                one.name
+                variable.name
                 for formula in (when, *output)
-                for one in variables_of(formula)
-                if not one.primed
+                for variable in variables_of(formula)
+                if not variable.primed
             )
             yield Move(when, output, state)
 

@@ -12,7 +12,7 @@ from math import prod
 from msgspec.structs import replace
 
 from sysmlc.logic.contract import Owner
-from sysmlc.synthesis.bdd.groups import tied
+from sysmlc.support.disjoint_sets import group_related
 from sysmlc.synthesis.bdd.manager import Node
 from sysmlc.synthesis.bdd.symbols import Symbols
 from sysmlc.synthesis.controllers.strategy import Functions, Mode, Strategy, extract_strategy
@@ -26,7 +26,7 @@ def split_game(game: Game) -> tuple[Game, ...]:
     related_names = [_variables_of(game, node) for node in _all_nodes(game)]
     for name, bits in game.definitions.items():
         related_names += [frozenset([name, *_variables_of(game, node)]) for node in bits.values()]
-    components = tied(game.symbols.variables, related_names)
+    components = group_related(game.symbols.variables, related_names)
     return (
         (game,)
         if len(components) == 1

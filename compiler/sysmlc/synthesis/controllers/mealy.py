@@ -52,8 +52,8 @@ class Machine(Struct, frozen=True):
         move.
         """
         move = self.find_move(state, last, now)
-        names = (one.name for one in self.outputs)
-        values = (value_of(one, last) for one in move.output)
+        names = (term.name for term in self.outputs)
+        values = (value_of(term, last) for term in move.output)
         return dict(zip(names, values, strict=True)), move.state
 
     def find_move(

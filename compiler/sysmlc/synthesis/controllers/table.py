@@ -64,8 +64,14 @@ class Table(Struct, frozen=True):
         """
         entry = self.modes[state - 1] if state else self.first
         variables = (*self.inputs, *self.outputs)
-        before = {one.name: encode_value(one, last[one.name]) for one in variables if last}
-        given = {one.name: encode_value(one, now[one.name]) for one in self.inputs}
+        before = {
+            variable.name: encode_value(variable, last[variable.name])
+            for variable in variables
+            if last
+        }
+        given = {
+            variable.name: encode_value(variable, now[variable.name]) for variable in self.inputs
+        }
         bits = [bool(self.value(place, before, given)) for place in entry.outputs]
         onward = [bool(self.value(place, before, given)) for place in entry.successors]
         return dict(_decode_row(self.outputs, bits)), onward.index(True) + 1
@@ -76,9 +82,9 @@ class Table(Struct, frozen=True):
         """What a node comes to, 0 or 1, for the bits of the variables before and in this step."""
         while place > 1:
             bit, low, high = self.nodes[place - 2]
-            one = self.bits[bit]
-            values = last if one.is_before else now
-            place = high if values[one.variable][one.place] else low
+            variable = self.bits[bit]
+            values = last if variable.is_before else now
+            place = high if values[variable.variable][variable.place] else low
         return place
 
 
@@ -183,7 +189,8 @@ class _Rebuild:
     def build(self) -> Table:
         """Build the table of the diagrams of the old nodes."""
         inputs, outputs = (
-            tuple(one.name for one in side) for side in (self._table.inputs, self._table.outputs)
+            tuple(variable.name for variable in side)
+            for side in (self._table.inputs, self._table.outputs)
         )
         modes = tuple(map(self._build_mode, self._table.modes))
         return build_table(
@@ -191,7 +198,7 @@ class _Rebuild:
         )
 
     def _build_mode(self, entry: Entry) -> Mode:
-        bits = self._symbols.all_bits(one.name for one in self._table.outputs)
+        bits = self._symbols.all_bits(variable.name for variable in self._table.outputs)
         outputs = {bit: self._nodes[place] for bit, place in zip(bits, entry.outputs, strict=True)}
         return Mode(outputs, tuple(self._nodes[place] for place in entry.successors))
 

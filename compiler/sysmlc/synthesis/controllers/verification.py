@@ -13,9 +13,9 @@ from msgspec.structs import replace
 from sysmlc.logic import domains
 from sysmlc.logic.contract import Class, Conjunct, Contract, Owner
 from sysmlc.logic.formula import Literal
+from sysmlc.support.disjoint_sets import group_related
 from sysmlc.synthesis.algebra.fair_systems import FairSystem, Runs, Universe
 from sysmlc.synthesis.algebra.traces import build_lasso, pick_state, shortest_path
-from sysmlc.synthesis.bdd.groups import tied
 from sysmlc.synthesis.bdd.manager import Manager, Node
 from sysmlc.synthesis.controllers.closed_loop import (
     ClosedLoop,
@@ -132,7 +132,9 @@ class _Verification:
         is_only = domains.size(self.state_variable.domain) == 1
         single_state = frozenset([self.state_variable.name] if is_only else [])
         related_names = [closed_loop.variables_of(node) - single_state for node in diagrams]
-        return [names | single_state for names in tied(self.symbols.variables, related_names)]
+        return [
+            names | single_state for names in group_related(self.symbols.variables, related_names)
+        ]
 
     def _passes_quick_check_of(
         self,

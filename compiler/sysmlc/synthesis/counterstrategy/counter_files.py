@@ -122,11 +122,11 @@ def distinguish_rows(
     while remaining:
         row, columns = remaining[0], list(range(len(remaining[0])))
         for column in list(columns):
-            fewer_columns = [one for one in columns if one != column]
+            fewer_columns = [candidate for candidate in columns if candidate != column]
             if not any(_agree_at(row, other_row, fewer_columns) for other_row in other_rows):
                 columns = fewer_columns
         yield row, columns
-        remaining = [one for one in remaining if not _agree_at(row, one, columns)]
+        remaining = [candidate for candidate in remaining if not _agree_at(row, candidate, columns)]
 
 
 def _agree_at(left: Row, right: Row, columns: Iterable[int]) -> bool:

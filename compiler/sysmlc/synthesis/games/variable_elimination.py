@@ -119,8 +119,8 @@ def _holds_initially(
     constraint = _conjunction(
         manager, (part.node for part in _parts_over(game, parts, frozenset(current_bits)))
     )
-    known = constraint & domain_constraint(symbols, other_names)
-    return all(known <= manager.var(bit).equiv(node) for bit, node in current_bits.items())
+    initial_states = constraint & domain_constraint(symbols, other_names)
+    return all(initial_states <= manager.var(bit).equiv(node) for bit, node in current_bits.items())
 
 
 def _substitute_definition(game: Game, name: str, definition: _Definition) -> Game:

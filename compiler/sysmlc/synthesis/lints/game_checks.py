@@ -1,4 +1,6 @@
-"""What games about a contract show: winning by waiting, by force, and for want of fairness."""
+"""Lints that need games and runs: vacuous wins, forced environments, missing fairness, dead ends of
+the environment, outputs without a frame condition.
+"""
 
 from collections.abc import Callable, Iterable, Iterator
 
@@ -27,60 +29,72 @@ from sysmlc.synthesis.lints.text_checks import LintFinding, state_assumptions_of
 
 ManagerFactory = Callable[[], Manager]
 _MAX_TRIED = 40
-"""Assumptions that are tried one by one to say which is to blame."""
+"""Assumptions that are removed one by one to find the culprits."""
 
 
-def check_games(contract: Contract, new: ManagerFactory) -> Iterator[LintFinding]:
-    """Remarks about how a contract is won or lost; every game has a manager of its own."""
-    if not is_won(contract, new):
-        yield from _suggest_fairness(contract, new)
+def check_games(contract: Contract, create_manager: ManagerFactory) -> Iterator[LintFinding]:
+    """Yield findings about how a contract is won or lost; every game has its own manager."""
+    if not is_won(contract, create_manager):
+        yield from _suggest_fairness(contract, create_manager)
     elif _has_liveness((*contract.assumptions, *contract.guarantees)) and is_won(
-        _with_idle_outputs(contract), new
+        _with_idle_outputs(contract), create_manager
     ):
         yield LintFinding(rules.IDLE)
     elif _has_liveness(contract.assumptions) and _has_liveness(contract.guarantees):
-        yield from _check_needless_fairness(contract, new)
-    if is_forced(contract, new):
-        yield LintFinding(rules.NOT_SEPARATED, said=_culprits(contract, new))
+        yield from _check_needless_fairness(contract, create_manager)
+    if is_forced(contract, create_manager):
+        yield LintFinding(rules.NOT_SEPARATED, said=_describe_culprits(contract, create_manager))
 
 
-def is_won(contract: Contract, new: ManagerFactory) -> bool:
-    """Whether some component keeps the contract."""
-    return solve(make_game(contract, new()), is_complete=False).is_realizable
+def is_won(contract: Contract, create_manager: ManagerFactory) -> bool:
+    """Return whether the contract is realizable."""
+    return solve(make_game(contract, create_manager()), is_complete=False).is_realizable
 
 
-def _check_needless_fairness(contract: Contract, new: ManagerFactory) -> Iterator[LintFinding]:
-    """That what recurs is brought about although nothing that is assumed recurs."""
-    left = tuple(one for one in contract.assumptions if one.class_ is not Class.LIVENESS)
-    if is_won(replace(contract, assumptions=left), new):
+def _check_needless_fairness(
+    contract: Contract, create_manager: ManagerFactory
+) -> Iterator[LintFinding]:
+    """Report liveness guarantees that hold although no liveness assumption does."""
+    safety_assumptions = tuple(
+        assumption for assumption in contract.assumptions if assumption.class_ is not Class.LIVENESS
+    )
+    if is_won(replace(contract, assumptions=safety_assumptions), create_manager):
         yield LintFinding(rules.NEEDLESS)
 
 
 def _has_liveness(conjuncts: Iterable[Conjunct]) -> bool:
-    return any(one.class_ is Class.LIVENESS for one in conjuncts)
+    return any(conjunct.class_ is Class.LIVENESS for conjunct in conjuncts)
 
 
 def _with_idle_outputs(contract: Contract) -> Contract:
-    """The same, with all outputs as they are."""
-    outputs = [one.name for one in contract.variables if one.owner is Owner.SYSTEM]
+    """Return the contract with all outputs constant."""
+    outputs = [variable.name for variable in contract.variables if variable.owner is Owner.SYSTEM]
     frames = (f.eq(Var(name, primed=True), Var(name)) for name in outputs)
-    same = tuple(Conjunct(one, Class.SAFETY, contract.origin) for one in frames)
-    return replace(contract, guarantees=(*contract.guarantees, *same))
+    frame_conjuncts = tuple(
+        Conjunct(variable, Class.SAFETY, contract.origin) for variable in frames
+    )
+    return replace(contract, guarantees=(*contract.guarantees, *frame_conjuncts))
 
 
 # -- fairness ----------------------------------------------------------------------------------
 
 
-def _suggest_fairness(contract: Contract, new: ManagerFactory) -> Iterator[LintFinding]:
-    """An assumption that would make a lost contract one that is kept."""
-    safe = tuple(one for one in contract.guarantees if one.class_ is not Class.LIVENESS)
-    if len(safe) == len(contract.guarantees) or not is_won(replace(contract, guarantees=safe), new):
+def _suggest_fairness(contract: Contract, create_manager: ManagerFactory) -> Iterator[LintFinding]:
+    """Report an assumption that would make an unrealizable contract realizable."""
+    safety_guarantees = tuple(
+        guarantee for guarantee in contract.guarantees if guarantee.class_ is not Class.LIVENESS
+    )
+    if len(safety_guarantees) == len(contract.guarantees) or not is_won(
+        replace(contract, guarantees=safety_guarantees), create_manager
+    ):
         return
-    for wanted in _input_predicates(contract):
-        more = Conjunct(wanted, Class.LIVENESS, contract.origin)
-        helped = replace(contract, assumptions=(*contract.assumptions, more))
-        if is_won(helped, new) and not is_forced(helped, new):
-            text = f", for instance if '{print_formula(wanted)}' recurred"
+    for condition in _input_predicates(contract):
+        assumption = Conjunct(condition, Class.LIVENESS, contract.origin)
+        extended_contract = replace(contract, assumptions=(*contract.assumptions, assumption))
+        if is_won(extended_contract, create_manager) and not is_forced(
+            extended_contract, create_manager
+        ):
+            text = f", for instance if '{print_formula(condition)}' recurred"
             yield LintFinding(rules.NO_FAIRNESS, said=text)
             return
 
@@ -106,41 +120,54 @@ def _value_predicates(variable: Variable) -> Iterator[Formula]:
 # -- separation --------------------------------------------------------------------------------
 
 
-def is_forced(contract: Contract, new: ManagerFactory) -> bool:
-    """Whether the component, keeping its safety, can make the assumptions fail from somewhere.
+def is_forced(contract: Contract, create_manager: ManagerFactory) -> bool:
+    """Return whether the component, keeping its safety guarantees, can force the environment to
+    break the assumptions from some reachable state.
 
-    Klein and Pnueli (2010), Maoz and Ringert (2016): it wins although what it owes is impossible.
-    They let it break its own safety too, which a component that wins may not.
+    Klein and Pnueli (2010), Maoz and Ringert (2016): the component wins although its goal is
+    impossible. They let it break its own safety guarantees too, which a component that wins may
+    not.
     """
-    never = Conjunct(f.FALSE, Class.LIVENESS, contract.origin)
-    safe = tuple(one for one in contract.guarantees if one.class_ is not Class.LIVENESS)
+    impossible_goal = Conjunct(f.FALSE, Class.LIVENESS, contract.origin)
+    safety_guarantees = tuple(
+        guarantee for guarantee in contract.guarantees if guarantee.class_ is not Class.LIVENESS
+    )
     game = make_game(
-        state_assumptions_of_next_step(replace(contract, guarantees=(*safe, never))), new()
+        state_assumptions_of_next_step(
+            replace(contract, guarantees=(*safety_guarantees, impossible_goal))
+        ),
+        create_manager(),
     )
     reachable = Runs(system_of_game(game)).reachable
     return reachable & solve(game).winning != game.manager.false
 
 
-def _culprits(contract: Contract, new: ManagerFactory) -> str:
-    """Assumptions without which the others cannot be broken by force, in words."""
+def _describe_culprits(contract: Contract, create_manager: ManagerFactory) -> str:
+    """Name the assumptions without which the others cannot be broken by force."""
     if len(contract.assumptions) > _MAX_TRIED:
         return ""
-    found = [one for one in contract.assumptions if not is_forced(_without(contract, one), new)]
-    texts = ", ".join(f"'{print_formula(one.formula)}'" for one in found)
+    culprits = [
+        assumption
+        for assumption in contract.assumptions
+        if not is_forced(_without_assumption(contract, assumption), create_manager)
+    ]
+    texts = ", ".join(f"'{print_formula(assumption.formula)}'" for assumption in culprits)
     return f"; not without {texts}" if texts else ""
 
 
-def _without(contract: Contract, conjunct: Conjunct) -> Contract:
-    left = tuple(one for one in contract.assumptions if one is not conjunct)
-    return replace(contract, assumptions=left)
+def _without_assumption(contract: Contract, conjunct: Conjunct) -> Contract:
+    remaining = tuple(
+        assumption for assumption in contract.assumptions if assumption is not conjunct
+    )
+    return replace(contract, assumptions=remaining)
 
 
 _MIN_QUANTITY_VALUES = 3
-"""Values from which on a whole number is a quantity, which jumps when nothing holds it."""
+"""Values from which on an integer is a quantity, which should not jump."""
 
 
 def check_runs(contract: Contract, manager: Manager) -> Iterator[LintFinding]:
-    """Dead ends of the environment, and outputs without a frame."""
+    """Yield findings about dead ends of the environment and outputs without a frame condition."""
     game = make_game(contract, manager)
     with manager.guard():
         yield from _check_game(contract, game)
@@ -149,59 +176,65 @@ def check_runs(contract: Contract, manager: Manager) -> Iterator[LintFinding]:
 def _check_game(contract: Contract, game: Game) -> Iterator[LintFinding]:
     manager = game.manager
     reachable = Runs(system_of_game(game)).reachable
-    alive = Product(manager, _nodes_of(game.assumptions), game.next_inputs)(manager.true)
-    dead = reachable & ~alive
-    if dead != manager.false:
-        yield LintFinding(rules.DEADLOCK, said=_describe_state(game, dead))
+    can_continue = Product(manager, _nodes_of(game.assumptions), game.next_inputs)(manager.true)
+    dead_ends = reachable & ~can_continue
+    if dead_ends != manager.false:
+        yield LintFinding(rules.DEADLOCK, said=_describe_state(game, dead_ends))
     for variable in contract.variables:
         if variable.owner is Owner.SYSTEM and not _has_unique_value(game, variable):
-            yield from _check_frame(game, variable, reachable & alive)
+            yield from _check_frame(game, variable, reachable & can_continue)
 
 
 def system_of_game(game: Game) -> FairSystem:
-    """The runs of all steps that both sides may take."""
-    init = game.manager.true
+    """Return the runs of all steps that both sides may take."""
+    initial = game.manager.true
     for part in (*game.init_assumptions, *game.init_guarantees):
-        init = init & part.node
+        initial = initial & part.node
     parts = (*_nodes_of(game.assumptions), *_nodes_of(game.guarantees))
-    return FairSystem(game.symbols, init, parts, _nodes_of(game.fairness))
+    return FairSystem(game.symbols, initial, parts, _nodes_of(game.fairness))
 
 
 def _has_unique_value(game: Game, variable: Variable) -> bool:
-    """Whether single guarantees leave no two values: most say what one output becomes."""
+    """Return whether single guarantees determine the output; most guarantees are about one
+    output.
+    """
     manager = game.manager
     bits = game.symbols.bits(variable.name, primed=True)
-    others = [bit for bit in game.next_outputs if bit not in bits]
-    left = manager.true
+    other_bits = [bit for bit in game.next_outputs if bit not in bits]
+    ambiguous = manager.true
     for node in _nodes_of(game.guarantees):
         if not manager.support(node).isdisjoint(bits):
-            left = left & _states_allowing_any_value(game, variable, manager.exist(others, node))
-    return left == manager.false
+            ambiguous = ambiguous & _states_allowing_any_value(
+                game, variable, manager.exist(other_bits, node)
+            )
+    return ambiguous == manager.false
 
 
 def _states_allowing_any_value(game: Game, variable: Variable, node: Node) -> Node:
-    """Where each value of the next step would do."""
-    manager, found = game.manager, game.manager.true
+    """Return the states in which each next value of the output is possible."""
+    manager, states = game.manager, game.manager.true
     bits = game.symbols.bits(variable.name, primed=True)
     for value in values(variable.domain):
         code = manager.cube(game.symbols.code(variable.name, value, primed=True))
-        found = found & manager.exist(bits, node & code)
-    return found
+        states = states & manager.exist(bits, node & code)
+    return states
 
 
 def _check_frame(game: Game, variable: Variable, states: Node) -> Iterator[LintFinding]:
-    moves = Product(game.manager, _nodes_of(game.assumptions), game.next_inputs)
-    free = _states_without_frame(game, variable)
+    product = Product(game.manager, _nodes_of(game.assumptions), game.next_inputs)
+    unconstrained = _states_without_frame(game, variable)
     if _is_quantity(variable):
-        where = states & moves(free)
-        is_free = where != game.manager.false
+        condition = states & product(unconstrained)
+        is_free = condition != game.manager.false
     else:
-        # A choice may be free in some steps; one that always is says nothing.
-        where = states
-        is_free = states & moves(~free) == game.manager.false
+        # A Boolean or enumeration may be free in some steps; report only outputs free in all.
+        condition = states
+        is_free = states & product(~unconstrained) == game.manager.false
     if is_free:
-        when = f"where {_describe_state(game, where)}" if where != states else "in any step"
-        yield LintFinding(rules.NO_FRAME, name=variable.name, said=when)
+        condition_text = (
+            f"where {_describe_state(game, condition)}" if condition != states else "in any step"
+        )
+        yield LintFinding(rules.NO_FRAME, name=variable.name, said=condition_text)
 
 
 def _is_quantity(variable: Variable) -> bool:
@@ -210,25 +243,25 @@ def _is_quantity(variable: Variable) -> bool:
 
 
 def _states_without_frame(game: Game, variable: Variable) -> Node:
-    """Where every value may come next, each with some values of the other outputs."""
+    """Return where every next value is possible, each with some values of the other outputs."""
     manager = game.manager
     bits = game.symbols.bits(variable.name, primed=True)
-    others = [bit for bit in game.next_outputs if bit not in bits]
-    join = Product(manager, _nodes_of(game.guarantees), others)
-    found = manager.true
+    other_bits = [bit for bit in game.next_outputs if bit not in bits]
+    join = Product(manager, _nodes_of(game.guarantees), other_bits)
+    states = manager.true
     for value in values(variable.domain):
         code = manager.cube(game.symbols.code(variable.name, value, primed=True))
-        found = found & manager.exist(bits, join(code))
-    return found
+        states = states & manager.exist(bits, join(code))
+    return states
 
 
 def _describe_state(game: Game, states: Node) -> str:
-    """One of the states, by the variables that make the difference."""
+    """Describe one of the states by the variables on which the states depend."""
     symbols, manager = game.symbols, game.manager
-    known = symbols.all_bits(symbols.variables)
-    found = symbols.decode(manager.pick(states, known) or {})
-    names = symbols.names(states) or tuple(found)
-    return ", ".join(f"{name}={print_literal(found[name])}" for name in names)
+    all_bits = symbols.all_bits(symbols.variables)
+    values = symbols.decode(manager.pick(states, all_bits) or {})
+    names = symbols.names(states) or tuple(values)
+    return ", ".join(f"{name}={print_literal(values[name])}" for name in names)
 
 
 def _nodes_of(parts: tuple[Constraint, ...]) -> tuple[Node, ...]:

@@ -1,4 +1,4 @@
-"""All checks of one contract, those of its text first; what needs a decision comes after."""
+"""All lints of one contract: first those of its text, then those that need runs and games."""
 
 from collections.abc import Callable, Iterator
 
@@ -15,34 +15,34 @@ from sysmlc.synthesis.lints.text_checks import (
 )
 
 Place = Callable[[str], Subject]
-"""From the origin of a contract or of a conjunct to what findings are about."""
+"""Maps the origin of a contract or conjunct to the subject of diagnostics."""
 
 
-def lint(contract: Contract, place: Place, sink: Sink, new: ManagerFactory) -> None:
-    """Report what is suspicious in a contract; ``new`` makes a manager for each question.
+def lint(contract: Contract, place: Place, sink: Sink, create_manager: ManagerFactory) -> None:
+    """Report suspicious properties of a contract; *new* creates a manager for each question.
 
-    Raises OutsideGr1Error for a contract that GR(1) cannot say, LimitError.
+    Raises OutsideGr1Error for a contract that GR(1) cannot express, LimitError.
     """
-    for remark in _find_all(contract, new):
-        origin = contract.origin if remark.conjunct is None else remark.conjunct.origin
-        formula = "" if remark.conjunct is None else print_formula(remark.conjunct.formula)
+    for finding in _find_all(contract, create_manager):
+        origin = contract.origin if finding.conjunct is None else finding.conjunct.origin
+        formula = "" if finding.conjunct is None else print_formula(finding.conjunct.formula)
         sink.report(
-            remark.rule,
+            finding.rule,
             place(origin),
             component=contract.component,
             formula=formula,
-            name=remark.name,
-            said=remark.said,
+            name=finding.name,
+            said=finding.said,
         )
 
 
-def _find_all(contract: Contract, new: ManagerFactory) -> Iterator[LintFinding]:
-    said = list(check_ownership(contract))
-    yield from said
-    if any(one.rule is rules.NEXT_IN_LIVENESS for one in said):
+def _find_all(contract: Contract, create_manager: ManagerFactory) -> Iterator[LintFinding]:
+    findings = list(check_ownership(contract))
+    yield from findings
+    if any(finding.rule is rules.NEXT_IN_LIVENESS for finding in findings):
         return
-    if find_environment_run(contract, new()) is None:
+    if find_environment_run(contract, create_manager()) is None:
         yield LintFinding(rules.NO_ENVIRONMENT)
         return
-    yield from check_runs(state_assumptions_of_next_step(contract), new())
-    yield from check_games(contract, new)
+    yield from check_runs(state_assumptions_of_next_step(contract), create_manager())
+    yield from check_games(contract, create_manager)

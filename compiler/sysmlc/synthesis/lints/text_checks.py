@@ -1,4 +1,4 @@
-"""What the text of a contract shows: who decides what is assumed and promised."""
+"""Lints of the text of a contract: who decides the assumptions and guarantees."""
 
 from collections.abc import Iterator
 
@@ -12,7 +12,7 @@ from sysmlc.synthesis.lints import rules
 
 
 class LintFinding(Struct, frozen=True):
-    """A finding about a conjunct, or about the contract when there is none."""
+    """A finding about a conjunct, or about the whole contract if there is no conjunct."""
 
     rule: Rule
     conjunct: Conjunct | None = None
@@ -21,8 +21,8 @@ class LintFinding(Struct, frozen=True):
 
 
 def check_ownership(contract: Contract) -> Iterator[LintFinding]:
-    """Conjuncts about what the other side decides, and primes where none may be."""
-    owners = {one.name: one.owner for one in contract.variables}
+    """Yield findings about conjuncts that the other side decides, and about misplaced primes."""
+    owners = {variable.name: variable.owner for variable in contract.variables}
     for conjunct in contract.assumptions:
         if _sole_owner(conjunct, owners) is Owner.SYSTEM:
             yield LintFinding(rules.WRONG_OWNER, conjunct, "assumes", "the component")
@@ -37,22 +37,27 @@ def check_ownership(contract: Contract) -> Iterator[LintFinding]:
 
 
 def state_assumptions_of_next_step(contract: Contract) -> Contract:
-    """The contract with what is assumed of inputs alone asked of the step that it is about.
+    """Return the contract with assumptions about inputs alone stated for the step that they are
+    about.
 
-    A game asks ``G p`` of the step that comes after: it would seem that the environment could break
-    it and come to a dead end, or be brought there.
+    A game checks ``G p`` in the step after: otherwise it would seem that the environment could
+    break the assumption and reach a dead end, or be forced there.
     """
-    inputs = {one.name for one in contract.variables if one.owner is Owner.ENVIRONMENT}
+    inputs = {
+        variable.name for variable in contract.variables if variable.owner is Owner.ENVIRONMENT
+    }
     return replace(
         contract,
         assumptions=tuple(
-            made for one in contract.assumptions for made in _split_assumption(one, inputs)
+            assumption
+            for variable in contract.assumptions
+            for assumption in _split_assumption(variable, inputs)
         ),
     )
 
 
 def _split_assumption(conjunct: Conjunct, inputs: set[str]) -> Iterator[Conjunct]:
-    names = {one.name for one in variables(conjunct.formula)}
+    names = {variable.name for variable in variables(conjunct.formula)}
     if (
         conjunct.class_ is not Class.SAFETY
         or not names <= inputs
@@ -65,19 +70,24 @@ def _split_assumption(conjunct: Conjunct, inputs: set[str]) -> Iterator[Conjunct
 
 
 def _sole_owner(conjunct: Conjunct, owners: dict[str, Owner]) -> Owner | None:
-    """Who alone decides whether it holds: of a step, the one whose next values it is about.
+    """Return the owner that alone decides whether the conjunct holds, or None.
 
-    What recurs may be brought about by the other side, through what it assumes or promises.
+    A conjunct about two steps is decided by the owner of the next values. A liveness conjunct has
+    no sole owner, because the other side may bring it about through its assumptions and guarantees.
     """
-    names = _primed_names(conjunct.formula) or {one.name for one in variables(conjunct.formula)}
-    found = {owners[name] for name in names if name in owners}
+    names = _primed_names(conjunct.formula) or {
+        variable.name for variable in variables(conjunct.formula)
+    }
+    found_owners = {owners[name] for name in names if name in owners}
     is_immediate = conjunct.class_ in (Class.INIT, Class.SAFETY)
-    return next(iter(found)) if len(found) == 1 and is_immediate else None
+    return next(iter(found_owners)) if len(found_owners) == 1 and is_immediate else None
 
 
 def _owners_of(conjunct: Conjunct, owners: dict[str, Owner]) -> set[Owner]:
-    return {owners[one.name] for one in variables(conjunct.formula) if one.name in owners}
+    return {
+        owners[variable.name] for variable in variables(conjunct.formula) if variable.name in owners
+    }
 
 
 def _primed_names(formula: Formula) -> set[str]:
-    return {one.name for one in variables(formula) if one.primed}
+    return {variable.name for variable in variables(formula) if variable.primed}

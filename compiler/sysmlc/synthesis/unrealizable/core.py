@@ -1,6 +1,8 @@
-"""Why a contract cannot be kept: guarantees that together cannot, while all but any one can.
+"""The unrealizable core of a contract: guarantees that cannot be satisfied together, while all but
+any one of them can.
 
-Assumptions stay.
+Assumptions stay. The search is Junker's QuickXplain (2004): halves are tried before single items,
+so that a small conflict among many items takes few checks.
 """
 
 from collections.abc import Callable, Sequence
@@ -16,82 +18,90 @@ from sysmlc.synthesis.games.variable_elimination import eliminate_determined_var
 
 T = TypeVar("T")
 MAX_CHECKS = 200
-"""Questions that are asked at most; what is left then may still be too many."""
+"""Checks at most; the result may not be minimal after them."""
 
 
 def minimal_conflict(
-    items: Sequence[T], is_conflict: Callable[[Sequence[T]], bool], most: int = MAX_CHECKS
+    items: Sequence[T], is_conflict: Callable[[Sequence[T]], bool], max_checks: int = MAX_CHECKS
 ) -> tuple[T, ...]:
-    """Items that conflict, of ``items`` that do, in their order.
+    """Return a conflicting subset of the conflicting *items*, in their order.
 
-    None of them can be left out, unless ``most`` questions were not enough to find that out.
+    No item of the result can be omitted, unless *most* checks were not enough to find that out.
     """
-    return _QuickXplain(items, is_conflict, most).run()
+    return _QuickXplain(items, is_conflict, max_checks).run()
 
 
 class _QuickXplain(Generic[T]):
     def __init__(
-        self, items: Sequence[T], is_conflict: Callable[[Sequence[T]], bool], most: int
+        self, items: Sequence[T], is_conflict: Callable[[Sequence[T]], bool], max_checks: int
     ) -> None:
         self._items = items
         self._is_conflict = is_conflict
-        self._left = most
+        self._checks_left = max_checks
 
     def run(self) -> tuple[T, ...]:
-        """The conflict."""
-        found = set(self._needed((), range(len(self._items)), is_new=True))
-        return tuple(one for at, one in enumerate(self._items) if at in found)
+        """Return the conflict."""
+        conflict = set(self._reduce((), range(len(self._items)), is_new=True))
+        return tuple(item for index, item in enumerate(self._items) if index in conflict)
 
-    def _needed(self, given: Sequence[int], among: Sequence[int], is_new: bool) -> tuple[int, ...]:
-        """What of ``among`` is needed for a conflict, when all of ``given`` is there."""
-        if is_new and self._ask(given):
+    def _reduce(
+        self, background: Sequence[int], candidates: Sequence[int], is_new: bool
+    ) -> tuple[int, ...]:
+        """Return the candidates that are needed for a conflict together with the background."""
+        if is_new and self._check(background):
             return ()
-        if len(among) == 1 or not self._left:
-            return tuple(among)
-        first, second = among[: len(among) // 2], among[len(among) // 2 :]
-        later = self._needed((*given, *first), second, is_new=bool(first))
-        return (*self._needed((*given, *later), first, is_new=bool(later)), *later)
+        if len(candidates) == 1 or not self._checks_left:
+            return tuple(candidates)
+        first, second = candidates[: len(candidates) // 2], candidates[len(candidates) // 2 :]
+        second_needed = self._reduce((*background, *first), second, is_new=bool(first))
+        return (
+            *self._reduce((*background, *second_needed), first, is_new=bool(second_needed)),
+            *second_needed,
+        )
 
-    def _ask(self, places: Sequence[int]) -> bool:
-        if not self._left:
+    def _check(self, indices: Sequence[int]) -> bool:
+        if not self._checks_left:
             return False
-        self._left -= 1
-        return self._is_conflict([self._items[at] for at in places])
+        self._checks_left -= 1
+        return self._is_conflict([self._items[index] for index in indices])
 
 
-def unrealizable_core(game: Game, most: int = MAX_CHECKS) -> tuple[Conjunct, ...]:
-    """Guarantees of a lost game that cannot be kept together, in the order of the contract.
+def unrealizable_core(game: Game, max_checks: int = MAX_CHECKS) -> tuple[Conjunct, ...]:
+    """Return guarantees of a lost game that cannot be satisfied together, in the order of the
+    contract.
 
-    None of them can be left out, unless ``most`` games were not enough to find that out. Empty
-    when the ranges of variables alone cannot be kept. Raises LimitError.
+    No guarantee can be omitted, unless *most* games were not enough to find that out. The result is
+    empty if the ranges of variables alone are unrealizable. Raises LimitError.
     """
     parts = (*game.init_guarantees, *game.guarantees, *game.goals)
-    promised = [one for one in parts if one.conjunct is not None]
-    found = minimal_conflict(
-        promised, lambda some: not is_won(_keep_guarantees(game, promised, some)), most
+    guarantees = [part for part in parts if part.conjunct is not None]
+    core = minimal_conflict(
+        guarantees,
+        lambda subset: not is_won(_keep_guarantees(game, guarantees, subset)),
+        max_checks,
     )
-    return tuple(one.conjunct for one in found if one.conjunct is not None)
+    return tuple(part.conjunct for part in core if part.conjunct is not None)
 
 
 def _keep_guarantees(
-    game: Game, promised: Sequence[Constraint], chosen: Sequence[Constraint]
+    game: Game, guarantees: Sequence[Constraint], kept_guarantees: Sequence[Constraint]
 ) -> Game:
-    """The game with some of what is promised, and the ranges."""
-    left_out = {id(one) for one in promised} - {id(one) for one in chosen}
+    """Return the game with some of the guarantees, and with the ranges."""
+    removed = {id(part) for part in guarantees} - {id(part) for part in kept_guarantees}
 
-    def of(parts: Sequence[Constraint]) -> tuple[Constraint, ...]:
-        return tuple(one for one in parts if id(one) not in left_out)
+    def filter_parts(parts: Sequence[Constraint]) -> tuple[Constraint, ...]:
+        return tuple(part for part in parts if id(part) not in removed)
 
     return replace(
         game,
-        init_guarantees=of(game.init_guarantees),
-        guarantees=of(game.guarantees),
-        goals=of(game.goals),
+        init_guarantees=filter_parts(game.init_guarantees),
+        guarantees=filter_parts(game.guarantees),
+        goals=filter_parts(game.goals),
     )
 
 
 def is_won(game: Game) -> bool:
-    """Whether a game is won; raises LimitError."""
+    """Return whether the system wins a game. Raises LimitError."""
     with game.manager.guard():
         arena = eliminate_commands(eliminate_determined_variables(game))
     return solve_arena(arena, is_complete=False).is_realizable

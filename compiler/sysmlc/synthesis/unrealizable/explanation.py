@@ -1,4 +1,10 @@
-"""Why a contract cannot be kept, in words: what conflicts, and what would help."""
+"""Explanations of unrealizable contracts: conflicting guarantees, and assumptions that would help.
+
+The candidates for assumptions take one simple thing from the environment: that an input recurs with
+a value, or that it stays as it is, always or while an output has a value (after Chatterjee,
+Henzinger, Jobstmann 2008; the candidates are ours). An assumption that the component could force
+the environment to break is no help.
+"""
 
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import islice
@@ -24,8 +30,10 @@ _PREFIXES = {
 
 
 def explain_unrealizability(game: Game, contract: Contract) -> Iterator[str]:
-    """The guarantees of a lost game that cannot be kept together, then assumptions that would
-    help, a line each; ``contract`` is the one that was written, before it was reduced to GR(1)."""
+    """Yield a line for each conflicting guarantee of a lost game, then for each helpful assumption.
+
+    *contract* is the one as it was written, before its reduction to GR(1).
+    """
     try:
         yield from _describe_conflict(game, contract)
     except LimitError as problem:
@@ -35,36 +43,42 @@ def explain_unrealizability(game: Game, contract: Contract) -> Iterator[str]:
         helpful = helpful_assumptions(game)
     except LimitError:
         return
-    for one in helpful:
-        yield f"it could be kept if this were assumed, {_print_conjunct(one)}"
+    for assumption in helpful:
+        yield f"it could be kept if this were assumed, {_print_conjunct(assumption)}"
 
 
 def _describe_conflict(game: Game, contract: Contract) -> Iterator[str]:
     parts = (*game.init_guarantees, *game.guarantees, *game.goals)
-    known = original_conjuncts((part.conjunct for part in parts if part.conjunct), contract)
+    guarantees = original_conjuncts((part.conjunct for part in parts if part.conjunct), contract)
     core = original_conjuncts(unrealizable_core(game), contract)
     yield (
-        f"these {len(core)} of {len(known)} guarantees cannot be kept together; "
+        f"these {len(core)} of {len(guarantees)} guarantees cannot be kept together; "
         "without any one of them the rest can:"
     )
-    for one in core:
-        text = f" ({one.text})" if one.text not in ("", print_formula(one.formula)) else ""
-        yield f"{_print_conjunct(one)}{text}"
+    for conjunct in core:
+        text = (
+            f" ({conjunct.text})"
+            if conjunct.text not in ("", print_formula(conjunct.formula))
+            else ""
+        )
+        yield f"{_print_conjunct(conjunct)}{text}"
 
 
 def original_conjuncts(conjuncts: Iterable[Conjunct], contract: Contract) -> list[Conjunct]:
-    """The conjuncts, each once; in place of what a guarantee was reduced to, the guarantee."""
-    written = {id(one) for one in contract.guarantees}
+    """Return the distinct conjuncts, with reduced ones replaced by the guarantee that they come
+    from.
+    """
+    guarantee_ids = {id(conjunct) for conjunct in contract.guarantees}
     formulas: dict[str, list[Conjunct]] = {}
-    for one in contract.guarantees:
-        if not is_plain(one):
-            formulas.setdefault(one.origin, []).append(one)
-    found: dict[int, Conjunct] = {}
-    for one in conjuncts:
-        of = [] if id(one) in written else formulas.get(one.origin, [])
-        kept = of[0] if len(of) == 1 else one
-        found.setdefault(id(kept), kept)
-    return list(found.values())
+    for conjunct in contract.guarantees:
+        if not is_plain(conjunct):
+            formulas.setdefault(conjunct.origin, []).append(conjunct)
+    result: dict[int, Conjunct] = {}
+    for conjunct in conjuncts:
+        guarantees = [] if id(conjunct) in guarantee_ids else formulas.get(conjunct.origin, [])
+        original = guarantees[0] if len(guarantees) == 1 else conjunct
+        result.setdefault(id(original), original)
+    return list(result.values())
 
 
 def _print_conjunct(conjunct: Conjunct) -> str:
@@ -72,78 +86,91 @@ def _print_conjunct(conjunct: Conjunct) -> str:
 
 
 MAX_TRIED = 60
-"""Assumptions that are tried, a game or two each; of large games fewer, by the square."""
+"""Assumptions that are tried, with one or two games each; fewer in large games, by the square."""
 _SMALL_GAME_BITS = 20
 """Bits up to which a game is small."""
 _MAX_VALUES = 6
-"""Values of a variable up to which each of them is tried."""
+"""Values of a variable up to which each value is tried."""
 
 
-def helpful_assumptions(game: Game, most: int = 3) -> tuple[Conjunct, ...]:
-    """Some assumptions each of which makes a lost game a won one; the simplest first.
+def helpful_assumptions(game: Game, max_assumptions: int = 3) -> tuple[Conjunct, ...]:
+    """Return assumptions each of which makes a lost game realizable, the simplest first.
 
     Raises LimitError.
     """
     bits = max(_SMALL_GAME_BITS, len(game.inputs) + len(game.outputs))
-    tried = islice(_candidate_assumptions(game), MAX_TRIED * _SMALL_GAME_BITS**2 // bits**2)
+    candidates = islice(_candidate_assumptions(game), MAX_TRIED * _SMALL_GAME_BITS**2 // bits**2)
     with game.manager.guard():
-        return tuple(islice((one for one in tried if _makes_realizable(game, one)), most))
+        return tuple(
+            islice(
+                (candidate for candidate in candidates if _makes_realizable(game, candidate)),
+                max_assumptions,
+            )
+        )
 
 
 def _candidate_assumptions(game: Game) -> Iterator[Conjunct]:
-    """What may be asked: that values recur, that inputs stay, then that they stay for a while."""
+    """Yield candidates: recurring values, constant inputs, inputs constant while an output has a
+    value.
+    """
     inputs = [game.symbols.variables[name] for name in game.names(Owner.ENVIRONMENT)]
     outputs = [game.symbols.variables[name] for name in game.names(Owner.SYSTEM)]
-    for one in inputs:
-        for now in _value_predicates(one):
-            yield Conjunct(now, Class.LIVENESS, one.origin)
-    for one in inputs:
-        yield Conjunct(_frame_condition(one), Class.SAFETY, one.origin)
-    for other in outputs:
-        for now in _value_predicates(other):
-            for one in inputs:
-                yield Conjunct(f.implies(now, _frame_condition(one)), Class.SAFETY, one.origin)
+    for input_variable in inputs:
+        for predicate in _value_predicates(input_variable):
+            yield Conjunct(predicate, Class.LIVENESS, input_variable.origin)
+    for input_variable in inputs:
+        yield Conjunct(_frame_condition(input_variable), Class.SAFETY, input_variable.origin)
+    for output in outputs:
+        for predicate in _value_predicates(output):
+            for input_variable in inputs:
+                yield Conjunct(
+                    f.implies(predicate, _frame_condition(input_variable)),
+                    Class.SAFETY,
+                    input_variable.origin,
+                )
 
 
 def _value_predicates(variable: Variable) -> Sequence[Formula]:
-    """That the variable has a value, for each of few."""
+    """Return the predicates that the variable has a value, for variables with few values."""
     if size(variable.domain) > _MAX_VALUES:
         return ()
-    found = f.var(variable.name)
+    variable_term = f.var(variable.name)
     return tuple(
-        (found if value else f.negate(found))
+        (variable_term if value else f.negate(variable_term))
         if isinstance(value, bool)
-        else f.eq(found, f.const(value))
+        else f.eq(variable_term, f.const(value))
         for value in values(variable.domain)
     )
 
 
 def _frame_condition(variable: Variable) -> Formula:
-    now = f.var(variable.name)
-    after = f.primed(now)
-    return (f.iff if isinstance(variable.domain, BooleanDomain) else f.eq)(after, now)
+    current = f.var(variable.name)
+    next_value = f.primed(current)
+    return (f.iff if isinstance(variable.domain, BooleanDomain) else f.eq)(next_value, current)
 
 
 def _makes_realizable(game: Game, assumption: Conjunct) -> bool:
     game.manager.check("looking for assumptions that would help")
     part = Constraint(game.symbols.bdd(assumption.formula), assumption)
     if assumption.class_ is Class.LIVENESS:
-        tried = replace(game, fairness=(*game.fairness, part))
+        extended_game = replace(game, fairness=(*game.fairness, part))
     else:
-        tried = replace(game, assumptions=(*game.assumptions, part))
-    return is_won(tried) and not is_won(_game_against_assumptions(tried))
+        extended_game = replace(game, assumptions=(*game.assumptions, part))
+    return is_won(extended_game) and not is_won(_game_against_assumptions(extended_game))
 
 
 def _game_against_assumptions(game: Game) -> Game:
-    """The game that the system wins when it can make the environment break an assumption."""
+    """Return the game that the system wins if it can force the environment to break an
+    assumption.
+    """
     false = Constraint(game.manager.false)
 
-    def of(parts: Sequence[Constraint]) -> tuple[Constraint, ...]:
-        return tuple(one for one in parts if one.conjunct is None)
+    def drop_guarantees(parts: Sequence[Constraint]) -> tuple[Constraint, ...]:
+        return tuple(part for part in parts if part.conjunct is None)
 
     return replace(
         game,
-        init_guarantees=of(game.init_guarantees),
-        guarantees=of(game.guarantees),
+        init_guarantees=drop_guarantees(game.init_guarantees),
+        guarantees=drop_guarantees(game.guarantees),
         goals=(false,),
     )
