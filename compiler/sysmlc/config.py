@@ -1,5 +1,6 @@
 """Configuration: ``sysmlc.toml`` or ``[tool.sysmlc]``, checked against its JSON Schema."""
 
+import json
 import os
 from collections.abc import Iterable, Mapping
 from pathlib import Path
@@ -110,7 +111,7 @@ def find(start: Path) -> Path | None:
             break
         if project.is_file():
             _refuse_outside(project, root)
-            if _tool_table(_parsed(project, _read(project))) is not None:
+            if _tool_table(_parse(project, _read(project))) is not None:
                 return project
     return None
 
@@ -214,7 +215,7 @@ def expand_files(config: Config, patterns: Iterable[str]) -> list[Path]:
 
 def _table(file: Path, text: str) -> dict[str, Any]:
     """Return the settings of a file. Raises ConfigError."""
-    table = _parsed(file, text)
+    table = _parse(file, text)
     if file.name == "pyproject.toml":
         table = _tool_table(table) or {}
     _validate(file, text, table)
@@ -231,7 +232,7 @@ def _read(file: Path) -> str:
     return text.replace("\r\n", "\n")
 
 
-def _parsed(file: Path, text: str) -> dict[str, Any]:
+def _parse(file: Path, text: str) -> dict[str, Any]:
     try:
         return parse_toml(text)
     except TomlError as problem:
@@ -245,7 +246,6 @@ def _tool_table(project: Mapping[str, Any]) -> dict[str, Any] | None:
 
 
 def _validate(file: Path, text: str, table: object) -> None:
-    import json
 
     from jsonschema import Draft202012Validator
 
@@ -253,15 +253,17 @@ def _validate(file: Path, text: str, table: object) -> None:
     validator = Draft202012Validator(json.loads(schema))
     errors = sorted(validator.iter_errors(table), key=lambda e: list(e.path))
     if errors:
-        raise ConfigError(_explained(file, text, errors[0]))
+        raise ConfigError(_explain(file, text, errors[0]))
 
 
-def _explained(file: Path, text: str, error: "ValidationError") -> str:
+def _explain(file: Path, text: str, error: "ValidationError") -> str:
     path = [str(part) for part in error.absolute_path]
     if error.validator == "additionalProperties":
-        known = cast("dict[str, object]", error.schema)["properties"]
-        key = next(key for key in cast("dict[str, object]", error.instance) if key not in known)  # type: ignore[operator]
-        advice = did_you_mean(key, cast("dict[str, object]", known))
+        schema = cast("dict[str, dict[str, object]]", error.schema)
+        properties = schema["properties"]
+        instance = cast("dict[str, object]", error.instance)
+        key = next(key for key in instance if key not in properties)
+        advice = did_you_mean(key, properties)
         return f"{file}:{_line(text, key)}: unknown key '{'.'.join([*path, key])}'; {advice}"
     key = next((part for part in reversed(path) if not part.isdigit()), "")
     message = error.message

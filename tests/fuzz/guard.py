@@ -140,7 +140,7 @@ def _command(args: list[str]) -> int:
     from sysmlc.cli import group
 
     try:
-        group._guarded(group.sysmlc, args, prog_name="sysmlc")
+        group.run_guarded(group.sysmlc, args, prog_name="sysmlc")
     except SystemExit as ended:
         return int(ended.code or 0)
     return 0

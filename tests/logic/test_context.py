@@ -6,7 +6,7 @@ from sysmlc.ir.text import parse_text
 from sysmlc.logic.contract import BooleanDomain, EnumerationDomain, IntegerDomain
 from sysmlc.logic.expressions.context import context_of
 from sysmlc.logic.expressions.elaborate import ElaborationError, Fault, Symbol, condition
-from sysmlc.logic.expressions.expression import parse_expression
+from sysmlc.logic.expressions.parsing import parse_expression
 from sysmlc.logic.formula import Const, Var
 from sysmlc.logic.printing import print_formula
 

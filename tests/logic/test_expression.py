@@ -18,11 +18,10 @@ from sysmlc.logic.expressions.expression import (
     Send,
     Unary,
     dotted,
-    parse_effect,
-    parse_expression,
     print_effect,
     print_expression,
 )
+from sysmlc.logic.expressions.parsing import parse_effect, parse_expression
 
 
 @pytest.mark.parametrize(

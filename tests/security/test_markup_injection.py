@@ -84,9 +84,9 @@ def test_cells_of_spreadsheets_are_no_formulas(text):
 
 
 def test_comments_of_plantuml_end_with_their_line():
-    comment = plantuml.comment("Gate\n@enduml\n!include /etc/passwd /' \u202e\\")
+    comment = plantuml.format_comment("Gate\n@enduml\n!include /etc/passwd /' \u202e\\")
     assert comment == r"Gate @enduml !include /etc/passwd / ' \u202e\ ."
-    assert plantuml.comment("Gate 'in'") == "Gate 'in'"
+    assert plantuml.format_comment("Gate 'in'") == "Gate 'in'"
 
 
 def test_titles_of_tlsf_stay_in_their_quotes():

@@ -7,6 +7,7 @@ import json
 import re
 from typing import TYPE_CHECKING
 
+from lxml import etree
 from msgspec import Struct
 
 from sysmlc.backends.base import EmitOptions
@@ -47,7 +48,6 @@ def feature_name(edge: Edge) -> str:
 
 def to_xmi(graph: Graph) -> str:
     """The graph as EMF XMI; ids become ``xmi:id``-free attributes that EMF resolves by path."""
-    from lxml import etree
 
     root = etree.Element(etree.QName(_IR, "Graph"), nsmap={"ir": _IR, "xmi": _XMI, "xsi": _XSI})
     root.set(etree.QName(_XMI, "version"), "2.0")
@@ -81,17 +81,16 @@ def _write(
 
 
 def _node(element: Element, parent: "Node", feature: str) -> "Node":
-    from lxml import etree
 
     node = etree.SubElement(parent, feature)
     node.set(etree.QName(_XSI, "type"), f"ir:{element.kind}")
-    node.set("id", _escaped(element.id))
-    node.set("name", _escaped(element.name))
-    node.set("source", _escaped(element.source))
+    node.set("id", _escape_text(element.id))
+    node.set("name", _escape_text(element.name))
+    node.set("source", _escape_text(element.source))
     node.set("ordinal", str(element.ordinal))
     for key in sorted(element.attrs):
         value = json.dumps(element.attrs[key])
-        etree.SubElement(node, "attrs", key=_escaped(key), value=value)
+        etree.SubElement(node, "attrs", key=_escape_text(key), value=value)
     return node
 
 
@@ -102,6 +101,8 @@ def _write_edges(graph: Graph, element: Element, node: "Node", paths: dict[str, 
             node.set(feature_name(edge), " ".join(paths[target.id] for target in targets))
 
 
-def _escaped(text: str) -> str:
-    """JSON without its quotes, so that control characters survive in XML attributes."""
+def _escape_text(text: str) -> str:
+    """Return *text* as JSON without its quotes, so that control characters survive in XML
+    attributes.
+    """
     return json.dumps(text)[1:-1]

@@ -109,7 +109,7 @@ def _print(files: "Sequence[FileReport]", form: str, every: bool) -> None:
 
 
 def _is_below(files: "Sequence[FileReport]", limit: float | None) -> bool:
-    from sysmlc.diagnostics.coverage import added, covered, with_meaning
+    from sysmlc.diagnostics.coverage import count_covered, sum_counts, with_meaning
 
-    total = added(file.totals for file in files)
-    return limit is not None and 100 * covered(total) < limit * with_meaning(total)
+    total = sum_counts(file.totals for file in files)
+    return limit is not None and 100 * count_covered(total) < limit * with_meaning(total)

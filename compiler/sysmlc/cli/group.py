@@ -86,7 +86,7 @@ def main() -> None:
     """Run the command line; a fault of our own is one sentence and exit code 2."""
     terminal.open_streams()
     try:
-        _guarded(sysmlc, prog_name="sysmlc")
+        run_guarded(sysmlc, prog_name="sysmlc")
     except SystemExit as end:
         is_measured = sys.gettrace() or sys.getprofile()
         if isinstance(end.code, int) and (not is_measured or terminal.find_stream_problems()):
@@ -94,7 +94,8 @@ def main() -> None:
         raise
 
 
-def _guarded(run: Callable[_P, _T], *args: _P.args, **kwargs: _P.kwargs) -> _T:
+def run_guarded(run: Callable[_P, _T], *args: _P.args, **kwargs: _P.kwargs) -> _T:
+    """Run a command; end an internal fault with one sentence and exit code 2."""
     try:
         return run(*args, **kwargs)
     except RecursionError:

@@ -82,11 +82,11 @@ class Limits:
         """
         if self._shared is not None:
             self._shared.start_build(input_digest)
-        with self.timed():
+        with self.apply_to_block():
             yield
 
     @contextmanager
-    def timed(self) -> Iterator[None]:
+    def apply_to_block(self) -> Iterator[None]:
         """Apply the limits to the work of the block, which may read configurations anew."""
         self._start, self._is_timed = time.monotonic(), True
         self._set(*self._options)

@@ -71,11 +71,11 @@ def localize_name(root: Path, name: str) -> str:
 
 def print_findings(findings: "Iterable[Finding]", settings: "Settings") -> None:
     """Print findings in the form that the user selected."""
-    from sysmlc.diagnostics.render import XPATH_FORMATS, render, shortened
+    from sysmlc.diagnostics.render import XPATH_FORMATS, render, shorten
 
     on_stdout = settings.form in _FORMS_ON_STDOUT
     stream = sys.stdout if on_stdout else sys.stderr
-    report = shortened(findings, _find_limit(settings))
+    report = shorten(findings, _find_limit(settings))
     if settings.form not in XPATH_FORMATS and not settings.verbose:
         without_xpath = tuple(
             replace(finding, xpath="") if finding.xpath else finding for finding in report.findings

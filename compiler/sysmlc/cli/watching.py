@@ -118,7 +118,7 @@ class Watch:
             if stamp is None and path not in self._named:
                 del self._paths[path]
         self._built = {path: self._built.get(path) for path in self._paths}
-        with LIMITS.timed():
+        with LIMITS.apply_to_block():
             for unit in units:
                 publish(unit, self._settings, self._keep_going)
         self._left += 1
@@ -167,7 +167,7 @@ class Watch:
 
         if not units:
             return True
-        with LIMITS.timed():
+        with LIMITS.apply_to_block():
             config = session.load_config(self._models, self._settings)
             opened_units = open_units(self._models, config, self._settings, self._output)
         current = [unit.opened.inputs() for unit in opened_units]

@@ -98,7 +98,7 @@ class Coverage:
     def as_json(self) -> dict[str, object]:
         """The content of ``coverage.json`` (design, section 4)."""
         files = self.files()
-        total = added(f.totals() for f in files)
+        total = sum_counts(f.totals() for f in files)
         rows = [
             {"file": f.file, "elements": f.elements, **f.totals(), "by_type": f.by_type()}
             for f in files
@@ -109,11 +109,11 @@ class Coverage:
 # -- arithmetic --------------------------------------------------------------------------------
 
 
-def added(counts: Iterable[Counts]) -> dict[str, int]:
-    """The sum of several counts, with every verdict."""
+def sum_counts(counts: Iterable[Counts]) -> dict[str, int]:
+    """Return the sum of several counts, with every verdict."""
     total = dict.fromkeys((v.value for v in Verdict), 0)
-    for one in counts:
-        for name, number in one.items():
+    for count in counts:
+        for name, number in count.items():
             total[name] += number
     return total
 
@@ -123,8 +123,10 @@ def with_meaning(counts: Counts) -> int:
     return sum(counts.values()) - counts.get(Verdict.IGNORED_NOTATION.value, 0)
 
 
-def covered(counts: Counts) -> int:
-    """Number of elements whose whole meaning is in the graph, if only as a stand-in."""
+def count_covered(counts: Counts) -> int:
+    """Return the number of elements whose whole meaning is in the graph, external stubs
+    included.
+    """
     return counts.get(Verdict.MAPPED.value, 0) + counts.get(Verdict.EXTERNAL.value, 0)
 
 
@@ -134,7 +136,7 @@ def covered_tenths(counts: Counts) -> int:
     1000 means all, so that no loss is rounded away; nothing to cover is covered.
     """
     whole = with_meaning(counts)
-    return 1000 * covered(counts) // whole if whole else 1000
+    return 1000 * count_covered(counts) // whole if whole else 1000
 
 
 def tenths(counts: Counts) -> dict[str, int]:

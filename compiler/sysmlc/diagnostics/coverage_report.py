@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 
 from msgspec import Struct
 
-from sysmlc.diagnostics.coverage import Coverage, Loss, Verdict, added, covered_tenths
+from sysmlc.diagnostics.coverage import Coverage, Loss, Verdict, covered_tenths, sum_counts
 from sysmlc.diagnostics.diagnostic import Place
 from sysmlc.diagnostics.locate import Location, locate
 from sysmlc.sources import Source
@@ -80,7 +80,7 @@ def type_reports(files: Iterable[FileReport]) -> list[TypeReport]:
     every = [
         TypeReport(
             name,
-            added(file.by_type[name] for file in files if name in file.by_type),
+            sum_counts(file.by_type[name] for file in files if name in file.by_type),
             tuple(lost.get(name, ())),
         )
         for name in names

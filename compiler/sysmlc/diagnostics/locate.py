@@ -111,7 +111,7 @@ def _offsets(source: Source, ordinals: set[int]) -> dict[int, int]:
     scanned = start_tags(source.data)
     if scanned is not None:
         return {ordinal: scanned[ordinal] for ordinal in ordinals if ordinal < len(scanned)}
-    return _parsed(source, ordinals)
+    return _compute_offsets(source, ordinals)
 
 
 def start_tags(data: bytes) -> list[int] | None:
@@ -127,23 +127,23 @@ def start_tags(data: bytes) -> list[int] | None:
     return [found.start() for found in _START_TAG.finditer(data, body)]
 
 
-def _parsed(source: Source, ordinals: set[int]) -> dict[int, int]:
-    found: dict[int, int] = {}
-    made = parser()
+def _compute_offsets(source: Source, ordinals: set[int]) -> dict[int, int]:
+    offsets: dict[int, int] = {}
+    xml_parser = parser()
     last = max(ordinals)
-    seen = iter(range(last + 1))
+    counter = iter(range(last + 1))
 
     def start(_name: str, _attributes: dict[str, str]) -> None:
-        ordinal = next(seen, -1)
+        ordinal = next(counter, -1)
         if ordinal in ordinals:
-            found[ordinal] = made.CurrentByteIndex
+            offsets[ordinal] = xml_parser.CurrentByteIndex
         if ordinal == last:
-            made.StartElementHandler = None
+            xml_parser.StartElementHandler = None
 
-    made.StartElementHandler = start
+    xml_parser.StartElementHandler = start
     with suppress(SourceError):
-        parse(source, made)
-    return found
+        parse(source, xml_parser)
+    return offsets
 
 
 class _Text:
@@ -160,7 +160,7 @@ class _Text:
 
     def location(self, offset: int, path: str = "") -> Location:
         """Location of a byte."""
-        return self._located(*self.position(offset), path)
+        return self._make_location(*self.position(offset), path)
 
     def positions(self, offsets: Mapping[int, int]) -> Iterator[tuple[int, tuple[int, int]]]:
         """Line and column of many bytes, each with what stands for it."""
@@ -185,9 +185,9 @@ class _Text:
 
     def line(self, place: Place) -> Location:
         """Location of a place whose line is known already."""
-        return self._located(place.line, max(place.column, 1))
+        return self._make_location(place.line, max(place.column, 1))
 
-    def _located(self, line: int, column: int, path: str = "") -> Location:
+    def _make_location(self, line: int, column: int, path: str = "") -> Location:
         start, end = self._bounds(line)
         shift = max(column - 1 - _AROUND, 0) if end - start > 2 * _AROUND else 0
         text = self._text[start + shift : min(start + shift + 2 * _AROUND, end)].rstrip("\r\n")

@@ -45,7 +45,7 @@ class Sink:
             return
         message = rule.phrase.format(**facts)
         if len(message) > _LONG:
-            facts = {name: _shortened(fact) for name, fact in facts.items()}
+            facts = {name: _shorten(fact) for name, fact in facts.items()}
             message = rule.phrase.format(**facts)
         advice = (help or rule.help).format(**facts)
         told = tuple(f"{note[:_LONG]}..." if len(note) > _LONG else note for note in notes)
@@ -82,6 +82,6 @@ class Sink:
         return any(found.is_error for found in self)
 
 
-def _shortened(fact: object) -> object:
-    """A text that would fill pages is shown by its beginning."""
+def _shorten(fact: object) -> object:
+    """Return a text that would fill pages by its beginning."""
     return f"{fact[:_SHOWN]}..." if isinstance(fact, str) and len(fact) > _SHOWN else fact

@@ -119,7 +119,7 @@ class _Search:
 
     def _test(self, name: str) -> tuple[str, str]:
         """The name as a step has it, and the name by which siblings are counted."""
-        uri, local, prefix = _parted(name)
+        uri, local, prefix = _split_name(name)
         if not uri:
             test = local
         elif prefix and self._namespaces.get(prefix) == uri:
@@ -130,8 +130,8 @@ class _Search:
         return made
 
 
-def _parted(name: str) -> tuple[str, str, str]:
-    """``namespace}local}prefix``, ``namespace}local`` or ``local`` as expat gives them."""
+def _split_name(name: str) -> tuple[str, str, str]:
+    """Split ``namespace}local}prefix``, ``namespace}local`` or ``local``, the names of expat."""
     parts = name.split(SEPARATOR)
     if len(parts) == 1:
         return "", name, ""

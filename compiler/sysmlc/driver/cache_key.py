@@ -13,6 +13,7 @@ from sysmlc import __version__
 from sysmlc.diagnostics import rule_page
 from sysmlc.driver import registry
 from sysmlc.driver.compilation import OpenedUnit, Request
+from sysmlc.language.library import find_library_path
 from sysmlc.sources import DEFAULT_LIMITS, SourceError
 from sysmlc.sources.whole import read_whole
 from sysmlc.support import resources
@@ -75,7 +76,6 @@ def _sort_items(value: object) -> object:
 
 
 def _digest_library(path: str) -> Iterator[str]:
-    from sysmlc.language.library import find_library_path
 
     folder = find_library_path(path or None)
     yield str(folder)

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
+from traceback import format_exc
 from typing import TYPE_CHECKING
 
 from msgspec import Struct, field
@@ -16,9 +17,11 @@ from sysmlc.driver.inputs import find_unit_root
 from sysmlc.driver.locations import Locator
 from sysmlc.driver.overlays import store_refinements
 from sysmlc.driver.reading import Reading, read_unit
+from sysmlc.driver.validation import validate
 from sysmlc.driver.withholding import find_withheld_artefacts
 from sysmlc.frontends.base import DiagramReader, Frontend
 from sysmlc.ir import Graph
+from sysmlc.ir.verify import verify
 from sysmlc.overlay import SUFFIX
 from sysmlc.passes.base import Pass
 from sysmlc.sources import Source, SourceError
@@ -226,8 +229,6 @@ class _CompilationRun:
     def _validate(self, reading: Reading) -> None:
         schemas = self._request.schemas
         if schemas is not None:
-            from sysmlc.driver.validation import validate
-
             self._run_guarded("schemas", lambda: validate(reading.recognised, schemas, self._sink))
 
     def _read_diagrams(self, frontend: Frontend, sources: list[Source]) -> bool:
@@ -248,7 +249,6 @@ class _CompilationRun:
         self._observer.after(step, self._graph)
         if not self._request.verify_each:
             return True
-        from sysmlc.ir.verify import verify
 
         problems = verify(self._graph)
         for problem in problems:
@@ -290,8 +290,6 @@ class _CompilationRun:
         except MemoryError:
             raise
         except Exception as problem:
-            from traceback import format_exc
-
             self._observer.fault(where, format_exc())
             text = f"{type(problem).__name__}: {problem}"
             self._sink.report(faults.INTERNAL_FAULT, Subject(), where=where, problem=text)

@@ -18,6 +18,7 @@ only the old pending manifest has the digest, else nobody would own them in step
 import errno
 import os
 from collections.abc import Collection, Iterable, Mapping
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 from msgspec import Struct
@@ -286,7 +287,6 @@ def _sync_all(paths: Collection[str]) -> None:
         for path in paths:
             sync(path)
         return
-    from concurrent.futures import ThreadPoolExecutor
 
     try:
         with ThreadPoolExecutor(_SYNCS) as pool:

@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from importlib import import_module
 from importlib.metadata import EntryPoint, entry_points
+from pkgutil import walk_packages
 from typing import TYPE_CHECKING, Any, cast
 
 from msgspec import Struct, structs
@@ -241,7 +242,6 @@ def _iter_modules(package: str) -> Iterator[str]:
             raise
         return
     yield package
-    from pkgutil import walk_packages
 
     paths, ignore = getattr(folder, "__path__", ()), lambda _: None
     for module in walk_packages(paths, f"{package}.", onerror=ignore):

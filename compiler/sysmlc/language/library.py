@@ -3,6 +3,7 @@
 import os
 from collections.abc import Iterable, Mapping
 from functools import lru_cache
+from importlib.util import find_spec
 from pathlib import Path
 
 from sysmlc.diagnostics import Sink
@@ -183,7 +184,6 @@ def _make_library(sources: tuple[Source, ...], label: str, is_core: bool) -> Lib
 
 def _find_installed() -> Path | None:
     """Return the folder of model files of the installed distribution, which is not imported."""
-    from importlib.util import find_spec
 
     try:
         spec = find_spec(_DISTRIBUTION)

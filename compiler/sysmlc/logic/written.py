@@ -16,10 +16,9 @@ from sysmlc.logic.expressions.expression import (
     Expression,
     ExpressionError,
     name_of,
-    parse_effect,
-    parse_expression,
     print_expression,
 )
+from sysmlc.logic.expressions.parsing import parse_effect, parse_expression
 
 _ASSIGNED = re.compile(r"([^\W\d]\w*)\s*:=")
 """The last names of what is assigned to where no name is in quotes."""

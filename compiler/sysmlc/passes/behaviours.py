@@ -150,7 +150,7 @@ def _parameter_directions(graph: Graph, owner: Element) -> list[str]:
 
 def _suggest_method(graph: Graph, sink: Sink, operation: Element) -> None:
     owner = graph.owner(operation)
-    if owner is None or "method" in _unresolved(operation):
+    if owner is None or "method" in _list_unresolved(operation):
         return
     for behavior in graph.owned(owner):
         is_unused = behavior.kind in BEHAVIORS and graph.source(behavior, Edge.METHOD) is None
@@ -170,7 +170,7 @@ def _check_call(graph: Graph, sink: Sink, action: Element) -> None:
     what, kinds = _CALLED[action.subkind]
     called = graph.target(action, Edge.CALLS)
     if called is None:
-        if Edge.CALLS.value not in _unresolved(action):
+        if Edge.CALLS.value not in _list_unresolved(action):
             empty = CALL_WITHOUT_BEHAVIOR if what == "behaviour" else CALL_OF_NOTHING
             name = graph.qualified_name(action)
             sink.report(empty, graph.subject(action), action=name, what=what)
@@ -203,7 +203,9 @@ def _count_parameters(graph: Graph, called: Element) -> tuple[int, int]:
 
 
 def _check_trigger(graph: Graph, sink: Sink, trigger: Element) -> None:
-    if trigger.subkind not in ("signal", "call") or Edge.TYPED_BY.value in _unresolved(trigger):
+    if trigger.subkind not in ("signal", "call") or Edge.TYPED_BY.value in _list_unresolved(
+        trigger
+    ):
         return
     if graph.target(trigger, Edge.TYPED_BY) is None:
         sink.report(
@@ -228,6 +230,6 @@ def _check_behavior(
     )
 
 
-def _unresolved(element: Element) -> tuple[object, ...]:
+def _list_unresolved(element: Element) -> tuple[object, ...]:
     unresolved = element.attrs.get("unresolved")
     return unresolved if isinstance(unresolved, tuple) else ()

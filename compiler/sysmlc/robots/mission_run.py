@@ -10,7 +10,7 @@ from sysmlc.robots.answers import Answers
 from sysmlc.robots.run_sets import RunSpace, difference
 from sysmlc.robots.study import STAY, Study
 from sysmlc.robots.world import Allocation, World
-from sysmlc.support.plantuml_text import label, plain
+from sysmlc.support.plantuml_text import escape_line, format_label
 
 
 class Moment(Struct, frozen=True):
@@ -116,9 +116,14 @@ def sequence_diagram(study: Study, moments: Sequence[Moment], title: str) -> str
     """Return the run as a PlantUML sequence diagram: assigned targets, evasions, reached
     targets.
     """
-    lines = ["@startuml", f"title {plain(title)}", "hide footbox", 'participant "mission" as m']
+    lines = [
+        "@startuml",
+        f"title {escape_line(title)}",
+        "hide footbox",
+        'participant "mission" as m',
+    ]
     lines += [
-        f'participant "{label(one.name)}" as r{robot_number}'
+        f'participant "{format_label(one.name)}" as r{robot_number}'
         for robot_number, one in enumerate(study.robots)
     ]
     target_cells = {one.cell for one in study.targets}
@@ -128,9 +133,9 @@ def sequence_diagram(study: Study, moments: Sequence[Moment], title: str) -> str
             if step and goal is not None and moments[step - 1].goals[robot] != goal:
                 arrow = "->" if goal in target_cells else "-[dashed]>"
                 place_name = describe_cell(study, goal).strip("'")
-                messages.append(f"m {arrow} r{robot} : {plain(place_name)}")
+                messages.append(f"m {arrow} r{robot} : {escape_line(place_name)}")
         for robot, target in moment.reached:
-            messages.append(f"r{robot} --> m : {plain(study.targets[target].name)} reached")
+            messages.append(f"r{robot} --> m : {escape_line(study.targets[target].name)} reached")
         if messages:
             lines += [f"== step {step} ==", *messages]
     return "\n".join((*lines, "@enduml", ""))

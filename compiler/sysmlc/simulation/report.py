@@ -7,7 +7,7 @@ from msgspec import Struct, field
 
 from sysmlc.logic.formula import Literal
 from sysmlc.support.escapes import escape_invisible
-from sysmlc.support.plantuml_text import plain
+from sysmlc.support.plantuml_text import escape_line
 
 Valuation = dict[str, Literal]
 
@@ -133,10 +133,10 @@ def _show_value(value: Literal | None) -> str:
 
 def _diagram_lines(result: Result) -> Iterator[str]:
     yield "@startuml"
-    yield f"title {plain(result.name)}"
+    yield f"title {escape_line(result.name)}"
     yield "hide footbox"
     yield "participant environment"
-    yield f'participant "{plain(result.component)}" as component'
+    yield f'participant "{escape_line(result.component)}" as component'
     previous: Valuation = {}
     for number, now in enumerate(result.trace):
         messages = list(_message_lines(result, previous, now))
@@ -157,13 +157,13 @@ def _message_lines(result: Result, before: Valuation, now: Valuation) -> Iterato
     changed = [name for name in now if now[name] != before.get(name, False)]
     for name in sorted(changed, key=lambda name: name not in result.inputs):
         arrow = "environment -> component" if name in result.inputs else "component -> environment"
-        yield f"{arrow} : {plain(name)} = {plain(_show_value(now[name]))}"
+        yield f"{arrow} : {escape_line(name)} = {escape_line(_show_value(now[name]))}"
 
 
 def _note_lines(result: Result) -> Iterator[str]:
     assert result.difference is not None
     difference = result.difference
     yield "note over component #FFDDDD"
-    yield f"  {plain(difference.variable)} is {plain(_show_value(difference.found))}"
-    yield f"  expected: {plain(_show_value(difference.expected))}"
+    yield f"  {escape_line(difference.variable)} is {escape_line(_show_value(difference.found))}"
+    yield f"  expected: {escape_line(_show_value(difference.expected))}"
     yield "end note"

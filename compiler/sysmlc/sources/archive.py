@@ -1,9 +1,11 @@
 """Archives (.mdzip, .kpar, .amlx) read entry by entry, with caps and without touching the disk."""
 
 import io
+import zipfile
 import zlib
 from collections.abc import Callable, Iterator
 from typing import IO, TYPE_CHECKING
+from zipfile import ZIP_DEFLATED, ZIP_STORED
 
 from sysmlc.sources.error import Fault, SourceError
 from sysmlc.sources.limits import DEFAULT_LIMITS, Limits
@@ -33,7 +35,6 @@ def entries(
     Raises SourceError for a damaged archive, names that are absolute, lead upwards or occur
     twice, other methods than stored and deflate, encryption, and what exceeds the limits.
     """
-    import zipfile
 
     try:
         with zipfile.ZipFile(io.BytesIO(archive.data)) as opened:
@@ -45,7 +46,6 @@ def entries(
 
 def names(archive: Source) -> list[str]:
     """Names of all entries, as the archive has them. Raises SourceError for a damaged archive."""
-    import zipfile
 
     try:
         with zipfile.ZipFile(io.BytesIO(archive.data)) as opened:
@@ -108,7 +108,6 @@ def _leads_out(entry: str) -> bool:
 
 
 def _check_method(name: str, info: "ZipInfo") -> None:
-    from zipfile import ZIP_DEFLATED, ZIP_STORED
 
     if info.compress_type not in (ZIP_STORED, ZIP_DEFLATED):
         message = f"entry '{info.filename}' is neither stored nor deflated"

@@ -29,10 +29,10 @@ _TRANSLATED = frozenset(
 )
 
 
-def declared(data: bytes) -> str:
-    """The encoding that the XML declaration names, or the empty string."""
-    found = _DECLARATION.match(data[:1024])
-    return found[1].decode("ascii") if found else ""
+def find_declared_encoding(data: bytes) -> str:
+    """Return the encoding that the XML declaration names, or an empty text."""
+    declaration = _DECLARATION.match(data[:1024])
+    return declaration[1].decode("ascii") if declaration else ""
 
 
 def codec(data: bytes) -> tuple[int, str]:
@@ -46,7 +46,7 @@ def codec(data: bytes) -> tuple[int, str]:
     for first, name in _FIRST:
         if data.startswith(first):
             return 0, name
-    return 0, _text_codec(declared(data)) or "latin-1"
+    return 0, _text_codec(find_declared_encoding(data)) or "latin-1"
 
 
 def in_utf8(source: Source) -> Source:
@@ -68,12 +68,12 @@ def in_utf8(source: Source) -> Source:
 
 def is_known(data: bytes) -> bool:
     """Whether the encoding that the declaration names, if any, is one of texts."""
-    return bool(_text_codec(declared(data)))
+    return bool(_text_codec(find_declared_encoding(data)))
 
 
 def fault(data: bytes) -> tuple[str, int] | None:
     """Why the bytes cannot be decoded and where, or None when they can."""
-    said = declared(data)
+    said = find_declared_encoding(data)
     if not is_known(data):
         return f"its encoding '{said}' is not known", data.find(said.encode())
     mark, name = codec(data)

@@ -86,7 +86,7 @@ def load_schemas(folder: Path) -> Schemas:
     closures = {path: _closure(path, folder) for path in files}
     loaded = {other for path, closure in closures.items() for other in closure if other != path}
     tops = [path for path in files if path.resolve() not in {one.resolve() for one in loaded}]
-    return Schemas(folder, tuple(_compiled(path, folder, closures[path]) for path in tops or files))
+    return Schemas(folder, tuple(_compile(path, folder, closures[path]) for path in tops or files))
 
 
 def _tree(path: Path, folder: Path) -> etree._ElementTree:
@@ -130,20 +130,22 @@ def _closure(top: Path, folder: Path) -> dict[Path, etree._ElementTree]:
     return found
 
 
-def _compiled(path: Path, folder: Path, closure: dict[Path, etree._ElementTree]) -> Schema:
+def _compile(path: Path, folder: Path, closure: dict[Path, etree._ElementTree]) -> Schema:
     name = escape_undecodable(path.relative_to(folder).as_posix())
     try:
         compiled = etree.XMLSchema(closure[path])
     except etree.XMLSchemaParseError as problem:
         raise SchemaError(f"the schema '{name}' is broken: {problem}") from problem
     namespace = closure[path].getroot().get("targetNamespace", "")
-    own = [
+    own_roots = [
         tree.getroot()
         for tree in closure.values()
         if tree.getroot().get("targetNamespace", namespace) == namespace
     ]
-    roots = {str(one.get("name")) for root in own for one in root.iterchildren(f"{_XS}element")}
-    attributes = (one for root in own for one in root.iter(f"{_XS}attribute"))
+    roots = {
+        str(one.get("name")) for root in own_roots for one in root.iterchildren(f"{_XS}element")
+    }
+    attributes = (one for root in own_roots for one in root.iter(f"{_XS}attribute"))
     versions = {one.get("fixed", "") for one in attributes if one.get("name") == _VERSION}
     return Schema(name, namespace, frozenset(roots), frozenset(versions - {""}), compiled)
 

@@ -33,7 +33,7 @@ def _attempt(path: Path, name: str, limits: Limits) -> tuple[bytes, _Seen, _Seen
             before = os.fstat(stream.fileno())
             _check(before, name, limits)
             data = stream.read(before.st_size + 1)
-            return data, _seen(before), _seen(os.fstat(stream.fileno()))
+            return data, _make_state(before), _make_state(os.fstat(stream.fileno()))
     except OSError as problem:
         message = f"cannot be opened: {problem.strerror or type(problem).__name__}"
         raise SourceError(message, name, fault=Fault.MISSING) from None
@@ -52,5 +52,5 @@ def _check(found: os.stat_result, name: str, limits: Limits) -> None:
         raise SourceError(message, name, fault=Fault.LIMIT)
 
 
-def _seen(found: os.stat_result) -> _Seen:
-    return found.st_size, found.st_mtime_ns
+def _make_state(status: os.stat_result) -> _Seen:
+    return status.st_size, status.st_mtime_ns

@@ -7,7 +7,7 @@ let a document with entities pass, so every DOCTYPE is refused before anything i
 from typing import NoReturn
 from xml.parsers import expat
 
-from sysmlc.sources.encoding import declared, fault, is_known
+from sysmlc.sources.encoding import fault, find_declared_encoding, is_known
 from sysmlc.sources.error import Fault, SourceError
 from sysmlc.sources.limits import DEFAULT_LIMITS, Limits
 from sysmlc.sources.source import Source
@@ -59,13 +59,13 @@ def parse(source: Source, made: Parser) -> None:
             raise LookupError("unknown")
         made.Parse(source.data, True)
     except expat.ExpatError as problem:
-        message, offset = _explained(problem, source, max(made.ErrorByteIndex, 0))
+        message, offset = _explain(problem, source, max(made.ErrorByteIndex, 0))
         raise SourceError(message, source.name, offset) from None
     except _DoctypeError:
         message = "it has a DOCTYPE, which is refused because entities can hide anything"
         raise SourceError(message, source.name, made.CurrentByteIndex, Fault.REFUSED) from None
     except (ValueError, LookupError) as problem:
-        unknown = f"its encoding '{declared(source.data)}' cannot be read: {problem}"
+        unknown = f"its encoding '{find_declared_encoding(source.data)}' cannot be read: {problem}"
         message, offset = fault(source.data) or (unknown, 0)
         raise SourceError(message, source.name, offset) from None
 
@@ -84,11 +84,13 @@ def _refuse_doctype(*_declaration: object) -> NoReturn:
     raise _DoctypeError
 
 
-def _explained(problem: expat.ExpatError, source: Source, offset: int) -> tuple[str, int]:
-    """What is wrong and where; bytes of another encoding are no matter of markup."""
+def _explain(problem: expat.ExpatError, source: Source, offset: int) -> tuple[str, int]:
+    """Return what is wrong and where; invalid bytes are an encoding fault, not one of the
+    markup.
+    """
     if problem.code == _INVALID_TOKEN and source.data[offset : offset + 1] >= b"\x80":
-        found = fault(source.data)
-        if found:
-            return found
+        encoding_fault = fault(source.data)
+        if encoding_fault:
+            return encoding_fault
     reason = expat.ErrorString(problem.code) or "unknown fault"
     return f"not well-formed XML: {reason}", offset

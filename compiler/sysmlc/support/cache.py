@@ -15,6 +15,7 @@ from pathlib import Path
 from secrets import token_hex
 
 from msgspec import Struct
+from platformdirs import user_cache_path
 
 VARIABLE = "SYSMLC_CACHE"
 """Environment variable: another folder for the cache, or ``off``."""
@@ -162,6 +163,5 @@ def _compute_digest(key: str, content: bytes) -> bytes:
 
 
 def _find_user_folder() -> Path:
-    from platformdirs import user_cache_path
 
     return user_cache_path("sysmlc", appauthor=False)

@@ -1,4 +1,4 @@
-"""Text that PlantUML shows as it is: escaped characters, wrapped lines, safe comments."""
+"""Text that PlantUML displays as written: escaped characters, wrapped lines, safe comments."""
 
 import re
 import textwrap
@@ -34,65 +34,74 @@ _JOINT = re.compile(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[_:./\-,;])(?=\w)")
 
 
 @lru_cache(_REMEMBERED)
-def plain(text: str) -> str:
-    """One line that PlantUML shows as written: markup, preprocessor and Unicode traps escaped."""
+def escape_line(text: str) -> str:
+    """Return one line that PlantUML displays as written.
+
+    Markup, preprocessor directives and Unicode traps are escaped.
+    """
     if len(text) <= _LONGEST and _HARMLESS.fullmatch(text):
         return text
-    line = " ".join(_visible(_shortened(text)).split())
-    return _TRAPS.sub(_untrapped, line)
+    line = " ".join(_replace_invalid(_truncate(text)).split())
+    return _TRAPS.sub(_escape_trap, line)
 
 
 @lru_cache(_REMEMBERED)
-def lines(text: str, width: int = WIDTH) -> tuple[str, ...]:
-    """The text in escaped lines of at most ``width`` characters; its own line ends are kept."""
+def wrap_lines(text: str, width: int = WIDTH) -> tuple[str, ...]:
+    """Return the text in escaped lines of at most *width* characters; its own line ends are
+    preserved.
+    """
     if len(text) <= width and _HARMLESS.fullmatch(text):
         return (text,)
-    rows = [row for part in _shortened(text).splitlines() for row in _wrapped(part, width)]
-    return tuple(plain(row) for row in rows if row.strip())
+    rows = [row for part in _truncate(text).splitlines() for row in _wrap(part, width)]
+    return tuple(escape_line(row) for row in rows if row.strip())
 
 
-def label(text: str, width: int = WIDTH) -> str:
-    """The text for a label between quotes or after a colon: lines joined by ``\\n``."""
-    return _BREAK.join(lines(text, width))
+def format_label(text: str, width: int = WIDTH) -> str:
+    """Return the text for a label between quotes or after a colon: lines joined by ``\\n``."""
+    return _BREAK.join(wrap_lines(text, width))
 
 
-def stack(rows: Iterable[str]) -> str:
-    """Rows that are escaped already, one above the other in one label."""
+def join_rows(rows: Iterable[str]) -> str:
+    """Join rows that are already escaped, one above the other in one label."""
     return _BREAK.join(row for row in rows if row)
 
 
-def small(text: str) -> str:
-    """Escaped text in the smaller size of keywords; empty text stays empty."""
+def shrink(text: str) -> str:
+    """Return escaped text in the smaller size of keywords; empty text stays empty."""
     return f"<size:10>{text}</size>" if text else ""
 
 
-def keyword_label(text: str) -> str:
-    """A label of a line; one that is only a keyword, ``«copy»``, would lose its guillemets."""
-    rows = lines(text)
-    return stack(map(small, rows)) if text.startswith("«") else stack(rows)
+def format_keyword_label(text: str) -> str:
+    """Return the label of a line; a label of only a keyword, ``«copy»``, would lose its
+    guillemets.
+    """
+    rows = wrap_lines(text)
+    return join_rows(map(shrink, rows)) if text.startswith("«") else join_rows(rows)
 
 
-def padded(text: str) -> str:
-    """The text for the end of a line, kept off the arrow head by a blank on each side."""
-    return stack(f"<U+00A0>{row}<U+00A0>" for row in lines(text))
+def pad_label(text: str) -> str:
+    """Return the text for the end of a line, with a blank on each side between it and the arrow
+    head.
+    """
+    return join_rows(f"<U+00A0>{row}<U+00A0>" for row in wrap_lines(text))
 
 
-def comment(text: str) -> str:
+def format_comment(text: str) -> str:
     """Return the text for a line comment that ends with its line.
 
     PlantUML joins a line that ends with a backslash with the next one, and starts a block comment
     at a slash with a quote.
     """
-    line = escape_invisible(" ".join(_shortened(text).split()))
+    line = escape_invisible(" ".join(_truncate(text).split()))
     line = line.replace("/'", "/ '").replace("'/", "' /")
     return f"{line} ." if line.endswith("\\") else line
 
 
-def _shortened(text: str) -> str:
+def _truncate(text: str) -> str:
     return text if len(text) <= _LONGEST else text[:_LONGEST] + "…"
 
 
-def _visible(text: str) -> str:
+def _replace_invalid(text: str) -> str:
     if text.isprintable():
         return text
     return "".join("\ufffd" if _is_invalid(char) else char for char in text)
@@ -104,32 +113,32 @@ def _is_invalid(char: str) -> bool:
     return unicodedata.category(char) in ("Cc", "Cs") or ord(char) & 0xFFFE == 0xFFFE
 
 
-def _untrapped(found: re.Match[str]) -> str:
-    """What stands for a character that PlantUML may read as something else."""
-    char = found[0]
+def _escape_trap(match: re.Match[str]) -> str:
+    """Return the replacement of a character that PlantUML may interpret."""
+    char = match[0]
     if char == "\\":
-        return _BACKSLASH_BEFORE_T if found.string.startswith("t", found.end()) else _escaped(char)
-    if found.start() == 0 and char not in _ALWAYS:
+        return _BACKSLASH_BEFORE_T if match.string.startswith("t", match.end()) else _escape(char)
+    if match.start() == 0 and char not in _ALWAYS:
         is_shown = char.isalnum() or char in _HARMLESS_FIRST or char > "\u02ff"
     else:
         is_shown = not char.isascii()
-    return char if is_shown and unicodedata.category(char) not in _UNSEEN else _escaped(char)
+    return char if is_shown and unicodedata.category(char) not in _UNSEEN else _escape(char)
 
 
-def _escaped(char: str) -> str:
+def _escape(char: str) -> str:
     return f"<U+{ord(char):04X}>" if ord(char) <= 0xFFFFF else char
 
 
-def _wrapped(text: str, width: int) -> list[str]:
+def _wrap(text: str, width: int) -> list[str]:
     if _BLANKS.search(text):
         rows = textwrap.wrap(text, width, break_long_words=False, break_on_hyphens=False)
     else:
-        rows = _filled(text.split(" "), width)
-    return [piece for row in rows for piece in _pieces(row, width)]
+        rows = _fill_rows(text.split(" "), width)
+    return [piece for row in rows for piece in _break_word(row, width)]
 
 
-def _filled(words: list[str], width: int) -> list[str]:
-    """Rows of words with one blank between, each as full as it can be."""
+def _fill_rows(words: list[str], width: int) -> list[str]:
+    """Return rows of words with one blank between them, each as full as possible."""
     rows, row = [], words[0]
     for word in words[1:]:
         if len(row) + 1 + len(word) <= width:
@@ -140,17 +149,17 @@ def _filled(words: list[str], width: int) -> list[str]:
     return [*rows, row]
 
 
-def _pieces(row: str, width: int) -> list[str]:
+def _break_word(row: str, width: int) -> list[str]:
     """Break a row that is one long word at its joints (camelCase, ``_``, ``::``), else anywhere."""
     if len(row) <= width:
         return [row]
-    done, current = [], ""
+    pieces, current = [], ""
     for word in _JOINT.split(row):
         if current and len(current) + len(word) > width:
-            done.append(current)
+            pieces.append(current)
             current = ""
         current += word
         while len(current) > width:
-            done.append(current[:width])
+            pieces.append(current[:width])
             current = current[width:]
-    return [*done, current] if current else done
+    return [*pieces, current] if current else pieces

@@ -1,6 +1,7 @@
 """TOML text with limits that end in a located message instead of a hang or an exhausted stack."""
 
 import re
+import tomllib
 from typing import Any
 
 _MAX_CHARACTERS = 1_000_000
@@ -29,7 +30,6 @@ class TomlError(Exception):
 
 def parse_toml(text: str) -> dict[str, Any]:
     """Return the table that *text* defines. Raises TomlError."""
-    import tomllib
 
     if len(text) > _MAX_CHARACTERS:
         raise TomlError(f"the file has more than {_MAX_CHARACTERS:,} characters", 1)

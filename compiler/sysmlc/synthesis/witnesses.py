@@ -12,7 +12,7 @@ from sysmlc.logic.contract import Class, Conjunct, Contract, Owner
 from sysmlc.logic.formula import Literal
 from sysmlc.logic.printing import print_formula, print_literal
 from sysmlc.support.file_names import assign_file_names
-from sysmlc.support.plantuml_text import label, plain
+from sysmlc.support.plantuml_text import escape_line, format_label
 from sysmlc.synthesis.algebra.refinement import Failure
 from sysmlc.synthesis.algebra.traces import Trace
 from sysmlc.synthesis.bdd.manager import Manager
@@ -85,8 +85,8 @@ def witness_files(witnesses: Iterable[Witness]) -> Iterator[tuple[str, str]]:
 
 def witness_diagram(witness: Witness) -> str:
     """Return the run as a sequence diagram, with the violated conjunct as its title."""
-    broken = label(print_temporal(witness.broken))
-    title = f"{label(witness.component)}\\nnot kept: {broken}"
+    broken = format_label(print_temporal(witness.broken))
+    title = f"{format_label(witness.component)}\\nnot kept: {broken}"
     hidden = _constant_variables(witness.trace, witness.broken)
     steps = tuple(
         {name: value for name, value in values.items() if name not in hidden}
@@ -105,7 +105,7 @@ def run_diagram(title: str, trace: Trace, parties: Sequence[Party]) -> str:
         "hide footbox",
         f"participant {_ENVIRONMENT} as p0",
         *(
-            f'participant "{plain(party.name)}" as p{index}'
+            f'participant "{escape_line(party.name)}" as p{index}'
             for index, party in enumerate(parties, 1)
         ),
     ]
@@ -142,9 +142,9 @@ def _diagram_messages(changed: Values, contracts: Sequence[Contract]) -> Iterato
     for (sender, receiver), names in sorted(names_by_arrow.items()):
         text = _print_values(changed, names)
         if sender == receiver:
-            yield f"hnote over p{sender} : {label(text)}"
+            yield f"hnote over p{sender} : {format_label(text)}"
         else:
-            yield f"p{sender} -> p{receiver} : {label(text)}"
+            yield f"p{sender} -> p{receiver} : {format_label(text)}"
 
 
 def _find_sender(name: str, contracts: Sequence[Contract]) -> int:

@@ -11,7 +11,7 @@ from hypothesis import Phase, example, given, settings
 from hypothesis import strategies as st
 
 from sysmlc.ir.text import parse_text
-from sysmlc.support.plantuml_text import lines, plain
+from sysmlc.support.plantuml_text import escape_line, wrap_lines
 
 NASTY = (
     '**bold** //it// __u__ ""mono"" ~~w~~ --s-- ~x',
@@ -163,7 +163,7 @@ def _letters(text: str) -> str:
     ],
 )
 def test_only_what_plantuml_would_read_as_markup_is_escaped(written, made):
-    assert plain(written) == made
+    assert escape_line(written) == made
 
 
 WORDS = st.lists(st.text("ab-_/ \t\n\xa0é", max_size=7), max_size=12).map(" ".join)
@@ -176,17 +176,17 @@ WORDS = st.lists(st.text("ab-_/ \t\n\xa0é", max_size=7), max_size=12).map(" ".j
 @example("words-that are as long as a line", 10)
 def test_lines_are_filled_as_textwrap_fills_them(text, width):
     for row in text.splitlines():
-        told = lines(row, width)
+        told = wrap_lines(row, width)
         full = textwrap.wrap(row, width, break_long_words=False, break_on_hyphens=False)
         if all(len(word) <= width for word in re.split(r"[ \t]", row)):
-            assert told == tuple(plain(one) for one in full if one.strip())
+            assert told == tuple(escape_line(one) for one in full if one.strip())
 
 
 @given(st.text("ab*/_-['\"\\t<>~%$& {}«»éλ#@|=+()1\u200b\ue000\xa0😀", max_size=8))
 def test_each_character_of_a_line_is_shown_or_escaped(text):
     line = " ".join(text.split())
-    shown = re.sub(r"<U\+([0-9A-F]{4,6})>", lambda found: chr(int(found[1], 16)), plain(text))
+    shown = re.sub(r"<U\+([0-9A-F]{4,6})>", lambda found: chr(int(found[1], 16)), escape_line(text))
     assert shown.replace("\\\u200bt", "\\t") == line
-    assert not set('"\\~%$&{') & set(re.sub(r"<U\+[0-9A-F]+>", "", plain(text)))
+    assert not set('"\\~%$&{') & set(re.sub(r"<U\+[0-9A-F]+>", "", escape_line(text)))
     for pair in ("**", "//", "__", "--", "[[", "/'", "'/", "''"):
-        assert pair not in plain(text)
+        assert pair not in escape_line(text)

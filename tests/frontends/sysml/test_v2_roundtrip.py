@@ -17,7 +17,8 @@ from sysmlc.frontends.sysml import FRONTEND
 from sysmlc.frontends.xmi import FRONTEND as XMI
 from sysmlc.ir import Graph, Kind
 from sysmlc.ir.compare import compare
-from sysmlc.logic.expressions.expression import ExpressionError, parse_expression, print_expression
+from sysmlc.logic.expressions.expression import ExpressionError, print_expression
+from sysmlc.logic.expressions.parsing import parse_expression
 from sysmlc.passes import pipeline
 from sysmlc.sources import Source
 

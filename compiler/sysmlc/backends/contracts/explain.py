@@ -181,7 +181,7 @@ def _name(graph: Graph, id: str) -> str:
     kind = _in_words(element.kind)
     if element.kind is Kind.TRANSITION or (element.kind in _FLOWS and not element.name):
         ends = [graph.target(element, edge) for edge in (Edge.FLOW_SOURCE, Edge.FLOW_TARGET)]
-        return f"{kind} {' to '.join(_quoted(_end(graph, end)) for end in ends if end is not None)}"
+        return f"{kind} {' to '.join(_quote(_end(graph, end)) for end in ends if end is not None)}"
     owner = next((up for up in graph.ancestors(element) if up.name), None)
     of = "" if owner is None or owner.kind is Kind.PACKAGE else f" of '{owner.name}'"
     return f"{kind} '{element.name}'{of}" if element.name else f"{kind}{of}"
@@ -198,7 +198,7 @@ def _end(graph: Graph, end: Element) -> Element:
     return owner or end
 
 
-def _quoted(vertex: Element) -> str:
+def _quote(vertex: Element) -> str:
     return f"'{vertex.name}'" if vertex.name else vertex.subkind or "its end"
 
 

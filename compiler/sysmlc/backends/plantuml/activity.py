@@ -15,7 +15,7 @@ from sysmlc.backends.plantuml.block_definition import ACTIVITY_NODES
 from sysmlc.backends.plantuml.state_machine import draw_parts, format_guard
 from sysmlc.backends.plantuml.views import Diagram, GraphView, Line, Node
 from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind
-from sysmlc.support.plantuml_text import label, plain, small, stack
+from sysmlc.support.plantuml_text import escape_line, format_label, join_rows, shrink
 
 TINTS = 6
 """Number of tints in ``_style.j2``; further partitions take them again."""
@@ -115,7 +115,7 @@ class _ActivityDrawing:
             nodes = self.graph.sources(partition, Edge.IN_PARTITION)
             if all(node.kind is Kind.CONTROL for node in nodes):
                 alias = self.aliases.make(partition.id, partition.name, "partition")
-                title = label(self._format_partition(partition))
+                title = format_label(self._format_partition(partition))
                 yield Node(alias, title, "lane", shows=(partition.id,))
 
     def _format_partition(self, partition: Element) -> str:
@@ -138,8 +138,8 @@ class _ActivityDrawing:
         self.homes[node.id] = alias
         self.homes.update(dict.fromkeys(look.pins, alias))
         lanes = self._list_written_partitions(node)
-        where = small(plain(", ".join(f"({lane})" for lane in lanes.values())))
-        title = stack([where, small(plain(labels.guillemets(look.words))), look.title])
+        where = shrink(escape_line(", ".join(f"({lane})" for lane in lanes.values())))
+        title = join_rows([where, shrink(escape_line(labels.guillemets(look.words))), look.title])
         return Node(
             alias,
             title,
@@ -188,14 +188,14 @@ class _ActivityDrawing:
         for node in (element for element in self.inside if "handlers" in element.attrs):
             for body, types in activity_nodes.iter_handlers(self.graph, node):
                 if node.id in self.homes and body in self.homes:
-                    text = label(" ".join(["⚡", ", ".join(types)]).strip(), _LABEL)
+                    text = format_label(" ".join(["⚡", ", ".join(types)]).strip(), _LABEL)
                     yield Line(self.homes[node.id], _INTERRUPTING, self.homes[body], text)
 
     def _make_line(self, flow: Element, source: Element, target: Element) -> Line:
         arrow = _CONTROL_FLOW if flow.kind is Kind.CONTROL_FLOW else _OBJECT_FLOW
         if flow.attrs.get("interrupts"):
             arrow = _INTERRUPTING
-        text = label(self._format_flow(flow, source, target), _LABEL)
+        text = format_label(self._format_flow(flow, source, target), _LABEL)
         owned = [item.id for item in self._list_owned(flow) if item.kind is not Kind.APPLICATION]
         shows = (flow.id, *owned)
         return Line(self.homes[source.id], arrow, self.homes[target.id], text, shows=shows)
@@ -238,7 +238,7 @@ def _group_by_section(
         section_nodes = tuple(remaining.pop(id) for id in ids if id in remaining)
         if section_nodes:
             alias = aliases.make(f"{owner.id} {title}", title, "section")
-            boxes.append(Node(alias, small(plain(title)), "section", children=section_nodes))
+            boxes.append(Node(alias, shrink(escape_line(title)), "section", children=section_nodes))
     return (*boxes, *remaining.values())
 
 

@@ -8,7 +8,7 @@ from sysmlc.backends.plantuml import labels
 from sysmlc.backends.plantuml.allocations import list_node_allocations
 from sysmlc.backends.plantuml.state_machine import format_trigger
 from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind
-from sysmlc.support.plantuml_text import label, lines
+from sysmlc.support.plantuml_text import format_label, wrap_lines
 
 _CONTROL = {
     "initial": "start",
@@ -76,7 +76,9 @@ def _look_of_control(graph: Graph, node: Element) -> Look:
     shape = _CONTROL.get(node.subkind, "control")
     if shape == "flowfinal":
         return Look("flowfinal", "<size:22>⊗</size>")
-    return Look(shape, label(labels.name(node)), note=label(_format_control_note(graph, node)))
+    return Look(
+        shape, format_label(labels.name(node)), note=format_label(_format_control_note(graph, node))
+    )
 
 
 def _format_control_note(graph: Graph, node: Element) -> str:
@@ -105,14 +107,14 @@ def _look_of_object(graph: Graph, node: Element) -> Look:
         words = {Kind.ACTIVITY_PARAMETER: (f"parameter {direction}" if direction else "parameter",)}
     shape = "store" if node.kind is Kind.DATA_STORE else "object"
     return Look(
-        shape, label(text), applied or words.get(node.kind, ()), _format_states(graph, node)
+        shape, format_label(text), applied or words.get(node.kind, ()), _format_states(graph, node)
     )
 
 
 def _format_states(graph: Graph, node: Element) -> tuple[str, ...]:
     """Return the row with the states of the objects in this node."""
     names = [s.name for s in graph.targets(node, Edge.REFERENCES) if s.kind is Kind.STATE]
-    return lines(f"[{', '.join(names)}]") if names else ()
+    return wrap_lines(f"[{', '.join(names)}]") if names else ()
 
 
 def _look_of_action(graph: Graph, node: Element) -> Look:
@@ -128,7 +130,7 @@ def _look_of_action(graph: Graph, node: Element) -> Look:
     allocations, ids = list_node_allocations(graph, node)
     return Look(
         _SHAPES.get(node.subkind, "structured" if node.kind is Kind.STRUCTURED else "action"),
-        label(_format_title(graph, node, behaviours)),
+        format_label(_format_title(graph, node, behaviours)),
         _list_keywords(graph, node),
         (*rows, *allocations),
         pins=tuple(pin.id for pin in pins),
@@ -163,24 +165,24 @@ def _iter_body_rows(node: Element) -> Iterator[str]:
     """Yield the body of an opaque action, or the value of a value action."""
     if node.attrs.get("body"):
         for part in labels.literal(node.attrs["body"]).splitlines():
-            yield from lines(part, _ROW)
+            yield from wrap_lines(part, _ROW)
     if "value" in node.attrs and node.name:
-        yield from lines(f"= {labels.literal(node.attrs['value'])}", _ROW)
+        yield from wrap_lines(f"= {labels.literal(node.attrs['value'])}", _ROW)
 
 
 def _iter_called_rows(node: Element, behaviours: list[Element]) -> Iterator[str]:
     for item in behaviours:
         if node.name and item.name.lower() != node.name.lower():
-            yield from lines(f"calls {labels.name(item)}", _ROW)
+            yield from wrap_lines(f"calls {labels.name(item)}", _ROW)
 
 
 def _iter_detail_rows(graph: Graph, node: Element, details: list[Element]) -> Iterator[str]:
     for item in details:
         if item.kind is Kind.TRIGGER:
             text = format_trigger(graph, item)
-            yield from lines(text, _ROW) if text != node.name else ()
+            yield from wrap_lines(text, _ROW) if text != node.name else ()
         else:
-            yield from lines(labels.condition(item), _ROW)
+            yield from wrap_lines(labels.condition(item), _ROW)
 
 
 def _format_pin(graph: Graph, pin: Element) -> tuple[str, ...]:
@@ -190,4 +192,4 @@ def _format_pin(graph: Graph, pin: Element) -> tuple[str, ...]:
     value = f" = {labels.literal(pin.attrs['value'])}" if "value" in pin.attrs else ""
     unit = f" {pin.attrs['value_unit']}" if "value_unit" in pin.attrs else ""
     text = f"{direction} {labels.format_typed(graph, pin, name)}{value}{unit}".strip()
-    return lines(text, _ROW)
+    return wrap_lines(text, _ROW)

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 from sysmlc.backends.plantuml import labels
 from sysmlc.ir import Edge, Element, Graph, Kind
-from sysmlc.support.plantuml_text import lines
+from sysmlc.support.plantuml_text import wrap_lines
 
 _WIDTH = 44
 _PLACES = (Kind.PROPERTY, Kind.PORT)
@@ -29,7 +29,7 @@ def list_node_allocations(graph: Graph, node: Element) -> tuple[list[str], list[
     rows: list[str] = []
     ids: list[str] = []
     for dependency, target in _iter_opposite_ends(graph, node, Edge.CLIENT):
-        rows += lines(f"allocated to {_format_opposite_end(graph, target)}", _WIDTH)
+        rows += wrap_lines(f"allocated to {_format_opposite_end(graph, target)}", _WIDTH)
         ids.append(dependency.id)
     return rows, ids
 
@@ -43,14 +43,14 @@ def list_block_allocations(graph: Graph, block: Element) -> tuple[list[str], lis
     for element in (block, *_list_features(graph, block)):
         for dependency, other in _iter_opposite_ends(graph, element, Edge.CLIENT):
             if not _has_line(element, other):
-                rows += lines(
+                rows += wrap_lines(
                     f"{_format_own_end(block, element)}→ {_format_opposite_end(graph, other)}",
                     _WIDTH,
                 )
                 ids.append(dependency.id)
         for dependency, other in _iter_opposite_ends(graph, element, Edge.SUPPLIER):
             if not _has_line(element, other) and not _has_row_at_client(graph, other):
-                rows += lines(
+                rows += wrap_lines(
                     f"{_format_own_end(block, element)}← {_format_opposite_end(graph, other)}",
                     _WIDTH,
                 )

@@ -26,7 +26,7 @@ from sysmlc.diagnostics import Severity, Sink, Subject, rule
 from sysmlc.ir import Graph
 from sysmlc.support.file_names import assign_file_names
 from sysmlc.support.output import Output
-from sysmlc.support.plantuml_text import comment
+from sysmlc.support.plantuml_text import format_comment
 from sysmlc.support.recursion import allow_recursion
 
 BAD_TEMPLATE = rule(
@@ -137,4 +137,4 @@ def _list_header_comments(diagram: Diagram, source: str) -> tuple[str, ...]:
     kind, name = diagram.heading
     parts = [f"{kind} of {name}", f"from {source}" if source else ""]
     parts.append("made by sysmlc; change the model, not this file")
-    return tuple(comment(part) for part in parts if part)
+    return tuple(format_comment(part) for part in parts if part)

@@ -6,7 +6,7 @@ from sysmlc.backends.plantuml import labels
 from sysmlc.backends.plantuml.aliases import Aliases
 from sysmlc.backends.plantuml.views import Note
 from sysmlc.ir import Edge, Element, Graph, Kind
-from sysmlc.support.plantuml_text import label, lines, stack
+from sysmlc.support.plantuml_text import format_label, join_rows, wrap_lines
 
 _WIDTH = 48
 _NOTED = (Kind.COMMENT, Kind.CONSTRAINT)
@@ -26,7 +26,9 @@ def make_notes(
     texts = tuple(
         _make_note(graph, item, aliases)
         for item in (graph.subtree(behaviour) if inside is None else inside)
-        if item.kind in _NOTED and _is_note(item, behaviour) and label(labels.note_text(item))
+        if item.kind in _NOTED
+        and _is_note(item, behaviour)
+        and format_label(labels.note_text(item))
     )
     kinds = (Kind.PARAMETER, *_FEATURES) if with_parameters else _FEATURES
     return (*_make_feature_note(graph, behaviour, aliases, kinds), *texts)
@@ -41,9 +43,9 @@ def _make_feature_note(
     members = [item for item in graph.owned(behaviour) if item.kind in kinds]
     if not members:
         return ()
-    rows = [row for item in members for row in lines(_format_feature(graph, item), _WIDTH)]
+    rows = [row for item in members for row in wrap_lines(_format_feature(graph, item), _WIDTH)]
     alias = aliases.make(f"features of {behaviour.id}", "", "note")
-    return (Note(alias, stack(rows), (), tuple(item.id for item in members)),)
+    return (Note(alias, join_rows(rows), (), tuple(item.id for item in members)),)
 
 
 def _format_feature(graph: Graph, item: Element) -> str:
@@ -61,4 +63,4 @@ def _make_note(graph: Graph, item: Element, aliases: Aliases) -> Note:
     about = about or ([item.owner] if item.owner else [])
     targets = tuple(aliases[id] for id in about if id in aliases)
     alias = aliases.make(item.id, "", "note")
-    return Note(alias, label(labels.note_text(item), _WIDTH), targets, (item.id,))
+    return Note(alias, format_label(labels.note_text(item), _WIDTH), targets, (item.id,))

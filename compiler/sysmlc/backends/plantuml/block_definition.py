@@ -11,7 +11,7 @@ from sysmlc.backends.plantuml.layout import arrange_boxes
 from sysmlc.backends.plantuml.relations import Relation, list_relations
 from sysmlc.backends.plantuml.views import Box, BoxView, Compartment, Diagram, Line
 from sysmlc.ir import Edge, Element, Graph, Kind
-from sysmlc.support.plantuml_text import keyword_label, lines, padded, plain
+from sysmlc.support.plantuml_text import escape_line, format_keyword_label, pad_label, wrap_lines
 
 CLASSIFIERS = (
     Kind.CLASS,
@@ -130,11 +130,11 @@ def _draw_package(
         yield Diagram(
             kind="bdd",
             name=partitioning.number_part(title, index, len(parts)),
-            frame=plain(f"bdd [package] {title}"),
+            frame=escape_line(f"bdd [package] {title}"),
             heading=("Block definition diagram", title),
             view=_build_view(graph, shown, inside, in_rows, rows),
             about=package or "",
-            footer=plain(partitioning.make_footer(index, len(parts), title)),
+            footer=escape_line(partitioning.make_footer(index, len(parts), title)),
         )
 
 
@@ -228,15 +228,15 @@ def make_line(relation: Relation, aliases: Aliases | Mapping[str, str]) -> Line:
     """Return the line between the aliases of both ends; the general classifier stands above."""
     if relation.arrow in _UPWARDS:
         upper, lower = aliases[relation.target], aliases[relation.source]
-        text = keyword_label(relation.label)
+        text = format_keyword_label(relation.label)
         return Line(upper, _UPWARDS[relation.arrow], lower, text, shows=relation.shows)
     return Line(
         aliases[relation.source],
         relation.arrow,
         aliases[relation.target],
-        keyword_label(relation.label),
-        padded(relation.near),
-        padded(relation.far),
+        format_keyword_label(relation.label),
+        pad_label(relation.near),
+        pad_label(relation.far),
         relation.shows,
     )
 
@@ -277,7 +277,7 @@ def add_client_rows(graph: Graph, box: Box, rows: list[Relation]) -> Box:
     if not rows:
         return box
     texts = (f"{labels.name(graph[relation.source])} {relation.label}".strip() for relation in rows)
-    client_rows = tuple(row for text in texts for row in lines(text, _CLIENT_WIDTH))
+    client_rows = tuple(row for text in texts for row in wrap_lines(text, _CLIENT_WIDTH))
     return replace(
         box,
         compartments=(*box.compartments, Compartment(_CLIENTS_TITLE, client_rows)),

@@ -8,7 +8,7 @@ from sysmlc.backends.plantuml.allocations import list_block_allocations
 from sysmlc.backends.plantuml.views import Box, Compartment
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.ir.query.units import is_quantity_kind, is_unit, quantity_kind_of, unit_of
-from sysmlc.support.plantuml_text import lines, plain, small, stack
+from sysmlc.support.plantuml_text import escape_line, join_rows, shrink, wrap_lines
 
 _BY_ROLE = {
     "value": "values",
@@ -83,13 +83,13 @@ def _find_compartment(feature: Element) -> str:
 def _format_rows(graph: Graph, feature: Element) -> tuple[str, ...]:
     text = _TEXTS.get(feature.kind)
     if text is not None:
-        return lines(text(graph, feature), _ROW)
+        return wrap_lines(text(graph, feature), _ROW)
     parts = (
         _format_keywords(graph, feature),
         labels.feature(graph, feature),
         _format_value_unit(graph, feature),
     )
-    return lines(" ".join(part for part in parts if part), _ROW)
+    return wrap_lines(" ".join(part for part in parts if part), _ROW)
 
 
 def _format_behaviour(graph: Graph, feature: Element) -> str:
@@ -132,13 +132,13 @@ def _format_keywords(graph: Graph, feature: Element) -> str:
 
 def make_heading(graph: Graph, item: Element, where: str = "") -> str:
     """Return the heading of a box: stereotypes, name, and the origin of a foreign element."""
-    words = small(plain(labels.guillemets(labels.keywords(graph, item))))
+    words = shrink(escape_line(labels.guillemets(labels.keywords(graph, item))))
     mark = "//" if item.attrs.get("abstract") else "**"
     is_instance = item.kind is Kind.INSTANCE
     own_text = labels.name(item) + labels.template(graph, item)
     text = labels.instance(graph, item) if is_instance else own_text
-    rows = [f"{mark}{row}{mark}" for row in lines(text)]
-    return stack([words, *rows, *(small(row) for row in lines(where, 48))])
+    rows = [f"{mark}{row}{mark}" for row in wrap_lines(text)]
+    return join_rows([words, *rows, *(shrink(row) for row in wrap_lines(where, 48))])
 
 
 def make_stub(graph: Graph, item: Element, aliases: Aliases) -> Box:
@@ -174,7 +174,9 @@ def list_measure_rows(graph: Graph, item: Element) -> tuple[str, ...]:
     measures = (("unit", unit_of(graph, item)), ("quantityKind", quantity_kind_of(graph, item)))
     pairs = ((title, element) for title, element in measures if element is not None)
     return tuple(
-        row for title, element in pairs for row in lines(f"{title} = {_format_measure(element)}")
+        row
+        for title, element in pairs
+        for row in wrap_lines(f"{title} = {_format_measure(element)}")
     )
 
 

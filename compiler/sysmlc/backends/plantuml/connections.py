@@ -12,7 +12,7 @@ from sysmlc.backends.plantuml.allocations import iter_feature_allocations
 from sysmlc.backends.plantuml.relations import format_conveyed
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.ir.query import DOMAINS, runs_both_ways
-from sysmlc.support.plantuml_text import keyword_label, label, stack
+from sysmlc.support.plantuml_text import format_keyword_label, format_label, join_rows
 
 
 class Path(Struct, frozen=True):
@@ -57,8 +57,8 @@ class Connection(Struct, frozen=True):
 
     def format_label(self) -> str:
         """Return the label of the line as PlantUML text."""
-        rows = [color_text(label(text), domain) for text, domain in self.carried]
-        return stack([keyword_label(self.label), *rows])
+        rows = [color_text(format_label(text), domain) for text, domain in self.carried]
+        return join_rows([format_keyword_label(self.label), *rows])
 
 
 FreeFlow = tuple[str, str, str]

@@ -21,7 +21,7 @@ from sysmlc.backends.plantuml.views import Diagram, InternalView, Line, PartView
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.ir.query import generals, opposite
 from sysmlc.ir.query.units import unit_of
-from sysmlc.support.plantuml_text import label, lines, plain, small, stack
+from sysmlc.support.plantuml_text import escape_line, format_label, join_rows, shrink, wrap_lines
 
 FORMS = {"in": "portin", "out": "portout"}
 """How ports are drawn, by direction."""
@@ -51,11 +51,13 @@ def _draw_block(graph: Graph, block: Element, flows: tuple[FreeFlow, ...]) -> It
         yield Diagram(
             kind="ibd",
             name=partitioning.number_part(title, index, len(parts)),
-            frame=plain(f"ibd [{_format_keywords(graph, block)}] {_format_title(graph, block)}"),
+            frame=escape_line(
+                f"ibd [{_format_keywords(graph, block)}] {_format_title(graph, block)}"
+            ),
             heading=("Internal block diagram", title),
             view=drawing.build_view(),
             about=block.id,
-            footer=plain(partitioning.make_footer(index, len(parts), title)),
+            footer=escape_line(partitioning.make_footer(index, len(parts), title)),
         )
 
 
@@ -183,7 +185,7 @@ class _InternalBlockDrawing:
         slots = _list_slots(self.graph, self.block)
         frame = PartView(
             self.aliases.make("frame", self.block.name, "block"),
-            stack(_format_slots(self.graph, slots)) or " ",
+            join_rows(_format_slots(self.graph, slots)) or " ",
             "frame",
             tuple(self._iter_ports((), _classifier_of(self.graph, self.block))),
             parts,
@@ -205,9 +207,9 @@ class _InternalBlockDrawing:
         values = () if instance is None else (instance.id, *(slot.id for slot in slots))
         return PartView(
             alias,
-            stack(
+            join_rows(
                 [
-                    small(plain(self._format_stereotypes(part))),
+                    shrink(escape_line(self._format_stereotypes(part))),
                     *embolden(_format_part(self.graph, part)),
                     *rows,
                 ]
@@ -272,8 +274,8 @@ class _InternalBlockDrawing:
         alias = self.aliases.make(_make_key((*path, *key)), port.name, "port")
         text = dotted_name if port.name.strip() else labels.format_typed(self.graph, port)
         form = FORMS.get(self._find_direction(key)) or self.sides.get((*path, *key), "port")
-        rows = (f"<back:#FFFFFF>{row}</back>" for row in lines(text, _PORT_WIDTH))
-        return PortView(alias, stack(rows), form, key)
+        rows = (f"<back:#FFFFFF>{row}</back>" for row in wrap_lines(text, _PORT_WIDTH))
+        return PortView(alias, join_rows(rows), form, key)
 
     def _find_direction(self, key: tuple[str, ...]) -> str:
         """Return the direction of the innermost port; conjugated ports around it reverse it."""
@@ -288,8 +290,8 @@ class _InternalBlockDrawing:
             connection.arrow,
             self._find_alias(connection.target),
             connection.format_label(),
-            label(connection.near),
-            label(connection.far),
+            format_label(connection.near),
+            format_label(connection.far),
             connection.shows,
         )
 
@@ -314,7 +316,7 @@ def _format_slots(graph: Graph, slots: list[Element]) -> list[str]:
     """Return the rows of the slots that have a value."""
     slots_with_value = [slot for slot in slots if "value" in slot.attrs]
     return [
-        small(plain(f"{slot.name} = {slot.attrs['value']}{_format_unit(graph, slot)}"))
+        shrink(escape_line(f"{slot.name} = {slot.attrs['value']}{_format_unit(graph, slot)}"))
         for slot in slots_with_value
     ]
 
@@ -328,7 +330,7 @@ def _format_unit(graph: Graph, slot: Element) -> str:
 
 def embolden(text: str) -> list[str]:
     """Return escaped lines in bold type."""
-    return [f"**{row}**" for row in lines(text)]
+    return [f"**{row}**" for row in wrap_lines(text)]
 
 
 def domains_of(lines: list[Connection]) -> tuple[str, ...]:

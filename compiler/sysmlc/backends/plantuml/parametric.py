@@ -18,7 +18,7 @@ from sysmlc.backends.plantuml.connections import Path, is_parametric, path_of
 from sysmlc.backends.plantuml.views import Diagram, InternalView, Line, PartView, PortView
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.ir.query import features, type_of
-from sysmlc.support.plantuml_text import label, lines, plain, small, stack
+from sysmlc.support.plantuml_text import escape_line, format_label, join_rows, shrink, wrap_lines
 
 OWNERS = (Kind.CLASS, Kind.COMPONENT)
 _DEEPEST = 4
@@ -187,11 +187,13 @@ def _draw_block(
         yield Diagram(
             kind="par",
             name=partitioning.number_part(title, index, len(parts)),
-            frame=plain(f"par [{' '.join(labels.keywords(graph, block))}] {labels.name(block)}"),
+            frame=escape_line(
+                f"par [{' '.join(labels.keywords(graph, block))}] {labels.name(block)}"
+            ),
             heading=("Parametric diagram", title),
             view=drawing.build_view(),
             about=block.id,
-            footer=plain(partitioning.make_footer(index, len(parts), title)),
+            footer=escape_line(partitioning.make_footer(index, len(parts), title)),
         )
 
 
@@ -282,15 +284,16 @@ class _ParametricDrawing:
         steps = ".".join(labels.name(self.graph[id]) for id in path)
         text = labels.format_typed(self.graph, shown, steps)
         rows = [
-            lines(labels.condition(condition), _ROW) for condition in self._list_conditions(law)
+            wrap_lines(labels.condition(condition), _ROW)
+            for condition in self._list_conditions(law)
         ]
-        words = small(plain(labels.guillemets(["constraint"]))) if law is not None else ""
+        words = shrink(escape_line(labels.guillemets(["constraint"]))) if law is not None else ""
         unit = format_unit(self.graph, shown) if law is None else ""
-        return stack(
+        return join_rows(
             [
                 words,
-                label(text),
-                label(unit),
+                format_label(text),
+                format_label(unit),
                 *(row for condition_rows in rows for row in condition_rows),
             ]
         )
@@ -314,7 +317,7 @@ class _ParametricDrawing:
             alias = self.aliases.make(
                 _make_key((*path, *key)), self.graph[key[-1]].name, "parameter"
             )
-            text = stack(f"<back:#FFFFFF>{row}</back>" for row in lines(name))
+            text = join_rows(f"<back:#FFFFFF>{row}</back>" for row in wrap_lines(name))
             form = "portout" if _make_key((*path, *key)) in self.right else "port"
             yield PortView(alias, text, form, key)
 

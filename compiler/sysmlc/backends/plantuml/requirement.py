@@ -9,7 +9,7 @@ from sysmlc.backends.plantuml.relations import REQUIREMENT_ROLES, Relation
 from sysmlc.backends.plantuml.views import Box, BoxView, Compartment, Diagram
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.ir.query import is_requirement
-from sysmlc.support.plantuml_text import lines, plain
+from sysmlc.support.plantuml_text import escape_line, wrap_lines
 
 _WORDS = {"derive": "deriveReqt"}
 _EDGES = {
@@ -95,11 +95,11 @@ def _draw_package(
         yield Diagram(
             kind="req",
             name=partitioning.number_part(title, index, len(parts)),
-            frame=plain(f"req [package] {title}"),
+            frame=escape_line(f"req [package] {title}"),
             heading=("Requirement diagram", title),
             view=_build_view(graph, [graph[id] for id in part], inside),
             about=package.id if package is not None else "",
-            footer=plain(partitioning.make_footer(index, len(parts), title)),
+            footer=escape_line(partitioning.make_footer(index, len(parts), title)),
         )
 
 
@@ -117,7 +117,7 @@ def make_box(graph: Graph, item: Element, aliases: Aliases) -> Box:
     """Return the box of a requirement, with id and text."""
     rows = [f"id = {item.attrs['req_id']}"] if item.attrs.get("req_id") else []
     rows += [f"text = {item.attrs['text']}"] if item.attrs.get("text") else []
-    text_rows = tuple(row for text in rows for row in lines(text, _TEXT_WIDTH))
+    text_rows = tuple(row for text in rows for row in wrap_lines(text, _TEXT_WIDTH))
     members = [part for part in graph.owned(item) if part.kind in _INSIDE]
     conditions = tuple(row for part in members for row in _format_row(graph, part))
     compartments = (Compartment("", text_rows), Compartment("constraints", conditions))
@@ -136,8 +136,8 @@ _INSIDE = (Kind.CONSTRAINT, Kind.PROPERTY)
 
 def _format_row(graph: Graph, part: Element) -> tuple[str, ...]:
     if part.kind is Kind.CONSTRAINT:
-        return lines(labels.condition(part), _TEXT_WIDTH)
-    return lines(labels.feature(graph, part), _TEXT_WIDTH)
+        return wrap_lines(labels.condition(part), _TEXT_WIDTH)
+    return wrap_lines(labels.feature(graph, part), _TEXT_WIDTH)
 
 
 def _make_other_box(graph: Graph, item: Element, aliases: Aliases) -> Box:

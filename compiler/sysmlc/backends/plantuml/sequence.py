@@ -17,7 +17,7 @@ from sysmlc.backends.plantuml.sequence_labels import (
 from sysmlc.backends.plantuml.views import Diagram, Participant, SequenceView, Step
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.ir.query import interactions
-from sysmlc.support.plantuml_text import label, lines, plain, small, stack
+from sysmlc.support.plantuml_text import escape_line, format_label, join_rows, shrink, wrap_lines
 
 _NOTE_WIDTH = 44
 
@@ -66,13 +66,13 @@ class Walk:
             if self.is_new(item)
         ]
         rows = [*texts, *(format_time(self.graph, item) for item in times_found)]
-        text = stack(row for part in rows for row in lines(part, _NOTE_WIDTH))
+        text = join_rows(row for part in rows for row in wrap_lines(part, _NOTE_WIDTH))
         return text, tuple(item.id for item in times_found)
 
     def iter_notes(self, item: Element, over: Sequence[str] = ()) -> Iterator[Step]:
         """Yield the notes about the element, over these lifelines or all."""
         for note in self._notes.get(item.id, ()):
-            text = label(labels.note_text(note), _NOTE_WIDTH)
+            text = format_label(labels.note_text(note), _NOTE_WIDTH)
             if self.is_new(note) and text:
                 yield Step("note", text, over=tuple(over), shows=(note.id,))
 
@@ -97,7 +97,7 @@ def _make_diagram(graph: Graph, interaction: Element, lifelines: list[Element]) 
     return Diagram(
         kind="sd",
         name=title,
-        frame=plain(f"sd {labels.name(interaction)}{labels.signature(graph, interaction)}"),
+        frame=escape_line(f"sd {labels.name(interaction)}{labels.signature(graph, interaction)}"),
         heading=("Sequence diagram", title),
         view=SequenceView(participants, tuple(iter_steps(graph, interaction, aliases))),
         about=interaction.id,
@@ -113,10 +113,10 @@ def _make_participant(graph: Graph, lifeline: Element, aliases: Aliases) -> Part
     shows = [lifeline.id]
     if represented is not None and represented.owner == lifeline.owner:
         shows.append(represented.id)
-    words = small(plain(labels.guillemets(labels.list_stereotypes(graph, lifeline))))
+    words = shrink(escape_line(labels.guillemets(labels.list_stereotypes(graph, lifeline))))
     return Participant(
         aliases.make(lifeline.id, _name_of_lifeline(graph, lifeline), "lifeline"),
-        stack([words, label(_format_lifeline(graph, lifeline), _HEAD_WIDTH)]),
+        join_rows([words, format_label(_format_lifeline(graph, lifeline), _HEAD_WIDTH)]),
         "actor" if _is_actor(graph, lifeline) else "participant",
         tuple(shows),
     )
@@ -289,7 +289,7 @@ def _iter_fragment(walk: Walk, item: Element) -> Iterator[Step]:
     elif item.subkind == "state-invariant":
         yield _make_invariant(walk, item)
     elif item.subkind == "continuation":
-        text = label(labels.name(item))
+        text = format_label(labels.name(item))
         yield Step("hnote", text, over=walk.list_lifelines(item), shows=(item.id,))
     else:
         yield from _iter_combined_fragment(walk, item)
@@ -301,7 +301,7 @@ def _make_use(walk: Walk, item: Element) -> Step:
     result = item.attrs.get("return_value")
     text = f"{', '.join(called) or labels.name(item)}{format_arguments(item)}"
     text += f" : {labels.literal(result)}" if result is not None else ""
-    return Step("ref", label(text), over=walk.list_lifelines(item), shows=(item.id,))
+    return Step("ref", format_label(text), over=walk.list_lifelines(item), shows=(item.id,))
 
 
 def _make_invariant(walk: Walk, item: Element) -> Step:
@@ -311,7 +311,7 @@ def _make_invariant(walk: Walk, item: Element) -> Step:
     texts = [
         str(constraint.attrs.get("body") or labels.name(constraint)) for constraint in constraints
     ]
-    text = stack(row for text in texts or [labels.name(item)] for row in lines(text))
+    text = join_rows(row for text in texts or [labels.name(item)] for row in wrap_lines(text))
     shows = (item.id, *(constraint.id for constraint in constraints))
     return Step("hnote", text, over=walk.list_lifelines(item), shows=shows)
 
@@ -336,7 +336,7 @@ def _iter_combined_fragment(walk: Walk, item: Element) -> Iterator[Step]:
 def _make_operand_head(walk: Walk, operand: Element) -> tuple[str, tuple[str, ...]]:
     """Return the text above an operand, and the ids that it shows."""
     guards = (guard.id for guard in walk.graph.targets(operand, Edge.GUARD))
-    return plain(format_operand(operand)), (operand.id, *guards)
+    return escape_line(format_operand(operand)), (operand.id, *guards)
 
 
 def _format_operator(walk: Walk, item: Element) -> str:
@@ -344,4 +344,4 @@ def _format_operator(walk: Walk, item: Element) -> str:
         return item.subkind
     gates = ", ".join(labels.name(gate) for gate in walk.graph.targets(item, Edge.REFERENCES))
     text = f"{item.subkind} {{{gates}}}" if gates else item.subkind
-    return f"group {plain(text)}"
+    return f"group {escape_line(text)}"

@@ -8,7 +8,7 @@ from sysmlc.backends.plantuml.behaviour_notes import make_notes
 from sysmlc.backends.plantuml.partitioning import split_view
 from sysmlc.backends.plantuml.views import Diagram, GraphView, Line, Node
 from sysmlc.ir import Edge, Element, Graph, Kind
-from sysmlc.support.plantuml_text import label, lines, plain, small, stack
+from sysmlc.support.plantuml_text import escape_line, format_label, join_rows, shrink, wrap_lines
 
 VERTICES = (Kind.STATE, Kind.PSEUDOSTATE, Kind.FINAL_STATE)
 _SHAPES = {
@@ -57,11 +57,11 @@ def draw_parts(
         yield Diagram(
             kind=kind,
             name=partitioning.number_part(qualified_name, index, len(parts)),
-            frame=plain(f"{kind} {labels.name(about)}{signature}"),
+            frame=escape_line(f"{kind} {labels.name(about)}{signature}"),
             heading=(title, qualified_name),
             view=part,
             about=about.id,
-            footer=plain(partitioning.make_footer(index, len(parts), qualified_name)),
+            footer=escape_line(partitioning.make_footer(index, len(parts), qualified_name)),
             details=details,
         )
 
@@ -72,7 +72,7 @@ def draw_whole(graph: Graph, machine: Element) -> GraphView:
     nodes = _list_content(graph, machine, aliases)
     if any(child.subkind in _POINTS for child in graph.owned(machine)):
         alias = aliases.make(machine.id, machine.name, "machine")
-        nodes = (Node(alias, label(labels.name(machine)), "machine", children=nodes),)
+        nodes = (Node(alias, format_label(labels.name(machine)), "machine", children=nodes),)
     flows = tuple(_iter_transitions(graph, machine, aliases))
     return GraphView(nodes, flows, make_notes(graph, machine, aliases))
 
@@ -102,7 +102,7 @@ def _list_content(graph: Graph, owner: Element, aliases: Aliases) -> tuple[Node,
     boxes = [
         Node(
             aliases.make(region.id, region.name, "region"),
-            small(plain(region.name or f"region {number}")),
+            shrink(escape_line(region.name or f"region {number}")),
             "region",
             children=vertices,
             shows=(region.id,),
@@ -125,7 +125,7 @@ def _make_vertices(graph: Graph, region: Element, aliases: Aliases) -> tuple[Nod
 
 def _make_vertex(graph: Graph, vertex: Element, aliases: Aliases) -> Node:
     alias = aliases.make(vertex.id, vertex.name, vertex.subkind or str(vertex.kind))
-    name = label(labels.name(vertex))
+    name = format_label(labels.name(vertex))
     if vertex.kind is Kind.FINAL_STATE:
         return Node(alias, name, "end", shows=(vertex.id,))
     if vertex.kind is Kind.PSEUDOSTATE:
@@ -133,9 +133,9 @@ def _make_vertex(graph: Graph, vertex: Element, aliases: Aliases) -> Node:
     rows, row_ids = _list_rows(graph, vertex)
     return Node(
         alias,
-        stack(
+        join_rows(
             [
-                small(plain(labels.guillemets(labels.keywords(graph, vertex)))),
+                shrink(escape_line(labels.guillemets(labels.keywords(graph, vertex)))),
                 _format_title(graph, vertex),
             ]
         ),
@@ -152,14 +152,18 @@ def _make_pseudostate(graph: Graph, vertex: Element, alias: str, name: str) -> N
     shape = _SHAPES.get(next(points, "") if vertex.subkind == _REFERENCE else vertex.subkind)
     if shape is not None:
         return Node(alias, name, shape, shows=(vertex.id,))
-    sign = "✕" if vertex.subkind == "terminate" else f"«{plain(vertex.subkind)}»"
-    return Node(alias, stack([sign, label(vertex.name)]), "terminate", shows=(vertex.id,))
+    sign = "✕" if vertex.subkind == "terminate" else f"«{escape_line(vertex.subkind)}»"
+    return Node(
+        alias, join_rows([sign, format_label(vertex.name)]), "terminate", shows=(vertex.id,)
+    )
 
 
 def _format_title(graph: Graph, state: Element) -> str:
     machines = (labels.name(item) for item in graph.targets(state, Edge.CALLS))
     submachine = ", ".join(machines) or labels.type_name(graph, state)
-    return label(f"{labels.name(state)} : {submachine}" if submachine else labels.name(state))
+    return format_label(
+        f"{labels.name(state)} : {submachine}" if submachine else labels.name(state)
+    )
 
 
 def _list_rows(graph: Graph, state: Element) -> tuple[tuple[str, ...], list[str]]:
@@ -171,19 +175,19 @@ def _list_rows(graph: Graph, state: Element) -> tuple[tuple[str, ...], list[str]
     ids: list[str] = []
     for word, edge in (("entry", Edge.ENTRY), ("do", Edge.DO), ("exit", Edge.EXIT)):
         for behaviour in graph.targets(state, edge):
-            rows += lines(f"{word} / {format_behaviour(behaviour)}", _ROW)
+            rows += wrap_lines(f"{word} / {format_behaviour(behaviour)}", _ROW)
             ids.append(behaviour.id)
     for item in graph.owned(state):
         if item.kind is Kind.TRIGGER:
-            rows += lines(f"{format_trigger(graph, item)} / defer", _ROW)
+            rows += wrap_lines(f"{format_trigger(graph, item)} / defer", _ROW)
         elif item.kind is Kind.CONSTRAINT:
-            rows += lines(labels.condition(item), _ROW)
+            rows += wrap_lines(labels.condition(item), _ROW)
         else:
             continue
         ids.append(item.id)
     for transition in graph.sources(state, Edge.FLOW_SOURCE):
         if transition.subkind == "internal":
-            rows += lines(format_transition(graph, transition), _ROW)
+            rows += wrap_lines(format_transition(graph, transition), _ROW)
             ids += _list_label_ids(graph, transition)
     return tuple(rows), ids
 
@@ -195,7 +199,7 @@ def _iter_transitions(graph: Graph, machine: Element, aliases: Aliases) -> Itera
         source = graph.target(item, Edge.FLOW_SOURCE)
         target = graph.target(item, Edge.FLOW_TARGET)
         if source is not None and target is not None and {source.id, target.id} <= aliases.keys():
-            text = label(format_transition(graph, item))
+            text = format_label(format_transition(graph, item))
             shows = tuple(_list_label_ids(graph, item))
             yield Line(aliases[source.id], "-->", aliases[target.id], text, shows=shows)
 

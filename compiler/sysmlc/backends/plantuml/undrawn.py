@@ -2,6 +2,7 @@
 
 from collections.abc import Collection
 
+from sysmlc.backends.plantuml.sequence_labels import name_of_event
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.ir.query import interactions
@@ -194,7 +195,6 @@ def _find_drawn_position(graph: Graph, positions: dict[str, int], event: Element
 def _report_overtaken(
     graph: Graph, sink: Sink, interaction: Element, message: Element, other: Element, line: Element
 ) -> None:
-    from sysmlc.backends.plantuml.sequence_labels import name_of_event
 
     sink.report(
         OVERTAKEN,

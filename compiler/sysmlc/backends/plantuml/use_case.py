@@ -4,10 +4,18 @@ from collections.abc import Iterator, Sequence
 
 from sysmlc.backends.plantuml import labels, partitioning
 from sysmlc.backends.plantuml.aliases import Aliases
-from sysmlc.backends.plantuml.relations import Relation, list_relations
+from sysmlc.backends.plantuml.relations import Relation, iter_use_case_relations, list_relations
 from sysmlc.backends.plantuml.views import Diagram, Figure, Line, Note, SubjectView, UseCaseView
 from sysmlc.ir import Edge, Element, Graph, Kind
-from sysmlc.support.plantuml_text import keyword_label, label, lines, padded, plain, small, stack
+from sysmlc.support.plantuml_text import (
+    escape_line,
+    format_keyword_label,
+    format_label,
+    join_rows,
+    pad_label,
+    shrink,
+    wrap_lines,
+)
 
 FIGURES = (Kind.USE_CASE, Kind.ACTOR)
 _PACKAGES = (Kind.PACKAGE, Kind.PROFILE)
@@ -49,7 +57,6 @@ def find_use_case_actors(graph: Graph) -> set[str]:
 
 def _list_relations(graph: Graph) -> list[Relation]:
     """Return the lines between use cases and actors."""
-    from sysmlc.backends.plantuml.relations import iter_use_case_relations
 
     candidates = [*list_relations(graph), *iter_use_case_relations(graph)]
     return [r for r in candidates if {graph[r.source].kind, graph[r.target].kind} <= set(FIGURES)]
@@ -81,11 +88,11 @@ def _draw_package(
         yield Diagram(
             kind="uc",
             name=partitioning.number_part(title, index, len(parts)),
-            frame=plain(f"uc [package] {title}"),
+            frame=escape_line(f"uc [package] {title}"),
             heading=("Use case diagram", title),
             view=build_view(graph, shown, package_actors if index == 0 else [], inside),
             about=package.id if package is not None else "",
-            footer=plain(partitioning.make_footer(index, len(parts), title)),
+            footer=escape_line(partitioning.make_footer(index, len(parts), title)),
         )
 
 
@@ -145,7 +152,7 @@ def _find_subject(graph: Graph, case: Element) -> Element | None:
 
 
 def _make_subject_frame(subject: Element, cases: list[Figure], aliases: Aliases) -> SubjectView:
-    name = stack(f"**{row}**" for row in lines(labels.name(subject)))
+    name = join_rows(f"**{row}**" for row in wrap_lines(labels.name(subject)))
     return SubjectView(aliases.make(subject.id, subject.name, "subject"), name, tuple(cases))
 
 
@@ -157,13 +164,15 @@ def _make_figure(graph: Graph, item: Element, aliases: Aliases, is_own: bool) ->
     rows = [_format_title(graph, item), *_iter_compartments(graph, item, members, points)]
     shows = (item.id, *(member.id for member in (*members, *points)))
     style = "" if is_own else "elsewhere"
-    return Figure(alias, stack(rows), "usecase" if is_case else "actor", style, shows)
+    return Figure(alias, join_rows(rows), "usecase" if is_case else "actor", style, shows)
 
 
 def _format_title(graph: Graph, item: Element) -> str:
-    words = small(plain(labels.guillemets(labels.list_stereotypes(graph, item))))
+    words = shrink(escape_line(labels.guillemets(labels.list_stereotypes(graph, item))))
     mark = "//" if item.attrs.get("abstract") else ""
-    return stack([words, *(f"{mark}{row}{mark}" for row in lines(labels.name(item), _WIDTH))])
+    return join_rows(
+        [words, *(f"{mark}{row}{mark}" for row in wrap_lines(labels.name(item), _WIDTH))]
+    )
 
 
 def _iter_compartments(
@@ -173,9 +182,9 @@ def _iter_compartments(
     more_subjects = graph.targets(item, Edge.SUBJECT)[1:] if item.kind is Kind.USE_CASE else []
     rows = [_format_row(graph, member) for member in members]
     if points:
-        rows.append(stack([small("extension points"), *map(_format_name, points)]))
+        rows.append(join_rows([shrink("extension points"), *map(_format_name, points)]))
     if more_subjects:
-        rows.append(stack([small("further subjects"), *map(_format_name, more_subjects)]))
+        rows.append(join_rows([shrink("further subjects"), *map(_format_name, more_subjects)]))
     for row in rows:
         yield "----"
         yield row
@@ -183,14 +192,14 @@ def _iter_compartments(
 
 def _format_row(graph: Graph, member: Element) -> str:
     if member.kind is Kind.CONSTRAINT:
-        return label(labels.condition(member), _WIDTH)
+        return format_label(labels.condition(member), _WIDTH)
     if member.kind is Kind.OPERATION:
-        return label(labels.operation(graph, member), _WIDTH)
-    return label(labels.feature(graph, member), _WIDTH)
+        return format_label(labels.operation(graph, member), _WIDTH)
+    return format_label(labels.feature(graph, member), _WIDTH)
 
 
 def _format_name(element: Element) -> str:
-    return label(labels.name(element), _WIDTH)
+    return format_label(labels.name(element), _WIDTH)
 
 
 # -- lines and notes ---------------------------------------------------------------------------
@@ -205,9 +214,9 @@ def _make_line(relation: Relation, aliases: Aliases) -> Line:
         aliases[source],
         arrow,
         aliases[target],
-        keyword_label(relation.label),
-        padded(relation.near),
-        padded(relation.far),
+        format_keyword_label(relation.label),
+        pad_label(relation.near),
+        pad_label(relation.far),
         relation.shows,
     )
 
@@ -215,7 +224,7 @@ def _make_line(relation: Relation, aliases: Aliases) -> Line:
 def _iter_notes(graph: Graph, shown: list[Element], aliases: Aliases) -> Iterator[Note]:
     for item in shown:
         for note in graph.sources(item, Edge.REFERENCES):
-            text = label(str(note.attrs.get("body", "")), 44)
+            text = format_label(str(note.attrs.get("body", "")), 44)
             if note.kind is Kind.COMMENT and text and note.id not in aliases:
                 alias = aliases.make(note.id, "", "note")
                 about = [target.id for target in graph.targets(note, Edge.REFERENCES)]

@@ -1,18 +1,16 @@
 """One file ``platform.json`` for a unit that has recipes and a plant."""
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 from msgspec import Struct
 
 from sysmlc.backends.base import EmitOptions
+from sysmlc.backends.platform.document import document, places
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Graph
+from sysmlc.recipe.platform import Platform
 from sysmlc.support.json_text import encode_json
 from sysmlc.support.output import Output
-
-if TYPE_CHECKING:
-    from sysmlc.recipe.platform import Platform
 
 PATH = "platform.json"
 _PLATFORMS = "sysmlc.recipe.platform"
@@ -30,8 +28,6 @@ class PlatformBackend(Struct, frozen=True):
         """Add the file; its trace names machines, services and elements of the plant."""
         if not graph.has_derived(_PLATFORMS):
             return
-        from sysmlc.backends.platform.document import document, places
-        from sysmlc.recipe.platform import Platform
 
         for platform in graph.derived(Platform):
             found = options.locate(places(graph, platform))

@@ -1,19 +1,18 @@
 """One file ``recipes/<recipe>.json`` for each recipe of the graph."""
 
 from collections.abc import Iterable, Iterator
-from typing import TYPE_CHECKING, Protocol
+from typing import Protocol
 
 from msgspec import Struct
 
 from sysmlc.backends.base import EmitOptions
+from sysmlc.backends.recipe.document import document
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Graph
+from sysmlc.recipe.model import Model
 from sysmlc.support.file_names import assign_file_names
 from sysmlc.support.json_text import encode_json
 from sysmlc.support.output import Output
-
-if TYPE_CHECKING:
-    from sysmlc.recipe.model import Model
 
 EMPTY_RECIPE = rule(
     "SM621",
@@ -35,8 +34,6 @@ class RecipeBackend(Struct, frozen=True):
         """Add one file a recipe; its trace names every element that it tells of."""
         if not graph.has_derived("sysmlc.recipe.model"):
             return
-        from sysmlc.backends.recipe.document import document
-        from sysmlc.recipe.model import Model
 
         models = graph.derived(Model)
         names = assign_file_names(model.recipe.id for model in models)

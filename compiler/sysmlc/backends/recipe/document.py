@@ -108,13 +108,13 @@ def _task(task: Task) -> Json:
         "assign": dict(task.assign),
         "interruptible": task.interruptible,
         "noWait": task.no_wait,
-        "derived": None if task.derived is None else _derived(task.derived),
+        "derived": None if task.derived is None else _describe_derived_data(task.derived),
     }
     equipment = {"equipment": _each(_mode, task.equipment)}
     return {**_without_absent(found), **equipment, **trace(task.element)}
 
 
-def _derived(derived: Derived) -> Json:
+def _describe_derived_data(derived: Derived) -> Json:
     sub_tasks: list[Json] = [
         {
             "node": one.node,

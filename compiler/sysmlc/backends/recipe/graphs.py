@@ -92,13 +92,15 @@ def _nothing(node: Node, graph: FlowGraph) -> Json:
     return {}
 
 
-def _called(node: Node, graph: FlowGraph) -> Json:
+def _describe_call(node: Node, graph: FlowGraph) -> Json:
     return {"ref": node.ref, **_data(node)}
 
 
-def _assigned(node: Node, graph: FlowGraph) -> Json:
-    known = {one.name: one for one in (*graph.variables, *graph.outputs, *graph.inputs)}
-    declared = known.get(node.variable, Parameter(node.variable))
+def _describe_assignment(node: Node, graph: FlowGraph) -> Json:
+    variables = {
+        variable.name: variable for variable in (*graph.variables, *graph.outputs, *graph.inputs)
+    }
+    declared = variables.get(node.variable, Parameter(node.variable))
     target = _parameter(Parameter(declared.name, declared.type, declared.unit))
     return {"variable": target, "value": expression(node.expression)}
 
@@ -138,10 +140,10 @@ def _data(node: Node) -> Json:
 
 
 _MEMBERS: dict[str, Callable[[Node, FlowGraph], Json]] = {
-    "service": _called,
-    "function": _called,
-    "call": _called,
-    "assign": _assigned,
+    "service": _describe_call,
+    "function": _describe_call,
+    "call": _describe_call,
+    "assign": _describe_assignment,
     "action": _action,
     "wait": _waiting,
     "delay": _delaying,

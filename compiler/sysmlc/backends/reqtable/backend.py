@@ -29,7 +29,7 @@ class ReqTableBackend(Struct, frozen=True):
 
     def emit(self, graph: Graph, output: Output, sink: Sink, options: EmitOptions) -> None:
         """Add ``requirements/<root>.requirements.csv`` and ``.md``; report open requirements."""
-        found = {_free(table.name, number): table for number, table in _numbered(graph)}
+        found = {_free(table.name, number): table for number, table in _number_tables(graph)}
         names = assign_file_names(found)
         with Templates(self.name, options.templates) as templates:
             for key, table in found.items():
@@ -41,11 +41,11 @@ class ReqTableBackend(Struct, frozen=True):
         report_open(graph, [row.element for table in found.values() for row in table.rows], sink)
 
 
-def _numbered(graph: Graph) -> Iterator[tuple[int, Table]]:
-    seen: dict[str, int] = {}
+def _number_tables(graph: Graph) -> Iterator[tuple[int, Table]]:
+    counts: dict[str, int] = {}
     for table in tables(graph):
-        seen[table.name] = seen.get(table.name, 0) + 1
-        yield seen[table.name], table
+        counts[table.name] = counts.get(table.name, 0) + 1
+        yield counts[table.name], table
 
 
 def _free(name: str, number: int) -> str:

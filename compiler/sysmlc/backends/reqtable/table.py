@@ -84,12 +84,12 @@ def tables(graph: Graph) -> list[Table]:
 
 def _table(graph: Graph, root: Element, held: list[Element]) -> Table:
     ordered = sorted(held, key=lambda one: (_natural(_id(one)), graph.qualified_name(one), one.id))
-    tags = sorted({name for one in held for name in _tags(graph, one)}, key=_folded)
+    tags = sorted({name for one in held for name in _tags(graph, one)}, key=_make_sort_key)
     rows = tuple(Row(one, tuple(_cells(graph, one, tags))) for one in ordered)
     return Table(graph.qualified_name(root), root.id, (*COLUMNS, *tags), rows)
 
 
-def _folded(name: str) -> tuple[str, str]:
+def _make_sort_key(name: str) -> tuple[str, str]:
     return name.lower(), name
 
 
@@ -111,13 +111,13 @@ def _cells(graph: Graph, requirement: Element, tags: list[str]) -> Iterator[Cell
     yield _cell(text_of(graph, requirement))
     owner = graph.owner(requirement)
     yield _cell(graph.qualified_name(owner) if owner is not None else "")
-    yield _cell(*_named(graph, graph.targets(requirement, Edge.DERIVES)))
+    yield _cell(*_list_names(graph, graph.targets(requirement, Edge.DERIVES)))
     for edge in (Edge.SATISFIES, Edge.VERIFIES, Edge.REFINES):
-        yield _cell(*_named(graph, graph.sources(requirement, edge)))
+        yield _cell(*_list_names(graph, graph.sources(requirement, edge)))
     masters = _masters(graph, requirement)
     traced = [one for one in graph.targets(requirement, Edge.TRACES) if one not in masters]
-    yield _cell(*_named(graph, traced))
-    yield _cell(*_named(graph, masters))
+    yield _cell(*_list_names(graph, traced))
+    yield _cell(*_list_names(graph, masters))
     given = _tags(graph, requirement)
     yield from (_cell(*given.get(name, ())) for name in tags)
 
@@ -155,9 +155,9 @@ def _masters(graph: Graph, requirement: Element) -> list[Element]:
     return list(dict.fromkeys(found))
 
 
-def _named(graph: Graph, elements: list[Element]) -> list[str]:
-    """Requirements by id and name, other elements by qualified name."""
-    return [_name(graph, one) for one in elements]
+def _list_names(graph: Graph, elements: list[Element]) -> list[str]:
+    """Return requirements by id and name, other elements by qualified name."""
+    return [_name(graph, element) for element in elements]
 
 
 def _name(graph: Graph, element: Element) -> str:

@@ -26,7 +26,7 @@ def met(graph: Graph, requirements: Iterable[Element], edge: Edge) -> frozenset[
     waiting = [one for one in requirements if _is_direct(graph, one, edge)]
     done = {one.id for one in waiting}
     for one in waiting:
-        for other in _answered(graph, one, done):
+        for other in _find_satisfied(graph, one, done):
             if other.id not in done:
                 done.add(other.id)
                 waiting.append(other)
@@ -39,10 +39,10 @@ def _is_direct(graph: Graph, requirement: Element, edge: Edge) -> bool:
     return has_subject or bool(graph.sources(requirement, edge))
 
 
-def _answered(graph: Graph, requirement: Element, done: set[str]) -> Iterator[Element]:
+def _find_satisfied(graph: Graph, requirement: Element, done: set[str]) -> Iterator[Element]:
     yield from graph.targets(requirement, Edge.DERIVES)
     owner = graph.owner(requirement)
     if owner is not None and is_listed(owner):
-        inside = [one for one in graph.owned(owner) if is_listed(one)]
-        if all(one.id in done for one in inside):
+        inside = [inner for inner in graph.owned(owner) if is_listed(inner)]
+        if all(inner.id in done for inner in inside):
             yield owner

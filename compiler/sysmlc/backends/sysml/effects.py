@@ -12,8 +12,8 @@ from sysmlc.logic.expressions.expression import (
     Invocation,
     Send,
     Statement,
-    parse_effect,
 )
+from sysmlc.logic.expressions.parsing import parse_effect
 
 
 def statements(book: Book, scope: Entry | None, element: Element) -> list[str] | None:

@@ -16,8 +16,8 @@ from sysmlc.logic.expressions.expression import (
     Member,
     Name,
     Unary,
-    parse_expression,
 )
+from sysmlc.logic.expressions.parsing import parse_expression
 
 
 class UnknownNameError(ValueError):

@@ -10,11 +10,8 @@ from sysmlc.backends.sysml.stereotypes import is_standard
 from sysmlc.backends.sysml.values import literal
 from sysmlc.ir import Edge, Element, Kind
 from sysmlc.ir.query.activities import is_joined, pin_subkind
-from sysmlc.logic.expressions.expression import (
-    ExpressionError,
-    parse_expression,
-    print_expression,
-)
+from sysmlc.logic.expressions.expression import ExpressionError, print_expression
+from sysmlc.logic.expressions.parsing import parse_expression
 
 _FLOWS = (Kind.CONTROL_FLOW, Kind.OBJECT_FLOW)
 _WHOLE = (Kind.DOCUMENT, Kind.METADATA, Kind.ALIAS, Kind.IMPORT)

@@ -7,14 +7,17 @@ from os import environ
 from msgspec import Struct
 
 from sysmlc.backends.base import EmitOptions
+from sysmlc.backends.sysml import BACKEND as TEXT
 from sysmlc.backends.sysmlx.rules import OWN_TEXT, TOO_DEEP
 from sysmlc.diagnostics import Diagnostic, Sink
 from sysmlc.ir import Element, Graph
 from sysmlc.language.interchange import InterchangeFiles, interchange_path, write
 from sysmlc.language.library import SHIPPED, VARIABLE, Library, find_library, load_core
-from sysmlc.language.names import Model
+from sysmlc.language.names import Model, resolve
 from sysmlc.language.names.implied_relations import implied_redefinitions
+from sysmlc.language.text import parse
 from sysmlc.language.text.nesting import MAX_DEPTH
+from sysmlc.language.text.rules import DEEP
 from sysmlc.language.tree import Document
 from sysmlc.sources import SourceError
 from sysmlc.support.output import Output
@@ -67,10 +70,6 @@ def _said(graph: Graph, sink: Sink, options: EmitOptions) -> Model | None:
     None, and a message, for one that is nested deeper than text is read, and where the text has
     another syntax error, which is a fault of ours.
     """
-    from sysmlc.backends.sysml import BACKEND as TEXT
-    from sysmlc.language.names import resolve
-    from sysmlc.language.text import parse
-    from sysmlc.language.text.rules import DEEP
 
     written = Output()
     TEXT.emit(graph, written, sink, options)

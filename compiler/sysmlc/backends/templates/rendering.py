@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Self
 from sysmlc.backends.templates.error import TemplateError, TemplateLimitError, UnusableFolderError
 from sysmlc.backends.templates.files import read_custom, read_shipped
 from sysmlc.backends.templates.process import RenderingProcess
+from sysmlc.backends.templates.sandbox import make_environment, render
 
 if TYPE_CHECKING:
     from jinja2.sandbox import ImmutableSandboxedEnvironment
@@ -73,7 +74,6 @@ class Templates:
 
 
 def _render_shipped(backend: str, name: str, values: dict[str, object]) -> str:
-    from sysmlc.backends.templates.sandbox import render
 
     return render(_shipped_environment(backend), name, values, MAX_CHARACTERS)
 
@@ -81,6 +81,5 @@ def _render_shipped(backend: str, name: str, values: dict[str, object]) -> str:
 @cache
 def _shipped_environment(backend: str) -> "ImmutableSandboxedEnvironment":
     # jinja2 takes 0.06 s to import, and only back ends with templates need it.
-    from sysmlc.backends.templates.sandbox import make_environment
 
     return make_environment(read_shipped(backend))

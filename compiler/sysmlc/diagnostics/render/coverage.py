@@ -5,9 +5,9 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 
 from sysmlc.diagnostics.coverage import (
     Verdict,
-    added,
-    covered,
+    count_covered,
     covered_tenths,
+    sum_counts,
     tenths,
     with_meaning,
 )
@@ -32,16 +32,16 @@ _WIDTH = 64
 
 def text(files: Sequence[FileReport], *, color: bool = False, every: bool = False) -> str:
     """Tables of files and types, worst first, then examples of what is lost (or ``every`` one)."""
-    total = added(file.totals for file in files)
+    total = sum_counts(file.totals for file in files)
     blocks = [_headline(total), *_tables(files, color), *_details(files, color, every)]
-    blocks += _unlisted(files)
+    blocks += _iter_unlisted_losses(files)
     return "\n\n".join(blocks) + "\n"
 
 
 def _headline(total: Mapping[str, int]) -> str:
     number = with_meaning(total)
     share = _percent(covered_tenths(total))
-    return f"{share} covered: {covered(total):,} of {number:,} elements that mean something"
+    return f"{share} covered: {count_covered(total):,} of {number:,} elements that mean something"
 
 
 def _percent(tenths: int) -> str:
@@ -52,7 +52,7 @@ def _percent(tenths: int) -> str:
 
 
 def _tables(files: Sequence[FileReport], color: bool) -> Iterator[str]:
-    total = added(file.totals for file in files)
+    total = sum_counts(file.totals for file in files)
     if len(files) > 1:
         rows = [(_short(escape_invisible(file.file)), file.totals) for file in worst_first(files)]
         yield _table("file", [*rows, ("total", total)], color)
@@ -95,11 +95,11 @@ def _line(cells: Sequence[str], widths: Sequence[int], color: bool) -> str:
     if color:
         for column, verdict in enumerate(_COLUMNS, 2):
             if cells[column] != "-" and verdict in _COLORS:
-                padded[column] = _painted(padded[column], _COLORS[verdict])
+                padded[column] = _paint(padded[column], _COLORS[verdict])
     return "  ".join(padded).rstrip()
 
 
-def _painted(text: str, code: str) -> str:
+def _paint(text: str, code: str) -> str:
     return f"\x1b[{code}m{text}\x1b[0m"
 
 
@@ -115,14 +115,14 @@ def _details(files: Sequence[FileReport], color: bool, every: bool) -> Iterator[
                 code = f" [{rule.code} {rule.name}]" if rule else ""
                 groups.setdefault((lost.loss.verdict, code, _general(lost)), []).append(lost)
         for (verdict, code, reason), members in groups.items():
-            word = _painted(verdict.value, _COLORS[verdict]) if color else verdict.value
+            word = _paint(verdict.value, _COLORS[verdict]) if color else verdict.value
             type_name, shown_reason = escape_invisible(one.name), escape_invisible(reason)
             head = f"{type_name}: {len(members)} {word}, {shown_reason}{code}"
             yield "\n".join([head, *_examples(members, every)])
 
 
-def _unlisted(files: Sequence[FileReport]) -> Iterator[str]:
-    """Losses of front ends that count and keep no places."""
+def _iter_unlisted_losses(files: Sequence[FileReport]) -> Iterator[str]:
+    """Yield the number of losses of each file that front ends counted without a location."""
     for file in files:
         counted = sum(file.totals[verdict.value] for verdict in LOSSES)
         listed = sum(x.loss.elements for x in file.losses if x.loss.verdict in LOSSES)
@@ -151,7 +151,7 @@ def _examples(members: Sequence[LostElement], every: bool) -> Iterator[str]:
 
 def as_json(files: Sequence[FileReport]) -> str:
     """``coverage.json`` with everything that is not mapped, and the shares."""
-    total = added(file.totals for file in files)
+    total = sum_counts(file.totals for file in files)
     types = type_reports(files)
     content = {
         "format": "sysmlc-coverage/2",
@@ -202,13 +202,13 @@ def _findings(every: Iterator[LostElement]) -> Iterator[Finding]:
     for lost in every:
         rule = lost.loss.rule
         if rule is not None:
-            message = f"{lost.loss.type} {lost.loss.reason}{_contained(lost)}"
+            message = f"{lost.loss.type} {lost.loss.reason}{_format_contained(lost)}"
             subject = Subject(lost.element, place=Place(lost.file, lost.loss.ordinal))
             found = Diagnostic(rule, rule.severity, message, subject)
             yield Finding(found, lost.file, lost.line, lost.column, xpath=lost.xpath)
 
 
-def _contained(lost: LostElement) -> str:
+def _format_contained(lost: LostElement) -> str:
     number = lost.loss.elements - 1
     return f" ({number} more inside)" if number else ""
 

@@ -48,15 +48,18 @@ class Report(Struct, frozen=True):
         return {**numbers, "files": len(files)}
 
 
-def shortened(findings: Iterable[Finding], most: int) -> Report:
-    """A report that shows at most so many findings (0: all), the worst of them, in their order."""
-    found = list(findings)
+def shorten(findings: Iterable[Finding], most: int) -> Report:
+    """Return a report with at most *most* findings (0: all), the worst, in their order."""
+    all_findings = list(findings)
     order = list(Severity)
-    ranked = sorted(range(len(found)), key=lambda at: order.index(found[at].diagnostic.severity))
+    ranked = sorted(
+        range(len(all_findings)),
+        key=lambda index: order.index(all_findings[index].diagnostic.severity),
+    )
     shown = set(ranked[:most] if most else ranked)
     return Report(
-        tuple(one for at, one in enumerate(found) if at in shown),
-        tuple(one for at, one in enumerate(found) if at not in shown),
+        tuple(finding for index, finding in enumerate(all_findings) if index in shown),
+        tuple(finding for index, finding in enumerate(all_findings) if index not in shown),
     )
 
 

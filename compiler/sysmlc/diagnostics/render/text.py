@@ -25,15 +25,17 @@ def render(report: Report, *, color: bool = False) -> str:
 def summary_line(report: Report) -> str:
     """``2 errors, 1 warning in 1 file``."""
     counts = report.summary()
-    parts = [_counted(counts[f"{s.value}s"], _NOUNS[s]) for s in Severity if counts[f"{s.value}s"]]
-    files = f" in {_counted(counts['files'], 'file')}" if counts["files"] else ""
+    parts = [
+        _format_count(counts[f"{s.value}s"], _NOUNS[s]) for s in Severity if counts[f"{s.value}s"]
+    ]
+    files = f" in {_format_count(counts['files'], 'file')}" if counts["files"] else ""
     return f"{', '.join(parts)}{files}" if parts else "no findings"
 
 
 _NOUNS = {Severity.ERROR: "error", Severity.WARNING: "warning", Severity.INFO: "remark"}
 
 
-def _counted(number: int, noun: str) -> str:
+def _format_count(number: int, noun: str) -> str:
     return f"{number} {noun}" if number == 1 else f"{number} {noun}s"
 
 

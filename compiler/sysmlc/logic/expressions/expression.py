@@ -3,16 +3,10 @@
 The grammar is grammars/expression.lark. Printing and reading again gives the same value.
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass, field
-from functools import lru_cache
-from typing import TypeVar
 
 from msgspec import Struct
 
-_DEEPEST = 150
-"""Levels of nesting that are read; a tuple of arguments is one."""
-_T = TypeVar("_T")
 _WORDS = "if else implies or OR xor XOR and AND not NOT true TRUE false FALSE send to"
 KEYWORDS = frozenset(_WORDS.split(" "))
 
@@ -136,54 +130,6 @@ class Invocation:
 
 
 Statement = Assignment | Send | Invocation
-
-_REMEMBERED = 4096
-"""Texts whose expressions are kept: guards and ranges are asked for again by every pass."""
-
-
-@lru_cache(_REMEMBERED)
-def parse_expression(text: str) -> Expression:
-    """The expression that the text is. Raises ExpressionError."""
-    from sysmlc.logic.expressions.reader import read_expression
-
-    return _read(text, read_expression)
-
-
-@lru_cache(_REMEMBERED)
-def parse_effect(text: str) -> tuple[Statement, ...]:
-    """The statements of an effect, separated by semicolons. Raises ExpressionError."""
-    from sysmlc.logic.expressions.reader import read_effect
-
-    return _read(text, read_effect)
-
-
-def _read(text: str, read: Callable[[str], _T]) -> _T:
-    try:
-        found = read(text)
-    except RecursionError:
-        raise ExpressionError("the expression is nested too deeply", 0) from None
-    # What is shorter cannot be nested so deep; those who walk the tree do so by calls.
-    if len(text) > _DEEPEST and _is_deep(found):
-        raise ExpressionError("the expression is nested too deeply", 0)
-    return found
-
-
-def _is_deep(expression: object) -> bool:
-    """Whether more than ``_DEEPEST`` expressions stand one inside the other."""
-    level = [expression]
-    for _ in range(_DEEPEST):
-        inner = [part for one in level for part in _parts(one)]
-        level = [part for part in inner if not isinstance(part, str | int | float | None)]
-        if not level:
-            return False
-    return True
-
-
-def _parts(value: object) -> list[object]:
-    if isinstance(value, tuple | list):
-        return list(value)
-    return [getattr(value, name) for name in getattr(type(value), "__match_args__", ())]
-
 
 # -- printing ----------------------------------------------------------------------------------
 

@@ -15,9 +15,9 @@ from sysmlc.logic.expressions.expression import (
     Unary,
     dotted,
     name_of,
-    parse_expression,
 )
 from sysmlc.logic.expressions.expression import Literal as Constant
+from sysmlc.logic.expressions.parsing import parse_expression
 
 _RANGE = re.compile(r"^\s*\[?\s*(-?\d+)\s*(?:\.\.|,|:)\s*(-?\d+)\s*\]?\s*$")
 _BOUNDS = (("min", "max"), ("lower", "upper"), ("minimum", "maximum"))

@@ -15,7 +15,7 @@ from sysmlc.logic.formats.counting import counted
 from sysmlc.logic.formats.draft import Draft
 from sysmlc.logic.formats.file import File
 from sysmlc.logic.formats.lower import each_conjunct, flat, known, renamed
-from sysmlc.logic.formats.slugsin import PrefixError, from_prefix
+from sysmlc.logic.formats.slugs_prefix import PrefixError, from_prefix
 from sysmlc.logic.formats.spelt import LTL, Spelling, primed
 from sysmlc.logic.formula import Apply, Const, Formula, Op, Var
 from sysmlc.logic.infix import TRUTH, Part, Reader

@@ -29,11 +29,10 @@ from sysmlc.logic.expressions.expression import (
     Statement,
     dotted,
     name_of,
-    parse_effect,
-    parse_expression,
     print_expression,
     print_statement,
 )
+from sysmlc.logic.expressions.parsing import parse_effect, parse_expression
 from sysmlc.logic.machines.machine import Action, Assign, Raise
 from sysmlc.logic.names import Names
 from sysmlc.logic.writers import Writers, called

@@ -14,7 +14,7 @@ from sysmlc.logic.machines.machine import (
     Transition,
     Vertex,
 )
-from sysmlc.logic.machines.paths import Path
+from sysmlc.logic.machines.symbolic_path import Path
 from sysmlc.logic.printing import print_formula, print_literal
 
 CLOCK_RUNS = "'{clock}' counts the steps that '{state}' has been active."

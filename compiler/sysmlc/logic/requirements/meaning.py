@@ -4,7 +4,8 @@ from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Element, Graph
 from sysmlc.logic.expressions.context import note_range
 from sysmlc.logic.expressions.elaborate import ElaborationError, Fault, condition
-from sysmlc.logic.expressions.expression import ExpressionError, parse_expression
+from sysmlc.logic.expressions.expression import ExpressionError
+from sysmlc.logic.expressions.parsing import parse_expression
 from sysmlc.logic.formula import Formula, variables
 from sysmlc.logic.requirements.scope import Scope
 from sysmlc.logic.requirements.statements import Statement

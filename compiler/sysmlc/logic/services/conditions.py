@@ -17,12 +17,8 @@ from sysmlc.logic.expressions.elaborate import (
     condition,
     literal_of,
 )
-from sysmlc.logic.expressions.expression import (
-    Binary,
-    Expression,
-    ExpressionError,
-    parse_expression,
-)
+from sysmlc.logic.expressions.expression import Binary, Expression, ExpressionError
+from sysmlc.logic.expressions.parsing import parse_expression
 from sysmlc.logic.formula import Formula
 from sysmlc.logic.simplify import simplify_constant
 from sysmlc.logic.texts.formal import is_formal

@@ -13,11 +13,8 @@ from sysmlc.logic.expressions.elaborate import (
     condition,
     meaning,
 )
-from sysmlc.logic.expressions.expression import (
-    Expression,
-    ExpressionError,
-    parse_expression,
-)
+from sysmlc.logic.expressions.expression import Expression, ExpressionError
+from sysmlc.logic.expressions.parsing import parse_expression
 from sysmlc.logic.formula import Formula, const, var, variables
 from sysmlc.logic.machines.actions import check_assignable
 

@@ -15,7 +15,7 @@ from sysmlc.logic.contract import Domain, IntegerDomain, Owner, Variable
 from sysmlc.logic.expressions.declared import Feature
 from sysmlc.logic.expressions.elaborate import ElaborationError
 from sysmlc.logic.formula import Formula
-from sysmlc.logic.machines.paths import split_by_range
+from sysmlc.logic.machines.symbolic_path import split_by_range
 from sysmlc.logic.simplify import is_satisfiable, remove_redundant, substitute
 from sysmlc.logic.writers import Writers, called
 from sysmlc.logic.written import Assigned

@@ -4,6 +4,7 @@ from collections.abc import Iterator
 
 from sysmlc.ir import Element
 from sysmlc.logic.expressions import expression as source
+from sysmlc.logic.expressions.parsing import parse_effect, parse_expression
 from sysmlc.logic.machines.triggers import parse_milliseconds
 from sysmlc.passes.recipe.context import Context
 from sysmlc.passes.recipe.features import find_feature, literal_value, value_type
@@ -22,7 +23,7 @@ _OPERATORS = {"%": "mod", "xor": "!="}
 def read_expression(text: str) -> source.Expression:
     """Return the expression of a text, or Opaque if it is none."""
     try:
-        return translate_expression(source.parse_expression(text))
+        return translate_expression(parse_expression(text))
     except source.ExpressionError:
         return make_opaque(text)
 
@@ -74,7 +75,7 @@ def _make_call(function: str, *args: source.Expression) -> source.Expression:
 def read_assignments(text: str) -> list[tuple[str, source.Expression]] | None:
     """Return the variables and values of an effect that only assigns; None for any other effect."""
     try:
-        statements = source.parse_effect(text)
+        statements = parse_effect(text)
     except source.ExpressionError:
         return None
     pairs: list[tuple[str, source.Expression]] = []

@@ -17,7 +17,7 @@ from sysmlc.logic.formats.document_text import type_of
 from sysmlc.logic.formula import Apply, Const, Formula, Literal, Op, Var
 from sysmlc.logic.printing import print_formula
 from sysmlc.support.json_text import append_members, encode_row
-from sysmlc.support.plantuml_text import plain
+from sysmlc.support.plantuml_text import escape_line
 from sysmlc.synthesis.bdd.limits import LimitError
 from sysmlc.synthesis.controllers.closed_loop import Controller
 from sysmlc.synthesis.controllers.mealy import Machine, Move
@@ -115,7 +115,7 @@ def has_diagram(machine: Machine) -> bool:
 def machine_diagram(machine: Machine, contract: Contract) -> str:
     """Return the machine as a PlantUML state diagram, with conditions and outputs on the arrows."""
     names = register_names(machine)
-    lines = ["@startuml", f"title {plain(contract.component)}", "hide empty description"]
+    lines = ["@startuml", f"title {escape_line(contract.component)}", "hide empty description"]
     lines += [f"state S{index}" for index in range(machine.size)]
     lines += ["[*] --> S0"]
     for state, moves in enumerate(machine.states):

@@ -15,7 +15,7 @@ from sysmlc.logic.contract import (
 from sysmlc.logic.formula import Literal
 from sysmlc.logic.printing import print_literal
 from sysmlc.support.file_names import assign_file_names
-from sysmlc.support.plantuml_text import label
+from sysmlc.support.plantuml_text import format_label
 from sysmlc.synthesis.counterstrategy import counter_files as drawing
 from sysmlc.synthesis.counterstrategy import counter_files as sysml
 from sysmlc.synthesis.counterstrategy.counter_machine import (
@@ -35,12 +35,14 @@ _MAX_LABEL_LINES = 4
 def losing_run_diagram(machine: CounterStrategy, contract: Contract) -> str:
     """Return a sequence diagram of a run in which the component uses its freedom and fails."""
     title, trace = (
-        [f"{label(contract.component)}", "cannot keep its contract"],
+        [f"{format_label(contract.component)}", "cannot keep its contract"],
         example_run(machine),
     )
     if trace.loop < len(trace.steps):
         verdict = "not kept" if len(machine.missed) == 1 else "not all kept"
-        title += [f"{verdict}: {label(print_temporal(conjunct))}" for conjunct in machine.missed]
+        title += [
+            f"{verdict}: {format_label(print_temporal(conjunct))}" for conjunct in machine.missed
+        ]
     return run_diagram("\\n".join(title), trace, (Party(contract.component, contract),))
 
 
@@ -52,7 +54,7 @@ def state_diagram(machine: CounterStrategy, contract: Contract) -> str:
     constant_inputs = _constant_columns([state.given for state in machine.states])
     lines = [
         "@startuml",
-        f"title what makes {label(contract.component)} fail",
+        f"title what makes {format_label(contract.component)} fail",
         "hide empty description",
     ]
     if constant_inputs:
@@ -65,11 +67,11 @@ def state_diagram(machine: CounterStrategy, contract: Contract) -> str:
     for number, state in enumerate(machine.states):
         inputs = _print_values(machine.inputs, state.given, varying_inputs)
         ending = "" if state.moves else "\\n<b>no answer is left</b>"
-        lines.append(f'state "{label(inputs or "wait")}{ending}" as S{number}')
+        lines.append(f'state "{format_label(inputs or "wait")}{ending}" as S{number}')
     lines.append("[*] --> S0")
     for number, state in enumerate(machine.states):
         for successor, conditions in _list_arrows(state, machine.outputs):
-            answers = "\\n".join(map(label, conditions))
+            answers = "\\n".join(map(format_label, conditions))
             lines.append(f"S{number} --> S{successor} : {answers}")
     return "\n".join((*lines, "@enduml", ""))
 

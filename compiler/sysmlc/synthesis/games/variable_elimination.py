@@ -157,18 +157,18 @@ def _replace_lists(game: Game, lists: Mapping[str, Iterable[Constraint]]) -> Gam
     """Return the game with some lists replaced, without constraints of steps that are true."""
     true = game.manager.true
 
-    def of(kind: str) -> tuple[Constraint, ...]:
+    def list_parts(kind: str) -> tuple[Constraint, ...]:
         parts: Iterable[Constraint] = lists.get(kind, getattr(game, kind))
         return tuple(part for part in parts if kind in _RECURRING or part.node != true)
 
     return replace(
         game,
-        init_assumptions=of("init_assumptions"),
-        init_guarantees=of("init_guarantees"),
-        assumptions=of("assumptions"),
-        guarantees=of("guarantees"),
-        fairness=of("fairness"),
-        goals=of("goals"),
+        init_assumptions=list_parts("init_assumptions"),
+        init_guarantees=list_parts("init_guarantees"),
+        assumptions=list_parts("assumptions"),
+        guarantees=list_parts("guarantees"),
+        fairness=list_parts("fairness"),
+        goals=list_parts("goals"),
     )
 
 

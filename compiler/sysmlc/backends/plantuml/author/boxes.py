@@ -12,7 +12,7 @@ from sysmlc.backends.plantuml.relations import Relation, iter_use_case_relations
 from sysmlc.backends.plantuml.views import Box, BoxView
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.ir.query import is_requirement
-from sysmlc.support.plantuml_text import lines
+from sysmlc.support.plantuml_text import wrap_lines
 
 _ARROWS = {"--|>": Edge.SPECIALIZES, "..|>": Edge.REALIZES}
 _TEXT = 44
@@ -73,7 +73,7 @@ def _iter_comment_anchors(graph: Graph) -> Iterator[Relation]:
 def _make_box(choice: Selection, item: Element, aliases: Aliases, in_lines: set[str]) -> Box:
     graph = choice.graph
     if item.kind is Kind.COMMENT:
-        text = "\\n".join(lines(str(item.attrs.get("body", "")), _TEXT))
+        text = "\\n".join(wrap_lines(str(item.attrs.get("body", "")), _TEXT))
         alias = aliases.make(item.id, "", "note")
         return Box(alias, text or labels.name(item), "requirement", shows=(item.id,))
     if item.attrs.get("external"):

@@ -24,7 +24,7 @@ from sysmlc.backends.plantuml.views import (
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Element, Graph, Kind
 from sysmlc.ir.query import CLASSIFIERS
-from sysmlc.support.plantuml_text import plain
+from sysmlc.support.plantuml_text import escape_line
 
 NOT_DRAWN = rule(
     "SM702",
@@ -161,7 +161,7 @@ def _make_diagram(choice: Selection, kind: str, view: View) -> Diagram:
     return Diagram(
         kind=kind,
         name=name,
-        frame=plain(" ".join(frame)),
+        frame=escape_line(" ".join(frame)),
         heading=(_TITLES[kind], name),
         view=view,
         about=choice.view.id,

@@ -11,7 +11,14 @@ from sysmlc.backends.plantuml.layout import iter_port_guides
 from sysmlc.backends.plantuml.views import InternalView, Line, PartView, PortView
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.ir.query import features, generals, type_of
-from sysmlc.support.plantuml_text import keyword_label, label, lines, plain, small, stack
+from sysmlc.support.plantuml_text import (
+    escape_line,
+    format_keyword_label,
+    format_label,
+    join_rows,
+    shrink,
+    wrap_lines,
+)
 
 _Ids = tuple[str, ...]
 _PORTS = (Kind.PORT,)
@@ -75,7 +82,7 @@ class _AuthorDrawing:
         ]
         return PartView(
             self._make_alias(path),
-            stack([small(plain(labels.guillemets(words))), *rows]),
+            join_rows([shrink(escape_line(labels.guillemets(words))), *rows]),
             "part" if part.attrs.get("aggregation") == "composite" else "reference",
             tuple(self._iter_ports(path)),
             tuple(self._iter_parts(path)),
@@ -105,9 +112,9 @@ class _AuthorDrawing:
         text = (
             ".".join(names) if port.name.strip() else labels.format_typed(self.choice.graph, port)
         )
-        rows = (f"<back:#FFFFFF>{row}</back>" for row in lines(text, _PORT_WIDTH))
+        rows = (f"<back:#FFFFFF>{row}</back>" for row in wrap_lines(text, _PORT_WIDTH))
         form = internal_block.FORMS.get(str(port.attrs.get("direction", "")), "port")
-        return PortView(self._make_alias(path), stack(rows), form, (port.id,))
+        return PortView(self._make_alias(path), join_rows(rows), form, (port.id,))
 
     def _make_alias(self, path: _Ids) -> str:
         return self.aliases.make(
@@ -170,7 +177,7 @@ class _AuthorDrawing:
 
     def _iter_dependency_lines(self, item: Element) -> Iterator[Line]:
         graph = self.choice.graph
-        text = keyword_label(labels.guillemets(labels.keywords(graph, item)))
+        text = format_keyword_label(labels.guillemets(labels.keywords(graph, item)))
         for client in graph.targets(item, Edge.CLIENT):
             for supplier in graph.targets(item, Edge.SUPPLIER):
                 ends = [self._find_drawn_path((element.id,), ()) for element in (client, supplier)]
@@ -184,14 +191,14 @@ _SAID = frozenset(["partProperty", "referenceProperty"])
 
 
 def _format_row(graph: Graph, feature: Element) -> str:
-    return stack(map(small, lines(labels.feature(graph, feature))))
+    return join_rows(map(shrink, wrap_lines(labels.feature(graph, feature))))
 
 
 _CONNECTIONS = (Kind.CONNECTOR, Kind.ITEM_FLOW)
 
 
 def _make_line(source: str, target: str, connection: Connection) -> Line:
-    near, far = label(connection.near), label(connection.far)
+    near, far = format_label(connection.near), format_label(connection.far)
     return Line(
         source, connection.arrow, target, connection.format_label(), near, far, connection.shows
     )

@@ -1,0 +1,190 @@
+"""The structure of the code: function names, sizes of modules, import cycles, nested imports."""
+
+import ast
+import re
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import networkx
+import pytest
+
+import sysmlc
+
+sys.path.append(str(Path(__file__).parents[1] / "docs"))
+import draw_packages
+
+ROOT = Path(sysmlc.__file__).parent
+PATHS = sorted(ROOT.rglob("*.py"))
+GENERATED = {"sysmlc.ir.kinds"}
+LARGEST = 400
+"""Lines of a module."""
+
+PARTICLES = set(
+    """told said made kept found known given done seen held left meant written taken drawn shown
+    spoken put apart together of beside between within among below above again whole others own
+    """.split()  # noqa: SIM905 - a list of words
+)
+CLEAR_NAMES = {"derived", "inherited", "listed", "owned", "passed", "put", "shown", "unsigned"}
+"""Properties, and names of the public API (``Graph.owned``) that read as nouns."""
+VERBS_IN_ED = {"need", "feed", "embed", "seed", "speed", "exceed", "proceed", "succeed", "shed"}
+
+SLOW_TO_IMPORT = {
+    "dd",
+    "jinja2",
+    "jsonschema",
+    "lark",
+    "networkx",
+    "pyecore",
+    "ruamel",
+    "watchfiles",
+}
+"""Third-party packages that may be imported inside a function: each takes over 20 ms."""
+
+REGISTRIES = {"sysmlc", "sysmlc.api", "sysmlc.driver.registry", "sysmlc.ir", "sysmlc.frontends.ir"}
+"""Modules that load front ends, passes, back ends or a reader when they are used."""
+
+PLATFORM_MODULES = {"fcntl", "resource"}
+"""Modules of the standard library that exist on POSIX systems only."""
+
+UNFINISHED = (
+    "sysmlc.backends.aml",
+    "sysmlc.backends.sysml",
+    "sysmlc.backends.uml",
+    "sysmlc.frontends.caex",
+    "sysmlc.frontends.sysml",
+    "sysmlc.logic",
+    "sysmlc.robots",
+)
+"""Packages whose names and imports are still to be reviewed; remove a line when that is done."""
+
+
+def name_module(path: Path) -> str:
+    """Return the dotted name of a module of sysmlc."""
+    parts = path.relative_to(ROOT.parent).with_suffix("").parts
+    return ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
+
+
+TREES = {name_module(path): ast.parse(path.read_text(encoding="utf-8")) for path in PATHS}
+
+
+def iter_imports(module: str, node: ast.AST) -> Iterator[str]:
+    """Yield the modules, or names of modules, that an import statement names."""
+    if isinstance(node, ast.Import):
+        yield from (alias.name for alias in node.names)
+    elif isinstance(node, ast.ImportFrom):
+        for alias in node.names:
+            name = f"{node.module}.{alias.name}"
+            yield name if name in TREES else str(node.module)
+
+
+def is_type_checking(node: ast.AST) -> bool:
+    """Whether a statement is ``if TYPE_CHECKING:``."""
+    return isinstance(node, ast.If) and "TYPE_CHECKING" in ast.dump(node.test)
+
+
+def iter_runtime_nodes(node: ast.AST) -> Iterator[ast.AST]:
+    """Yield the nodes below *node* that exist when the program runs."""
+    for child in ast.iter_child_nodes(node):
+        if not is_type_checking(child):
+            yield child
+            yield from iter_runtime_nodes(child)
+
+
+def list_imports(module: str) -> set[str]:
+    """Return what a module imports when it runs, at its top or inside a function."""
+    return {
+        name for node in iter_runtime_nodes(TREES[module]) for name in iter_imports(module, node)
+    }
+
+
+def is_lazy_by_design(module: str) -> bool:
+    """Whether a module may import modules of sysmlc inside functions."""
+    is_command = module.startswith("sysmlc.cli") or module == "sysmlc.__main__"
+    # A front end detects files without its reader, which is imported for the first file.
+    return is_command or module in REGISTRIES or module.endswith(".frontend")
+
+
+def is_unfinished(module: str) -> bool:
+    """Whether a module is in a package that is still to be reviewed."""
+    return module.startswith(UNFINISHED)
+
+
+def is_participle(name: str) -> bool:
+    """Whether a function name is a past participle or a particle (``joined``, ``beside``)."""
+    core = name.strip("_")
+    return core not in VERBS_IN_ED | CLEAR_NAMES and (
+        core in PARTICLES or bool(re.fullmatch(r"[a-z]{3,}ed", core))
+    )
+
+
+def test_no_function_is_named_by_a_participle_or_a_particle():
+    names = [
+        f"{module}.{node.name}"
+        for module, tree in TREES.items()
+        if not is_unfinished(module)
+        for node in ast.walk(tree)
+        if isinstance(node, ast.FunctionDef) and is_participle(node.name)
+    ]
+    assert names == []
+
+
+def test_modules_have_at_most_400_lines():
+    lengths = {name_module(path): path.read_text(encoding="utf-8").count("\n") for path in PATHS}
+    too_long = {
+        module: length
+        for module, length in lengths.items()
+        if length > LARGEST and module not in GENERATED
+    }
+    assert too_long == {}
+
+
+def test_no_modules_import_one_another():
+    """Imports inside functions count too: they only hide a cycle. Registries load by name."""
+    graph = networkx.DiGraph(
+        (module, name)
+        for module in TREES
+        if not is_lazy_by_design(module)
+        for name in list_imports(module)
+        if name in TREES and name != module
+    )
+    cycles = [sorted(part) for part in networkx.strongly_connected_components(graph)]
+    assert [cycle for cycle in cycles if len(cycle) > 1] == []
+
+
+@pytest.mark.parametrize("module", sorted(filter(lambda name: not is_unfinished(name), TREES)))
+def test_imports_stand_at_the_top(module):
+    nested = {
+        name
+        for function in iter_runtime_nodes(TREES[module])
+        if isinstance(function, ast.FunctionDef)
+        for node in iter_runtime_nodes(function)
+        for name in iter_imports(module, node)
+    }
+    own = {name for name in nested if name.startswith("sysmlc")}
+    foreign = {name.partition(".")[0] for name in nested - own}
+    foreign -= SLOW_TO_IMPORT | PLATFORM_MODULES
+    assert not foreign or is_lazy_by_design(module)
+    assert not own or is_lazy_by_design(module)
+
+
+def test_the_tests_of_names_would_notice():
+    assert is_participle("_joined")
+    assert is_participle("beside")
+    assert not is_participle("embed")
+    assert not is_participle("find_needed")
+
+
+def test_the_architecture_page_shows_the_packages_and_modules_that_exist():
+    page = draw_packages.PAGE.read_text(encoding="utf-8")
+    drawing = draw_packages.draw(draw_packages.read_package_imports())
+    assert draw_packages.insert(page, drawing) == page, "run python docs/draw_packages.py"
+    names = re.findall(r"`([\w/]+\.py)`", page.split("## How a port")[1])
+    paths = {path.relative_to(ROOT).as_posix() for path in PATHS}
+    missing = [
+        name
+        for name in names
+        if not any(path == name or path.endswith(f"/{name}") for path in paths)
+    ]
+    assert names
+    assert missing == []
