@@ -14,22 +14,28 @@ from sysmlc.sources.limits import DOCUMENT_LIMITS
 ROOT = Path(sysmlc.__file__).parent
 SHIPPED = {
     "backends/templates/files.py": "shipped templates",
+    "diagnostics/rule_page.py": "shipped pages of rules",
     "frontends/caex/standard.py": "shipped libraries",
-    "language/text/tables.py": "shipped tables",
-    "resources.py": "shipped files",
+    "language/text/lalr.py": "shipped tables",
+    "support/resources.py": "shipped files",
 }
-OUTPUTS = {"driver/publishing.py", "output.py", "cache.py"}
+OUTPUTS = {"driver/publishing.py", "support/atomic_files.py", "support/cache.py"}
 """Modules that read files of earlier runs."""
 MODEL = """package P { part def Gate { attribute open : ScalarValues::Boolean; exhibit state s {
     entry; then a; state a; } } }"""
 
 
 def read_unlimited() -> set[str]:
-    """Modules that call ``read_text`` or ``read_bytes``, which read a file of any size."""
+    """Return the modules that call ``read_text`` or ``read_bytes`` of a path.
+
+    Both read a file of any size. ``resources.read_text`` reads shipped files only.
+    """
+    readers = {"read_text", "read_bytes"}
     modules = set()
     for path in ROOT.rglob("*.py"):
         for node in ast.walk(ast.parse(path.read_text("utf-8"))):
-            if isinstance(node, ast.Attribute) and node.attr in ("read_text", "read_bytes"):
+            is_read = isinstance(node, ast.Attribute) and node.attr in readers
+            if is_read and ast.unparse(node.value) != "resources":
                 modules.add(path.relative_to(ROOT).as_posix())
     return modules
 

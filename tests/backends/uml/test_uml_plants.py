@@ -142,7 +142,7 @@ def test_a_comment_that_was_changed_is_told_and_stays(body, plant):
 
 @pytest.mark.parametrize(("text", "codes"), [("wrong", ["SM189"]), ("right", [])])
 def test_the_rule_reports_its_wrong_model_and_not_its_right_one(text, codes):
-    graph, sink = parse_text(getattr(UNREADABLE, text)), Sink()
+    graph, sink = parse_text(getattr(UNREADABLE.read_page(), text)), Sink()
     pipeline.build_pipeline(PASSES).run(graph, sink)
     assert [found.rule.code for found in sink] == codes
 
