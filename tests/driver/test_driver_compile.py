@@ -177,7 +177,7 @@ def test_a_file_that_is_being_saved_is_not_compiled_and_compiled_when_it_is_whol
     stamps = [(0, 1), (0, 2), (0, 3), (0, 4)]
     monkeypatch.setattr(whole, "_PAUSE", 0)
     with monkeypatch.context() as writing:
-        writing.setattr(whole, "_seen", lambda _: stamps.pop(0))
+        writing.setattr(whole, "_make_state", lambda _: stamps.pop(0))
         made = compiled(plant)
     assert (codes(made), made.exit_code(), made.is_complete) == (["SM127"], 2, False)
     assert compiled(plant).exit_code() == 0

@@ -12,7 +12,7 @@ LIMITS = Limits()
 def stamps(monkeypatch, *pairs):
     """What the file looks like before and after each reading: size and time."""
     left = list(pairs)
-    monkeypatch.setattr(whole, "_seen", lambda _: left.pop(0))
+    monkeypatch.setattr(whole, "_make_state", lambda _: left.pop(0))
     monkeypatch.setattr(whole, "_PAUSE", 0)
 
 
