@@ -1,4 +1,4 @@
-"""Merging of runs that reached the same state, of which one then represents all (decision 0037).
+"""Merging of runs that reached the same state, of which one then represents all (decision 26).
 
 After a few steps most robots are on their way between targets, wherever they started. The future of
 a run depends only on its state, so each state is simulated once.
