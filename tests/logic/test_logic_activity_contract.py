@@ -200,7 +200,7 @@ def test_without_an_assumption_the_activity_may_hang(name):
 
 
 def test_an_exit_guard_that_holds_again_and_again_is_not_enough_to_leave_a_loop():
-    """It may hold only while the token is elsewhere (docs/decisions/0011-loop-exit-assumptions.md)."""
+    """It may hold only while the token is elsewhere (decision 11)."""
     found = contract(MODELS["loop"])
     moves = [c for c in found.guarantees if c.class_ is not Class.LIVENESS]
     (finish,) = [c for c in found.guarantees if c.class_ is Class.LIVENESS]
