@@ -45,8 +45,8 @@ def forbid(monkeypatch):
         raise AssertionError("done again")
 
     for module, name in (
-        (flow, "synthesise"),
-        (flow, "measured"),
+        (flow, "synthesise_robot"),
+        (flow, "measure_travel_times"),
         (flow, "decide"),
         (claims, "find_refinement_failures"),
         (claims, "Entailment"),
