@@ -142,7 +142,7 @@ WATCH = """
 import os, signal, sys, time
 from pathlib import Path
 from sysmlc.cli import main, watching
-compile_all = watching.compiled
+real_compile_all = watching.compile_all
 def compile_or_fail(*args):
     text = Path("plant.sysml").read_text()
     if "Endless" in text:
@@ -151,8 +151,8 @@ def compile_or_fail(*args):
         bytes(1 << 40)
     if "Crash" in text:
         os.kill(os.getpid(), signal.SIGSEGV)
-    return compile_all(*args)
-watching.compiled = compile_or_fail
+    return real_compile_all(*args)
+watching.compile_all = compile_or_fail
 sys.argv = ["sysmlc", "watch", "plant.sysml", "-o", "out", "--time-limit", "4", "--settle", "0"]
 main()
 """
