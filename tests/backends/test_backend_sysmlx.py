@@ -165,7 +165,7 @@ class Wrong:
 
 
 def test_an_error_in_the_text_of_our_own_is_told_at_its_element(monkeypatch):
-    monkeypatch.setattr("sysmlc.backends.sysml.BACKEND", Wrong())
+    monkeypatch.setattr("sysmlc.backends.sysmlx.backend.TEXT", Wrong())
     graph = parse_text('Package plant "Plant"\n  Class gate "Gate"\n')
     output, sink = Output(), Sink()
     BACKEND.emit(graph, output, sink, EmitOptions())
