@@ -1,7 +1,7 @@
 """Hostile repositories are answered, and change nothing but their output folder.
 
 The number of a repository in a failure is its seed: ``repository(seed, among)`` makes it again.
-SYSMLC_REPOSITORIES=2000 tries so many with real models; by default it is 300, some three minutes.
+SYSMLC_REPOSITORIES=2000 tries so many with real models; by default it is 120, about one minute.
 """
 
 import os
@@ -14,7 +14,7 @@ from fuzz.repositories import FIRST_SEED, Repository, repository, run, take_snap
 BATCH = 100
 LARGEST = 150 * 1024
 FIRST_REAL = FIRST_SEED + 1_000
-REAL = int(os.environ.get("SYSMLC_REPOSITORIES", "300"))
+REAL = int(os.environ.get("SYSMLC_REPOSITORIES", "120"))
 
 
 def find_unanswered(guard, folder, seeds, among):
