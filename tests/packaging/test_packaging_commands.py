@@ -23,7 +23,6 @@ NOT_RUN = {
     r"uses: ": "actions of a service for continuous integration",
     r"make ": "targets of the Makefile, which test_packaging_docs looks up",
     r"java -jar plantuml\.jar ": "PlantUML is a download of the reader's",
-    r"python benchmarks/(startup|xmi|aml|cache|sysml)\.py": "judges times; 'make bench' runs it",
 }
 """Commands that are not run, and why."""
 
