@@ -51,7 +51,6 @@ UNFINISHED = (
     "sysmlc.backends.aml",
     "sysmlc.backends.sysml",
     "sysmlc.backends.uml",
-    "sysmlc.frontends.caex",
     "sysmlc.frontends.sysml",
     "sysmlc.logic",
     "sysmlc.robots",

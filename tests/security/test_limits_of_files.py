@@ -15,7 +15,7 @@ ROOT = Path(sysmlc.__file__).parent
 SHIPPED = {
     "backends/templates/files.py": "shipped templates",
     "diagnostics/rule_page.py": "shipped pages of rules",
-    "frontends/caex/standard.py": "shipped libraries",
+    "frontends/caex/libraries.py": "shipped libraries",
     "language/text/lalr.py": "shipped tables",
     "support/resources.py": "shipped files",
 }

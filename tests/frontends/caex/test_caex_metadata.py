@@ -5,10 +5,10 @@ from xml.sax.saxutils import quoteattr
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from sysmlc.frontends.caex.metadata import _quoted
+from sysmlc.frontends.caex.metadata import quote_attribute
 
 
 @example('it\'s "both"\n\t\r & <that>')
 @given(st.text(alphabet=st.sampled_from("a'\"&<>\n\t\r é")))
 def test_values_of_attributes_are_quoted_as_by_the_library(value):
-    assert _quoted(value) == quoteattr(value)
+    assert quote_attribute(value) == quoteattr(value)

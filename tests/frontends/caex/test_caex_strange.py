@@ -3,7 +3,7 @@
 import pytest
 from reading_caex import CAEX_2, Read, aml, classes, plant, types
 
-from sysmlc.frontends.caex import strange
+from sysmlc.frontends.caex import conformance
 
 ELEMENT = '<InternalElement Name="i" ID="1">%s</InternalElement>'
 
@@ -107,7 +107,7 @@ def test_text_that_is_at_home_is_nothing_to_tell(body):
 
 def test_text_below_what_any_xml_may_stand_in_costs_no_second_look(monkeypatch):
     looks = []
-    monkeypatch.setattr(strange, "parse", lambda source, _: looks.append(source.name))
+    monkeypatch.setattr(conformance, "parse", lambda source, _: looks.append(source.name))
     header = "<WriterHeader><WriterName>us</WriterName><Constraint>c</Constraint></WriterHeader>"
     for reading in in_both_ways(inside(f"<AdditionalInformation>{header}</AdditionalInformation>")):
         assert (reading.findings, looks) == ([], [])

@@ -3,7 +3,7 @@
 import pytest
 from reading_caex import Read, classes, interfaces, plant, types
 
-from sysmlc.frontends.caex.datatypes import meant, reader_of
+from sysmlc.frontends.caex.data_types import convert_leniently, find_converter
 
 VALUES = {
     "double": (["1.5", "-2e3", " 7 ", "INF", "NaN"], ["two", "1,5", "1 m", "infinity", "1_0"]),
@@ -40,7 +40,7 @@ def test_what_xml_schema_has_is_read(name, text):
 
 def is_read(name, text):
     try:
-        reader_of(f"xs:{name}")(text)
+        find_converter(f"xs:{name}")(text)
     except ValueError:
         return False
     return True
@@ -53,7 +53,7 @@ def test_what_xml_schema_has_not_is_none(name, text):
 
 @pytest.mark.parametrize("name", ["string", "anyURI", "ID", "token", "no such type", ""])
 def test_any_text_is_a_value_of_the_other_types(name):
-    assert reader_of(f"xs:{name}" if name else "") is None
+    assert find_converter(f"xs:{name}" if name else "") is None
 
 
 @pytest.mark.parametrize(
@@ -61,7 +61,7 @@ def test_any_text_is_a_value_of_the_other_types(name):
     [("True", "xs:boolean", True), ("300", "xs:byte", 300), ("1e3", "xs:decimal", 1000.0)],
 )
 def test_what_is_meant_all_the_same_counts(text, data_type, value):
-    assert meant(text, data_type) == value
+    assert convert_leniently(text, data_type) == value
 
 
 def attribute(data_type, text, more="", tag="Value"):

@@ -1,30 +1,37 @@
-"""Attributes: value properties of classes."""
+"""Attributes: value properties of classes, with their nested attributes and constraints."""
+
+import json
+import re
 
 from sysmlc.diagnostics import Verdict
-from sysmlc.frontends.caex import constraints, fitting, measures, mirrors
+from sysmlc.frontends.caex import data_types, mirrors, value_types
 from sysmlc.frontends.caex.context import Context
 from sysmlc.frontends.caex.document import Document, Node
 from sysmlc.frontends.caex.types import Member, Type
 from sysmlc.frontends.caex.vocabulary import Family
 from sysmlc.ir import Edge, Element, Kind
 
+_IDENTIFIER = re.compile(r"[^\W\d]\w*$")
+_BOUND_OPERATORS = {"RequiredMinValue": ">=", "RequiredValue": "==", "RequiredMaxValue": "<="}
 
-def attribute(context: Context, owner: Type, top: Node, document: Document) -> None:
-    """Add an attribute of a class, with those below it as features of a type of its own."""
-    waiting = [(owner, top)]
-    while waiting:
-        holder, node = waiting.pop()
-        structure = _attribute(context, holder, node, document)
+
+def lower_attribute(context: Context, owner: Type, node: Node, document: Document) -> None:
+    """Add an attribute of a class; attributes below it are features of a type of its own."""
+    worklist = [(owner, node)]
+    while worklist:
+        holder, attribute = worklist.pop()
+        structure = _lower_single(context, holder, attribute, document)
         if structure is not None:
-            inner_nodes = list(node.of("Attribute"))
-            waiting += [(structure, inner) for inner in reversed(inner_nodes)]
+            nested = list(attribute.iter_children("Attribute"))
+            worklist += [(structure, inner) for inner in reversed(nested)]
 
 
-def _attribute(context: Context, owner: Type, node: Node, document: Document) -> Type | None:
+def _lower_single(context: Context, owner: Type, node: Node, document: Document) -> Type | None:
+    """Add an attribute without those below it; return the type made for these, if there are any."""
     data_type = node.attributes.get("AttributeDataType", "")
-    value, default = node.text("Value"), node.text("DefaultValue")
-    given = default if value is None else value
-    element = context.add(
+    value, default = node.child_text("Value"), node.child_text("DefaultValue")
+    initial = default if value is None else value
+    element = context.add_element(
         Kind.PROPERTY,
         node,
         document,
@@ -32,33 +39,37 @@ def _attribute(context: Context, owner: Type, node: Node, document: Document) ->
         role="value",
         data_type=data_type,
         default_value=default if default != value else None,
-        semantics=_semantics(node),
+        semantics=_read_semantics(node),
     )
-    declared = mirrors.named_class(context, node, document)
-    fitting.know(context, document, node.row, data_type)
-    if given:
-        element.attrs["default"] = fitting.value(context, node, given, data_type, declared)
-    if default and default != given:
-        fitting.value(context, node, default, data_type, declared)
-    measures.multiply(element.attrs, declared)
-    redefine(context, owner, node, element)
-    structure = _structure(context, owner, node, document, element, declared)
-    measures.type_value(context, element, node, document, structure or declared)
-    constraints.lower(context, element, node, document)
-    owner.members["Attribute", node.name] = Member(
-        element.id, structure or declared, document, node.row
-    )
+    declared = mirrors.resolve_member_class(context, node, document)
+    data_types.check_data_type(context, document, node.row, data_type)
+    if initial:
+        converted = data_types.convert_value(context, node, initial, data_type, declared)
+        element.attrs["default"] = converted
+    if default and default != initial:
+        # The text is stored as it is written; the conversion only checks it.
+        data_types.convert_value(context, node, default, data_type, declared)
+    value_types.set_multiplicity(element.attrs, declared)
+    connect_redefined(context, owner, node, element)
+    structure = _add_structure(context, owner, node, document, element, declared)
+    type = structure or declared
+    value_types.connect_type(context, element, node, document, type)
+    lower_constraints(context, element, node, document)
+    owner.members["Attribute", node.name] = Member(element.id, type, document, node.row)
     return structure
 
 
-def redefine(context: Context, owner: Type, node: Node, element: Element) -> None:
-    """Overriding is by name and replaces the whole feature (AML.Engine does the same)."""
-    inherited = owner.base.find(node.tag, node.name) if owner.base else None
+def connect_redefined(context: Context, owner: Type, node: Node, element: Element) -> None:
+    """Connect a feature to the inherited feature of its name, which it replaces as a whole.
+
+    AML.Engine overrides by name, too, and does not merge nested attributes.
+    """
+    inherited = owner.base.find_member(node.tag, node.name) if owner.base else None
     if inherited is not None:
         context.graph.connect(Edge.REDEFINES, element.id, inherited.id)
 
 
-def _structure(
+def _add_structure(
     context: Context,
     owner: Type,
     node: Node,
@@ -66,18 +77,19 @@ def _structure(
     element: Element,
     declared: Type | None,
 ) -> Type | None:
-    """The data type made for an attribute that has attributes of its own."""
-    if not any(True for _ in node.of("Attribute")):
+    """Add the data type for an attribute that has attributes of its own."""
+    if not node.has_child("Attribute"):
         return None
-    type = Element(f"{element.id}#type", Kind.DATA_TYPE, node.name, owner.id)
-    type.attrs.update(role="value type", subkind="attribute")
-    return own_type(context, type, Type(type.id, document, node.row, Family.ATTRIBUTE), declared)
+    data_type = Element(f"{element.id}#type", Kind.DATA_TYPE, node.name, owner.id)
+    data_type.attrs.update(role="value type", subkind="attribute")
+    type = Type(data_type.id, document, node.row, Family.ATTRIBUTE)
+    return add_own_type(context, data_type, type, declared)
 
 
-def own_type(context: Context, element: Element, type: Type, declared: Type | None) -> Type:
+def add_own_type(context: Context, element: Element, type: Type, declared: Type | None) -> Type:
     """Add the type that only one feature has; it specialises the declared one."""
-    element.id = type.id = context.free(element.id, type.node)
-    context.place(element, type.document, type.node.ordinal)
+    element.id = type.id = context.make_unique(element.id, type.node)
+    context.set_location(element, type.document, type.node.ordinal)
     context.graph.add(element)
     type.base = declared
     if declared is not None:
@@ -85,9 +97,75 @@ def own_type(context: Context, element: Element, type: Type, declared: Type | No
     return type
 
 
-def _semantics(node: Node) -> tuple[str, ...]:
-    found = list(node.of("RefSemantic"))
-    for one in found:
-        one.verdict = Verdict.MAPPED
-    paths = (one.attributes.get("CorrespondingAttributePath", "") for one in found)
+def _read_semantics(node: Node) -> tuple[str, ...]:
+    """Return the references to dictionaries such as ECLASS, and mark them as mapped."""
+    paths = []
+    for reference in node.iter_children("RefSemantic"):
+        reference.verdict = Verdict.MAPPED
+        paths.append(reference.attributes.get("CorrespondingAttributePath", ""))
     return tuple(path for path in paths if path)
+
+
+# -- constraints -----------------------------------------------------------------------------------
+
+
+def lower_constraints(context: Context, attribute: Element, node: Node, document: Document) -> None:
+    """Add the constraints of an attribute (IEC 62424: ordinal, nominal and unknown scale).
+
+    Bounds and lists of values become expressions, requirements of an unknown scale stay text.
+    """
+    data_type = node.attributes.get("AttributeDataType", "")
+    for child in node.iter_children("Constraint"):
+        body, language = _format_body(context, child, attribute.name, data_type)
+        id = f"{attribute.id}/{child.name or 'Constraint'}"
+        constraint = context.add_element(
+            Kind.CONSTRAINT,
+            child,
+            document,
+            attribute.owner,
+            id=context.make_unique(id, child),
+            body=body,
+            language=language,
+        )
+        context.graph.connect(Edge.REFERENCES, constraint.id, attribute.id)
+        child.mark_subtree()
+
+
+def _format_body(context: Context, node: Node, name: str, data_type: str) -> tuple[str, str]:
+    """Return the expression or text of a constraint, and its language."""
+    subject = name if _IDENTIFIER.match(name) else f"'{name}'"
+    for scale in node.children:
+        if scale.tag == "OrdinalScaledType":
+            comparisons = [
+                f"{subject} {operator} {_format_literal(context, node, text, data_type)}"
+                for tag, operator in _BOUND_OPERATORS.items()
+                for text in scale.child_texts(tag)
+            ]
+            return " && ".join(comparisons), "sysmlc"
+        if scale.tag == "NominalScaledType":
+            texts = scale.child_texts("RequiredValue")
+            literals = [_format_literal(context, node, text, data_type) for text in texts]
+            return " || ".join(f"{subject} == {literal}" for literal in literals), "sysmlc"
+        if scale.tag == "UnknownType":
+            return " ".join(scale.child_texts("Requirements")).strip(), ""
+    return "", ""
+
+
+def _format_literal(context: Context, node: Node, text: str, data_type: str) -> str:
+    value = data_types.convert_value(context, node, text, data_type, None)
+    if isinstance(value, str):
+        value = _parse_number(text)
+    return json.dumps(value, ensure_ascii=False)
+
+
+def _parse_number(text: str) -> float | int | str:
+    """Return a number if the text is one.
+
+    Bounds are texts in CAEX 3.0, also where the attribute has no data type.
+    """
+    for convert in (int, float):
+        try:
+            return convert(text.strip())
+        except ValueError:
+            continue
+    return text

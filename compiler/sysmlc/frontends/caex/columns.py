@@ -5,11 +5,11 @@ Expat calls the handlers for each element of the file, so they only append to co
 
 from sysmlc.diagnostics import Verdict
 from sysmlc.frontends.caex.document import Document
-from sysmlc.frontends.caex.vocabulary import SIGNS, STRUCTURE
+from sysmlc.frontends.caex.vocabulary import TAG_CODES, TEXTLESS_TAGS
 from sysmlc.sources import DEFAULT_LIMITS, Source, SourceError
 from sysmlc.sources.xml import SEPARATOR, parse, parser, too_deep
 
-_Texts = dict[int, str]
+_TextColumn = dict[int, str]
 
 
 def read_document(source: Source, is_built_in: bool = False) -> Document:
@@ -19,25 +19,29 @@ def read_document(source: Source, is_built_in: bool = False) -> Document:
     return reader.document
 
 
-class _TextColumns(dict[str, _Texts | None]):
-    """The column for the text of each tag: None, that of a folded tag, or that of the row."""
+class _TextColumns(dict[str, _TextColumn | None]):
+    """The column for the text of each tag as expat writes it.
 
-    def __init__(self, texts: dict[str, _Texts]) -> None:
+    A folded tag has a column of its own, a tag without text has None, and all other tags share
+    the column for the text of the row itself.
+    """
+
+    def __init__(self, texts: dict[str, _TextColumn]) -> None:
         super().__init__()
         self._texts = texts
 
-    def __missing__(self, tag: str) -> _Texts | None:
+    def __missing__(self, tag: str) -> _TextColumn | None:
         name = tag.rpartition(SEPARATOR)[2]
-        own = None if name in STRUCTURE else self._texts[""]
-        self[tag] = column = self._texts.get(name, own) if name else own
+        default = None if name in TEXTLESS_TAGS else self._texts[""]
+        self[tag] = column = self._texts.get(name, default) if name else default
         return column
 
 
 class _ColumnReader:
     """The parser handlers that fill the columns of one document.
 
-    An element whose tag is folded (``vocabulary.FOLDED``) gets no row when it has no attributes:
-    its text becomes an entry of its parent's row. Text elsewhere is noted as stray.
+    An element whose tag is folded (``vocabulary.FOLDED_TAGS``) gets no row when it has no
+    attributes: its text becomes an entry of its parent's row. Text elsewhere is noted as stray.
     """
 
     def __init__(self, source: Source, is_built_in: bool) -> None:
@@ -57,15 +61,15 @@ class _ColumnReader:
             self._parser.EndElementHandler = None
             self._parser.CharacterDataHandler = None
         document = self.document
-        document.has_stray = any(map(str.strip, self._stray_texts))
+        document.has_stray_text = any(map(str.strip, self._stray_texts))
         local_names = {tag: tag.rpartition(SEPARATOR)[2] for tag in set(document.tags)}
         document.tags = [local_names[tag] for tag in document.tags]
         if document.tags[0] != "CAEXFile":
             raise SourceError("its root element is no CAEXFile", self._source.name, 0)
         document.ids = [attributes.get("ID", "") for attributes in document.attributes]
-        document.signs = bytes(map(SIGNS.__getitem__, document.tags))
+        document.tag_codes = bytes(map(TAG_CODES.__getitem__, document.tags))
         document.verdicts = list[Verdict | None]([None]) * len(document.tags)
-        document.elements = [""] * len(document.tags)
+        document.element_ids = [""] * len(document.tags)
 
     def _set_handlers(self) -> None:
         document, expat = self.document, self._parser
@@ -74,7 +78,7 @@ class _ColumnReader:
         open_rows = [-1]
         ordinal = -1
         following = 0
-        folding: _Texts | None = None
+        folding: _TextColumn | None = None
         folding_depth = 0
 
         def start_element(tag: str, attributes: dict[str, str]) -> None:
@@ -83,9 +87,11 @@ class _ColumnReader:
             parent = open_rows[-1]
             column = text_columns[tag]
             if column is not None:
+                # These handlers are installed for elements with text only, as most have none.
                 expat.CharacterDataHandler = add_text
                 expat.EndElementHandler = end_text_element
                 is_foldable = not attributes and column is not own_texts and folding is None
+                # A second element of the same tag gets a row, so that no text is lost.
                 if is_foldable and parent >= 0 and parent not in column:
                     folding, folding_depth = column, len(open_rows)
                     column[parent] = ""

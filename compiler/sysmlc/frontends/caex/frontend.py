@@ -1,10 +1,10 @@
-"""The front end for AutomationML; what reads it is imported when there is a plant to read."""
+"""The front end for AutomationML; the modules that read are imported for the first file."""
 
 from collections.abc import Sequence
 
 from sysmlc.diagnostics import Coverage, Place, Sink
 from sysmlc.frontends.base import FileNames
-from sysmlc.frontends.caex import detect
+from sysmlc.frontends.caex import detection
 from sysmlc.ir import Graph
 from sysmlc.sources import Source
 
@@ -16,33 +16,26 @@ class CaexFrontend:
     is_folder_unit = False
 
     def detect(self, source: Source) -> float:
-        """How sure it is, from 0 to 1, that the source is AutomationML."""
-        return detect.score(source)
+        """Return how certain it is, from 0 to 1, that the source is AutomationML."""
+        return detection.score_source(source)
 
     def links(self, source: Source) -> Sequence[str]:
-        """The files that its external references name."""
-        from sysmlc.frontends.caex.account import links
-
-        return links(source)
+        """Return the files that external references name, each once and in order."""
+        return detection.list_external_references(source)
 
     def read_names(self, source: Source) -> FileNames:
-        """A file without an instance hierarchy is a library; files refer to others by path."""
-        from sysmlc.frontends.caex.account import has_hierarchy
+        """Return that a file without an instance hierarchy is a library.
 
-        return FileNames(is_library=not has_hierarchy(source))
+        Files refer to one another by path only.
+        """
+        return FileNames(is_library=not detection.has_hierarchy(source))
 
     def list_attachments(self, source: Source) -> Sequence[tuple[str, Place]]:
-        """The files of other languages that it refers to: they are not read."""
-        from sysmlc.frontends.caex.documents import mentioned
-
-        return list(mentioned(source))
+        """Return the files of other languages that the source refers to; they are not read."""
+        return list(detection.iter_external_documents(source))
 
     def read(self, sources: Sequence[Source], graph: Graph, sink: Sink, coverage: Coverage) -> None:
-        """Read the files into the graph; see docs/automationml.md.
+        """Read the files into the graph; see ``reading.read`` and docs/automationml.md."""
+        from sysmlc.frontends.caex import reading
 
-        A damaged file is reported and left out. Raises SourceError for what exceeds the
-        limits. The graph does not depend on the order of the files.
-        """
-        from sysmlc.frontends.caex.reading import read_all
-
-        read_all(sources, graph, sink, coverage)
+        reading.read(sources, graph, sink, coverage)

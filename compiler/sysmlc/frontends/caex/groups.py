@@ -1,15 +1,13 @@
-"""Facets and groups: internal elements that only show others (AutomationML, IEC 62714-1)."""
+"""Facets and groups: internal elements that refer to features of others (IEC 62714-1)."""
 
 from collections.abc import Iterator
 
 from sysmlc.diagnostics import Severity, Verdict, rule
 from sysmlc.frontends.caex import mirrors
-from sysmlc.frontends.caex.context import Context, path_of
+from sysmlc.frontends.caex.component import Component, ensure_own_type
+from sysmlc.frontends.caex.context import Context, qualified_name
 from sysmlc.frontends.caex.document import Document, Node
-from sysmlc.frontends.caex.holders import own
-from sysmlc.frontends.caex.libraries import mark
-from sysmlc.frontends.caex.sameness import says_more
-from sysmlc.frontends.caex.site import Site
+from sysmlc.frontends.caex.overrides import overrides_attribute
 from sysmlc.frontends.caex.types import Type
 from sysmlc.frontends.caex.vocabulary import BASE_ROLE, ROLE_REFERENCES, Family
 from sysmlc.ir import Edge, Element, Kind
@@ -33,140 +31,149 @@ UNKNOWN_FACET = rule(
 _KINDS = {"Facet": Kind.FACET, "Group": Kind.GROUP}
 
 
-def kind_of(context: Context, site: Site) -> Kind | None:
-    """Facet or Group when the element plays that role, by inheritance and never by name."""
-    document = site.document
-    for row in site.roles:
+def find_group_kind(context: Context, component: Component) -> Kind | None:
+    """Return Facet or Group if the internal element has that role, by inheritance."""
+    document = component.document
+    for row in component.role_rows:
         path = document.attributes[row].get(ROLE_REFERENCES[document.tags[row]], "")
-        kind = _look_up(context, document, path)
+        kind = _find_kind_of_path(context, document, path)
         if kind is not None:
             return kind
     return None
 
 
-def _look_up(context: Context, document: Document, path: str) -> Kind | None:
-    if (document, path) in context.shown:
-        return context.shown[document, path]
-    role = context.look_up(path.strip(), Family.ROLE, document) if path.strip() else None
-    kind = context.shown[document, path] = _kind_of(role) if isinstance(role, Type) else None
+def _find_kind_of_path(context: Context, document: Document, path: str) -> Kind | None:
+    """Return the kind for the path of a role, memoised: the roles of a plant are few."""
+    if (document, path) in context.group_kinds:
+        return context.group_kinds[document, path]
+    role = context.look_up_type(path.strip(), Family.ROLE, document) if path.strip() else None
+    kind = _find_kind_of_role(role) if isinstance(role, Type) else None
+    context.group_kinds[document, path] = kind
     return kind
 
 
-def _kind_of(role: Type) -> Kind | None:
-    return next((kind for name, kind in _KINDS.items() if role.conforms(*BASE_ROLE, name)), None)
+def _find_kind_of_role(role: Type) -> Kind | None:
+    return next((kind for name, kind in _KINDS.items() if role.conforms_to(*BASE_ROLE, name)), None)
 
 
-def roles_of(context: Context, site: Site) -> Iterator[Type]:
-    """The role classes that an internal element names and that are known."""
-    document = site.document
-    for row in site.roles:
-        path = document.attributes[row].get(ROLE_REFERENCES[document.tags[row]], "").strip()
-        found = context.look_up(path, Family.ROLE, site.document) if path else None
-        if isinstance(found, Type):
-            yield found
+def lower_group(context: Context, component: Component, kind: Kind) -> None:
+    """Add the Facet or Group; ``connect_content`` adds its references when all elements exist.
 
-
-def lower(context: Context, site: Site, kind: Kind) -> None:
-    """Add the Facet or Group; what it shows is known when everything is placed.
-
-    What it has beside that is left without a verdict, and told as not read.
+    Other content gets no verdict, so that the coverage reports it as not read.
     """
-    element = context.add(kind, site.node, site.document, _owner(context, site))
-    site.part = element.id
-    for role in map(site.document.node, site.roles):
+    node, document = component.node, component.document
+    element = context.add_element(kind, node, document, _find_owner(context, component))
+    component.part_id = element.id
+    for role in map(document.node, component.role_rows):
         path = role.attributes.get(ROLE_REFERENCES[role.tag], "")
-        if _look_up(context, site.document, path) is kind:
+        if _find_kind_of_path(context, document, path) is kind:
             role.verdict = Verdict.MAPPED
-            _realize(context, site, element, path.strip())
-    for node in site.node.of("Attribute"):
-        if node.name == "AssociatedFacet":
-            context.graph.set(element, associated_facet=(node.text("Value") or "").strip() or None)
-            node.verdict = Verdict.MAPPED
+            _add_realization(context, document, element, path.strip())
+    for attribute in node.iter_children("Attribute"):
+        if attribute.name == "AssociatedFacet":
+            facet = (attribute.child_text("Value") or "").strip()
+            context.graph.set(element, associated_facet=facet or None)
+            attribute.verdict = Verdict.MAPPED
 
 
-def _realize(context: Context, site: Site, element: Element, path: str) -> None:
-    """A role that specialises Facet or Group is one that it plays; these two say its kind."""
-    role = context.known(path, Family.ROLE, site.document)
+def _add_realization(context: Context, document: Document, element: Element, path: str) -> None:
+    """Realise a role that specialises Facet or Group; these two are the kind of the element."""
+    role = context.find_resolved(path, Family.ROLE, document)
     if role is not None and role.path[:-1] != BASE_ROLE:
         context.graph.connect(Edge.REALIZES, element, role.id)
 
 
-def _owner(context: Context, site: Site) -> str:
-    above = site.parent
-    if above is None:
-        return site.instance
-    is_group = above.type is None and above.part and context.graph[above.part].kind is Kind.GROUP
-    return above.part if is_group else own(context, above).id
+def _find_owner(context: Context, component: Component) -> str:
+    parent = component.parent
+    if parent is None:
+        return component.instance_id
+    is_in_group = (
+        parent.type is None and parent.part_id and context.graph[parent.part_id].kind is Kind.GROUP
+    )
+    return parent.part_id if is_in_group else ensure_own_type(context, parent).id
 
 
-def show(context: Context, site: Site) -> None:
-    """Draw the references of a Facet to features, of a Group to the masters of its mirrors."""
-    element = context.graph[site.part]
-    shown = _features if element.kind is Kind.FACET else _masters
-    called = []
-    for node, master in shown(context, site):
-        one = context.graph.get(master.element)
-        if one is not None:
-            node.verdict = _verdict(context, site, node, master)
-            context.graph.connect(Edge.REFERENCES, element, one)
-            id = site.document.ids[node.row]
-            if id or node.name != one.name:
-                called.append((one.id, node.name, id))
-    if called:
-        context.graph.set(element, mirrors=tuple(called))
+def connect_content(context: Context, component: Component) -> None:
+    """Connect a Facet to the features that it shows, a Group to the masters of its mirrors."""
+    element = context.graph[component.part_id]
+    if element.kind is Kind.FACET:
+        pairs = _iter_shown_features(context, component)
+    else:
+        pairs = _iter_masters(context, component)
+    mirror_names = []
+    for node, master in pairs:
+        target = context.graph.get(master.element_id)
+        if target is not None:
+            node.verdict = _choose_verdict(context, component, node, master)
+            context.graph.connect(Edge.REFERENCES, element, target)
+            id = component.document.ids[node.row]
+            if id or node.name != target.name:
+                mirror_names.append((target.id, node.name, id))
+    if mirror_names:
+        context.graph.set(element, mirrors=tuple(mirror_names))
 
 
-def report_facets(context: Context, sites: list[Site]) -> None:
-    """Tell of groups that are for a facet that there is not."""
-    elements = [context.graph[site.part] for site in sites]
-    facets = sorted({one.name for one in elements if one.kind is Kind.FACET})
-    for site, element in zip(sites, elements, strict=True):
-        facet = str(element.attrs.get("associated_facet", ""))
-        if facet and facet not in facets:
-            facts = {"element": path_of(site.node), "facet": facet}
-            hint = did_you_mean(facet, facets)
-            context.report(UNKNOWN_FACET, site.document, site.node, hint=hint, **facts)
+def _iter_shown_features(context: Context, component: Component) -> Iterator[tuple[Node, Node]]:
+    """Yield the features of a facet, each with the feature around the facet that it shows.
 
-
-def _verdict(context: Context, site: Site, node: Node, master: Node) -> Verdict:
-    """Approximated, and told, where a mirror describes what its master does not."""
-    text = (node.text("Description") or "").strip()
-    if not text or text == (master.text("Description") or "").strip():
-        return Verdict.MAPPED
-    facts = {"element": path_of(node), "holder": site.name}
-    context.report(DESCRIBED_MIRROR, site.document, node, **facts)
-    return Verdict.APPROXIMATED
-
-
-def _features(context: Context, site: Site) -> Iterator[tuple[Node, Node]]:
-    """Features of the element around a facet, with what shows them: mirrored, or of its name."""
-    for node in site.node.of("Attribute", "ExternalInterface"):
+    A feature of a facet is a mirror, or in CAEX 2.15 a copy with the same name.
+    """
+    for node in component.node.iter_children("Attribute", "ExternalInterface"):
         if mirrors.is_mirror(context, node):
-            master = mirrors.master(context, site.document, node)
+            master = mirrors.find_master(context, component.document, node)
         else:
-            master = _of_the_name(context, site, node)
+            master = _find_copied_feature(context, component, node)
         if master is not None:
-            mark(node)
+            node.mark_subtree()
             yield node, master
 
 
-def _of_the_name(context: Context, site: Site, node: Node) -> Node | None:
-    """The feature of the name, unless the facet says something else of it."""
-    above = site.parent
-    known = above.type.find(node.tag, node.name) if above is not None and above.type else None
-    if above is None or known is None:
+def _find_copied_feature(context: Context, component: Component, node: Node) -> Node | None:
+    """Return the feature of the same name around the facet, unless the facet changes it."""
+    parent = component.parent
+    if parent is None or parent.type is None:
         return None
-    beside = (one for one in above.node.of(node.tag) if one.name == node.name)
-    said = {None, known.node.text("Value"), *(one.text("Value") for one in beside)}
-    if node.text("Value") not in said:
+    member = parent.type.find_member(node.tag, node.name)
+    if member is None:
         return None
-    if node.tag == "Attribute" and says_more(context.types, site.document, node, known):
+    namesakes = (other for other in parent.node.iter_children(node.tag) if other.name == node.name)
+    values = {None, member.node.child_text("Value")}
+    values.update(other.child_text("Value") for other in namesakes)
+    if node.child_text("Value") not in values:
         return None
-    return known.node
+    is_attribute = node.tag == "Attribute"
+    if is_attribute and overrides_attribute(context.types, component.document, node, member):
+        return None
+    return member.node
 
 
-def _masters(context: Context, site: Site) -> Iterator[tuple[Node, Node]]:
-    for node in site.node.of("InternalElement"):
-        found = context.find(node.attributes.get("RefBaseSystemUnitPath", "").strip())
-        if found is not None:
-            yield node, found[1]
+def _iter_masters(context: Context, component: Component) -> Iterator[tuple[Node, Node]]:
+    """Yield the internal elements of a group, each with the element that it names."""
+    for node in component.node.iter_children("InternalElement"):
+        path = node.attributes.get("RefBaseSystemUnitPath", "").strip()
+        located = context.find_node(path)
+        if located is not None:
+            yield node, located[1]
+
+
+def _choose_verdict(context: Context, component: Component, node: Node, master: Node) -> Verdict:
+    """Return approximated, and report it, for a description that the master does not have."""
+    text = (node.child_text("Description") or "").strip()
+    if not text or text == (master.child_text("Description") or "").strip():
+        return Verdict.MAPPED
+    facts = {"element": qualified_name(node), "holder": component.name}
+    context.report(DESCRIBED_MIRROR, component.document, node, **facts)
+    return Verdict.APPROXIMATED
+
+
+def report_unknown_facets(context: Context, components: list[Component]) -> None:
+    """Report groups that are associated with a facet that does not exist."""
+    elements = [context.graph[component.part_id] for component in components]
+    facets = sorted({element.name for element in elements if element.kind is Kind.FACET})
+    for component, element in zip(components, elements, strict=True):
+        facet = str(element.attrs.get("associated_facet", ""))
+        if facet and facet not in facets:
+            node = component.node
+            facts = {"element": qualified_name(node), "facet": facet}
+            facts["hint"] = did_you_mean(facet, facets)
+            context.report(UNKNOWN_FACET, component.document, node, **facts)

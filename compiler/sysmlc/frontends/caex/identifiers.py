@@ -1,21 +1,20 @@
-"""IDs of the elements of a unit: which row has which, and how one is found."""
+"""IDs of the elements of a unit: index from an ID to its row, exact and inexact lookup."""
 
 from bisect import bisect_right
 from collections.abc import Iterator
 from itertools import compress
 
 from sysmlc.frontends.caex.document import Document, Node
-from sysmlc.frontends.caex.paths import plain
 
-Place = tuple[Document, Node]
-"""A node and the file that it stands in."""
+LocatedNode = tuple[Document, Node]
+"""A node and its file."""
 
-_FEW = 8
-"""So many texts are looked for in all IDs at once, before these are indexed."""
+_UNINDEXED_LOOKUPS = 8
+"""Number of inexact lookups that search a joined text before an index is built."""
 
 
 class Identifiers:
-    """Rows by ID. The rows of all files are numbered one after the other."""
+    """Rows by ID. The rows of all files are numbered consecutively."""
 
     def __init__(self, documents: list[Document]) -> None:
         self._documents = documents
@@ -24,20 +23,23 @@ class Identifiers:
             self._starts.append(self._starts[-1] + len(document.tags))
         self._numbers: dict[str, int] = {}
         self._repeated: dict[str, list[int]] = {}
-        self._plain: dict[str, int] | None = None
-        self._paths: bool | None = None
-        self._lower: str | None = None
-        self._asked = 0
-        written = documents[0].ids if len(documents) == 1 else [i for d in documents for i in d.ids]
-        self._know(written)
+        self._numbers_by_plain_id: dict[str, int] | None = None
+        self._has_slash: bool | None = None
+        self._lower_ids: str | None = None
+        self._inexact_lookups = 0
+        if len(documents) == 1:
+            self._index(documents[0].ids)
+        else:
+            self._index([id for document in documents for id in document.ids])
 
-    def _know(self, written: list[str]) -> None:
-        rows = compress(range(len(written)), written)
+    def _index(self, ids: list[str]) -> None:
+        """Number the IDs. The loop runs only for files with repeated IDs, which are few."""
+        rows = compress(range(len(ids)), ids)
         numbers: dict[str, int] = {}
-        numbers.update(zip(filter(None, written), rows, strict=True))
-        if len(numbers) < len(written) - written.count(""):
+        numbers.update(zip(filter(None, ids), rows, strict=True))
+        if len(numbers) < len(ids) - ids.count(""):
             numbers = {}
-            for number, id in enumerate(written):
+            for number, id in enumerate(ids):
                 if id and numbers.setdefault(id, number) != number:
                     self._repeated.setdefault(id, [numbers[id]]).append(number)
         self._numbers = numbers
@@ -50,57 +52,60 @@ class Identifiers:
         """Whether several elements have the ID."""
         return id in self._repeated
 
-    def repeated(self) -> Iterator[tuple[str, list[Place]]]:
-        """Each ID that several elements have, with these."""
+    def iter_repeated(self) -> Iterator[tuple[str, list[LocatedNode]]]:
+        """Yield each ID that several elements have, with these elements."""
         for id, numbers in self._repeated.items():
-            yield id, list(map(self._place, numbers))
+            yield id, list(map(self._locate, numbers))
 
-    def without(self, document: Document, tag: str) -> list[int]:
-        """Rows of a file with this tag that have no ID."""
+    def list_rows_without_id(self, document: Document, tag: str) -> list[int]:
+        """Return the rows of a file with this tag that have no ID."""
         ids = document.ids
-        return [row for row in document.tagged(tag, 0, len(ids)) if not ids[row]]
+        return [row for row in document.iter_rows(tag, 0, len(ids)) if not ids[row]]
 
-    def find(self, id: str, document: Document | None = None) -> Place | None:
-        """The node with the ID: literally, else without regard to braces, case and alias.
+    def find(self, id: str, document: Document | None = None) -> LocatedNode | None:
+        """Return the node with the ID: literally, else without regard to braces, case and alias.
 
-        Of several files that have the ID, ``document`` is the one that is meant.
+        If several files have the ID, the node of *document* is preferred.
         """
         if id in self._repeated:
-            alike = list(map(self._place, self._repeated[id]))
-            return next((one for one in alike if one[0] is document), alike[0])
+            nodes = list(map(self._locate, self._repeated[id]))
+            return next((located for located in nodes if located[0] is document), nodes[0])
         number = self._numbers.get(id)
-        return self.find_plain(id.rpartition("@")[2]) if number is None else self._place(number)
+        return self.find_inexact(id.rpartition("@")[2]) if number is None else self._locate(number)
 
-    def find_plain(self, id: str) -> Place | None:
-        """The node whose ID differs at most in braces and case."""
-        if "/" in id and not self._has_paths():
+    def find_inexact(self, id: str) -> LocatedNode | None:
+        """Return the node whose ID differs at most in braces and case."""
+        if "/" in id and not self._has_id_with_slash():
             return None
-        if not self._may_be_there(plain(id)):
+        if not self._may_contain(_normalize(id)):
             return None
-        if self._plain is None:
-            self._plain = {}
-            for known, number in self._numbers.items():
-                self._plain.setdefault(plain(known), number)
-        found = self._plain.get(plain(id))
-        return None if found is None else self._place(found)
+        if self._numbers_by_plain_id is None:
+            self._numbers_by_plain_id = {}
+            for literal, number in self._numbers.items():
+                self._numbers_by_plain_id.setdefault(_normalize(literal), number)
+        number = self._numbers_by_plain_id.get(_normalize(id))
+        return None if number is None else self._locate(number)
 
-    def _may_be_there(self, id: str) -> bool:
-        """False for what is not even part of an ID: names of libraries, of which there are few."""
-        self._asked += 1
-        if self._plain is not None or self._asked > _FEW:
+    def _may_contain(self, id: str) -> bool:
+        """Whether the ID may exist. The first lookups search one text instead of building an index.
+
+        Most files ask only for the names of a few libraries, which are not part of any ID.
+        """
+        self._inexact_lookups += 1
+        if self._numbers_by_plain_id is not None or self._inexact_lookups > _UNINDEXED_LOOKUPS:
             return True
-        if self._lower is None:
-            self._lower = "\n".join(self._numbers).lower()
-        return id in self._lower
+        if self._lower_ids is None:
+            self._lower_ids = "\n".join(self._numbers).lower()
+        return id in self._lower_ids
 
-    def _has_paths(self) -> bool:
-        """Whether some ID looks like the path of a class: next to never."""
-        if self._paths is None:
-            self._paths = "/" in "".join(self._numbers)
-        return self._paths
+    def _has_id_with_slash(self) -> bool:
+        """Whether some ID looks like a class path, which is rare."""
+        if self._has_slash is None:
+            self._has_slash = "/" in "".join(self._numbers)
+        return self._has_slash
 
-    def spot(self, id: str) -> tuple[Document, int] | None:
-        """The row that has the ID literally, when it is the only one."""
+    def find_unique_row(self, id: str) -> tuple[Document, int] | None:
+        """Return the row that has the ID literally, if it is the only one."""
         number = self._numbers.get(id)
         if number is None or id in self._repeated:
             return None
@@ -109,7 +114,12 @@ class Identifiers:
         index = bisect_right(self._starts, number) - 1
         return self._documents[index], number - self._starts[index]
 
-    def _place(self, number: int) -> Place:
+    def _locate(self, number: int) -> LocatedNode:
         index = bisect_right(self._starts, number) - 1
         document = self._documents[index]
         return document, document.node(number - self._starts[index])
+
+
+def _normalize(id: str) -> str:
+    """Return an ID without braces and in lower case: tools differ in both."""
+    return id.strip().strip("{}").lower()

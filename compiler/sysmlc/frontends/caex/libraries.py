@@ -1,72 +1,99 @@
-"""Libraries and their classes: packages, blocks, interface blocks and value types."""
+"""Libraries and their classes: packages, blocks, interface blocks and value types.
 
-import posixpath
+The standard libraries of AutomationML are built in, for files that refer to them without holding
+them.
+"""
+
 from collections.abc import Iterator
-from urllib.parse import unquote
+from functools import cache
 
-from sysmlc.diagnostics import Verdict
-from sysmlc.frontends.caex import repeats, rules
+from sysmlc.frontends.caex import data_types, rules, value_types
+from sysmlc.frontends.caex.attributes import lower_attribute, lower_constraints
+from sysmlc.frontends.caex.columns import read_document
 from sysmlc.frontends.caex.context import Context
 from sysmlc.frontends.caex.document import Document, Node
+from sysmlc.frontends.caex.interfaces import lower_interface
 from sysmlc.frontends.caex.types import Type
-from sysmlc.frontends.caex.vocabulary import CLASS_TAGS, LIBRARIES, ROLES, STANDARD, Family
+from sysmlc.frontends.caex.vocabulary import (
+    CLASS_TAGS,
+    LIBRARIES,
+    STANDARD_LIBRARIES,
+    SYSML_ROLES,
+    Family,
+)
 from sysmlc.ir import Edge, Kind
+from sysmlc.sources import Source
+from sysmlc.support import resources
 
 
-def lower(context: Context, document: Document) -> list[Type]:
-    """Add the libraries of a file with their classes, nested ones below the class around them."""
+def lower_libraries(context: Context, document: Document) -> list[Type]:
+    """Add the libraries of a file; return their classes in document order."""
     return [
-        type for node in document.root.of(*LIBRARIES) for type in library(context, document, node)
+        type
+        for node in document.root.iter_children(*LIBRARIES)
+        for type in _lower_library(context, document, node)
     ]
 
 
-def library(context: Context, document: Document, node: Node) -> Iterator[Type]:
-    """Add one library; its classes in document order."""
+def _lower_library(context: Context, document: Document, node: Node) -> Iterator[Type]:
+    """Add one library; yield its classes, each before the classes nested in it."""
     family, class_tag, subkind = LIBRARIES[node.tag]
-    context.add(
+    context.add_element(
         Kind.PACKAGE,
         node,
         document,
         None,
         subkind=subkind,
-        version=node.text("Version"),
+        version=node.child_text("Version"),
     )
-    waiting = [(child, node) for child in reversed(node.children) if child.tag == class_tag]
-    while waiting:
-        child, above = waiting.pop()
-        yield _class(context, document, child, above, family)
-        waiting += [(c, child) for c in reversed(child.children) if CLASS_TAGS.get(c.tag) is family]
+    worklist = [(child, node) for child in reversed(node.children) if child.tag == class_tag]
+    while worklist:
+        child, parent = worklist.pop()
+        yield _add_class(context, document, child, parent, family)
+        nested = [inner for inner in child.children if CLASS_TAGS.get(inner.tag) is family]
+        worklist += [(inner, child) for inner in reversed(nested)]
 
 
-def _class(context: Context, document: Document, node: Node, above: Node, family: Family) -> Type:
+def _add_class(
+    context: Context, document: Document, node: Node, parent: Node, family: Family
+) -> Type:
     is_role = family is Family.ROLE
-    kind = Kind.DATA_TYPE if family is Family.ATTRIBUTE else Kind.CLASS
-    element = context.add(
-        kind,
+    element = context.add_element(
+        Kind.DATA_TYPE if family is Family.ATTRIBUTE else Kind.CLASS,
         node,
         document,
-        above.element,
-        role=ROLES[family],
+        parent.element_id,
+        role=SYSML_ROLES[family],
         subkind="role-class" if is_role else None,
         abstract=True if is_role else None,
     )
-    type = Type(element.id, document, node.row, family, (*_path(above), node.name))
+    nodes = (node, *node.iter_ancestors())
+    names = [part.name for part in nodes if part.tag != "CAEXFile"]
+    type = Type(element.id, document, node.row, family, tuple(reversed(names)))
     context.types.add(type)
     return type
 
 
-def _path(node: Node) -> tuple[str, ...]:
-    names = [part.name for part in (node, *node.above()) if part.tag != "CAEXFile"]
-    return tuple(reversed(names))
+def mark_standard_libraries(context: Context) -> None:
+    """Mark the standard libraries in files as external, as the built-in ones are."""
+    graph = context.graph
+    for document in context.documents:
+        for node in document.root.iter_children(*LIBRARIES):
+            if node.name in STANDARD_LIBRARIES:
+                for element in graph.subtree(graph[node.element_id]):
+                    graph.set(element, external=True, library=True)
 
 
-def specialise(context: Context, types: list[Type]) -> None:
-    """Tie every class to what it specialises; a circle is reported and cut."""
+# -- base classes ----------------------------------------------------------------------------------
+
+
+def connect_base_classes(context: Context, types: list[Type]) -> None:
+    """Connect every class to the class that it specialises; a cycle is reported and cut."""
     for type in types:
-        found = context.types.base(type)
-        if isinstance(found, str):
-            found = context.type(found, type.family, type.document, type.node)
-        type.base = found
+        base = context.types.find_base(type)
+        if isinstance(base, str):
+            base = context.resolve_type(base, type.family, type.document, type.node)
+        type.base = base
     acyclic: set[Type] = set()
     for type in types:
         _cut_cycle(context, type, acyclic)
@@ -75,142 +102,135 @@ def specialise(context: Context, types: list[Type]) -> None:
 
 
 def _cut_cycle(context: Context, start: Type, acyclic: set[Type]) -> None:
-    seen: dict[Type, None] = {}
-    one: Type | None = start
-    while one is not None and one not in seen and one not in acyclic:
-        seen[one] = None
-        one = one.base
-    if one is start and start in seen:
-        names = " -> ".join(t.node.name for t in (*seen, start))
-        context.report(
-            rules.CYCLE, start.document, start.node, element=start.node.name, cycle=names
-        )
-        start.base = None
-    if one is None or one not in seen or one is start:
-        acyclic.update(seen)
+    """Remove the base of *start* if the class specialises itself.
 
-
-def in_order(types: list[Type]) -> Iterator[Type]:
-    """The classes, each after the one that it specialises."""
-    done: set[Type] = set()
-    for type in types:
-        for one in reversed(list(type.chain())):
-            if one not in done:
-                done.add(one)
-                yield one
-
-
-def set_apart(context: Context) -> None:
-    """Mark the standard libraries that files hold as the built-in ones are: not of the plant."""
-    graph = context.graph
-    for document in context.documents:
-        for node in document.root.of(*LIBRARIES):
-            if node.name in STANDARD:
-                for element in graph.subtree(graph[node.element]):
-                    graph.set(element, external=True, library=True)
-
-
-def in_order_of_parts(context: Context, types: list[Type]) -> list[Type]:
-    """The classes, each after those that it specialises and those of its internal elements.
-
-    Where classes hold each other the first one stands first.
+    *acyclic* collects the classes whose bases are known to end.
     """
-    done: dict[Type, None] = {}
-    started: set[Type] = set()
+    chain: dict[Type, None] = {}
+    type: Type | None = start
+    while type is not None and type not in chain and type not in acyclic:
+        chain[type] = None
+        type = type.base
+    if type is start and start in chain:
+        names = " -> ".join(general.node.name for general in (*chain, start))
+        facts = {"element": start.node.name, "cycle": names}
+        context.report(rules.CLASS_CYCLE, start.document, start.node, **facts)
+        start.base = None
+    if type is None or type not in chain or type is start:
+        acyclic.update(chain)
+
+
+# -- orders ----------------------------------------------------------------------------------------
+
+
+def order_by_base(types: list[Type]) -> Iterator[Type]:
+    """Yield the classes, each after the class that it specialises."""
+    visited: set[Type] = set()
     for type in types:
-        waiting = [(type, False)]
-        while waiting:
-            one, is_left = waiting.pop()
-            if is_left:
-                done[one] = None
-            elif one not in started:
-                started.add(one)
-                waiting.append((one, True))
-                waiting += [(needed, False) for needed in _needed(context, one)]
-    return [type for type in done if not type.document.is_built_in]
+        for general in reversed(list(type.iter_chain())):
+            if general not in visited:
+                visited.add(general)
+                yield general
 
 
-def _needed(context: Context, type: Type) -> Iterator[Type]:
+def order_by_parts(context: Context, types: list[Type]) -> list[Type]:
+    """Return the classes, each after its base class and the classes of its internal elements.
+
+    Built-in classes are omitted. Of classes that contain one another the first comes first.
+    """
+    ordered: dict[Type, None] = {}
+    visited: set[Type] = set()
+    for type in types:
+        # Depth-first search; a class is pushed again to be added after the classes it needs.
+        stack = [(type, False)]
+        while stack:
+            current, is_complete = stack.pop()
+            if is_complete:
+                ordered[current] = None
+            elif current not in visited:
+                visited.add(current)
+                stack.append((current, True))
+                stack += [(required, False) for required in _iter_required(context, current)]
+    return [type for type in ordered if not type.document.is_built_in]
+
+
+def _iter_required(context: Context, type: Type) -> Iterator[Type]:
+    """Yield the base class of a class, and the classes of its internal elements."""
     if type.base is not None:
         yield type.base
-    inside = list(type.node.of("InternalElement"))
-    for node in inside:
-        inside += node.of("InternalElement")
+    worklist = list(type.node.iter_children("InternalElement"))
+    for node in worklist:
+        worklist += node.iter_children("InternalElement")
         path = node.attributes.get("RefBaseSystemUnitPath", "").strip()
-        found = context.types.find(path, Family.SYSTEM_UNIT, type.document) if path else None
-        if isinstance(found, Type):
-            yield found
+        required = context.types.find(path, Family.SYSTEM_UNIT, type.document) if path else None
+        if isinstance(required, Type):
+            yield required
 
 
-def header(context: Context, document: Document) -> None:
-    """The file itself, and the files that it refers to by alias."""
-    root = document.root
-    element = context.add(
-        Kind.DOCUMENT,
-        root,
-        document,
-        None,
-        id=f"{document.name}#",
-        subkind="caex",
-        version=document.version,
-        description=root.text("Description"),
-        superior_standard=root.text("SuperiorStandardVersion"),
-    )
-    context.graph.rename(element, root.attributes.get("FileName", "") or document.name)
-    if not any(True for _ in root.of(*LIBRARIES, "InstanceHierarchy")):
-        context.report(rules.NO_MODEL, document, root, file=document.name)
-    for node in root.of("ExternalReference"):
-        _alias(context, document, node)
-    for node in root.of("SuperiorStandardVersion", "Description"):
-        node.verdict = Verdict.MAPPED
+# -- features --------------------------------------------------------------------------------------
 
 
-def report_missing_plant(context: Context) -> None:
-    """Report the first file of a unit that has libraries but no instance hierarchy."""
-    roots = [document.root for document in context.documents]
-    if any(True for root in roots for _ in root.of("InstanceHierarchy")):
-        return
-    for document in context.documents:
-        if any(True for _ in document.root.of(*LIBRARIES)):
-            context.report(rules.ONLY_LIBRARIES, document, document.root, file=document.name)
-            return
+def lower_features(context: Context, type: Type) -> None:
+    """Add the attributes and interfaces that are directly below a class."""
+    if type.family is Family.ATTRIBUTE:
+        lower_constraints(context, context.graph[type.id], type.node, type.document)
+        value_types.complete_attribute_type(context, type)
+        _set_defaults(context, type)
+    for child in type.node.children:
+        if child.tag == "Attribute":
+            lower_attribute(context, type, child, type.document)
+        elif child.tag == "ExternalInterface":
+            lower_interface(context, type, child, type.document)
 
 
-def _alias(context: Context, document: Document, node: Node) -> None:
-    alias, path = node.attributes.get("Alias", ""), node.attributes.get("Path", "")
-    repeats.declare(context, document, node, _file(document.name, path))
-    element = context.add(
-        Kind.IMPORT,
-        node,
-        document,
-        None,
-        id=context.free(f"{document.name}#{alias}", node),
-        subkind="alias",
-        path=path,
-    )
-    context.graph.rename(element, alias)
+def _set_defaults(context: Context, type: Type) -> None:
+    """Set the initial value that an attribute type gives to attributes of this type."""
+    node, attrs = type.node, context.graph[type.id].attrs
+    value, default = node.child_text("Value"), node.child_text("DefaultValue")
+    data_type = data_types.find_data_type("", type)
+    data_types.check_data_type(context, type.document, node.row, data_type)
+    initial = default if value is None else value
+    if initial:
+        attrs["default"] = data_types.convert_value(context, node, initial, data_type, None)
+    if default and default != value:
+        attrs["default_value"] = default
+        if default != initial:
+            # The text is stored as it is written; the conversion only checks it.
+            data_types.convert_value(context, node, default, data_type, None)
 
 
-def tie_aliases(context: Context) -> None:
-    """Let each alias lead to the file that it means, where that is part of the unit."""
-    for document in context.documents:
-        for node in document.root.of("ExternalReference"):
-            target = f"{_file(document.name, node.attributes.get('Path', ''))}#"
-            if target in context.graph:
-                context.graph.connect(Edge.REFERENCES, node.element, target)
+# -- standard libraries ----------------------------------------------------------------------------
+
+_STANDARD_FILE = "automationml-libraries.aml"
 
 
-def _file(name: str, path: str) -> str:
-    """Name in the unit of the file that a path means, seen from another file."""
-    archive, _, entry = name.rpartition("!")
-    plain = unquote(path.partition("#")[0])
-    if archive:
-        start = "" if plain.startswith("/") else posixpath.dirname(entry)
-        return f"{archive}!{posixpath.normpath(posixpath.join(start, plain.lstrip('/')))}"
-    return posixpath.normpath(posixpath.join(posixpath.dirname(name), plain))
+class StandardLibraries:
+    """The standard libraries for one unit; each is added to its graph when it is needed."""
+
+    def __init__(self) -> None:
+        # Each unit needs its own document, because rows store ids of elements of the graph.
+        source = Source(_STANDARD_FILE, _read_standard_file())
+        self._document = read_document(source, is_built_in=True)
+        roots = self._document.root.iter_children(*LIBRARIES)
+        self._unused = {(LIBRARIES[node.tag].family, node.name): node for node in roots}
+
+    def provide(self, context: Context, family: Family, name: str) -> bool:
+        """Add the library to the graph; return False if there is none, or it was added before."""
+        library = self._unused.pop((family, name), None)
+        if library is None:
+            return False
+        context.types.add_standard_library(self._document, family, name)
+        types = list(_lower_library(context, self._document, library))
+        connect_base_classes(context, types)
+        for type in types:
+            lower_features(context, type)
+        return True
+
+    def release_nodes(self) -> None:
+        """Break the cycle of document and nodes."""
+        self._document.release_nodes()
 
 
-def mark(node: Node, verdict: Verdict = Verdict.MAPPED) -> None:
-    """Give the node and all below it one verdict."""
-    for one in node.walk():
-        one.verdict = verdict
+@cache
+def _read_standard_file() -> bytes:
+    return resources.path("metamodels", _STANDARD_FILE).read_bytes()

@@ -1,220 +1,257 @@
 """Internal links: connectors between the ports of parts (thesis, Table 3.1)."""
 
 from sysmlc.diagnostics import Verdict
-from sysmlc.frontends.caex import special
+from sysmlc.frontends.caex.component import Component
 from sysmlc.frontends.caex.context import Context
 from sysmlc.frontends.caex.document import Document, Node
-from sysmlc.frontends.caex.sides import SIDES, End, Problem, Sides
-from sysmlc.frontends.caex.site import Site
-from sysmlc.frontends.caex.sites import Sites
+from sysmlc.frontends.caex.hierarchies import Components
+from sysmlc.frontends.caex.link_ends import SIDES, LinkEnd, LinkEndResolver, Problem
 from sysmlc.frontends.caex.types import Type
+from sysmlc.frontends.caex.vocabulary import ORDER_INTERFACE, PPR
 from sysmlc.ir import Edge, Element, Kind
 
-_Ends = frozenset[tuple[str, ...]]
-"""Ends of a link as the parts and the port that lead there."""
+_LinkKey = frozenset[tuple[str, ...]]
+"""The ends of a link, each as the parts and the port that lead to it from the top."""
 
-
-# To look a member of an enumeration up takes twice as long as to look these up.
+# Access to a member of an enumeration takes twice as long as to a global variable.
 _MAPPED = Verdict.MAPPED
 _CONNECTOR = Kind.CONNECTOR
 _CONNECTOR_END = Kind.CONNECTOR_END
 _END = Edge.END
 _PATH = Edge.PATH
 
+_RELATION_MEANINGS = (PPR, ORDER_INTERFACE)
+"""Meanings of interfaces whose links are dependencies instead of connectors."""
 
-class Links:
-    """The links of a unit."""
+_CLIENT_ORDER = ("process", "resource", "product")
+"""A process depends on the resource that performs it, and both depend on the product."""
 
-    def __init__(self, context: Context, sites: Sites) -> None:
+
+class LinkLowering:
+    """Lowers the links of a unit."""
+
+    def __init__(self, context: Context, components: Components) -> None:
         self._context = context
-        self._sites = sites
-        self._sides = Sides(context, sites)
-        self._drawn: set[tuple[str, _Ends]] = set()
-        """Owners of links of classes, with the ends."""
-        self._drawing: set[str] = set()
+        self._components = components
+        self._resolver = LinkEndResolver(context, components)
+        self._class_links: set[tuple[str, _LinkKey]] = set()
+        """Links of classes: id of the class, and the ends."""
+        self._linked_classes: set[str] = set()
         """Ids of the classes with links of their own."""
-        self._drawing_above: dict[Type, list[str]] = {}
-        """Those among the classes that a class is or specialises."""
-        self._steps: dict[Site, list[Element]] = {}
+        self._linked_ancestors: dict[Type, list[str]] = {}
+        """Ids of the classes with links among the ones that a class is or specialises."""
+        self._paths: dict[Component, list[Element]] = {}
         self._ends: list[Element] = []
+        """All connector ends."""
         self._ports: list[Element] = []
-        """Ends of connectors, and what they are ends at."""
+        """The ports of the connector ends."""
 
     def lower(self) -> None:
-        """Add a connector for each link; those of classes first, as instances repeat them."""
-        for are_instances in (False, True):
+        """Add a connector for each link; links of classes come first, as instances repeat them."""
+        for is_in_hierarchy in (False, True):
             for document in self._context.documents:
-                for row in document.children(0):
-                    if (document.tags[row] == "InstanceHierarchy") is are_instances:
+                for row in document.child_rows(0):
+                    if (document.tags[row] == "InstanceHierarchy") is is_in_hierarchy:
                         self._lower_below(row, document)
         for end, port in zip(self._ends, self._ports, strict=True):
             self._context.graph.connect(Edge.ROLE, end, port)
 
-    def _lower_below(self, top: int, document: Document) -> None:
-        sites, direct = self._sites.rows(document), self._sides.direct
-        for row in document.tagged("InternalLink", top, document.ends[top]):
+    def _lower_below(self, root: int, document: Document) -> None:
+        components, find_by_id = self._components.by_row(document), self._resolver.find_by_id
+        for row in document.iter_rows("InternalLink", root, document.ends[root]):
             document.verdicts[row] = _MAPPED
-            holder, values = sites[document.parents[row]], document.attributes[row]
-            one = direct(values.get("RefPartnerSideA", ""))
-            other = direct(values.get("RefPartnerSideB", ""))
-            if holder is None or one is None or other is None:
-                self._general(document.node(row), document, holder)
+            holder, attributes = components[document.parents[row]], document.attributes[row]
+            first = find_by_id(attributes.get("RefPartnerSideA", ""))
+            second = find_by_id(attributes.get("RefPartnerSideB", ""))
+            if holder is None or first is None or second is None:
+                self._lower_other_style(document.node(row), document, holder)
             else:
-                self._between(row, document, holder, [one, other])
+                self._lower_link(row, document, holder, [first, second])
 
-    def _general(self, node: Node, document: Document, holder: Site | None) -> None:
-        """A link whose sides are not both IDs of interfaces."""
-        ends = {side: self._sides.end(node, document, side) for side in SIDES}
-        found = [end for end in ends.values() if isinstance(end, End)]
-        if holder is None or len(found) < len(ends):
-            self._dependency(node, document, holder, ends)
+    def _lower_other_style(self, node: Node, document: Document, holder: Component | None) -> None:
+        """Lower a link whose sides are not both IDs of interfaces."""
+        sides = {side: self._resolver.resolve_side(node, document, side) for side in SIDES}
+        ends = [end for end in sides.values() if isinstance(end, LinkEnd)]
+        if holder is None or len(ends) < len(sides):
+            self._add_partial_dependency(node, document, holder, sides)
         else:
-            self._between(node.row, document, holder, found)
+            self._lower_link(node.row, document, holder, ends)
 
-    def _between(self, row: int, document: Document, holder: Site, ends: list[End]) -> None:
-        if self._is_of_class(holder, ends):
+    def _lower_link(
+        self, row: int, document: Document, holder: Component, ends: list[LinkEnd]
+    ) -> None:
+        if self._is_link_of_class(holder, ends):
             return
-        known = self._context.special
-        meaning = known.get(ends[0].port, "")
-        if meaning in _RELATIONS and known.get(ends[1].port, "") == meaning:
-            self._relation(document.node(row), document, holder, ends, meaning)
+        meanings = self._context.interface_meanings
+        meaning = meanings.get(ends[0].port, "")
+        if meaning in _RELATION_MEANINGS and meanings.get(ends[1].port, "") == meaning:
+            self._add_relation(document.node(row), document, holder, ends, meaning)
         else:
-            self._connector(row, document, holder, ends)
+            self._add_connector(row, document, holder, ends)
 
-    # -- connectors ----------------------------------------------------------------------------
+    # -- connectors --------------------------------------------------------------------------------
 
-    def _is_of_class(self, holder: Site, ends: list[End]) -> bool:
-        """Whether the class that the element is an instance of has the link already."""
-        declared = holder.declared
-        if declared is None or not self._drawing:
+    def _is_link_of_class(self, holder: Component, ends: list[LinkEnd]) -> bool:
+        """Whether the class that *holder* is an instance of has the link already."""
+        declared = holder.declared_type
+        if declared is None or not self._linked_classes:
             return False
-        types = self._drawing_above.get(declared)
-        if types is None:
-            types = [type.id for type in declared.chain() if type.id in self._drawing]
-            self._drawing_above[declared] = types
-        key = _key(ends, holder) if types else None
-        if key is not None:
-            for id in types:
-                if (id, key) in self._drawn:
-                    return True
-        return False
+        linked = self._linked_ancestors.get(declared)
+        if linked is None:
+            chain = declared.iter_chain()
+            linked = [type.id for type in chain if type.id in self._linked_classes]
+            self._linked_ancestors[declared] = linked
+        key = _make_key(ends, holder) if linked else None
+        return key is not None and any((id, key) in self._class_links for id in linked)
 
-    def _connector(self, row: int, document: Document, holder: Site, ends: list[End]) -> None:
-        top = holder.root
-        owner = top.instance or (top.own.id if top.own else None)
-        crosses = ends[0].site.root is not top or ends[1].site.root is not top
-        if crosses and owner is not None:
+    def _add_connector(
+        self, row: int, document: Document, holder: Component, ends: list[LinkEnd]
+    ) -> None:
+        root = holder.root
+        owner = _find_frame(root)
+        leaves_tree = ends[0].component.root is not root or ends[1].component.root is not root
+        if leaves_tree and owner is not None:
             owner = self._context.graph[owner].owner
-        connector = self._context.add_at(_CONNECTOR, document, row, owner)
-        self._add_ends(connector, ends, crosses)
-        if not top.instance:
-            self._note(top, owner, ends)
+        connector = self._context.add_row(_CONNECTOR, document, row, owner)
+        self._add_ends(connector, ends, leaves_tree)
+        self._record_link_of_class(root, owner, ends)
 
-    def _note(self, top: Site, owner: str | None, ends: list[End]) -> None:
-        """Remember the link of a class: its instances repeat it."""
-        key = _key(ends, top) if not top.instance and owner is not None else None
-        if key is not None and owner is not None:
-            self._drawn.add((owner, key))
-            self._drawing.add(owner)
-            self._drawing_above.clear()
+    def _record_link_of_class(
+        self, root: Component, owner: str | None, ends: list[LinkEnd]
+    ) -> None:
+        """Record a link of a class for its instances, which repeat it."""
+        if root.instance_id or owner is None:
+            return
+        key = _make_key(ends, root)
+        if key is not None:
+            self._class_links.add((owner, key))
+            self._linked_classes.add(owner)
+            self._linked_ancestors.clear()
 
-    def _add_ends(self, connector: Element, ends: list[End], crosses: bool) -> None:
-        graph, above = self._context.graph, connector.id
+    def _add_ends(self, connector: Element, ends: list[LinkEnd], leaves_tree: bool) -> None:
+        """Add the ends of a connector, each with the parts from the owner down to its port."""
+        graph, owner = self._context.graph, connector.id
         source, ordinal = connector.source, connector.ordinal
-        halves: list[Element] = []
-        for side, (port, site) in zip(SIDES, ends, strict=True):
-            id = f"{above}#{side}"
+        connector_ends: list[Element] = []
+        for side, (port, component) in zip(SIDES, ends, strict=True):
+            id = f"{owner}#{side}"
             if id in graph:
                 id = f"{id}~{ordinal}"
-            made = graph.add(Element(id, _CONNECTOR_END, "", above, ordinal, source))
-            halves.append(made)
+            end = graph.add(Element(id, _CONNECTOR_END, "", owner, ordinal, source))
+            connector_ends.append(end)
             self._ports.append(graph[port])
-            steps, has_top = self._steps_to(site), bool(site.root.instance)
-            for step in steps[1 if has_top and not crosses else 0 :]:
-                graph.connect(_PATH, made, step)
-        self._ends += halves
-        for half in halves:
-            graph.connect(_END, connector, half)
+            path = self._find_path(component)
+            # The Instance at the top owns the connector unless that leaves its tree.
+            starts_at_owner = bool(component.root.instance_id) and not leaves_tree
+            for step in path[1:] if starts_at_owner else path:
+                graph.connect(_PATH, end, step)
+        self._ends += connector_ends
+        for end in connector_ends:
+            graph.connect(_END, connector, end)
 
-    def _steps_to(self, site: Site) -> list[Element]:
-        """The Instance at the top (if any), and the parts that lead down to an element."""
-        known = self._steps.get(site)
-        if known is None:
-            above = [] if site.parent is None else self._steps_to(site.parent)
-            step = self._sites.instance(site) if site.parent is None else self._sites.part(site)
-            known = above if step is None or step in above else [*above, step]
-            self._steps[site] = known
-        return known
+    def _find_path(self, component: Component) -> list[Element]:
+        """Return the Instance at the top, if any, and the parts down to a component; memoised."""
+        path = self._paths.get(component)
+        if path is None:
+            if component.parent is None:
+                above: list[Element] = []
+                step = self._components.find_instance(component)
+            else:
+                above = self._find_path(component.parent)
+                step = self._components.find_part(component)
+            path = above if step is None or step in above else [*above, step]
+            self._paths[component] = path
+        return path
 
-    def _relation(
-        self, node: Node, document: Document, holder: Site, ends: list[End], meaning: str
-    ) -> None:
-        """Who does what with what, or what follows on what: no wire, but a dependency."""
-        graph, top = self._context.graph, holder.root
-        owner = top.instance or (top.own.id if top.own else None)
-        subkind = special.PPR if meaning == special.PPR else "succession"
-        made = self._context.add(Kind.DEPENDENCY, node, document, owner, subkind=subkind)
-        first, second = self._in_order(ends) if meaning == special.ORDER else _by_part(ends)
-        graph.set(made, ports=(first.port, second.port))
-        if {first.site.ppr, second.site.ppr} == {"process", "resource"}:
-            graph.set(made, role="allocate")
-        graph.connect(Edge.CLIENT, made.id, _standing_for(first.site))
-        graph.connect(Edge.SUPPLIER, made.id, _standing_for(second.site))
-        self._note(top, owner, ends)
+    # -- dependencies ------------------------------------------------------------------------------
 
-    def _in_order(self, ends: list[End]) -> tuple[End, End]:
-        """The later one first, as it depends on the earlier: that one has the way out."""
-        one, other = ends
-        ways = [self._context.graph[end.port].attrs.get("direction") for end in ends]
-        return (one, other) if ways[1] == "out" or ways[0] == "in" else (other, one)
-
-    def _dependency(
+    def _add_relation(
         self,
         node: Node,
         document: Document,
-        holder: Site | None,
-        ends: dict[str, End | Problem | None],
+        holder: Component,
+        ends: list[LinkEnd],
+        meaning: str,
     ) -> None:
-        known = [e.port if isinstance(e, End) else e.known for e in ends.values() if e]
-        known = [id for id in known if id and id in self._context.graph]
-        top = holder.root if holder else None
-        owner = (top.instance or (top.own.id if top.own else None)) if top else None
-        made = self._context.add(Kind.DEPENDENCY, node, document, owner, subkind="internal-link")
-        made.attrs["sides"] = tuple(node.attributes.get(side, "") for side in SIDES.values())
-        for edge, id in zip((Edge.CLIENT, Edge.SUPPLIER), known, strict=False):
-            self._context.graph.connect(edge, made.id, id)
+        """Add a dependency for a link of PPR connectors or of order interfaces."""
+        graph, root = self._context.graph, holder.root
+        owner = _find_frame(root)
+        is_order = meaning == ORDER_INTERFACE
+        subkind = "succession" if is_order else PPR
+        dependency = self._context.add_element(
+            Kind.DEPENDENCY, node, document, owner, subkind=subkind
+        )
+        client, supplier = self._order_by_direction(ends) if is_order else _order_by_ppr(ends)
+        graph.set(dependency, ports=(client.port, supplier.port))
+        if {client.component.ppr, supplier.component.ppr} == {"process", "resource"}:
+            graph.set(dependency, role="allocate")
+        graph.connect(Edge.CLIENT, dependency.id, _find_representative(client.component))
+        graph.connect(Edge.SUPPLIER, dependency.id, _find_representative(supplier.component))
+        self._record_link_of_class(root, owner, ends)
+
+    def _order_by_direction(self, ends: list[LinkEnd]) -> tuple[LinkEnd, LinkEnd]:
+        """Return the later element first, which depends on the earlier one with direction out."""
+        first, second = ends
+        graph = self._context.graph
+        directions = [graph[end.port].attrs.get("direction") for end in ends]
+        is_first_later = directions[1] == "out" or directions[0] == "in"
+        return (first, second) if is_first_later else (second, first)
+
+    def _add_partial_dependency(
+        self,
+        node: Node,
+        document: Document,
+        holder: Component | None,
+        sides: dict[str, LinkEnd | Problem | None],
+    ) -> None:
+        """Add a dependency between the elements that the sides of an unusable link name."""
+        graph = self._context.graph
+        ids = [
+            end.port if isinstance(end, LinkEnd) else end.element_id
+            for end in sides.values()
+            if end is not None
+        ]
+        known_ids = [id for id in ids if id and id in graph]
+        owner = _find_frame(holder.root) if holder else None
+        dependency = self._context.add_element(
+            Kind.DEPENDENCY, node, document, owner, subkind="internal-link"
+        )
+        dependency.attrs["sides"] = tuple(node.attributes.get(key, "") for key in SIDES.values())
+        for edge, id in zip((Edge.CLIENT, Edge.SUPPLIER), known_ids, strict=False):
+            graph.connect(edge, dependency.id, id)
 
 
-_RELATIONS = (special.PPR, special.ORDER)
-"""Meanings of interfaces whose links are no wires."""
-
-_DEPENDS = ("process", "resource", "product")
-"""A process needs the resource that does it; both are there for a product."""
+def _find_frame(root: Component) -> str | None:
+    """Return the id of the Instance or class that owns the links below *root*."""
+    return root.instance_id or (root.own_type.id if root.own_type else None)
 
 
-def _by_part(ends: list[End]) -> tuple[End, End]:
-    ranks = {name: rank for rank, name in enumerate(_DEPENDS)}
-    one, other = sorted(ends, key=lambda end: ranks.get(end.site.ppr, len(ranks)))
-    return one, other
+def _order_by_ppr(ends: list[LinkEnd]) -> tuple[LinkEnd, LinkEnd]:
+    """Return the ends in the order of dependency; ends without a rank come last."""
+    ranks = {ppr: rank for rank, ppr in enumerate(_CLIENT_ORDER)}
+    first, second = sorted(ends, key=lambda end: ranks.get(end.component.ppr, len(ranks)))
+    return first, second
 
 
-def _standing_for(site: Site) -> str:
-    own = site.own.id if site.own is not None else ""
-    return site.instance or site.part or own
+def _find_representative(component: Component) -> str:
+    """Return the id of the element that represents a component in a dependency."""
+    own_id = component.own_type.id if component.own_type is not None else ""
+    return component.instance_id or component.part_id or own_id
 
 
-def _key(ends: list[End], top: Site) -> _Ends | None:
-    """The ends as seen from above; None when one of them is elsewhere."""
-    one, other = _way(ends[0], top), _way(ends[1], top)
-    return None if one is None or other is None else frozenset((one, other))
+def _make_key(ends: list[LinkEnd], root: Component) -> _LinkKey | None:
+    """Return the ends as seen from *root*; None when one of them is not below it."""
+    first, second = _find_end_path(ends[0], root), _find_end_path(ends[1], root)
+    return None if first is None or second is None else frozenset((first, second))
 
 
-def _way(end: End, top: Site) -> tuple[str, ...] | None:
-    """The parts and the port that lead to an end; most ends are in a part, or at the top."""
-    site = end.site
-    if site.parent is top:
-        return site.part, end.port
-    if site is top:
+def _find_end_path(end: LinkEnd, root: Component) -> tuple[str, ...] | None:
+    """Return the ids of the parts and the port that lead to an end."""
+    component = end.component
+    # Most ends are at a child or at the top itself.
+    if component.parent is root:
+        return component.part_id, end.port
+    if component is root:
         return (end.port,)
-    parts = site.parts_below(top)
+    parts = component.find_part_path(root)
     return None if parts is None else (*parts, end.port)

@@ -1,216 +1,232 @@
-"""Attributes and interfaces of internal elements: those of their class, and new ones."""
+"""Attributes and interfaces of components: values for members of the class, and new members."""
 
 from sysmlc.diagnostics import Verdict
-from sysmlc.frontends.caex import (
-    attributes,
-    documents,
-    fitting,
-    interfaces,
-    mirrors,
-    ports,
-    special,
-)
-from sysmlc.frontends.caex.context import Context, reference_of
+from sysmlc.frontends.caex import data_types, mirrors
+from sysmlc.frontends.caex.attributes import lower_attribute
+from sysmlc.frontends.caex.component import Component, ensure_instance, ensure_own_type
+from sysmlc.frontends.caex.context import Context, read_class_reference
 from sysmlc.frontends.caex.document import Node
-from sysmlc.frontends.caex.holders import instance, own
-from sysmlc.frontends.caex.libraries import mark
-from sysmlc.frontends.caex.sameness import more_than_values, says_more
-from sysmlc.frontends.caex.site import Site
+from sysmlc.frontends.caex.interfaces import (
+    add_external_document,
+    lower_interface,
+    read_port_properties,
+)
+from sysmlc.frontends.caex.overrides import iter_overriding_attributes, overrides_attribute
 from sysmlc.frontends.caex.types import Member, Type
 from sysmlc.frontends.caex.vocabulary import Family
 from sysmlc.ir import Edge, Element, Kind
 
-REPEATED = frozenset({"Constraint", "RefSemantic"})
-"""What a repeated attribute holds that says what its class says."""
+_REPEATED_TAGS = frozenset({"Constraint", "RefSemantic"})
+"""Content of a repeated attribute that repeats the definition in the class."""
 
-_Path = tuple[str, ...]
-"""Ids of the features that an inner one lies in, outermost first."""
-
-
-def lower(context: Context, site: Site) -> None:
-    """The members of an internal element: values for what its class has, features for the rest."""
-    for child in site.node.children:
-        lower_one(context, site, child)
+_FeaturePath = tuple[str, ...]
+"""Ids of the features around a nested feature, outermost first."""
 
 
-def lower_one(context: Context, site: Site, child: Node) -> None:
-    """One member of an internal element, or what its role requires of it."""
-    if child.tag == "Attribute":
-        _attribute(context, site, child)
-    elif child.tag == "ExternalInterface":
-        _interface(context, site, child)
-    elif child.tag == "RoleRequirements" and child.children:
-        _required(context, site, child)
+def lower_members(context: Context, component: Component) -> None:
+    """Lower the members: values for those of the class, features for the others."""
+    for child in component.node.children:
+        if child.tag == "Attribute":
+            _lower_attribute(context, component, child)
+        elif child.tag == "ExternalInterface":
+            _lower_interface(context, component, child)
+        elif child.tag == "RoleRequirements" and child.children:
+            _lower_requirements(context, component, child)
 
 
-def _required(context: Context, site: Site, requirements: Node) -> None:
-    """What an element needs to play its role, and has not already."""
-    for node in requirements.of("Attribute", "ExternalInterface"):
-        known = site.type.find(node.tag, node.name) if site.type is not None else None
-        if known is not None and node.tag == "Attribute":
-            keep(context, site, node, requirements, known)
-        elif known is not None and known.document is site.document and _is_inside(site, known):
-            node.verdict, node.element = Verdict.MAPPED, known.id
+# -- members that a role requires ------------------------------------------------------------------
+
+
+def _lower_requirements(context: Context, component: Component, requirements: Node) -> None:
+    """Add the members that a component needs to play its role and lacks."""
+    document = component.document
+    for node in requirements.iter_children("Attribute", "ExternalInterface"):
+        type = component.type
+        member = type.find_member(node.tag, node.name) if type is not None else None
+        if member is not None and node.tag == "Attribute":
+            _add_required_value(context, component, node, requirements, member)
+        elif (
+            member is not None
+            and member.document is document
+            and component.row < member.row < document.ends[component.row]
+        ):
+            # The component itself declares the interface.
+            node.verdict, node.element_id = Verdict.MAPPED, member.id
         elif node.tag == "ExternalInterface":
-            _interface(context, site, node)
+            _lower_interface(context, component, node)
         else:
-            attributes.attribute(context, own(context, site), node, site.document)
+            lower_attribute(context, ensure_own_type(context, component), node, document)
 
 
-def _is_inside(site: Site, known: Member) -> bool:
-    """Whether a feature stands in the element itself."""
-    return site.row < known.row < site.document.ends[site.row]
-
-
-def keep(context: Context, site: Site, node: Node, requirements: Node, known: Member) -> None:
-    """A value that the role requires of an attribute that the element has anyway."""
-    value = node.text("Value")
-    owner = site.own.id if site.own is not None else site.instance or site.part
+def _add_required_value(
+    context: Context, component: Component, node: Node, requirements: Node, member: Member
+) -> None:
+    """Add metadata for a value that the role requires of an attribute of the component."""
+    value = node.child_text("Value")
+    own_type = component.own_type
+    owner = own_type.id if own_type is not None else component.instance_id or component.part_id
     node.verdict = Verdict.MAPPED
-    if not says_more(context.types, site.document, node, known):
-        mark(node)
+    if not overrides_attribute(context.types, component.document, node, member):
+        node.mark_subtree()
     if value is None or not owner:
         return
     role = requirements.attributes.get("RefBaseRoleClassPath", "")
-    id = context.free(f"{owner}/{node.name}#required", node)
-    made = Element(id, Kind.METADATA, "RoleRequirements", owner, node.ordinal)
-    made.source = site.document.name
-    made.attrs.update({"role_class": role, "attribute": node.name, "required": value})
+    id = context.make_unique(f"{owner}/{node.name}#required", node)
+    metadata = Element(id, Kind.METADATA, "RoleRequirements", owner, node.ordinal)
+    metadata.source = component.document.name
+    metadata.attrs.update({"role_class": role, "attribute": node.name, "required": value})
     unit = node.attributes.get("Unit", "")
-    if unit and unit != known.node.attributes.get("Unit"):
-        made.attrs["unit"] = unit
-    context.graph.add(made)
+    if unit and unit != member.node.attributes.get("Unit"):
+        metadata.attrs["unit"] = unit
+    context.graph.add(metadata)
     context.graph.connect(Edge.REFERENCES, id, owner)
 
 
-def _attribute(context: Context, site: Site, node: Node) -> None:
-    known = site.declared.find("Attribute", node.name) if site.declared else None
-    if known is None or says_more(context.types, site.document, node, known):
-        attributes.attribute(context, own(context, site), node, site.document)
+# -- attributes ------------------------------------------------------------------------------------
+
+
+def _lower_attribute(context: Context, component: Component, node: Node) -> None:
+    """Add slots for the values of an inherited attribute, else a property of the own class."""
+    declared, document = component.declared_type, component.document
+    inherited = declared.find_member("Attribute", node.name) if declared else None
+    if inherited is None or overrides_attribute(context.types, document, node, inherited):
+        lower_attribute(context, ensure_own_type(context, component), node, document)
         return
-    waiting: list[tuple[Node, Member, _Path]] = [(node, known, ())]
-    while waiting:
-        one, member, path = waiting.pop()
-        one.verdict = Verdict.MAPPED
-        check_class(context, one, site)
-        _value(context, site, one, member, path)
-        _description(context, site, one, member, path)
-        for child in one.children:
-            inner = member.type.find(child.tag, child.name) if member.type else None
+    worklist: list[tuple[Node, Member, _FeaturePath]] = [(node, inherited, ())]
+    while worklist:
+        attribute, member, path = worklist.pop()
+        attribute.verdict = Verdict.MAPPED
+        _check_class(context, attribute, component)
+        _add_value(context, component, attribute, member, path)
+        _add_description(context, component, attribute, member, path)
+        for child in attribute.children:
+            inner = member.type.find_member(child.tag, child.name) if member.type else None
             if child.tag == "Attribute" and inner is not None:
-                waiting.append((child, inner, (*path, member.id)))
-            elif child.tag in REPEATED:
-                mark(child)
+                worklist.append((child, inner, (*path, member.id)))
+            elif child.tag in _REPEATED_TAGS:
+                child.mark_subtree()
 
 
-def check_class(context: Context, node: Node, site: Site) -> None:
-    """Note that a class leads nowhere which an instance names; that of its class counts."""
-    path = reference_of(node)
+def _check_class(context: Context, node: Node, component: Component) -> None:
+    """Resolve the class that an instance names, only to record it if it is missing."""
+    path = read_class_reference(node)
     if path and not mirrors.is_mirror(context, node):
-        context.type(path, mirrors.FAMILIES[node.tag], site.document, node)
+        context.resolve_type(path, mirrors.MEMBER_FAMILIES[node.tag], component.document, node)
 
 
-def _value(context: Context, site: Site, node: Node, known: Member, path: _Path) -> None:
-    """A slot for the value, unless it is the one that the class gives."""
-    text = node.text("Value")
-    if text is None or text == known.node.text("Value"):
+def _add_value(
+    context: Context, component: Component, node: Node, member: Member, path: _FeaturePath
+) -> None:
+    """Add a slot for the value of an attribute, unless the class gives the same value."""
+    text = node.child_text("Value")
+    if text is None or text == member.node.child_text("Value"):
         return
-    owner = instance(context, site)
-    data_type = known.node.attributes.get("AttributeDataType", "")
-    value = fitting.value(context, node, text, data_type, known.type)
-    slot = context.add(Kind.SLOT, node, site.document, owner, value=value)
-    context.graph.connect(Edge.INSTANCE_OF, slot.id, known.id)
-    _lead(context, slot.id, path)
+    owner = ensure_instance(context, component)
+    data_type = member.node.attributes.get("AttributeDataType", "")
+    value = data_types.convert_value(context, node, text, data_type, member.type)
+    slot = context.add_element(Kind.SLOT, node, component.document, owner, value=value)
+    context.graph.connect(Edge.INSTANCE_OF, slot.id, member.id)
+    _connect_path(context, slot.id, path)
 
 
-def _lead(context: Context, id: str, path: _Path) -> None:
-    """The features that lead to an inner one, outermost first: their types have several uses."""
+def _connect_path(context: Context, id: str, path: _FeaturePath) -> None:
+    """Connect an element to the features around a nested one, whose type several features share."""
     for outer in path:
         context.graph.connect(Edge.PATH, id, outer)
 
 
-def _description(context: Context, site: Site, node: Node, known: Member, path: _Path) -> None:
-    """What is told of a feature in an instance alone, where no slot can carry it."""
-    text = node.text("Description")
-    has_slot = bool(node.element) and node.tag == "Attribute"
-    if has_slot or not (text or "").strip() or text == known.node.text("Description"):
+def _add_description(
+    context: Context, component: Component, node: Node, member: Member, path: _FeaturePath
+) -> None:
+    """Add a comment for a description that only the instance gives, unless a slot carries it."""
+    text = node.child_text("Description")
+    has_slot = bool(node.element_id) and node.tag == "Attribute"
+    if has_slot or not (text or "").strip() or text == member.node.child_text("Description"):
         return
-    owner = instance(context, site)
-    id = context.free(f"{owner}/{node.name}/Description", node)
-    comment = Element(id, Kind.COMMENT, "", owner, node.ordinal, site.document.name)
+    owner = ensure_instance(context, component)
+    id = context.make_unique(f"{owner}/{node.name}/Description", node)
+    comment = Element(id, Kind.COMMENT, "", owner, node.ordinal, component.document.name)
     comment.attrs["body"] = str(text).strip()
     context.graph.add(comment)
-    context.graph.connect(Edge.REFERENCES, id, known.id)
-    _lead(context, id, path)
+    context.graph.connect(Edge.REFERENCES, id, member.id)
+    _connect_path(context, id, path)
 
 
-def _interface(context: Context, site: Site, node: Node) -> None:
-    known = site.declared.find(node.tag, node.name) if site.declared else None
+# -- interfaces ------------------------------------------------------------------------------------
+
+
+def _lower_interface(context: Context, component: Component, node: Node) -> None:
+    """Add slots for the values of an inherited interface, else a port of the own class."""
+    declared = component.declared_type
+    inherited = declared.find_member(node.tag, node.name) if declared else None
     if (
-        known is None
-        or is_of_another_class(context, node, known)
-        or _has_more(context, node, known)
+        inherited is None
+        or _is_of_other_class(context, node, inherited)
+        or _overrides_interface(context, node, inherited)
     ):
-        interfaces.interface(context, own(context, site), node, site.document)
+        lower_interface(context, ensure_own_type(context, component), node, component.document)
         return
-    waiting: list[tuple[Node, Member, _Path]] = [(node, known, ())]
-    while waiting:
-        one, member, path = waiting.pop()
-        one.verdict, one.element = Verdict.MAPPED, member.id
-        check_class(context, one, site)
-        _port_values(context, site, one, member, path)
-        _description(context, site, one, member, path)
-        id = one.attributes.get("ID")
+    worklist: list[tuple[Node, Member, _FeaturePath]] = [(node, inherited, ())]
+    while worklist:
+        interface, member, path = worklist.pop()
+        interface.verdict, interface.element_id = Verdict.MAPPED, member.id
+        _check_class(context, interface, component)
+        _add_port_values(context, component, interface, member, path)
+        _add_description(context, component, interface, member, path)
+        id = interface.attributes.get("ID")
         if id:
-            site.interface_ids.append((member.id, id))
-        for child in one.of("ExternalInterface"):
-            inner = member.type.find(child.tag, child.name) if member.type else None
+            component.interface_ids.append((member.id, id))
+        for child in interface.iter_children("ExternalInterface"):
+            inner = member.type.find_member(child.tag, child.name) if member.type else None
             if inner is not None:
-                waiting.append((child, inner, (*path, member.id)))
+                worklist.append((child, inner, (*path, member.id)))
 
 
-def _has_more(context: Context, top: Node, known: Member) -> bool:
-    """Whether an interface has more interfaces than that of its class, or attributes say more."""
-    waiting = [(top, known)]
-    while waiting:
-        node, member = waiting.pop()
-        if any(True for _ in more_than_values(context.types, node.document, node, member.type)):
+def _overrides_interface(context: Context, node: Node, inherited: Member) -> bool:
+    """Whether an interface adds nested interfaces, or attributes that define more than values."""
+    worklist = [(node, inherited)]
+    while worklist:
+        interface, member = worklist.pop()
+        overriding = iter_overriding_attributes(
+            context.types, interface.document, interface, member.type
+        )
+        if any(True for _ in overriding):
             return True
-        for child in node.of("ExternalInterface"):
-            inner = member.type.find(child.tag, child.name) if member.type else None
+        for child in interface.iter_children("ExternalInterface"):
+            inner = member.type.find_member(child.tag, child.name) if member.type else None
             if inner is None:
                 return True
-            waiting.append((child, inner))
+            worklist.append((child, inner))
     return False
 
 
-def is_of_another_class(context: Context, node: Node, known: Member) -> bool:
-    """Whether an interface names a class that the one of its class is not of."""
+def _is_of_other_class(context: Context, node: Node, inherited: Member) -> bool:
+    """Whether an interface names a class that the inherited interface does not conform to."""
     path = node.attributes.get("RefBaseClassPath", "").strip()
     if not path or mirrors.is_mirror(context, node):
         return False
-    found = context.look_up(path, Family.INTERFACE, node.document)
-    if not isinstance(found, Type):
+    type = context.look_up_type(path, Family.INTERFACE, node.document)
+    if not isinstance(type, Type):
         return False
-    return known.type is None or all(one is not found for one in known.type.chain())
+    return inherited.type is None or not inherited.type.specializes(type)
 
 
-def _port_values(context: Context, site: Site, node: Node, known: Member, path: _Path) -> None:
-    """A slot for what the attributes of an interface say here and not in the class."""
-    said = ports.said_of(context, node)
-    of_class = context.graph[known.id].attrs
-    new = {key: value for key, value in said.items() if of_class.get(key) != value}
-    for child in node.of("Attribute"):
-        mark(child)
-    if not new:
+def _add_port_values(
+    context: Context, component: Component, node: Node, member: Member, path: _FeaturePath
+) -> None:
+    """Add a slot for properties of a port that differ from those in the class."""
+    properties = read_port_properties(context, node)
+    inherited = context.graph[member.id].attrs
+    changed = {key: value for key, value in properties.items() if inherited.get(key) != value}
+    for child in node.iter_children("Attribute"):
+        child.mark_subtree()
+    if not changed:
         return
-    owner = instance(context, site)
-    id = context.free(f"{owner}/{node.name}", node)
-    slot = Element(id, Kind.SLOT, node.name, owner, node.ordinal, site.document.name)
-    slot.attrs.update(new)
+    owner, document = ensure_instance(context, component), component.document
+    id = context.make_unique(f"{owner}/{node.name}", node)
+    slot = Element(id, Kind.SLOT, node.name, owner, node.ordinal, document.name)
+    slot.attrs.update(changed)
     context.graph.add(slot)
-    context.graph.connect(Edge.INSTANCE_OF, id, known.id)
-    _lead(context, id, path)
-    meaning = context.special.get(known.id, "")
-    if meaning in special.DOCUMENTS:
-        documents.lower(context, node, site.document, owner, known.id, meaning, new)
+    context.graph.connect(Edge.INSTANCE_OF, id, member.id)
+    _connect_path(context, id, path)
+    add_external_document(context, node, document, owner, member.id, changed)

@@ -1,17 +1,16 @@
-"""What CAEX says about elements beside their structure: descriptions, revisions, origin."""
+"""Descriptions, versions, origins and other statements about the elements of a file."""
 
 import re
 from collections.abc import Iterator
 from html import escape
 
-from sysmlc.diagnostics import Verdict
 from sysmlc.frontends.caex.context import Context
 from sysmlc.frontends.caex.document import Document, Node
-from sysmlc.frontends.caex.libraries import mark
 from sysmlc.ir import Edge, Element, Kind
 
 _CAPITAL = re.compile(r"(?<=[a-z0-9])([A-Z])")
-_KEPT = frozenset(
+
+_METADATA_TAGS = frozenset(
     {
         "Revision",
         "AdditionalInformation",
@@ -20,56 +19,58 @@ _KEPT = frozenset(
         "WriterHeader",
     }
 )
+"""Elements that become Metadata, with their XML for the way back to CAEX."""
+_STATEMENT_TAGS = _METADATA_TAGS | {"Copyright", "Description", "RefSemantic", "Version"}
+"""All elements that describe the element around them."""
 
 
-_SAID = _KEPT | {"Copyright", "Description", "RefSemantic", "Version"}
-"""All that is said about the element around it."""
-
-
-def lower(context: Context, document: Document) -> None:
-    """Add what is said about the elements of a file; those of the file itself are read before."""
-    for node in map(document.node, _holders(document)):
-        element = context.graph.get(node.element)
+def lower_metadata(context: Context, document: Document) -> None:
+    """Add the statements about the elements of a file; its header is lowered before."""
+    for node in map(document.node, _find_described_rows(document)):
+        element = context.graph.get(node.element_id)
         if element is None:
             continue
-        if element.kind is not Kind.DOCUMENT and not _is_of_class(element, node):
-            _texts(context, node, element)
-        for row in document.children(node.row):
-            if document.tags[row] in _SAID:
-                _child(context, document, document.node(row), element)
+        if element.kind is not Kind.DOCUMENT and not _repeats_port(element, node):
+            _lower_texts(context, node, element)
+        for row in document.child_rows(node.row):
+            if document.tags[row] in _STATEMENT_TAGS:
+                _lower_statement(context, document, document.node(row), element)
 
 
-def _is_of_class(element: Element, node: Node) -> bool:
-    """Whether the row repeats the port of a class, of which it says nothing (``members``)."""
-    is_there = element.ordinal in (node.ordinal, -1)
-    return element.kind is Kind.PORT and not (is_there and element.name == node.name)
+def _repeats_port(element: Element, node: Node) -> bool:
+    """Whether the row repeats the port of a class; ``members`` lowers its description."""
+    is_declaration = element.ordinal in (node.ordinal, -1)
+    return element.kind is Kind.PORT and not (is_declaration and element.name == node.name)
 
 
-def _holders(document: Document) -> list[int]:
-    """Rows that something is said about: few of a large file."""
+def _find_described_rows(document: Document) -> list[int]:
+    """Return the rows with statements: few of a large file."""
     parents = document.parents
     rows: set[int] = set()
-    for tag in _SAID:
-        rows.update(parents[row] for row in document.tagged(tag, 0, len(parents)))
+    for tag in _STATEMENT_TAGS:
+        rows.update(parents[row] for row in document.iter_rows(tag, 0, len(parents)))
     rows |= {row for row, values in enumerate(document.attributes) if "ChangeMode" in values}
     rows.update(document.texts["Description"], document.texts["Version"])
     return sorted(rows)
 
 
-def _texts(context: Context, node: Node, element: Element) -> None:
-    for text in node.all_texts("Description") if node.texts or node.children else ():
+def _lower_texts(context: Context, node: Node, element: Element) -> None:
+    """Add descriptions as comments, and set version and change mode of an element."""
+    has_content = bool(node.texts or node.children)
+    for text in node.child_texts("Description") if has_content else ():
         if text.strip():
-            _comment(context, element, text)
-    version = node.text("Version") if node.texts or node.children else None
+            _add_comment(context, element, text)
+    version = node.child_text("Version") if has_content else None
     if version and "version" not in element.attrs:
         context.graph.set(element, version=version)
     change = node.attributes.get("ChangeMode", "")
+    # "state" is the default of the schema: nothing was changed.
     if change and change != "state":
         context.graph.set(element, change_mode=change)
 
 
-def _comment(context: Context, element: Element, text: str) -> None:
-    owner = element.id if element.kind not in (Kind.IMPORT,) else element.owner
+def _add_comment(context: Context, element: Element, text: str) -> None:
+    owner = element.owner if element.kind is Kind.IMPORT else element.id
     id = f"{element.id}/Description"
     if id not in context.graph:
         comment = Element(id, Kind.COMMENT, "", owner, element.ordinal, element.source)
@@ -77,85 +78,89 @@ def _comment(context: Context, element: Element, text: str) -> None:
         context.graph.add(comment)
 
 
-def _child(context: Context, document: Document, node: Node, element: Element) -> None:
+def _lower_statement(context: Context, document: Document, node: Node, element: Element) -> None:
+    """Lower a statement about *element*, unless it was lowered with the element."""
     if node.verdict is not None:
         return
-    if node.tag in ("Copyright", "Description", "Version"):
-        mark(node)
-        if node.tag == "Copyright":
-            context.graph.set(element, copyright=_text(node) or None)
+    if node.tag in _METADATA_TAGS:
+        _add_metadata(context, document, node, element)
+        return
+    node.mark_subtree()
+    if node.tag == "Copyright":
+        context.graph.set(element, copyright=node.own_text.strip() or None)
     elif node.tag == "RefSemantic":
-        mark(node)
         path = node.attributes.get("CorrespondingAttributePath", "")
-        known = element.attrs.get("semantics", ())
-        if path and isinstance(known, tuple):
-            context.graph.set(element, semantics=(*known, path))
-    elif node.tag in _KEPT:
-        _keep(context, document, node, element)
+        semantics = element.attrs.get("semantics", ())
+        if path and isinstance(semantics, tuple):
+            context.graph.set(element, semantics=(*semantics, path))
 
 
-def _keep(context: Context, document: Document, node: Node, element: Element) -> None:
-    id = context.free(f"{element.id}/{node.tag}", node)
-    made = Element(id, Kind.METADATA, node.tag, element.id, node.ordinal, document.name)
-    for key, value in _flat(node):
-        known = made.attrs.get(key)
-        made.attrs[key] = value if known is None else f"{known}\n{value}"
-    made.attrs["xml"] = _as_written(node)
-    context.graph.add(made)
-    context.graph.connect(Edge.REFERENCES, made.id, element.id)
-    mark(node, Verdict.MAPPED)
+def _add_metadata(context: Context, document: Document, node: Node, element: Element) -> None:
+    """Add Metadata with each value by its path, and with the XML as it is written."""
+    id = context.make_unique(f"{element.id}/{node.tag}", node)
+    metadata = Element(id, Kind.METADATA, node.tag, element.id, node.ordinal, document.name)
+    for key, value in _iter_values(node):
+        present = metadata.attrs.get(key)
+        metadata.attrs[key] = value if present is None else f"{present}\n{value}"
+    metadata.attrs["xml"] = _print_xml(node)
+    context.graph.add(metadata)
+    context.graph.connect(Edge.REFERENCES, metadata.id, element.id)
+    node.mark_subtree()
 
 
-def _as_written(top: Node) -> str:
-    """The node as XML without namespaces, for the way back to CAEX."""
+def _iter_values(top: Node) -> Iterator[tuple[str, str]]:
+    """Yield the XML attributes and texts of a node and those below it, by their path."""
+    stack = [(top, "")]
+    while stack:
+        node, prefix = stack.pop()
+        for name, value in node.attributes.items():
+            yield f"{prefix}{_to_snake_case(name.rpartition('}')[2])}", value
+        for tag, text in node.texts.items():
+            if text.strip():
+                own_key = prefix.rstrip(".") or "text"
+                yield f"{prefix}{_to_snake_case(tag)}" if tag else own_key, text.strip()
+        children = reversed(node.children)
+        stack += [(child, f"{prefix}{_to_snake_case(child.tag)}.") for child in children]
+
+
+def _to_snake_case(name: str) -> str:
+    return _CAPITAL.sub(r"_\1", name).lower()
+
+
+# -- XML -------------------------------------------------------------------------------------------
+
+_WHITE_SPACE = str.maketrans({"\n": "&#10;", "\r": "&#13;", "\t": "&#9;"})
+
+
+def _print_xml(top: Node) -> str:
+    """Return the node as XML without namespaces."""
     parts: list[str] = []
-    waiting: list[Node | str] = [top]
-    while waiting:
-        one = waiting.pop()
-        if isinstance(one, str):
-            parts.append(one)
+    stack: list[Node | str] = [top]
+    while stack:
+        node = stack.pop()
+        if isinstance(node, str):
+            parts.append(node)
             continue
-        values = (f" {k.rpartition('}')[2]}={_quoted(v)}" for k, v in one.attributes.items())
-        texts = one.texts or {}
+        attributes = (
+            f" {name.rpartition('}')[2]}={quote_attribute(value)}"
+            for name, value in node.attributes.items()
+        )
+        texts = node.texts
         folded = (
             f"<{tag}>{escape(text, quote=False)}</{tag}>" for tag, text in texts.items() if tag
         )
         own = escape(texts.get("", ""), quote=False).strip()
-        parts.append(f"<{one.tag}{''.join(values)}>{own}{''.join(folded)}")
-        waiting += [f"</{one.tag}>", *reversed(one.children)]
+        parts.append(f"<{node.tag}{''.join(attributes)}>{own}{''.join(folded)}")
+        stack += [f"</{node.tag}>", *reversed(node.children)]
     return "".join(parts)
 
 
-_SPACES = str.maketrans({"\n": "&#10;", "\r": "&#13;", "\t": "&#9;"})
+def quote_attribute(value: str) -> str:
+    """Return the value of an XML attribute in quotes.
 
-
-def _quoted(value: str) -> str:
-    """A value of an attribute; ``quoteattr`` of the library imports networking for it: 17 ms."""
-    plain = escape(value, quote=False).translate(_SPACES)
-    if '"' not in plain:
-        return f'"{plain}"'
-    return f"'{plain}'" if "'" not in plain else '"' + plain.replace('"', "&quot;") + '"'
-
-
-def _flat(top: Node) -> Iterator[tuple[str, str]]:
-    """Attributes and texts below the node, named by their path."""
-    waiting = [(top, "")]
-    while waiting:
-        node, prefix = waiting.pop()
-        for name, value in node.attributes.items():
-            yield f"{prefix}{_snake(name.rpartition('}')[2])}", value
-        for tag, text in (node.texts or {}).items():
-            if text.strip():
-                yield (
-                    f"{prefix}{_snake(tag)}" if tag else prefix.rstrip(".") or "text",
-                    text.strip(),
-                )
-        waiting += [(child, f"{prefix}{_snake(child.tag)}.") for child in reversed(node.children)]
-
-
-def _snake(name: str) -> str:
-    return _CAPITAL.sub(r"_\1", name).lower()
-
-
-def _text(node: Node) -> str:
-    return (node.texts or {}).get("", "").strip()
+    ``xml.sax.saxutils.quoteattr`` does the same, but importing it takes 17 ms.
+    """
+    text = escape(value, quote=False).translate(_WHITE_SPACE)
+    if '"' not in text:
+        return f'"{text}"'
+    return f"'{text}'" if "'" not in text else '"' + text.replace('"', "&quot;") + '"'

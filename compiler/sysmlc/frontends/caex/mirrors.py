@@ -1,136 +1,157 @@
-"""Mirrors: second places of one element; the last master of a chain is what is meant."""
+"""Mirrors: further places of one element; a chain of mirrors stands for its last master.
+
+A mirror names an ID where other elements name a class.
+"""
 
 from collections.abc import Iterable
 
 from sysmlc.frontends.caex import rules
-from sysmlc.frontends.caex.context import Context, reference_of
+from sysmlc.frontends.caex.context import Context, read_class_reference
 from sysmlc.frontends.caex.document import Document, Node
 from sysmlc.frontends.caex.types import Type
 from sysmlc.frontends.caex.vocabulary import Family
 from sysmlc.ir import Edge, Element
 
-_REFERENCE = {
+_MIRROR_REFERENCES = {
     "InternalElement": "RefBaseSystemUnitPath",
     "ExternalInterface": "RefBaseClassPath",
     "Attribute": "RefAttributeType",
 }
-FAMILIES = {"Attribute": Family.ATTRIBUTE, "ExternalInterface": Family.INTERFACE}
+MEMBER_FAMILIES = {"Attribute": Family.ATTRIBUTE, "ExternalInterface": Family.INTERFACE}
 """Families of the classes that members of internal elements name."""
 
-_GUID = 36
+_GUID_LENGTH = 36
 
 
-def master_id(node: Node) -> str:
-    """The id that a reference holds in place of a class path, or the empty string."""
-    text = node.attributes.get(_REFERENCE.get(node.tag, ""), "").strip()
+def read_master_id(node: Node) -> str:
+    """Return the ID that a reference holds in place of a class path, or the empty string."""
+    text = node.attributes.get(_MIRROR_REFERENCES.get(node.tag, ""), "").strip()
     return text.partition("/")[0] if node.tag == "Attribute" else text
 
 
 def is_mirror(context: Context, node: Node) -> bool:
     """Whether the node names another element and no class."""
-    if is_reference(context, master_id(node)):
+    id = read_master_id(node)
+    if is_id_reference(context, id):
         return True
-    return node.tag == "Attribute" and _is_dotted(context, master_id(node))
+    if node.tag != "Attribute" or "." not in id:
+        return False
+    # AML.Engine calls `ID.name` a mirror, too, but only finds the master of `ID/name`.
+    return is_id_reference(context, id.partition(".")[0])
 
 
-def _is_dotted(context: Context, text: str) -> bool:
-    """Whether a text is ``ID.name``: meant as a mirror, but names are parted by ``/`` (rule 12)."""
-    return "." in text and is_reference(context, text.partition(".")[0])
+def is_id_reference(context: Context, text: str) -> bool:
+    """Whether a text in the place of a class path is an ID."""
+    is_id = context.id_references.get(text)
+    if is_id is None:
+        is_id = bool(text) and (context.find_node(text) is not None or _looks_like_guid(text))
+        context.id_references[text] = is_id
+    return is_id
 
 
-def named_class(context: Context, node: Node, document: Document) -> Type | None:
-    """The class that an attribute or external interface names; what mirrors another is noted."""
-    path = reference_of(node)
+def _looks_like_guid(text: str) -> bool:
+    id = text.strip("{}")
+    return len(id) == _GUID_LENGTH and id.count("-") == 4 and "/" not in id
+
+
+def resolve_member_class(context: Context, node: Node, document: Document) -> Type | None:
+    """Return the class that an attribute or external interface names.
+
+    A mirror is recorded for ``connect_mirrors``.
+    """
+    path = read_class_reference(node)
     if not path:
         return None
     if is_mirror(context, node):
-        context.mirrors.append((document, node))
+        context.mirror_nodes.append((document, node))
         return None
-    return context.type(path, FAMILIES[node.tag], document, node)
+    return context.resolve_type(path, MEMBER_FAMILIES[node.tag], document, node)
 
 
-def is_reference(context: Context, id: str) -> bool:
-    """Whether a text in the place of a class path is an id."""
-    known = context.references.get(id)
-    if known is None:
-        known = bool(id) and (context.find(id) is not None or _looks_like_id(id))
-        context.references[id] = known
-    return known
+def connect_mirrors(context: Context) -> None:
+    """Connect the mirrors of interfaces and attributes to their masters, and type them alike."""
+    for document, node in context.mirror_nodes:
+        master = connect_to_master(context, document, node, context.graph[node.element_id])
+        if master is not None:
+            type = context.graph.target(context.graph[master.element_id], Edge.TYPED_BY)
+            if type is not None:
+                context.graph.connect(Edge.TYPED_BY, node.element_id, type)
 
 
-def master(context: Context, document: Document, node: Node) -> Node | None:
-    """What the mirror stands for in the end; a missing one and a circle are reported."""
-    seen: dict[Node, None] = {}
-    while is_mirror(context, node) and node not in seen and node not in context.endless:
-        seen[node] = None
-        found = context.masters.get((document, node)) or _next(context, document, node)
-        if isinstance(found, str):
-            _remember(context, document, seen, found)
-            _report(context, document, next(iter(seen)), found)
-            return None
-        node = found
-    first = next(iter(seen), node)
-    if seen:
-        context.tell_lenient(document, first, master_id(first))
-    if node in seen or node in context.endless:
-        context.endless.update(seen)
-        _report(context, document, first, master_id(first), is_circle=True)
-        return None
-    _remember(context, document, seen, node)
-    return node
-
-
-def _next(context: Context, document: Document, mirror: Node) -> Node | str:
-    """What a mirror names, or the reference with which it leads nowhere."""
-    found = context.find(master_id(mirror), document)
-    if found is None:
-        return reference_of(mirror)
-    if mirror.tag == "Attribute":
-        return _attribute(found[1], mirror) or reference_of(mirror)
-    return found[1]
-
-
-def _remember(context: Context, document: Document, seen: Iterable[Node], end: Node | str) -> None:
-    """Where all mirrors of a chain end: others that name them need not go along it again."""
-    context.masters.update(((document, one), end) for one in seen)
-
-
-def draw(context: Context, document: Document, node: Node, element: Element) -> Node | None:
-    """The edge from the mirror's element to its master's; the master."""
-    found = master(context, document, node)
-    if found is not None and found.element in context.graph:
-        context.graph.connect(Edge.MIRRORS, element.id, found.element)
-        return found
+def connect_to_master(
+    context: Context, document: Document, node: Node, element: Element
+) -> Node | None:
+    """Connect the element of a mirror to that of its master; return the master."""
+    master = find_master(context, document, node)
+    if master is not None and master.element_id in context.graph:
+        context.graph.connect(Edge.MIRRORS, element.id, master.element_id)
+        return master
     return None
 
 
-def finish(context: Context) -> None:
-    """Tie the mirrors of interfaces and attributes to their masters, and type them alike."""
-    for document, node in context.mirrors:
-        found = draw(context, document, node, context.graph[node.element])
-        type = context.graph.target(context.graph[found.element], Edge.TYPED_BY) if found else None
-        if type is not None:
-            context.graph.connect(Edge.TYPED_BY, node.element, type)
-
-
-def _attribute(owner: Node, mirror: Node) -> Node | None:
-    """``ID/name`` or ``ID/name/inner``: the attribute of the element with that id."""
-    names = mirror.attributes["RefAttributeType"].strip().split("/")[1:] or [mirror.name]
-    node: Node | None = owner
-    for name in names:
-        node = next((n for n in node.of("Attribute") if n.name == name), None) if node else None
+def find_master(context: Context, document: Document, node: Node) -> Node | None:
+    """Return the last master of a chain of mirrors; report a missing master and a cycle."""
+    chain: dict[Node, None] = {}
+    circular = context.circular_mirrors
+    while is_mirror(context, node) and node not in chain and node not in circular:
+        chain[node] = None
+        master = context.masters.get((document, node)) or _find_next(context, document, node)
+        if isinstance(master, str):
+            _store_masters(context, document, chain, master)
+            _report_missing(context, document, next(iter(chain)), master)
+            return None
+        node = master
+    first = next(iter(chain), node)
+    if chain:
+        context.report_inexact_id(document, first, read_master_id(first))
+    if node in chain or node in circular:
+        circular.update(chain)
+        _report_cycle(context, document, first)
+        return None
+    _store_masters(context, document, chain, node)
     return node
 
 
-def _report(
-    context: Context, document: Document, node: Node, reference: str, is_circle: bool = False
+def _find_next(context: Context, document: Document, mirror: Node) -> Node | str:
+    """Return the node that a mirror names, or its reference if that leads nowhere."""
+    located = context.find_node(read_master_id(mirror), document)
+    if located is None:
+        return read_class_reference(mirror)
+    if mirror.tag == "Attribute":
+        return _find_attribute(located[1], mirror) or read_class_reference(mirror)
+    return located[1]
+
+
+def _find_attribute(owner: Node, mirror: Node) -> Node | None:
+    """Return the attribute of *owner* that ``ID/name`` or ``ID/name/inner`` means."""
+    names = mirror.attributes["RefAttributeType"].strip().split("/")[1:] or [mirror.name]
+    node: Node | None = owner
+    for name in names:
+        if node is not None:
+            inner = node.iter_children("Attribute")
+            node = next((attribute for attribute in inner if attribute.name == name), None)
+    return node
+
+
+def _store_masters(
+    context: Context, document: Document, chain: Iterable[Node], master: Node | str
 ) -> None:
-    rule = rules.MIRROR_CYCLE if is_circle else rules.MIRROR_WITHOUT_MASTER
-    if node.element in context.graph:
-        context.keep_path(context.graph[node.element], node)
-    context.report(rule, document, node, element=node.name, reference=reference)
+    """Store the end of a chain for each of its mirrors, so that no chain is followed twice."""
+    context.masters.update(((document, mirror), master) for mirror in chain)
 
 
-def _looks_like_id(text: str) -> bool:
-    plain = text.strip("{}")
-    return len(plain) == _GUID and plain.count("-") == 4 and "/" not in plain
+def _report_missing(context: Context, document: Document, node: Node, reference: str) -> None:
+    _record_path(context, node)
+    facts = {"element": node.name, "reference": reference}
+    context.report(rules.MIRROR_WITHOUT_MASTER, document, node, **facts)
+
+
+def _report_cycle(context: Context, document: Document, node: Node) -> None:
+    _record_path(context, node)
+    facts = {"element": node.name, "reference": read_master_id(node)}
+    context.report(rules.MIRROR_CYCLE, document, node, **facts)
+
+
+def _record_path(context: Context, node: Node) -> None:
+    if node.element_id in context.graph:
+        context.record_unresolved_path(context.graph[node.element_id], node)

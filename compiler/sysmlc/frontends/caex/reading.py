@@ -1,71 +1,44 @@
-"""AutomationML read into the graph: the order in which the parts of its files are lowered."""
+"""Reads the files of a compile unit into the graph, in the order that their references need."""
 
 from collections.abc import Sequence
 
 from sysmlc.diagnostics import Coverage, Place, Sink, Subject
-from sysmlc.frontends.caex import (
-    account,
-    features,
-    libraries,
-    mappings,
-    metadata,
-    mirrors,
-    roles,
-    rules,
-)
+from sysmlc.frontends.caex import headers, libraries, rules
 from sysmlc.frontends.caex.columns import read_document
 from sysmlc.frontends.caex.context import Context
+from sysmlc.frontends.caex.coverage import report_coverage
 from sysmlc.frontends.caex.document import Document
-from sysmlc.frontends.caex.links import Links
-from sysmlc.frontends.caex.sites import Sites
-from sysmlc.frontends.caex.standard import Standard
+from sysmlc.frontends.caex.hierarchies import Components
+from sysmlc.frontends.caex.links import LinkLowering
+from sysmlc.frontends.caex.metadata import lower_metadata
+from sysmlc.frontends.caex.mirrors import connect_mirrors
+from sysmlc.frontends.caex.roles import lower_mappings, lower_roles
+from sysmlc.frontends.caex.types import Type
 from sysmlc.frontends.caex.vocabulary import Family
 from sysmlc.ir import Graph
 from sysmlc.sources import Fault, Source, SourceError
 from sysmlc.support.garbage_collection import pause_garbage_collection
 
 
-def read_all(sources: Sequence[Source], graph: Graph, sink: Sink, coverage: Coverage) -> None:
-    """Read the files into the graph; see ``CaexFrontend.read``."""
+def read(sources: Sequence[Source], graph: Graph, sink: Sink, coverage: Coverage) -> None:
+    """Read the files into the graph.
+
+    A damaged file is reported and skipped. Raises SourceError if a file exceeds the limits. The
+    graph does not depend on the order of the files.
+    """
     ordered = sorted(sources, key=lambda source: source.name)
     with pause_garbage_collection():
-        documents = [d for source in ordered if (d := _read(source, sink)) is not None]
-        standard = Standard()
-        context = Context(documents, graph, sink, standard.provide)
-        _lower(context)
-        account.account(context, coverage, ordered)
-        context.forget()
-        standard.forget()
+        read_results = [_read_document(source, sink) for source in ordered]
+        documents = [document for document in read_results if document is not None]
+        standard_libraries = libraries.StandardLibraries()
+        context = Context(documents, graph, sink, standard_libraries.provide)
+        _lower_unit(context)
+        report_coverage(context, coverage, ordered)
+        context.release_nodes()
+        standard_libraries.release_nodes()
 
 
-def _lower(context: Context) -> None:
-    types = []
-    for document in context.documents:
-        libraries.header(context, document)
-    libraries.report_missing_plant(context)
-    libraries.tie_aliases(context)
-    for document in context.documents:
-        types += libraries.lower(context, document)
-    libraries.specialise(context, types)
-    for type in libraries.in_order(types):
-        features.lower_own(context, type)
-    sites = Sites(context)
-    held = [type for type in types if type.family in (Family.SYSTEM_UNIT, Family.ROLE)]
-    for type in libraries.in_order_of_parts(context, held):
-        sites.lower_class(type)
-    for document in context.documents:
-        sites.lower_hierarchies(document)
-    sites.finish()
-    mirrors.finish(context)
-    roles.lower(context, sites)
-    mappings.lower(context, sites)
-    Links(context, sites).lower()
-    for document in context.documents:
-        metadata.lower(context, document)
-    libraries.set_apart(context)
-
-
-def _read(source: Source, sink: Sink) -> Document | None:
+def _read_document(source: Source, sink: Sink) -> Document | None:
     try:
         return read_document(source)
     except SourceError as problem:
@@ -74,3 +47,37 @@ def _read(source: Source, sink: Sink) -> Document | None:
         subject = Subject(source.name, place=Place(source.name, offset=problem.offset))
         sink.report(rules.MALFORMED, subject, file=source.name, problem=problem.message)
         return None
+
+
+def _lower_unit(context: Context) -> None:
+    """Lower the files: classes before their instances, ports before links, descriptions last."""
+    types = _lower_classes(context)
+    components = Components(context)
+    with_parts = [type for type in types if type.family in (Family.SYSTEM_UNIT, Family.ROLE)]
+    for type in libraries.order_by_parts(context, with_parts):
+        components.lower_class(type)
+    for document in context.documents:
+        components.lower_hierarchies(document)
+    components.complete()
+    connect_mirrors(context)
+    lower_roles(context, components)
+    lower_mappings(context, components)
+    LinkLowering(context, components).lower()
+    for document in context.documents:
+        lower_metadata(context, document)
+    libraries.mark_standard_libraries(context)
+
+
+def _lower_classes(context: Context) -> list[Type]:
+    """Lower headers, and the classes of libraries with their attributes and interfaces."""
+    types: list[Type] = []
+    for document in context.documents:
+        headers.lower_header(context, document)
+    headers.report_missing_plant(context)
+    headers.connect_aliases(context)
+    for document in context.documents:
+        types += libraries.lower_libraries(context, document)
+    libraries.connect_base_classes(context, types)
+    for type in libraries.order_by_base(types):
+        libraries.lower_features(context, type)
+    return types

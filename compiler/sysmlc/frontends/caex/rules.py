@@ -1,4 +1,4 @@
-"""What can be wrong with an AutomationML file."""
+"""Rules about the structure and the references of AutomationML files."""
 
 from sysmlc.diagnostics import Severity, rule
 
@@ -40,7 +40,7 @@ LIBRARY_FAULT = rule(
     "{element} of the standard library '{library}' refers to '{path}', {problem}",
     help="take the library anew from its publisher, with the references that it declares",
 )
-CYCLE = rule(
+CLASS_CYCLE = rule(
     "SM134",
     "class-cycle",
     Severity.ERROR,
@@ -114,21 +114,21 @@ MALFORMED = rule(
     "'{file}' cannot be read: {problem}",
     help="export the plant again from the engineering tool",
 )
-MAPPING = rule(
+MAPPING_OF_NOTHING = rule(
     "SM144",
     "mapping-of-nothing",
     Severity.ERROR,
     "a mapping object of '{element}' names '{feature}', which does not exist",
     help="correct the name, or remove the mapping",
 )
-LENIENT_ID = rule(
+INEXACT_ID = rule(
     "SM145",
     "inexact-id",
     Severity.INFO,
     "'{element}' says '{id}', the ID is '{meant}'",
     help="write the ID in the same way in both places",
 )
-NO_ID = rule(
+MISSING_ID = rule(
     "SM146",
     "element-without-id",
     Severity.INFO,

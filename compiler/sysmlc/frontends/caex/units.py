@@ -1,10 +1,13 @@
-"""Units as AutomationML files spell them: free texts, and the codes of UN/ECE Recommendation 20."""
+"""Table of units as AutomationML files write them: symbols, spellings, codes of UN/ECE Rec. 20.
+
+CAEX declares no system of units: the XML attribute Unit is free text. MTP files write the codes.
+"""
 
 from typing import NamedTuple
 
 
 class Unit(NamedTuple):
-    """A unit: its symbol, its name, what it measures (ISO 80000), its UN/ECE code."""
+    """A unit: its symbol, name, quantity (ISO 80000) and UN/ECE code."""
 
     symbol: str
     name: str
@@ -106,18 +109,19 @@ _SPELLINGS = {
     "Mbit/sec": "Mbit/s",
     "percent": "%",
 }
-"""Other spellings of symbols, as files have them."""
+"""Other spellings of symbols in files of users."""
 
-NO_UNITS = frozenset({"string", "xs:string", "xs:anyUnit", "anyUnit", "double", "xs:double"})
-"""Types that exporters write in the place of a unit."""
+TYPE_NAMES = frozenset({"string", "xs:string", "xs:anyUnit", "anyUnit", "double", "xs:double"})
+"""Names of types that exporters write in the place of a unit."""
 
-_KNOWN = {
+# A symbol takes precedence over a name, and a name over a code.
+_UNITS_BY_TEXT = {
     **{unit.code: unit for unit in UNITS if unit.code},
     **{unit.name: unit for unit in UNITS},
     **{unit.symbol: unit for unit in UNITS},
 }
 
 
-def known(text: str) -> Unit | None:
-    """The unit that a text means: a symbol, another spelling of one, a name or a code."""
-    return _KNOWN.get(_SPELLINGS.get(text, text))
+def find_unit(text: str) -> Unit | None:
+    """Return the unit that a text means: a symbol, another spelling of one, a name or a code."""
+    return _UNITS_BY_TEXT.get(_SPELLINGS.get(text, text))
