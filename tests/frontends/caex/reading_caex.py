@@ -42,17 +42,17 @@ def plant(body, name="Plant"):
     return f'<InstanceHierarchy Name="{name}">{body}</InstanceHierarchy>'
 
 
-def told(found):
-    return f"{found.rule.code}: {found.message}"
+def describe(diagnostic):
+    return f"{diagnostic.rule.code}: {diagnostic.message}"
 
 
 class Read:
-    """What came out of reading some files; elements are asked for by qualified name."""
+    """The graph, diagnostics and coverage of some files; elements are found by qualified name."""
 
     def __init__(self, *sources):
         self.graph, self.sink, self.coverage = Graph(), Sink(), Coverage()
-        given = [one if isinstance(one, Source) else aml(one) for one in sources]
-        FRONTEND.read(given, self.graph, self.sink, self.coverage)
+        files = [source if isinstance(source, Source) else aml(source) for source in sources]
+        FRONTEND.read(files, self.graph, self.sink, self.coverage)
         assert verify(self.graph) == []
 
     @property
@@ -61,17 +61,20 @@ class Read:
 
     @property
     def findings(self):
-        """All but infos, and but for SM140: the models here have first what is referred to."""
-        told_of = [found for found in self.sink if found.rule.code != "SM140"]
-        return [told(found) for found in told_of if found.severity is not Severity.INFO]
+        """Errors and warnings, except SM140: models of these tests have libraries first."""
+        return [
+            describe(diagnostic)
+            for diagnostic in self.sink
+            if diagnostic.rule.code != "SM140" and diagnostic.severity is not Severity.INFO
+        ]
 
     @property
     def order(self):
-        return [told(found) for found in self.sink if found.rule.code == "SM140"]
+        return [describe(finding) for finding in self.sink if finding.rule.code == "SM140"]
 
     @property
     def infos(self):
-        return [told(found) for found in self.sink if found.severity is Severity.INFO]
+        return [describe(finding) for finding in self.sink if finding.severity is Severity.INFO]
 
     @property
     def totals(self):
@@ -79,24 +82,27 @@ class Read:
         return {k: n for k, n in total.items() if n and k != "elements"}
 
     def all(self, name, kind=None):
-        names = ((e, self.graph.qualified_name(e)) for e in self.graph)
-        return [e for e, its in names if its == name and kind in (None, e.kind.value)]
+        return [
+            element
+            for element in self.graph
+            if self.graph.qualified_name(element) == name and kind in (None, element.kind.value)
+        ]
 
     def one(self, name, kind=None):
-        (found,) = self.all(name, kind)
-        return found
+        (element,) = self.all(name, kind)
+        return element
 
     def to(self, name, edge, kind=None):
-        """Qualified names of what the edges of an element lead to."""
+        """Return the qualified names of the targets of an element's edges."""
         targets = self.graph.targets(self.one(name, kind), Edge(edge))
         return [self.graph.qualified_name(target) for target in targets]
 
     def owned(self, name, kind=None):
-        inside = self.graph.owned(self.one(name, kind))
-        return [f"{e.kind.value} {e.name}".strip() for e in inside]
+        owned = self.graph.owned(self.one(name, kind))
+        return [f"{element.kind.value} {element.name}".strip() for element in owned]
 
     def links(self):
-        """Each connector as its two ends: names of parts, then the port."""
+        """Return each connector as its two ends: names of parts, then the port."""
         return {
             c.name: tuple(self._end(end) for end in self.graph.targets(c, Edge.END))
             for c in self.graph

@@ -9,7 +9,7 @@ PORTS = interfaces('<InterfaceClass Name="P"/>')
 # -- rules 7, 8 and 11: inheritance ------------------------------------------------------------
 
 
-def test_a_class_inherits_what_its_base_has_and_holds_no_copy():
+def test_a_class_inherits_members_of_its_base_without_copies():
     reading = Read(
         classes(
             '<SystemUnitClass Name="Base"><Attribute Name="x"/><ExternalInterface Name="p" ID="1"/>'
@@ -55,7 +55,7 @@ def test_an_attribute_of_another_name_overrides_nothing():
         ("", "Roles/A", []),
     ],
 )
-def test_a_circle_of_base_classes_is_cut_and_told(a, b, findings):
+def test_a_cycle_of_base_classes_is_cut_and_reported(a, b, findings):
     reading = Read(
         roles(
             f'<RoleClass Name="A" RefBaseClassPath="{a}"/>'
@@ -67,7 +67,7 @@ def test_a_circle_of_base_classes_is_cut_and_told(a, b, findings):
     assert reading.to("Roles::B", "specializes") == ["Roles::A"]
 
 
-def test_what_specialises_a_circle_is_no_part_of_it():
+def test_a_class_that_specialises_a_cycle_is_no_part_of_it():
     reading = Read(
         roles(
             '<RoleClass Name="X" RefBaseClassPath="Roles/A"/>'
@@ -124,7 +124,7 @@ def switch(inside, path="Lib/Switch"):
     )
 
 
-def test_an_instance_of_a_class_says_again_what_the_class_says():
+def test_an_instance_that_repeats_its_class_adds_no_members():
     reading = Read(
         switch(
             '<Attribute Name="length" AttributeDataType="xs:double"><Value>1.0</Value></Attribute>'
@@ -161,7 +161,7 @@ def test_added_members_make_a_specialised_block():
     assert reading.owned("Plant::sw", "Class") == ["Property colour", "Port q"]
 
 
-def test_absent_members_mean_nothing():
+def test_members_that_an_instance_omits_are_not_reported():
     reading = Read(switch(""))
     assert reading.owned("Plant::sw") == []
     assert reading.to("Plant::sw", "instance-of") == ["Lib::Switch"]
@@ -171,12 +171,12 @@ def test_absent_members_mean_nothing():
 def test_an_element_without_class_has_a_block_of_its_own():
     reading = Read(switch('<Attribute Name="colour"/>', path=""))
     assert reading.to("Plant::sw", "instance-of", "Instance") == ["Plant::sw"]
-    own = reading.one("Plant::sw", "Class")
-    assert (own.role, own.attrs["subkind"]) == ("block", "internal-element")
+    block = reading.one("Plant::sw", "Class")
+    assert (block.role, block.attrs["subkind"]) == ("block", "internal-element")
     assert reading.owned("Plant::sw", "Class") == ["Property colour"]
 
 
-def test_an_attribute_that_says_more_than_that_of_its_class_is_kept():
+def test_an_attribute_that_extends_that_of_its_class_redefines_it():
     reading = Read(
         switch(
             '<Attribute Name="length" AttributeDataType="xs:double" Unit="m"><Value>1.0</Value>'
@@ -271,7 +271,7 @@ GONE = "1ac5c9b2-45f8-4a4c-8d6a-6d2f5f3b8a01"
         ("", []),
     ],
 )
-def test_mirrors_of_each_other_and_of_nothing_are_errors(a, findings):
+def test_mirror_cycles_and_mirrors_without_master_are_errors(a, findings):
     reading = Read(
         plant(
             '<InternalElement Name="cell" ID="0">'
@@ -293,7 +293,7 @@ def test_mirrors_of_each_other_and_of_nothing_are_errors(a, findings):
     ],
 )
 def test_a_mirror_names_an_attribute_behind_a_slash(reference, findings):
-    """``ID.name`` is meant as a mirror, and found by no tool."""
+    """``ID.name`` is meant as a mirror, but no tool resolves it."""
     reading = Read(
         plant(
             '<InternalElement Name="cell" ID="0">'
@@ -334,7 +334,7 @@ def cell(side_a, side_b, more=""):
         ("2:Ch. 1^In:x", "b.Ch. 1^In:x"),
     ],
 )
-def test_each_way_to_write_the_side_of_a_link(side, end):
+def test_every_style_of_link_sides_leads_to_the_port(side, end):
     reading = Read(aml_2(cell(side, "20")))
     assert reading.links() == {"l": (end, "b.Ch. 1^In:x")}
     assert reading.findings == []
@@ -345,8 +345,8 @@ def test_a_side_may_name_an_interface_that_only_the_class_holds(side):
     held = classes(
         '<SystemUnitClass Name="C"><ExternalInterface Name="io" ID="io"/></SystemUnitClass>'
     )
-    more = '<InternalElement Name="c/1" ID="c" RefBaseSystemUnitPath="Lib/C"/>'
-    reading = Read(aml_2(cell(side, "20", more) + held))
+    instance = '<InternalElement Name="c/1" ID="c" RefBaseSystemUnitPath="Lib/C"/>'
+    reading = Read(aml_2(cell(side, "20", instance) + held))
     assert reading.links() == {"l": ("c/1.io", "b.Ch. 1^In:x")}
 
 
@@ -359,14 +359,14 @@ def test_a_side_may_name_an_interface_that_only_the_class_holds(side):
         ("1", "that is no interface but 'a'"),
     ],
 )
-def test_a_side_that_leads_nowhere_is_told_and_the_rest_is_a_dependency(side, problem):
+def test_an_unresolved_side_is_reported_and_the_link_becomes_a_dependency(side, problem):
     reading = Read(aml_2(cell(side, "20")))
     assert reading.links() == {}
     assert reading.findings == [f"SM135: link 'l': its side A says '{side}', and {problem}"]
     link = reading.one("Plant::cell::l", "Dependency")
     assert link.attrs["subkind"] == "internal-link"
-    known = [*reading.graph.targets(link, "client"), *reading.graph.targets(link, "supplier")]
-    assert "20" in [element.id for element in known]
+    ends = [*reading.graph.targets(link, "client"), *reading.graph.targets(link, "supplier")]
+    assert "20" in [element.id for element in ends]
 
 
 def test_an_open_side_is_an_info():
@@ -428,7 +428,7 @@ def test_a_group_at_the_top_of_a_hierarchy_is_owned_by_it():
     assert reading.to("Plant::g", "references") == ["Plant::a"]
 
 
-def test_an_element_in_a_class_that_only_repeats_a_part_keeps_what_is_said_of_it():
+def test_an_element_in_a_class_that_only_repeats_a_part_keeps_its_id_and_description():
     """As in a plant: an Instance with its ID, which represents the part and may be mirrored."""
     reading = Read(
         classes(

@@ -16,7 +16,7 @@ def value(name, text, data_type="xs:string"):
 # -- files and libraries -----------------------------------------------------------------------
 
 
-def test_a_file_is_a_document_with_what_its_header_says():
+def test_a_file_is_a_document_with_the_values_of_its_header():
     reading = Read(
         aml(
             "<Description>a gate</Description>"
@@ -38,8 +38,8 @@ def test_a_file_is_a_document_with_what_its_header_says():
 
 def test_an_external_reference_is_an_import_named_as_its_alias():
     reading = Read('<ExternalReference Path="libs/a.aml" Alias="A"/>')
-    found = reading.one("A")
-    assert (found.kind.value, found.subkind, found.attrs["path"]) == (
+    alias = reading.one("A")
+    assert (alias.kind.value, alias.subkind, alias.attrs["path"]) == (
         "Import",
         "alias",
         "libs/a.aml",
@@ -65,12 +65,12 @@ def test_classes_are_blocks_interface_blocks_and_value_types():
         + interfaces('<InterfaceClass Name="C"/>')
         + types('<AttributeType Name="C"/>')
     )
-    found = {
+    kinds = {
         name: (element.kind.value, element.role, element.attrs.get("abstract"))
         for name in ("Lib::C", "Lib::C::N", "Roles::C", "Interfaces::C", "Types::C")
         for element in [reading.one(name)]
     }
-    assert found == {
+    assert kinds == {
         "Lib::C": ("Class", "block", None),
         "Lib::C::N": ("Class", "block", None),
         "Roles::C": ("Class", "block", True),
@@ -79,7 +79,7 @@ def test_classes_are_blocks_interface_blocks_and_value_types():
     }
 
 
-def test_standard_libraries_are_there_for_files_that_omit_them_and_are_not_of_the_plant():
+def test_standard_libraries_that_a_file_omits_are_added_as_external():
     path = "AutomationMLBaseRoleClassLib/AutomationMLBaseRole/Resource"
     reading = Read(roles(f'<RoleClass Name="R" RefBaseClassPath="{path}"/>'))
     (general,) = reading.graph.targets(reading.one("Roles::R"), "specializes")
@@ -88,16 +88,18 @@ def test_standard_libraries_are_there_for_files_that_omit_them_and_are_not_of_th
     assert reading.findings == []
 
 
-def test_all_that_a_built_in_library_brings_stands_in_no_file_of_the_plant():
+def test_elements_of_built_in_libraries_have_no_source():
     path = "AutomationMLBaseRoleClassLib/AutomationMLBaseRole/Port"
     graph = Read(roles(f'<RoleClass Name="R" RefBaseClassPath="{path}"/>')).graph
-    library = next(one for one in graph.roots() if one.name == "AutomationMLBaseRoleClassLib")
-    brought = list(graph.subtree(library))
-    assert any(one.kind == "DataType" and one.name == "Cardinality" for one in brought)
-    assert {(one.source, one.attrs.get("library")) for one in brought} == {("", True)}
+    library = next(
+        element for element in graph.roots() if element.name == "AutomationMLBaseRoleClassLib"
+    )
+    elements = list(graph.subtree(library))
+    assert any(element.kind == "DataType" and element.name == "Cardinality" for element in elements)
+    assert {(element.source, element.attrs.get("library")) for element in elements} == {("", True)}
 
 
-def test_a_standard_library_in_the_file_is_used_and_is_not_of_the_plant_either():
+def test_a_standard_library_in_the_file_is_used_and_external():
     reading = Read(
         roles('<RoleClass Name="AutomationMLBaseRole"/>', "AutomationMLBaseRoleClassLib")
         + roles(
@@ -116,25 +118,29 @@ def test_a_standard_library_in_the_file_is_used_and_is_not_of_the_plant_either()
         ("AutomationMLBaseRoleClassLib/Gone", "'AutomationMLBaseRoleClassLib/Gone', which does"),
     ],
 )
-def test_what_is_wrong_in_a_standard_library_that_the_file_holds_is_told_at_its_place(
-    path, problem, tmp_path
-):
+def test_a_fault_in_a_standard_library_of_the_file_is_a_located_warning(path, problem, tmp_path):
     held = f'<RoleClass Name="R" RefBaseClassPath="{path}"/>'
     source = aml(roles(held, "AutomationMLBaseRoleClassLib"))
     (tmp_path / "plant.aml").write_bytes(source.data)
-    made = compile_model(Request((tmp_path / "plant.aml",)))
-    (found,) = [one for one in made.diagnostics if one.rule.code != "SM158"]
-    assert found.message.startswith(
+    compilation = compile_model(Request((tmp_path / "plant.aml",)))
+    (diagnostic,) = [
+        diagnostic for diagnostic in compilation.diagnostics if diagnostic.rule.code != "SM158"
+    ]
+    assert diagnostic.message.startswith(
         "'AutomationMLBaseRoleClassLib::R' of the standard library 'AutomationMLBaseRoleClassLib'"
         f" refers to {problem}"
     )
-    assert (found.rule.code, found.severity, found.subject.place.ordinal) == ("SM149", "warning", 2)
-    assert made.exit_code() == 0
+    assert (diagnostic.rule.code, diagnostic.severity, diagnostic.subject.place.ordinal) == (
+        "SM149",
+        "warning",
+        2,
+    )
+    assert compilation.exit_code() == 0
 
 
-def test_what_is_wrong_in_a_library_of_the_plant_is_an_error():
+def test_a_fault_in_a_library_of_the_plant_is_an_error():
     reading = Read(roles('<RoleClass Name="R" RefBaseClassPath="Base@Lib/Role"/>'))
-    assert [one[:5] for one in reading.findings] == ["SM133"]
+    assert [finding[:5] for finding in reading.findings] == ["SM133"]
 
 
 # -- internal elements -------------------------------------------------------------------------
@@ -160,7 +166,7 @@ def test_an_internal_element_is_a_part_of_its_class_or_of_a_block_of_its_own():
     assert reading.owned("Lib::C::c", "Class") == ["Property x"]
 
 
-def test_a_part_that_its_class_knows_is_redefined_where_an_instance_puts_more_into_it():
+def test_a_part_that_an_instance_extends_is_redefined():
     reading = Read(
         classes(
             '<SystemUnitClass Name="M"/><SystemUnitClass Name="C">'
@@ -178,8 +184,8 @@ def test_a_part_that_its_class_knows_is_redefined_where_an_instance_puts_more_in
     assert reading.to("Plant::top::m", "specializes", "Class") == ["Lib::M"]
 
 
-def test_a_part_that_an_instance_types_otherwise_than_its_class_is_redefined():
-    def typed(by):
+def test_a_part_to_which_an_instance_gives_another_class_is_redefined():
+    def read_part_of_class(by):
         return Read(
             classes(
                 '<SystemUnitClass Name="M"/><SystemUnitClass Name="N"/>'
@@ -193,10 +199,10 @@ def test_a_part_that_an_instance_types_otherwise_than_its_class_is_redefined():
             )
         )
 
-    assert typed("N").to("Plant::top::m", "redefines", "Property") == ["Lib::C::m"]
-    assert typed("N").to("Plant::top::m", "typed-by", "Property") == ["Lib::N"]
-    assert typed("Fine").to("Plant::top", "instance-of") == ["Lib::C"]
-    assert typed("Fine").to("Plant::top::m", "instance-of") == ["Lib::Fine"]
+    assert read_part_of_class("N").to("Plant::top::m", "redefines", "Property") == ["Lib::C::m"]
+    assert read_part_of_class("N").to("Plant::top::m", "typed-by", "Property") == ["Lib::N"]
+    assert read_part_of_class("Fine").to("Plant::top", "instance-of") == ["Lib::C"]
+    assert read_part_of_class("Fine").to("Plant::top::m", "instance-of") == ["Lib::Fine"]
 
 
 # -- attributes --------------------------------------------------------------------------------
@@ -217,12 +223,12 @@ def test_an_attribute_is_a_value_property_with_default_and_type(data_type, text,
     reading = Read(
         classes(f'<SystemUnitClass Name="C">{value("v", text, data_type)}</SystemUnitClass>')
     )
-    found = reading.one("Lib::C::v")
-    assert (found.role, found.attrs["default"]) == ("value", read)
-    assert [r.name for r in reading.graph.pending if r.source == found.id] == [primitive]
+    value_property = reading.one("Lib::C::v")
+    assert (value_property.role, value_property.attrs["default"]) == ("value", read)
+    assert [r.name for r in reading.graph.pending if r.source == value_property.id] == [primitive]
 
 
-def test_value_and_default_are_both_kept_where_they_differ():
+def test_value_and_default_are_both_stored_if_they_differ():
     reading = Read(
         classes(
             '<SystemUnitClass Name="C"><Attribute Name="v"><DefaultValue>a</DefaultValue>'
@@ -249,7 +255,7 @@ def test_an_attribute_with_attributes_has_a_data_type_of_its_own():
 @pytest.mark.parametrize(
     ("list_type", "ordered"), [("ListType", None), ("OrderedListType", True), ("Direction", None)]
 )
-def test_lists_are_of_any_number_of_values(list_type, ordered):
+def test_lists_have_any_number_of_values(list_type, ordered):
     path = f"AutomationMLBaseAttributeTypeLib/{list_type}"
     reading = Read(
         classes(
@@ -262,7 +268,7 @@ def test_lists_are_of_any_number_of_values(list_type, ordered):
     assert attrs.get("ordered") is ordered
 
 
-def test_a_list_of_caex_2_is_told_by_its_semantics():
+def test_a_list_of_caex_2_is_recognised_by_its_semantics():
     reading = Read(
         aml_2(
             classes(
@@ -277,7 +283,7 @@ def test_a_list_of_caex_2_is_told_by_its_semantics():
     assert attrs["semantics"] == ("OrderedListType",)
 
 
-def test_semantics_are_kept_wherever_they_are():
+def test_semantics_of_classes_and_attributes_are_stored():
     reference = '<RefSemantic CorrespondingAttributePath="ECLASS:0173-1#02-AAB"/>'
     reading = Read(
         types(f'<AttributeType Name="T">{reference}</AttributeType>')
@@ -293,7 +299,7 @@ def test_semantics_are_kept_wherever_they_are():
 # -- units -------------------------------------------------------------------------------------
 
 
-def measured(unit, more="", of_type=""):
+def read_with_unit(unit, more="", of_type=""):
     return Read(
         types(f'<AttributeType Name="Length" AttributeDataType="xs:double"{of_type}/>')
         + classes(
@@ -316,21 +322,21 @@ def measured(unit, more="", of_type=""):
         ("mbps", "Mbit/s", "transfer rate"),
     ],
 )
-def test_a_unit_is_known_by_symbol_spelling_and_code(unit, symbol, quantity):
-    reading = measured(unit)
-    found = reading.one("Lib::C::v")
-    assert found.attrs["unit"] == unit
-    assert unit_of(reading.graph, found).attrs["symbol"] == symbol
-    assert quantity_kind_of(reading.graph, found).name == quantity
+def test_a_unit_is_recognised_by_symbol_spelling_and_code(unit, symbol, quantity):
+    reading = read_with_unit(unit)
+    value_property = reading.one("Lib::C::v")
+    assert value_property.attrs["unit"] == unit
+    assert unit_of(reading.graph, value_property).attrs["symbol"] == symbol
+    assert quantity_kind_of(reading.graph, value_property).name == quantity
     assert reading.findings == []
 
 
 @pytest.mark.parametrize("of_type", [' Unit="m"', ""])
 def test_an_attribute_has_the_unit_of_its_type_or_its_own(of_type):
-    reading = measured("mm", ' RefAttributeType="Types/Length"', of_type)
-    found = reading.one("Lib::C::v")
-    assert unit_of(reading.graph, found).attrs["symbol"] == "mm"
-    plain = measured("m", ' RefAttributeType="Types/Length"', ' Unit="m"')
+    reading = read_with_unit("mm", ' RefAttributeType="Types/Length"', of_type)
+    value_property = reading.one("Lib::C::v")
+    assert unit_of(reading.graph, value_property).attrs["symbol"] == "mm"
+    plain = read_with_unit("m", ' RefAttributeType="Types/Length"', ' Unit="m"')
     assert plain.to("Lib::C::v", "typed-by") == ["Types::Length"]
     assert unit_of(plain.graph, plain.one("Lib::C::v")).attrs["symbol"] == "m"
 
@@ -352,23 +358,23 @@ def test_value_types_of_one_unit_have_a_name_for_each_primitive():
     }
 
 
-def test_an_unknown_unit_is_told_once_a_file_and_kept_as_it_is():
-    reading = measured("furlong")
+def test_an_unknown_unit_is_reported_once_a_file_and_stored_as_written():
+    reading = read_with_unit("furlong")
     assert reading.findings == ["SM147: the unit 'furlong' of 'v' is not known"]
-    found = reading.one("Lib::C::v")
-    assert unit_of(reading.graph, found).attrs["symbol"] == "furlong"
-    assert quantity_kind_of(reading.graph, found) is None
+    value_property = reading.one("Lib::C::v")
+    assert unit_of(reading.graph, value_property).attrs["symbol"] == "furlong"
+    assert quantity_kind_of(reading.graph, value_property) is None
 
 
 @pytest.mark.parametrize("text", ["string", "xs:anyUnit"])
-def test_the_name_of_a_type_is_no_unit(text):
-    reading = measured(text)
+def test_the_name_of_a_type_in_place_of_a_unit_is_dropped(text):
+    reading = read_with_unit(text)
     assert reading.findings == [f"SM147: the unit '{text}' of 'v' is the name of a type"]
     assert unit_of(reading.graph, reading.one("Lib::C::v")) is None
 
 
-def test_no_unit_is_nothing_to_tell():
-    reading = measured("")
+def test_an_attribute_without_unit_is_not_reported():
+    reading = read_with_unit("")
     assert reading.findings == []
     assert unit_of(reading.graph, reading.one("Lib::C::v")) is None
 
@@ -403,8 +409,8 @@ def test_a_constraint_is_an_expression_or_a_text(scale, data_type, body, languag
             f'<Constraint Name="c">{scale}</Constraint></Attribute></SystemUnitClass>'
         )
     )
-    found = reading.one("Lib::C::c")
-    assert (found.attrs["body"], found.attrs.get("language", "")) == (body, language)
+    constraint = reading.one("Lib::C::c")
+    assert (constraint.attrs["body"], constraint.attrs.get("language", "")) == (body, language)
     assert reading.to("Lib::C::c", "references") == ["Lib::C::v"]
 
 
@@ -429,7 +435,7 @@ def test_an_interface_is_a_port_with_direction_cardinality_and_category():
     assert reading.to("Lib::C::p", "typed-by") == [f"{STANDARD}/Port".replace("/", "::")]
 
 
-def test_what_an_instance_says_of_an_interface_is_a_slot():
+def test_a_value_that_an_instance_gives_to_an_interface_is_a_slot():
     reading = Read(
         classes('<SystemUnitClass Name="C"><ExternalInterface Name="p" ID="1"/></SystemUnitClass>')
         + plant(
@@ -488,14 +494,14 @@ def port_of_class(attribute):
         (f'<Attribute Name="Direction">{CONSTRAINED}<Value>In</Value></Attribute>', ["Property"]),
     ],
 )
-def test_an_interface_whose_attributes_say_more_than_values_has_a_class_of_its_own(
+def test_an_interface_whose_attributes_define_more_than_values_has_a_class_of_its_own(
     attribute, kinds
 ):
     reading = Read(port_of_class(attribute))
-    (own,) = reading.graph.targets(reading.one("Lib::C::p", "Port"), "typed-by")
-    assert (own.role, own.subkind) == ("interface block", "external-interface")
-    assert [g.name for g in reading.graph.targets(own, "specializes")] == ["P"]
-    assert {e.kind.value for e in reading.graph.owned(own)} >= set(kinds)
+    (block,) = reading.graph.targets(reading.one("Lib::C::p", "Port"), "typed-by")
+    assert (block.role, block.subkind) == ("interface block", "external-interface")
+    assert [g.name for g in reading.graph.targets(block, "specializes")] == ["P"]
+    assert {e.kind.value for e in reading.graph.owned(block)} >= set(kinds)
     assert "unsupported" not in reading.totals
 
 
@@ -510,7 +516,7 @@ def test_an_interface_whose_attributes_say_more_than_values_has_a_class_of_its_o
         ' AttributeDataType="xs:string"><Value>In</Value></Attribute>',
     ],
 )
-def test_an_interface_with_values_alone_is_of_the_class_that_it_names(attribute):
+def test_an_interface_with_values_only_has_the_class_that_it_names(attribute):
     reading = Read(port_of_class(attribute))
     assert reading.to("Lib::C::p", "typed-by", "Port") == ["Interfaces::P"]
     assert reading.findings == []
@@ -519,7 +525,7 @@ def test_an_interface_with_values_alone_is_of_the_class_that_it_names(attribute)
 @pytest.mark.parametrize(
     "inside", ['<Attribute Name="speed" Unit="km/h"/>', '<ExternalInterface Name="r"/>']
 )
-def test_an_interface_that_says_more_in_an_instance_is_redefined_there(inside):
+def test_an_interface_that_an_instance_extends_is_redefined(inside):
     reading = Read(
         port_of_class("")
         + plant(
@@ -528,14 +534,14 @@ def test_an_interface_that_says_more_in_an_instance_is_redefined_there(inside):
         )
     )
     assert reading.to("Plant::c::p", "redefines", "Port") == ["Lib::C::p"]
-    (own,) = reading.graph.targets(reading.one("Plant::c::p", "Port"), "typed-by")
-    assert [g.name for g in reading.graph.targets(own, "specializes")] == ["P"]
-    assert [e.name for e in reading.graph.owned(own)] == ["speed" if "speed" in inside else "r"]
+    (block,) = reading.graph.targets(reading.one("Plant::c::p", "Port"), "typed-by")
+    assert [g.name for g in reading.graph.targets(block, "specializes")] == ["P"]
+    assert [e.name for e in reading.graph.owned(block)] == ["speed" if "speed" in inside else "r"]
     assert "unsupported" not in reading.totals
 
 
 @pytest.mark.parametrize("of_class", ["", "<Description>in the class</Description>"])
-def test_what_an_instance_tells_of_an_interface_is_a_comment_of_its_own(of_class):
+def test_a_description_that_an_instance_gives_to_an_interface_is_a_comment(of_class):
     reading = Read(
         port_of_class(of_class)
         + plant(
@@ -564,7 +570,7 @@ def test_nested_interfaces_are_ports_of_a_class_of_their_own():
 # -- roles (rule 6, Table 3.1) -----------------------------------------------------------------
 
 
-def test_what_a_role_requires_and_an_element_has_not_becomes_its_own():
+def test_members_that_a_role_requires_and_an_element_lacks_are_added():
     reading = Read(
         roles('<RoleClass Name="R"><Attribute Name="load"/></RoleClass>')
         + plant(
@@ -584,7 +590,7 @@ def test_what_a_role_requires_and_an_element_has_not_becomes_its_own():
     assert reading.totals == {"mapped": 14}
 
 
-def test_roles_that_a_class_plays_are_not_said_again_by_its_instances():
+def test_instances_do_not_repeat_the_realizations_of_their_class():
     role = '<SupportedRoleClass RefRoleClassPath="Roles/A"/>'
     reading = Read(
         roles('<RoleClass Name="A"/><RoleClass Name="B"/>')
@@ -598,7 +604,7 @@ def test_roles_that_a_class_plays_are_not_said_again_by_its_instances():
     assert reading.to("Plant::i", "realizes") == ["Roles::B"]
 
 
-def mapped(attribute, interface="p"):
+def read_mapping(attribute, interface="p"):
     return Read(
         interfaces('<InterfaceClass Name="P"/>')
         + roles(
@@ -617,15 +623,15 @@ def mapped(attribute, interface="p"):
     )
 
 
-def test_a_mapping_object_says_which_feature_is_which_of_the_role():
-    reading = mapped("len")
+def test_a_mapping_object_redefines_a_feature_of_the_role():
+    reading = read_mapping("len")
     assert reading.to("Plant::i::len", "redefines") == ["Roles::R::length"]
     assert reading.to("Plant::i::p", "redefines") == ["Roles::R::plug"]
     assert reading.findings == []
 
 
-def test_a_mapping_of_what_is_not_there_is_an_error():
-    assert mapped("l").findings == [
+def test_a_mapping_of_an_unknown_feature_is_an_error():
+    assert read_mapping("l").findings == [
         "SM144: a mapping object of 'i' names 'l', which does not exist"
     ]
 
@@ -660,16 +666,16 @@ def requiring(inside):
     )
 
 
-def test_an_interface_that_the_element_has_is_no_second_one_where_its_role_requires_it():
+def test_an_interface_that_the_role_requires_is_not_added_a_second_time():
     reading = requiring('<ExternalInterface Name="i" ID="i2"/>')
     assert [e.id for e in reading.graph if e.kind.value == "Port"] == ["i"]
     assert reading.findings == []
 
 
-def test_a_required_value_is_kept_with_its_unit_and_what_else_is_required_is_told():
+def test_a_required_value_is_stored_with_its_unit_and_other_requirements_are_reported():
     reading = requiring(f'<Attribute Name="a" Unit="km"><Value>5</Value>{CONSTRAINED}</Attribute>')
-    (kept,) = (e for e in reading.graph if e.name == "RoleRequirements")
-    assert (kept.attrs["required"], kept.attrs["unit"]) == ("5", "km")
+    (metadata,) = (e for e in reading.graph if e.name == "RoleRequirements")
+    assert (metadata.attrs["required"], metadata.attrs["unit"]) == ("5", "km")
     assert "SM139: 1 element 'Constraint' not read" in reading.findings
 
 
@@ -701,7 +707,7 @@ def test_a_facet_shows_features_of_its_element_and_a_group_the_masters_of_its_mi
     assert reading.findings == []
 
 
-def test_a_facet_or_group_realizes_the_role_that_makes_it_one():
+def test_a_facet_or_group_realizes_the_role_that_specialises_the_standard():
     body = "".join(
         f'<InternalElement Name="{name}" ID="{name}">{playing(role)}</InternalElement>'
         for name, role in {"v": "Roles/View", "s": "Roles/Set", "g": f"{BASE_ROLE}/Group"}.items()
@@ -713,11 +719,11 @@ def test_a_facet_or_group_realizes_the_role_that_makes_it_one():
         )
         + plant(f'<InternalElement Name="cell" ID="0">{body}</InternalElement>')
     )
-    found = [reading.to(f"Plant::cell::{name}", "realizes") for name in "vsg"]
-    assert found == [["Roles::View"], ["Roles::Set"], []]
+    realized = [reading.to(f"Plant::cell::{name}", "realizes") for name in "vsg"]
+    assert realized == [["Roles::View"], ["Roles::Set"], []]
 
 
-def test_each_role_that_makes_it_one_is_read_whatever_other_elements_play():
+def test_each_role_of_a_facet_or_group_is_read():
     view, base = playing("Roles/View"), playing(f"{BASE_ROLE}/Facet")
     reading = Read(
         roles(f'<RoleClass Name="View" RefBaseClassPath="{BASE_ROLE}/Facet"/>')
@@ -738,7 +744,7 @@ def showing(role, inside, beside=""):
     )
 
 
-def test_a_group_may_hold_groups():
+def test_a_group_may_contain_groups():
     inner = (
         f'<InternalElement Name="g" ID="g">{value("AssociatedFacet", "f")}'
         '<InternalElement Name="m" ID="m" RefBaseSystemUnitPath="a"/>'
@@ -766,7 +772,7 @@ def test_a_group_may_hold_groups():
         ),
     ],
 )
-def test_a_group_for_a_facet_that_there_is_not_is_told(facet, findings):
+def test_a_group_for_an_unknown_facet_is_reported(facet, findings):
     beside = f'<InternalElement Name="plc" ID="f">{playing(BASE_ROLE + "/Facet")}</InternalElement>'
     reading = showing("Group", value("AssociatedFacet", facet), beside)
     assert reading.findings == findings
@@ -793,7 +799,7 @@ MIRROR = '<InternalElement Name="%s" ID="m" RefBaseSystemUnitPath="a">%s</Intern
 
 
 @pytest.mark.parametrize(
-    ("role", "inside", "kept"),
+    ("role", "inside", "stored"),
     [
         ("Group", MIRROR % ("left", ""), ("a", "left", "m")),
         ("Group", MIRROR % ("a", ""), ("a", "a", "m")),
@@ -801,13 +807,13 @@ MIRROR = '<InternalElement Name="%s" ID="m" RefBaseSystemUnitPath="a">%s</Intern
         ("Facet", '<Attribute Name="o" RefAttributeType="0/x"/>', ("0#class/x", "o", "")),
     ],
 )
-def test_names_and_ids_of_mirrors_in_facets_and_groups_are_kept(role, inside, kept):
+def test_names_and_ids_of_mirrors_in_facets_and_groups_are_stored(role, inside, stored):
     reading = showing(role, inside, '<InternalElement Name="a" ID="a"/>')
-    assert reading.one("Plant::cell::s").attrs["mirrors"] == (kept,)
+    assert reading.one("Plant::cell::s").attrs["mirrors"] == (stored,)
     assert reading.findings == []
 
 
-def test_what_has_the_name_of_what_it_shows_and_no_id_is_not_kept():
+def test_a_mirror_without_id_that_has_the_name_of_its_master_is_not_stored():
     reading = showing("Facet", '<Attribute Name="x"/>')
     assert "mirrors" not in reading.one("Plant::cell::s").attrs
 
@@ -825,10 +831,10 @@ def test_what_has_the_name_of_what_it_shows_and_no_id_is_not_kept():
         ),
     ],
 )
-def test_a_description_that_only_a_mirror_has_is_told(text, findings):
-    told = "<Description>%s</Description>"
-    master = f'<InternalElement Name="a" ID="a">{told % "a robot"}</InternalElement>'
-    reading = showing("Group", MIRROR % ("left", told % text), master)
+def test_a_description_of_a_mirror_alone_is_reported(text, findings):
+    description = "<Description>%s</Description>"
+    master = f'<InternalElement Name="a" ID="a">{description % "a robot"}</InternalElement>'
+    reading = showing("Group", MIRROR % ("left", description % text), master)
     assert reading.findings == findings
     assert reading.totals.get("approximated", 0) == 2 * len(findings)
 
@@ -847,13 +853,13 @@ def test_a_description_that_only_a_mirror_has_is_told(text, findings):
         ("Facet", '<InternalElement Name="own" ID="own"/>', "InternalElement"),
     ],
 )
-def test_what_a_facet_or_group_should_not_hold_is_told(role, inside, tag):
+def test_other_content_of_a_facet_or_group_is_reported(role, inside, tag):
     reading = showing(role, inside)
     assert reading.findings == [f"SM139: 1 element '{tag}' not read"]
     assert reading.totals["unsupported"] == 1 + inside.count("<Value>")
 
 
-def test_a_role_that_is_only_called_facet_makes_none():
+def test_a_role_is_no_facet_by_its_name_alone():
     reading = Read(
         roles('<RoleClass Name="Facet"/>')
         + plant(f'<InternalElement Name="a" ID="1">{playing("Roles/Facet")}</InternalElement>')
@@ -888,7 +894,7 @@ def test_a_process_is_allocated_to_its_resource(first):
     assert reading.links() == {}
 
 
-def test_a_product_is_what_process_and_resource_depend_on():
+def test_process_and_resource_depend_on_their_product():
     reading = line("PPRConnector", ("Product", ""), ("Process", ""))
     link = reading.one("Plant::line::l")
     assert (link.kind.value, link.role) == ("Dependency", "")
@@ -896,18 +902,18 @@ def test_a_product_is_what_process_and_resource_depend_on():
 
 
 @pytest.mark.parametrize(("ways", "later"), [(("Out", "In"), 1), (("In", "Out"), 0)])
-def test_an_order_is_a_succession_from_the_way_out_to_the_way_in(ways, later):
+def test_an_order_is_a_succession_from_direction_out_to_direction_in(ways, later):
     reading = line("Order", ("Process", ways[0]), ("Process", ways[1]))
     link = reading.one("Plant::line::l")
     assert (link.kind.value, link.subkind) == ("Dependency", "succession")
     assert [e.name for e in reading.graph.targets(link, "client")] == [f"Process{later}"]
 
 
-def test_other_interfaces_of_processes_are_wired():
+def test_other_interfaces_of_processes_are_connected():
     assert list(line("Port", ("Process", ""), ("Resource", "")).links()) == ["l"]
 
 
-def test_a_port_object_of_caex_2_is_a_part_that_says_what_a_port_says():
+def test_a_port_object_of_caex_2_is_a_part_with_the_properties_of_a_port():
     inside = value("Direction", "In") + value("Category", "energy")
     reading = Read(
         roles('<RoleClass Name="Port"/>')
@@ -949,10 +955,10 @@ def test_external_data_is_a_document_that_is_not_loaded(interface, subkind):
     assert reading.to("Plant::i::d", "references", "Document") == ["Plant::i::d"]
 
 
-# -- what is told beside the structure ---------------------------------------------------------
+# -- descriptions and other metadata -----------------------------------------------------------
 
 
-def test_descriptions_revisions_and_additional_information_are_kept():
+def test_descriptions_revisions_and_additional_information_are_stored():
     reading = Read(
         classes(
             '<SystemUnitClass Name="C" ChangeMode="create"><Description>moves</Description>'
@@ -974,18 +980,18 @@ def test_descriptions_revisions_and_additional_information_are_kept():
     assert reading.totals == {"mapped": 11}
 
 
-@pytest.mark.parametrize(("mode", "kept"), [("delete", "delete"), ("state", None)])
-def test_a_change_mode_is_kept_where_nothing_else_is_said(mode, kept):
+@pytest.mark.parametrize(("mode", "stored"), [("delete", "delete"), ("state", None)])
+def test_a_change_mode_is_stored_without_other_metadata(mode, stored):
     reading = Read(classes(f'<SystemUnitClass Name="C" ChangeMode="{mode}"/>'))
-    assert reading.one("Lib::C").attrs.get("change_mode") == kept
+    assert reading.one("Lib::C").attrs.get("change_mode") == stored
 
 
-def test_a_file_that_states_no_name_has_that_of_the_file():
+def test_a_document_without_file_name_has_the_name_of_its_source():
     reading = Read(Source("cell.aml", b'<CAEXFile SchemaVersion="2.15"/>'))
     assert [e.name for e in reading.graph if e.subkind == "caex"] == ["cell.aml"]
 
 
-def test_ids_of_automationml_are_those_of_the_graph():
+def test_ids_of_automationml_are_ids_of_the_graph():
     reading = Read(plant('<InternalElement Name="i" ID="{AB}"/>'))
     assert reading.one("Plant::i", "Instance").id == "{AB}"
 
@@ -993,7 +999,7 @@ def test_ids_of_automationml_are_those_of_the_graph():
 # -- rules about files -------------------------------------------------------------------------
 
 
-def test_what_caex_does_not_have_is_told_and_counted():
+def test_elements_that_caex_does_not_have_are_reported_and_counted():
     reading = Read(plant('<InternalElement Name="i" ID="1"><Conveyor/></InternalElement>'))
     assert reading.findings == ["SM139: 1 element 'Conveyor' not read"]
     assert reading.totals == {"mapped": 3, "unsupported": 1}
@@ -1020,7 +1026,7 @@ def test_what_caex_does_not_have_is_told_and_counted():
         ("<AdditionalInformation/><SourceObjectInformation OriginID='a'/>", []),
     ],
 )
-def test_elements_in_another_order_than_the_schema_has_are_told_once(inside, order):
+def test_elements_in_another_order_than_in_the_schema_are_reported_once(inside, order):
     reading = Read(plant(f'<InternalElement Name="i" ID="1">{inside}</InternalElement>'))
     assert reading.order == order
 
@@ -1029,13 +1035,13 @@ def test_elements_in_another_order_than_the_schema_has_are_told_once(inside, ord
     ("body", "findings"),
     [("", ["SM141: 'plant.aml' holds no library and no hierarchy"]), (plant(""), [])],
 )
-def test_a_file_without_content_is_told(body, findings):
+def test_a_file_without_content_is_reported(body, findings):
     assert Read(body).findings == findings
 
 
 def test_a_damaged_file_is_one_located_error():
     reading = Read(aml(b"<CAEXFile><InstanceHierarchy></CAEXFile>"))
-    (found,) = reading.sink
-    assert found.rule.code == "SM142"
-    assert found.subject.place.offset == 31
+    (diagnostic,) = reading.sink
+    assert diagnostic.rule.code == "SM142"
+    assert diagnostic.subject.place.offset == 31
     assert len(reading.graph) == 0

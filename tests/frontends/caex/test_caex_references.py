@@ -13,7 +13,7 @@ BRACKETS = classes(
 
 
 @pytest.mark.parametrize(
-    ("path", "found"),
+    ("path", "resolved"),
     [
         ("Lib/[B/2]", "Lib::B/2"),
         ("[Lib]/[B/2]", "Lib::B/2"),
@@ -22,9 +22,9 @@ BRACKETS = classes(
         ("Lib/[http://a.b/c]", "Lib::http://a.b/c"),
     ],
 )
-def test_one_part_or_all_parts_of_a_path_may_stand_in_brackets(path, found):
+def test_one_name_or_all_names_of_a_path_may_be_in_brackets(path, resolved):
     reading = Read(BRACKETS + plant(f'<InternalElement Name="x" RefBaseSystemUnitPath="{path}"/>'))
-    assert reading.to("Plant::x", "instance-of") == [found]
+    assert reading.to("Plant::x", "instance-of") == [resolved]
     assert reading.findings == []
 
 
@@ -38,7 +38,7 @@ def test_without_brackets_a_separator_separates():
 # -- rule 2: one kind at a time ----------------------------------------------------------------
 
 
-def test_a_path_finds_classes_of_its_own_kind_though_others_have_the_same_path():
+def test_a_path_resolves_to_a_class_of_its_family_among_several_of_that_path():
     reading = Read(
         classes(
             '<SystemUnitClass Name="Unit">'
@@ -59,7 +59,7 @@ def test_a_path_finds_classes_of_its_own_kind_though_others_have_the_same_path()
     assert reading.findings == []
 
 
-def test_a_role_path_does_not_find_a_system_unit_class():
+def test_a_role_path_does_not_resolve_to_a_system_unit_class():
     reading = Read(
         classes('<SystemUnitClass Name="A"/>')
         + roles('<RoleClass Name="B"/>', "Lib")
@@ -76,14 +76,14 @@ def test_a_role_path_does_not_find_a_system_unit_class():
 # -- rule 3: nesting is no inheritance ---------------------------------------------------------
 
 
-def test_a_nested_class_inherits_nothing_from_the_one_around_it():
+def test_a_nested_class_does_not_inherit_from_the_enclosing_class():
     reading = Read(
         roles('<RoleClass Name="A"><Attribute Name="x"/><RoleClass Name="B"/></RoleClass>')
     )
     assert reading.to("Roles::A::B", "specializes") == []
 
 
-def test_the_bare_name_of_the_class_around_means_that_class():
+def test_the_bare_name_of_the_enclosing_class_means_that_class():
     reading = Read(
         roles('<RoleClass Name="A"><RoleClass Name="B" RefBaseClassPath="A"/></RoleClass>')
     )
@@ -122,29 +122,32 @@ def test_an_alias_leads_into_another_file_of_the_unit(path):
     assert reading.findings == []
 
 
-def test_a_file_that_is_not_there_is_told_once_with_all_that_it_takes_down():
-    more = '<RoleClass Name="Door" RefBaseClassPath="Al@Shared/Base"/>'
-    reading = Read(uses("../libs/gone.aml", more=more), BASE)
+def test_a_missing_file_is_reported_once_with_all_references_to_it():
+    door = '<RoleClass Name="Door" RefBaseClassPath="Al@Shared/Base"/>'
+    reading = Read(uses("../libs/gone.aml", more=door), BASE)
     assert reading.findings == [
         "SM132: the file 'libs/gone.aml' is not part of the compile unit; "
         "2 elements refer to classes of it"
     ]
-    (found,) = [one for one in reading.sink if one.rule.code != "SM158"]
-    assert found.notes == (
+    (diagnostic,) = [diagnostic for diagnostic in reading.sink if diagnostic.rule.code != "SM158"]
+    assert diagnostic.notes == (
         "Roles::Gate (plant/main.aml:1:165)",
         "Roles::Door (plant/main.aml:1:223)",
     )
-    assert (found.subject.place.file, found.subject.place.ordinal) == ("plant/main.aml", 3)
+    assert (diagnostic.subject.place.file, diagnostic.subject.place.ordinal) == (
+        "plant/main.aml",
+        3,
+    )
 
 
-def test_an_alias_without_declaration_is_an_error_at_its_place():
+def test_an_alias_without_declaration_is_a_located_error():
     reading = Read(uses("../libs/base.aml", alias="Other"), BASE)
     assert reading.findings == [
         "SM133: 'Roles::Gate' uses the alias 'Al', which no ExternalReference declares"
     ]
 
 
-def test_what_an_element_refers_to_in_vain_is_told_in_the_graph():
+def test_unresolved_references_are_stored_in_the_graph():
     reading = Read(uses("../libs/base.aml", alias="Other"), BASE)
     assert reading.one("Roles::Gate").attrs["unresolved"] == ("specializes",)
 
@@ -152,7 +155,7 @@ def test_what_an_element_refers_to_in_vain_is_told_in_the_graph():
 # -- rule 5: ids -------------------------------------------------------------------------------
 
 
-def linked(side_a, side_b):
+def two_linked_elements(side_a, side_b):
     return interfaces('<InterfaceClass Name="P"/>') + plant(
         '<InternalElement Name="cell" ID="{AB-0}">'
         '<InternalElement Name="a" ID="{AB-1}"><ExternalInterface Name="out"/></InternalElement>'
@@ -162,14 +165,14 @@ def linked(side_a, side_b):
     )
 
 
-def test_ids_are_compared_as_they_are_written():
-    reading = Read(aml_2(linked("{AB-1}:out", "ab-2:in")))
+def test_ids_are_compared_literally_first():
+    reading = Read(aml_2(two_linked_elements("{AB-1}:out", "ab-2:in")))
     assert reading.links() == {"l": ("a.out", "b.in")}
     assert reading.findings == []
 
 
 def test_ids_that_differ_in_braces_and_case_are_found_with_an_info():
-    reading = Read(aml_2(linked("ab-1:out", "{AB-2}:in")))
+    reading = Read(aml_2(two_linked_elements("ab-1:out", "{AB-2}:in")))
     assert reading.links() == {"l": ("a.out", "b.in")}
     assert reading.infos == [
         "SM145: 'l' says 'ab-1', the ID is '{AB-1}'",
@@ -178,14 +181,14 @@ def test_ids_that_differ_in_braces_and_case_are_found_with_an_info():
 
 
 def test_an_id_that_differs_otherwise_is_not_found():
-    reading = Read(aml_2(linked("ab-3:out", "ab-2:in")))
+    reading = Read(aml_2(two_linked_elements("ab-3:out", "ab-2:in")))
     assert reading.links() == {}
     assert reading.findings == [
         "SM135: link 'l': its side A says 'ab-3:out', and it names no interface"
     ]
 
 
-def test_an_id_may_stand_behind_an_alias():
+def test_an_id_may_follow_an_alias():
     other = aml(plant('<InternalElement Name="master" ID="m"/>', "Other"), "other.aml")
     reading = Read(
         aml(
@@ -201,9 +204,11 @@ def test_an_id_may_stand_behind_an_alias():
     assert reading.findings == []
 
 
-def test_of_two_files_with_the_same_ids_each_means_its_own():
-    one, other = (aml(linked("{AB-1}:out", "ab-2:in"), name) for name in ("a.aml", "b.aml"))
-    reading = Read(one, other)
+def test_a_file_refers_to_its_own_elements_if_another_file_has_the_same_ids():
+    first, second = (
+        aml(two_linked_elements("{AB-1}:out", "ab-2:in"), name) for name in ("a.aml", "b.aml")
+    )
+    reading = Read(first, second)
     assert reading.findings == []
     ends = [e for e in reading.graph if e.kind.value == "ConnectorEnd"]
     for end in ends:
@@ -216,7 +221,7 @@ def test_the_order_of_the_files_changes_nothing():
     assert Read(uses("../libs/base.aml"), BASE).text == Read(BASE, uses("../libs/base.aml")).text
 
 
-def test_an_id_of_two_elements_is_told_and_the_first_is_meant():
+def test_a_repeated_id_is_reported_and_means_the_first_element():
     reading = Read(plant('<InternalElement Name="a" ID="1"/><InternalElement Name="b" ID="1"/>'))
     assert reading.findings == ["SM137: the ID '1' of 'b' is used by another element too"]
     assert (
@@ -224,7 +229,7 @@ def test_an_id_of_two_elements_is_told_and_the_first_is_meant():
     )
 
 
-def test_an_element_without_id_is_told_once_a_file():
+def test_elements_without_id_are_reported_once_a_file():
     reading = Read(
         plant('<InternalElement Name="a"/><InternalElement Name="b"/>')
         + classes('<SystemUnitClass Name="C"/>')
@@ -281,7 +286,7 @@ def test_role_requirements_without_a_path_are_no_role():
         ("Interfaces/P", "Types/U", ["'Plant::x::a' refers to the class 'Types/U'"]),
     ],
 )
-def test_a_class_that_only_an_instance_names_in_vain_is_told_at_its_place(
+def test_a_missing_class_that_only_an_instance_names_is_reported_at_the_instance(
     port, attribute, findings
 ):
     """And nothing is missing to the class, which names the right one."""
@@ -321,7 +326,7 @@ def test_of_two_declarations_of_an_alias_the_first_counts():
     ]
 
 
-def test_an_alias_that_is_declared_twice_for_one_file_is_nothing_to_tell():
+def test_an_alias_that_is_declared_twice_for_one_file_is_not_reported():
     reading = Read(
         aml(
             '<ExternalReference Path="../libs/base.aml" Alias="Al"/>'

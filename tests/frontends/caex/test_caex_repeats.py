@@ -1,4 +1,4 @@
-"""Names that two elements have where paths need one, and interfaces of another class."""
+"""Repeated names, interfaces of another class than that of the class, chains of mirrors."""
 
 import pytest
 from reading_caex import Read, classes, interfaces, plant, types
@@ -52,9 +52,9 @@ REPEATS = [
 ]
 
 
-@pytest.mark.parametrize(("body", "told"), REPEATS)
-def test_a_name_that_two_elements_have_is_told(body, told):
-    assert Read(body).findings == [f"SM635: {told}"]
+@pytest.mark.parametrize(("body", "message"), REPEATS)
+def test_a_repeated_name_is_reported(body, message):
+    assert Read(body).findings == [f"SM635: {message}"]
 
 
 ALONE = [
@@ -69,7 +69,7 @@ ALONE = [
 
 
 @pytest.mark.parametrize("body", ALONE)
-def test_a_name_at_two_places_is_nothing_to_tell(body):
+def test_a_name_in_two_scopes_is_not_reported(body):
     assert Read(body).findings == []
 
 
@@ -98,7 +98,7 @@ def test_an_interface_of_another_class_is_a_port_of_its_own(path, inside):
 
 
 @pytest.mark.parametrize("path", ["Plug", "Safe plug", ""])
-def test_an_interface_that_says_its_class_or_less_is_that_of_the_class(path):
+def test_an_interface_with_the_inherited_class_or_a_more_general_one_is_inherited(path):
     body = classes(of_class(interface("Safe plug", "c"))) + of_instance(interface(path, "i"))
     reading = Read(CLASSES + body)
     assert reading.findings == []
@@ -112,7 +112,7 @@ def test_a_link_to_an_interface_of_another_class_leads_to_its_own_port():
     body = classes(of_class(interface("Plug", "c")))
     reading = Read(CLASSES + body + of_instance(interface("Socket", "i") + other + link))
     assert reading.links() == {"l": ("p", "q")}
-    assert [one.id for one in reading.all("Plant::i::p")] == ["i"]
+    assert [port.id for port in reading.all("Plant::i::p")] == ["i"]
 
 
 def mirror(id, master):
@@ -120,23 +120,23 @@ def mirror(id, master):
 
 
 @pytest.mark.parametrize("ids", ["abcd", "dcba", "cbad"])
-def test_each_mirror_that_leads_into_a_circle_is_told_with_its_master(ids):
-    """In whatever order they stand: b and c are the circle."""
+def test_each_mirror_that_leads_into_a_cycle_is_reported_with_its_master(ids):
+    """In any order of the mirrors; b and c are the cycle."""
     masters = {"a": "b", "b": "c", "c": "b", "d": "a"}
-    reading = Read(plant("".join(mirror(one, masters[one]) for one in ids)))
+    reading = Read(plant("".join(mirror(id, masters[id]) for id in ids)))
     assert reading.findings == [
-        f"SM143: '{one}' is a mirror of itself, by way of '{masters[one]}'" for one in ids
+        f"SM143: '{id}' is a mirror of itself, by way of '{masters[id]}'" for id in ids
     ]
 
 
 @pytest.mark.parametrize("ids", ["abcd", "dcba", "bdac"])
-def test_each_mirror_of_a_chain_that_leads_nowhere_is_told_with_what_is_missing(ids):
+def test_each_mirror_of_a_chain_without_end_is_reported_with_the_missing_master(ids):
     masters = {"a": "b", "b": "c", "c": "gone", "d": "e"}
     gone = f"{'0' * 8}-{'0' * 4}-{'0' * 4}-{'0' * 4}-{'0' * 12}"
-    chain = "".join(mirror(one, masters[one].replace("gone", gone)) for one in ids)
+    chain = "".join(mirror(id, masters[id].replace("gone", gone)) for id in ids)
     reading = Read(plant(chain + '<InternalElement Name="e" ID="e"/>'))
-    lost = [one for one in ids if one != "d"]
+    unresolved = [id for id in ids if id != "d"]
     assert reading.findings == [
-        f"SM138: '{one}' is a mirror of '{gone}', which does not exist" for one in lost
+        f"SM138: '{id}' is a mirror of '{gone}', which does not exist" for id in unresolved
     ]
     assert reading.to("Plant::d", "mirrors") == ["Plant::e"]

@@ -1,4 +1,4 @@
-"""Values that are none of their data type, and data types that are none."""
+"""Values that are not of their data type, and unknown data types."""
 
 import pytest
 from reading_caex import Read, classes, interfaces, plant, types
@@ -29,16 +29,16 @@ VALUES = {
     "base64Binary": (["aGk=", "aGFsbG8="], ["?"]),
     "language": (["de-AT"], ["German (Austria)"]),
 }
-FITTING = [(name, text) for name, (good, _) in VALUES.items() for text in good]
-UNFIT = [(name, text) for name, (_, bad) in VALUES.items() for text in bad]
+VALID = [(name, text) for name, (good, _) in VALUES.items() for text in good]
+INVALID = [(name, text) for name, (_, bad) in VALUES.items() for text in bad]
 
 
-@pytest.mark.parametrize(("name", "text"), [pair for pair in FITTING if pair[1]])
-def test_what_xml_schema_has_is_read(name, text):
-    assert is_read(name, text)
+@pytest.mark.parametrize(("name", "text"), [pair for pair in VALID if pair[1]])
+def test_values_of_the_data_type_are_converted(name, text):
+    assert is_value(name, text)
 
 
-def is_read(name, text):
+def is_value(name, text):
     try:
         find_converter(f"xs:{name}")(text)
     except ValueError:
@@ -46,9 +46,9 @@ def is_read(name, text):
     return True
 
 
-@pytest.mark.parametrize(("name", "text"), UNFIT)
-def test_what_xml_schema_has_not_is_none(name, text):
-    assert not is_read(name, text)
+@pytest.mark.parametrize(("name", "text"), INVALID)
+def test_other_texts_are_no_values_of_the_data_type(name, text):
+    assert not is_value(name, text)
 
 
 @pytest.mark.parametrize("name", ["string", "anyURI", "ID", "token", "no such type", ""])
@@ -60,7 +60,7 @@ def test_any_text_is_a_value_of_the_other_types(name):
     ("text", "data_type", "value"),
     [("True", "xs:boolean", True), ("300", "xs:byte", 300), ("1e3", "xs:decimal", 1000.0)],
 )
-def test_what_is_meant_all_the_same_counts(text, data_type, value):
+def test_other_texts_are_converted_leniently(text, data_type, value):
     assert convert_leniently(text, data_type) == value
 
 
@@ -78,7 +78,7 @@ def of_instance(body):
     return of_class(attribute("xs:double", "1")) + plant(f"{element}</InternalElement>")
 
 
-TOLD = ["SM631: the value 'two' of 'a' is no xs:double"]
+INVALID_DOUBLE = ["SM631: the value 'two' of 'a' is no xs:double"]
 LENGTH = types('<AttributeType Name="L" AttributeDataType="xs:double"/>')
 
 
@@ -92,21 +92,21 @@ LENGTH = types('<AttributeType Name="L" AttributeDataType="xs:double"/>')
         of_instance(attribute("", "two")),
         LENGTH + of_class(attribute("", "two", ' RefAttributeType="Types/L"')),
     ],
-    ids=["class", "default", "inner", "instance", "as-the-class-says", "as-the-type-says"],
+    ids=["class", "default", "inner", "instance", "type-of-class", "type-of-attribute-type"],
 )
-def test_a_value_that_is_none_is_told(body):
-    assert Read(body).findings == TOLD
+def test_an_invalid_value_is_reported(body):
+    assert Read(body).findings == INVALID_DOUBLE
     assert Read(body.replace("two", "2")).findings == []
 
 
-def test_a_value_that_is_none_is_told_at_its_place():
+def test_an_invalid_value_is_reported_at_its_attribute():
     body = of_instance(attribute("", "two"))
-    (found,) = (one for one in Read(body).sink if one.rule.code == "SM631")
-    assert found.subject.place.ordinal == 7
-    assert found.subject.name == "Plant::i::a"
+    (diagnostic,) = (finding for finding in Read(body).sink if finding.rule.code == "SM631")
+    assert diagnostic.subject.place.ordinal == 7
+    assert diagnostic.subject.name == "Plant::i::a"
 
 
-def test_one_value_is_told_once_a_file():
+def test_an_invalid_value_is_reported_once_a_file():
     reading = Read(
         of_class(attribute("xs:double", "two"))
         + plant(
@@ -121,7 +121,7 @@ def test_one_value_is_told_once_a_file():
     assert reading.one("Lib::C::a").attrs["default"] == "two"
 
 
-def test_an_attribute_type_has_values_too():
+def test_values_of_attribute_types_are_checked():
     values = "<DefaultValue>1</DefaultValue><Value>two</Value>"
     reading = Read(LENGTH.replace("/>", f">{values}</AttributeType>"))
     assert reading.findings == ["SM631: the value 'two' of 'L' is no xs:double"]
@@ -131,11 +131,11 @@ def test_an_attribute_type_has_values_too():
     assert reading.one("Types::L").attrs["default"] == 1.0
 
 
-def test_nothing_is_no_value():
+def test_an_empty_value_is_not_reported():
     assert Read(of_class(attribute("xs:double", ""))).findings == []
 
 
-def test_a_value_of_an_interface_and_a_bound_are_told():
+def test_values_of_interfaces_and_bounds_are_checked():
     port = f'<InterfaceClass Name="P">{attribute("xs:int", "two")}</InterfaceClass>'
     used = of_class(
         '<ExternalInterface Name="p" RefBaseClassPath="Interfaces/P">'
@@ -161,13 +161,13 @@ def test_a_value_of_an_interface_and_a_bound_are_told():
         ("Integer", "did you mean 'xs:integer'?"),
     ],
 )
-def test_a_data_type_that_xml_schema_has_not_is_told(data_type, hint):
+def test_an_unknown_data_type_is_reported(data_type, hint):
     assert Read(of_class(attribute(data_type, "x"))).findings == [
         f"SM632: the data type '{data_type}' of 'a' is none of XML Schema; {hint}"
     ]
 
 
 @pytest.mark.parametrize("data_type", ["xs:dateTime", "xsd:string", "anyURI", "xs:IDREF"])
-def test_a_data_type_of_xml_schema_is_known_whatever_its_prefix(data_type):
+def test_a_data_type_of_xml_schema_is_known_with_any_prefix(data_type):
     body = of_class(attribute(data_type, "2026-11-21T13:00:00"))
     assert Read(body).findings == []
