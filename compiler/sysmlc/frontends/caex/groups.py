@@ -43,7 +43,7 @@ def find_group_kind(context: Context, component: Component) -> Kind | None:
 
 
 def _find_kind_of_path(context: Context, document: Document, path: str) -> Kind | None:
-    """Return the kind for the path of a role, memoised: the roles of a plant are few."""
+    """Return Facet, Group or None for the path of a role; memoised, as plants have few roles."""
     if (document, path) in context.group_kinds:
         return context.group_kinds[document, path]
     role = context.look_up_type(path.strip(), Family.ROLE, document) if path.strip() else None

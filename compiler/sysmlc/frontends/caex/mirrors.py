@@ -1,6 +1,7 @@
-"""Mirrors: further places of one element; a chain of mirrors stands for its last master.
+"""Mirrors: elements that stand for another one, their master, at a second place.
 
-A mirror names an ID where other elements name a class.
+A mirror names an ID where other elements name a class. The master may be a mirror itself: a chain
+of mirrors stands for its last master.
 """
 
 from collections.abc import Iterable
