@@ -83,8 +83,8 @@ class Identifiers:
             self._numbers_by_plain_id = {}
             for literal, number in self._numbers.items():
                 self._numbers_by_plain_id.setdefault(_normalize(literal), number)
-        number = self._numbers_by_plain_id.get(_normalize(id))
-        return None if number is None else self._locate(number)
+        match = self._numbers_by_plain_id.get(_normalize(id))
+        return None if match is None else self._locate(match)
 
     def _may_contain(self, id: str) -> bool:
         """Whether the ID may exist. The first lookups search one text instead of building an index.

@@ -72,7 +72,7 @@ BASE_ATTRIBUTE = ("AutomationMLBaseAttributeTypeLib",)
 """Paths of the classes that all roles and interfaces of the standard specialise."""
 
 PPR, ORDER_INTERFACE = "ppr", "order"
-INTERFACE_MEANINGS = {
+INTERFACE_MEANINGS: dict[tuple[str, ...], str] = {
     (*BASE_INTERFACE, "PPRConnector"): PPR,
     (*BASE_INTERFACE, "Order"): ORDER_INTERFACE,
     (*BASE_INTERFACE, "ExternalDataConnector", "COLLADAInterface"): "collada",
@@ -84,7 +84,7 @@ INTERFACE_MEANINGS = {
 DOCUMENT_MEANINGS = frozenset({"collada", "plcopen", "external-data"})
 """Meanings of interfaces that refer to a file of another language."""
 
-PPR_ROLES = {
+PPR_ROLES: dict[tuple[str, ...], str] = {
     (*BASE_ROLE, "Product"): "product",
     (*BASE_ROLE, "Process"): "process",
     (*BASE_ROLE, "Resource"): "resource",
