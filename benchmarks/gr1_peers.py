@@ -9,7 +9,7 @@ from pathlib import Path
 from gr1_work import read
 
 from sysmlc.logic import formats
-from sysmlc.logic.reduction.reduce import reduced
+from sysmlc.logic.reduction.contract_reduction import reduce_contract
 
 FORMS = {"gr1c": ("gr1c", ("-r",)), "slugs": ("slugsin", ())}
 """The form that a program reads, and its options to decide only."""
@@ -31,7 +31,7 @@ class Peer:
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder, "contract")
             try:
-                told = formats.write(reduced(read(name, text)).contract, form)
+                told = formats.write(reduce_contract(read(name, text)).contract, form)
             except formats.NotExpressibleError as problem:
                 return f"{self.name} cannot be told: {problem.reason}"
             path.write_text(told, encoding="utf-8")

@@ -68,7 +68,6 @@ NOT_IN_A_RUN_OF_SYSML = [
     "sysmlc.frontends.sysml.usecases",
     "sysmlc.frontends.xmi.reading",
     "sysmlc.ir.text",
-    "sysmlc.logic.requirements.meaning",
     "jsonschema",
     "lark",
     "lxml",

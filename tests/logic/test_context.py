@@ -5,7 +5,12 @@ import pytest
 from sysmlc.ir.text import parse_text
 from sysmlc.logic.contract import BooleanDomain, EnumerationDomain, IntegerDomain
 from sysmlc.logic.expressions.context import context_of
-from sysmlc.logic.expressions.elaborate import ElaborationError, Fault, Symbol, condition
+from sysmlc.logic.expressions.elaboration import (
+    ElaborationError,
+    Fault,
+    Symbol,
+    elaborate_condition,
+)
 from sysmlc.logic.expressions.parsing import parse_expression
 from sysmlc.logic.formula import Const, Var
 from sysmlc.logic.printing import print_formula
@@ -116,7 +121,7 @@ SYMBOLS = {
     ],
 )
 def test_expressions_become_formulas(text, formula):
-    found = print_formula(condition(parse_expression(text), SYMBOLS.get))
+    found = print_formula(elaborate_condition(parse_expression(text), SYMBOLS.get))
     assert found in (formula, formula.replace("mode=hand", "hand=mode"))
 
 
@@ -139,9 +144,9 @@ def test_expressions_become_formulas(text, formula):
 )
 def test_what_has_no_meaning_is_refused_with_the_reason(text, fault, name):
     with pytest.raises(ElaborationError) as caught:
-        condition(parse_expression(text), SYMBOLS.get)
+        elaborate_condition(parse_expression(text), SYMBOLS.get)
     assert (caught.value.fault, caught.value.name) == (fault, name)
 
 
 def test_a_bound_next_to_the_range_is_no_fault():
-    assert print_formula(condition(parse_expression("bay < 8"), SYMBOLS.get)) == "bay<8"
+    assert print_formula(elaborate_condition(parse_expression("bay < 8"), SYMBOLS.get)) == "bay<8"

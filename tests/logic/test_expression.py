@@ -17,7 +17,7 @@ from sysmlc.logic.expressions.expression import (
     Name,
     Send,
     Unary,
-    dotted,
+    dotted_name,
     print_effect,
     print_expression,
 )
@@ -99,8 +99,8 @@ def test_what_does_nothing_is_no_effect(text):
 
 
 def test_dotted_names():
-    assert dotted(parse_expression("A::b.c")) == "A::b.c"
-    assert dotted(parse_expression("f(x).c")) is None
+    assert dotted_name(parse_expression("A::b.c")) == "A::b.c"
+    assert dotted_name(parse_expression("f(x).c")) is None
 
 
 _names = st.sampled_from(["a", "b", "bay number", "if", "größe", "it's", "back\\slash", "x\ny"])

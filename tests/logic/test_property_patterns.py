@@ -10,9 +10,9 @@ from test_reductions import ltl
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import BooleanDomain, IntegerDomain
 from sysmlc.logic.ltl import FormulaError, line_and_column, parse_formula
+from sysmlc.logic.reduction.formula_reduction import NotReducibleError, reduce_formula
 from sysmlc.logic.reduction.history import History
-from sysmlc.logic.reduction.reduce import NotReducibleError, parts_of
-from sysmlc.logic.texts.sentences import read_sentence
+from sysmlc.logic.texts.formal import read_sentence
 
 DOMAINS = {name: BooleanDomain() for name in "pqrs"} | {"n": IntegerDomain(0, 3)}
 SCOPES = {
@@ -72,7 +72,7 @@ CASES = [(text, scope, one) for text, rows in DWYER.items() for scope, one in ro
 @pytest.mark.parametrize(("text", "scope", "published"), CASES)
 def test_a_sentence_says_what_the_published_formula_says(text, scope, published):
     history = History(DOMAINS)
-    parts = parts_of(read_sentence(SCOPES[scope] + text, DOMAINS), history)
+    parts = reduce_formula(read_sentence(SCOPES[scope] + text, DOMAINS), history)
     ruled = for_spot(ltl([(one.class_, one.formula) for one in history.conjuncts]))
     claim = spot.formula(f"({ruled}) & !(({published}) <-> ({for_spot(ltl(parts))}))")
     assert not spot.translate(spot.formula(ruled)).is_empty()
@@ -101,7 +101,7 @@ def test_sentences_may_be_short(one, other):
 def _meaning(text):
     text = text.replace("n=3", "s")
     history = History(DOMAINS)
-    parts = parts_of(read_sentence(text, DOMAINS), history)
+    parts = reduce_formula(read_sentence(text, DOMAINS), history)
     rules = [(one.class_, one.formula) for one in history.conjuncts]
     return spot.formula(for_spot(f.both(ltl(rules), ltl(parts))))
 
@@ -122,7 +122,7 @@ SOON = "(p -> (s | r | X (s | r | X (s | r))))"
 def test_an_answer_within_some_steps(scope, wanted):
     history = History(DOMAINS)
     text = f"{scope}always if p then s holds within 2 steps"
-    parts = parts_of(read_sentence(text, DOMAINS), history)
+    parts = reduce_formula(read_sentence(text, DOMAINS), history)
     ruled = for_spot(ltl([(one.class_, one.formula) for one in history.conjuncts]))
     claim = spot.formula(f"({ruled}) & !(({wanted}) <-> ({for_spot(ltl(parts))}))")
     assert spot.translate(claim).is_empty()
@@ -168,7 +168,7 @@ def test_any_words_are_a_sentence_or_told_with_a_place(words):
     except FormulaError as error:
         assert 0 <= error.at <= len(text)  # noqa: PT017
     else:
-        assert parts_of(formula, History(DOMAINS))
+        assert reduce_formula(formula, History(DOMAINS))
 
 
 @pytest.mark.parametrize(
@@ -177,6 +177,6 @@ def test_any_words_are_a_sentence_or_told_with_a_place(words):
 def test_deep_formulas_are_reduced_or_not_but_never_fail(text):
     formula = parse_formula(text, {name: BooleanDomain() for name in "ab"})
     try:
-        assert parts_of(formula, History("ab"))
+        assert reduce_formula(formula, History("ab"))
     except NotReducibleError:
         assert len(text) > 200

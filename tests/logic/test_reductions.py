@@ -11,9 +11,10 @@ from sysmlc.logic.contract import BooleanDomain, Class, Conjunct, Contract, Owne
 from sysmlc.logic.formula import Apply, Op, Var
 from sysmlc.logic.ltl import parse_formula
 from sysmlc.logic.printing import print_formula
+from sysmlc.logic.reduction.contract_reduction import reduce_contract
+from sysmlc.logic.reduction.formula_reduction import NotReducibleError, reduce_formula
 from sysmlc.logic.reduction.history import History
-from sysmlc.logic.reduction.reduce import NotReducibleError, parts_of, reduced
-from sysmlc.logic.texts.past import read_past
+from sysmlc.logic.texts.formal import read_temporal_logic
 
 DOMAINS = {name: BooleanDomain() for name in "abcd"}
 SAFE, LIVE, INIT = "safety", "liveness", "init"
@@ -73,7 +74,7 @@ def same(formula, parts, history):
 )
 def test_what_is_known_to_be_in_gr1_is_brought_there(text, parts, bits):
     history = History(DOMAINS)
-    found = parts_of(parse(text), history)
+    found = reduce_formula(parse(text), history)
     assert same(parse(text), found, history)
     if parts is not None:
         assert [(str(class_), print_formula(part)) for class_, part in found] == parts
@@ -95,7 +96,7 @@ def test_what_is_known_to_be_in_gr1_is_brought_there(text, parts, bits):
 )
 def test_the_past_is_remembered(text, future):
     history = History(DOMAINS)
-    assert same(parse(future), parts_of(read_past(text, DOMAINS), history), history)
+    assert same(parse(future), reduce_formula(read_temporal_logic(text, DOMAINS), history), history)
 
 
 def test_the_same_past_has_one_bit_and_another_past_another_one():
@@ -103,9 +104,14 @@ def test_the_same_past_has_one_bit_and_another_past_another_one():
     once = [history.previous(a), history.historically(a), history.since(a, b), history.since(b, a)]
     # What can never begin, and what follows from a variable with a name of a bit's kind.
     once += [history.since(a, f.FALSE), history.since(a, Var("since")), history.since(a, f.TRUE)]
-    once += [history.once(a), history.step(a)]
+    once += [history.once(a), history.last_step(a)]
     assert len(history.variables) == len(once)
-    again = [history.previous(a), history.historically(a), history.since(a, b), history.step(a)]
+    again = [
+        history.previous(a),
+        history.historically(a),
+        history.since(a, b),
+        history.last_step(a),
+    ]
     assert again == [*once[:3], once[-1]]
     assert len(history.variables) == len(once)
 
@@ -116,7 +122,7 @@ def test_the_same_past_has_one_bit_and_another_past_another_one():
 def test_what_no_reduction_is_known_for_is_told(text):
     history = History(DOMAINS)
     with pytest.raises(NotReducibleError):
-        parts_of(parse(text), history)
+        reduce_formula(parse(text), history)
     assert history.variables == []
 
 
@@ -152,7 +158,7 @@ BODIES = st.recursive(
 def test_every_reduction_is_an_equivalence(formula):
     history = History(DOMAINS)
     try:
-        parts = parts_of(formula, history)
+        parts = reduce_formula(formula, history)
     except NotReducibleError:
         return
     if len(history.variables) <= 5:
@@ -167,8 +173,8 @@ def test_a_contract_keeps_what_it_was_and_gets_bits_behind():
     response = Conjunct(parse("G (a -> F c)"), Class.OTHER, "model::Req1", "Answer.")
     stable = Conjunct(parse("F G c"), Class.OTHER, "model::Req2")
     plain = Conjunct(parse("d"), Class.INIT, "model::Req3")
-    made = reduced(Contract("C", "", variables, (), (response, stable, plain)))
-    assert made.outside == (stable,)
+    made = reduce_contract(Contract("C", "", variables, (), (response, stable, plain)))
+    assert made.irreducible == (stable,)
     assert made.contract.variables[:4] == variables
     assert [(one.class_, one.origin) for one in made.contract.guarantees] == [
         (Class.LIVENESS, "model::Req1"),
@@ -177,4 +183,4 @@ def test_a_contract_keeps_what_it_was_and_gets_bits_behind():
         (Class.INIT, "model::Req1"),
         (Class.SAFETY, "model::Req1"),
     ]
-    assert reduced(made.contract).contract == made.contract
+    assert reduce_contract(made.contract).contract == made.contract

@@ -4,7 +4,7 @@ import pytest
 from small_floors import floor
 
 from sysmlc.diagnostics import Sink, Subject
-from sysmlc.logic.reduction.reduce import reduced
+from sysmlc.logic.reduction.contract_reduction import reduce_contract
 from sysmlc.robots import claims
 from sysmlc.robots import outcome as flow
 from sysmlc.robots.answers import Answers
@@ -141,7 +141,7 @@ def test_a_table_is_kept_as_well():
     found = synthesise_controller(contract, nowhere, Sink(), Options(), Form.TABLE)
     assert isinstance(found.machine, Table)
     again = decode_controller(
-        encode_controller(found.machine), reduced(contract).contract.variables
+        encode_controller(found.machine), reduce_contract(contract).contract.variables
     )
     assert again == found.machine
     answers = Answers(again, ANY, study.grid)

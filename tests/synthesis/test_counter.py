@@ -10,7 +10,7 @@ from small_games import contract as random_contract
 
 from sysmlc.logic.contract import Class, Owner
 from sysmlc.logic.evaluate import compile_evaluation
-from sysmlc.logic.reduction.reduce import reduced
+from sysmlc.logic.reduction.contract_reduction import reduce_contract
 from sysmlc.synthesis import LimitError, Manager, make_game
 from sysmlc.synthesis.counterstrategy.counter_files import counterstrategy_files
 from sysmlc.synthesis.counterstrategy.counter_machine import (
@@ -44,7 +44,7 @@ STUCK = """
 
 
 def environment(text):
-    return EnvironmentStrategy(find_ranks(make_game(reduced(text).contract, Manager())))
+    return EnvironmentStrategy(find_ranks(make_game(reduce_contract(text).contract, Manager())))
 
 
 def defeated(text):

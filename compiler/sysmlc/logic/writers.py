@@ -4,11 +4,11 @@ import re
 from collections.abc import Iterable, Iterator
 
 from sysmlc.ir import Edge, Element, Graph, Kind, query
-from sysmlc.logic.expressions.context import VALUES, named_values
+from sysmlc.logic.expressions.named_elements import VALUE_KINDS, find_named_values
 from sysmlc.logic.written import last_of, mentioned, written_names
 
 _STEP = re.compile(r"::|\.")
-_NAMED = (*VALUES, *query.CLASSIFIERS, Kind.PACKAGE)
+_NAMED = (*VALUE_KINDS, *query.CLASSIFIERS, Kind.PACKAGE)
 """What has a value, and what others are in."""
 
 
@@ -41,7 +41,7 @@ class Writers:
         found = self._first(writer, first)
         for step in more:
             found = None if found is None else self._next(found, step)
-        return found if found is not None and found.kind in VALUES else None
+        return found if found is not None and found.kind in VALUE_KINDS else None
 
     # -- inside --------------------------------------------------------------------------------
 
@@ -98,7 +98,7 @@ class Writers:
             owned = (one for one in self._graph.owned(scope) if one.kind in _NAMED)
             known = {one.name: one for one in owned if one.name}
             if scope.kind in query.CLASSIFIERS:
-                known |= named_values(self._graph, scope)
+                known |= find_named_values(self._graph, scope)
             self._named[scope.id] = known
         return known.get(name)
 

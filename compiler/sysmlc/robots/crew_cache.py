@@ -16,7 +16,7 @@ from msgspec.structs import replace
 
 from sysmlc.logic.contract import Variable
 from sysmlc.logic.formula import Apply, Const, Formula, Op, Var
-from sysmlc.logic.reduction.reduce import reduced
+from sysmlc.logic.reduction.contract_reduction import reduce_contract
 from sysmlc.robots.claims import Claim
 from sysmlc.robots.robot_controller import Times, controller_contract
 from sysmlc.robots.study import Study
@@ -174,7 +174,7 @@ def _encode_crew(crew: RobotCrew) -> "_Entry":
 
 def _decode_crew(entry: "_Entry", study: Study) -> RobotCrew:
     contract = controller_contract(study)
-    reduced_contract = reduced(contract).contract
+    reduced_contract = reduce_contract(contract).contract
     machine = decode_controller(entry.controller, reduced_contract.variables)
     times = {goal: dict(steps) for goal, steps in entry.times}
     claims = {claim: Claim(claim, holds, reason, run) for claim, holds, reason, run in entry.claims}

@@ -7,7 +7,7 @@ from msgspec import Struct
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.logic.contract import Contract
 from sysmlc.logic.printing import print_formula
-from sysmlc.logic.reduction.reduce import reduced
+from sysmlc.logic.reduction.contract_reduction import reduce_contract
 from sysmlc.synthesis.algebra.fair_systems import DomainError
 from sysmlc.synthesis.algebra.refinement import Failure, find_refinement_failures
 from sysmlc.synthesis.algebra.viewpoints import conjoin_viewpoints
@@ -112,7 +112,7 @@ def _is_requirement_contract(contract: Contract) -> bool:
 
 def _lint_within_limits(contract: Contract, place: Place, sink: Sink, options: Options) -> None:
     try:
-        lint(reduced(contract).contract, place, sink, manager_factory(options))
+        lint(reduce_contract(contract).contract, place, sink, manager_factory(options))
     except LimitError as problem:
         reached = str(problem)
         sink.report(GIVEN_UP, place(contract.origin), component=contract.component, reached=reached)
@@ -160,7 +160,7 @@ def check_viewpoints(contract: Contract, place: Place, sink: Sink, options: Opti
     """
     try:
         game = make_game(
-            conjoin_viewpoints(reduced(contract).contract),
+            conjoin_viewpoints(reduce_contract(contract).contract),
             Manager(options.engine, options.limits, options.progress),
         )
         is_kept = is_won(game)

@@ -7,7 +7,7 @@ from msgspec import Struct
 from sysmlc.diagnostics import Sink
 from sysmlc.logic.contract import Contract
 from sysmlc.logic.printing import print_formula
-from sysmlc.logic.reduction.reduce import reduced
+from sysmlc.logic.reduction.contract_reduction import reduce_contract
 from sysmlc.synthesis import rules
 from sysmlc.synthesis.bdd.limits import LimitError, Limits, TooLargeError
 from sysmlc.synthesis.bdd.manager import Manager
@@ -79,7 +79,7 @@ def synthesise_controller(
     decision = decide_game(contract, place, sink, options)
     if not decision.verdict.is_realizable or decision.game is None or decision.arena is None:
         return Synthesis(decision.verdict, contract)
-    reduced_contract = reduced(contract).contract
+    reduced_contract = reduce_contract(contract).contract
     try:
         controller_or_reason = build_controller(
             reduced_contract, decision.game, decision.arena, options, form

@@ -9,7 +9,7 @@ from msgspec import Struct
 from sysmlc.diagnostics import Sink, Subject
 from sysmlc.logic.contract import Conjunct, Contract
 from sysmlc.logic.printing import print_formula
-from sysmlc.logic.reduction.reduce import reduced
+from sysmlc.logic.reduction.contract_reduction import reduce_contract
 from sysmlc.synthesis import rules
 from sysmlc.synthesis.bdd.limits import LimitError, Limits, Progress
 from sysmlc.synthesis.bdd.manager import Manager
@@ -107,7 +107,7 @@ def decide_game(contract: Contract, place: Place, sink: Sink, options: Options) 
 
     manager = Manager(options.engine, options.limits, progress)
     try:
-        game = make_game(reduced(contract).contract, manager)
+        game = make_game(reduce_contract(contract).contract, manager)
         with manager.guard(), manager.without_reordering():
             encoded = eliminate_determined_variables(game)
             arena = eliminate_commands(encoded)
@@ -131,7 +131,7 @@ def decide_game(contract: Contract, place: Place, sink: Sink, options: Options) 
 
 
 def _report_outside(contract: Contract, problem: OutsideGr1Error, place: Place, sink: Sink) -> None:
-    outside = reduced(contract).outside
+    outside = reduce_contract(contract).irreducible
     for conjunct in outside if problem.conjunct in outside else (problem.conjunct,):
         sink.report(
             rules.OUTSIDE_GR1,

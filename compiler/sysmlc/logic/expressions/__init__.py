@@ -1,1 +1,1 @@
-"""The one expression grammar of guards, effects and constraints, and what it means."""
+"""Expressions of guards, effects and constraints: syntax, names, and translation to formulas."""

@@ -1,20 +1,37 @@
-"""What names mean inside a classifier: its properties as variables with finite domains."""
+"""Meaning of names inside a classifier: its features as variables with finite domains.
 
+Features are computed when they are looked up: a behaviour can name hundreds through the types of
+its parameters, and uses a few.
+"""
+
+import re
 from collections.abc import Iterator, Mapping
+from functools import cached_property, lru_cache
 
 from msgspec import Struct
+from msgspec.structs import replace
 
 from sysmlc.diagnostics import Severity, Sink, rule
-from sysmlc.ir import Element, Graph, Kind, query
-from sysmlc.logic.contract import IntegerDomain
+from sysmlc.ir import Element, Graph, Kind
+from sysmlc.logic.contract import EnumerationDomain, IntegerDomain
 from sysmlc.logic.domains import describe
-from sysmlc.logic.expressions.context_objects import of_objects, of_ports
-from sysmlc.logic.expressions.declared import Feature
-from sysmlc.logic.expressions.enumerations import Enumerations
-from sysmlc.logic.expressions.features import Features, variables
-
-VALUES = (Kind.PROPERTY, Kind.PORT, Kind.FLOW_PROPERTY, Kind.PARAMETER)
-"""Kinds of what has a value in a context."""
+from sysmlc.logic.expressions.features import (
+    Access,
+    Feature,
+    default_text,
+    is_string,
+    make_feature,
+    read_constant,
+    restrict_string,
+)
+from sysmlc.logic.expressions.named_elements import (
+    Enumerations,
+    find_direction,
+    find_named_values,
+    find_object_values,
+    find_port_values,
+)
+from sysmlc.logic.names import unique
 
 ASSUMED_RANGE = rule(
     "SM410",
@@ -42,73 +59,235 @@ class Context(Struct, frozen=True):
 
     @property
     def variables(self) -> Mapping[str, str]:
-        """The variable of each feature, without a look at its values."""
-        return self.features.variables if isinstance(self.features, Features) else {}
+        """The variable of each feature, found without its domain."""
+        return self.features.variables if isinstance(self.features, _FeatureTable) else {}
 
     @property
     def literals(self) -> dict[str, tuple[str, str]]:
-        """Enumeration literals by written name: (enumeration, identifier)."""
+        """(Enumeration, identifier) of each enumeration literal, by plain and qualified name."""
         return self.enumerations.literals
 
-    def number(self, written: str) -> int | None:
-        """The number that an enumeration literal stands for, by written name."""
-        return self.enumerations.number(written)
+    def number(self, name: str) -> int | None:
+        """Return the number that the enumeration literal of a qualified name stands for."""
+        return self.enumerations.number(name)
 
 
 def context_of(
     graph: Graph,
     classifier: Element | None,
-    assumed: tuple[int, int] = (0, 15),
-    within: Element | None = None,
+    assumed_range: tuple[int, int] = (0, 15),
+    behaviour: Element | None = None,
 ) -> Context:
-    """The context that a classifier gives; empty without one. A behaviour gives its parameters.
+    """Return the context of a classifier; it is empty without one.
 
-    ``assumed`` is the range of Integers that have none; ``within`` a behaviour of the classifier,
-    whose own names go before.
+    An Integer without a range gets *assumed_range*. The names of *behaviour*, a behaviour of the
+    classifier, hide those of the classifier.
     """
-    known = Enumerations(graph)
+    enumerations = Enumerations(graph)
     if classifier is None:
-        return Context("", {}, known)
-    named = _known(graph, classifier, within)
-    features = Features(graph, classifier, within, named, assumed, known)
-    return Context(classifier.name, features, known)
+        return Context("", {}, enumerations)
+    elements = _find_elements(graph, classifier, behaviour)
+    features = _FeatureTable(graph, classifier, behaviour, elements, assumed_range, enumerations)
+    return Context(classifier.name, features, enumerations)
 
 
 def variables_of(
-    graph: Graph, classifier: Element | None, within: Element | None = None
+    graph: Graph, classifier: Element | None, behaviour: Element | None = None
 ) -> dict[str, str]:
-    """The variables that names stand for in ``context_of``, without what values they have."""
-    return {} if classifier is None else variables(graph, _known(graph, classifier, within))
+    """Return the variable of each name in the context of a classifier, without the features."""
+    if classifier is None:
+        return {}
+    return _name_variables(_find_elements(graph, classifier, behaviour))
 
 
-def _known(graph: Graph, classifier: Element, within: Element | None) -> dict[str, Element]:
-    named = of_ports(graph, classifier) | named_values(graph, classifier)
-    named |= of_objects(graph, classifier)
-    if within is not None and within is not classifier:
-        named |= named_values(graph, within) | of_objects(graph, within)
-    return named
-
-
-def named_values(graph: Graph, classifier: Element) -> dict[str, Element]:
-    """What has values in a classifier by its name, what it inherits, too; own ones go before."""
-    known = [*query.features(graph, classifier), *query.parameters(graph, classifier)]
-    found = [one for one in known if one.name and one.kind in VALUES]
-    return {one.name: one for one in reversed([*found, *_inherited(graph, classifier)])}
-
-
-def _inherited(graph: Graph, classifier: Element) -> Iterator[Element]:
-    for general in query.generals(graph, classifier):
-        yield from (one for one in graph.owned(general) if one.name and one.kind in VALUES)
-
-
-def note_range(graph: Graph, feature: Feature, sink: Sink) -> None:
-    """Report, of a property that matters, an assumed range and a default value outside it."""
+def report_range(graph: Graph, feature: Feature, sink: Sink) -> None:
+    """Report the assumed range of a feature that is used, and a default value outside its range."""
     domain = feature.domain
-    if feature.refused and domain is not None:
+    if feature.invalid_default and domain is not None:
         subject, name = graph.subject(feature.element), feature.element.name
-        shown = describe(domain)
-        sink.report(DEFAULT_OUTSIDE, subject, default=feature.refused, name=name, domain=shown)
+        values = describe(domain)
+        sink.report(
+            DEFAULT_OUTSIDE, subject, default=feature.invalid_default, name=name, domain=values
+        )
     if feature.is_assumed and isinstance(domain, IntegerDomain):
         low, high, name = domain.low, domain.high, feature.element.name
-        subject, shown = graph.subject(feature.element), f"{low}..{high}"
-        sink.report(ASSUMED_RANGE, subject, name=name, range=shown, low=low, high=high)
+        subject, values = graph.subject(feature.element), f"{low}..{high}"
+        sink.report(ASSUMED_RANGE, subject, name=name, range=values, low=low, high=high)
+
+
+def _find_elements(
+    graph: Graph, classifier: Element, behaviour: Element | None
+) -> dict[str, Element]:
+    elements = find_port_values(graph, classifier) | find_named_values(graph, classifier)
+    elements |= find_object_values(graph, classifier)
+    if behaviour is not None and behaviour is not classifier:
+        elements |= find_named_values(graph, behaviour) | find_object_values(graph, behaviour)
+    return elements
+
+
+def _name_variables(elements: Mapping[str, Element]) -> dict[str, str]:
+    """Return a unique variable for each name, in document order."""
+    names = sorted(elements, key=lambda name: (elements[name].ordinal, name))
+    return dict(zip(names, unique(names, "value", "event", "none"), strict=True))
+
+
+# -- features ------------------------------------------------------------------------------------
+
+_OTHER_TEXT = "other"
+
+
+class _FeatureTable(Mapping[str, Feature]):
+    """The features that a classifier and one of its behaviours can name, computed on lookup."""
+
+    def __init__(
+        self,
+        graph: Graph,
+        classifier: Element,
+        behaviour: Element | None,
+        elements: Mapping[str, Element],
+        assumed_range: tuple[int, int],
+        enumerations: Enumerations,
+    ) -> None:
+        self.variables = _name_variables(elements)
+        self._enumerations = enumerations
+        self._graph = graph
+        self._classifier = classifier
+        self._behaviour = behaviour or classifier
+        self._elements = elements
+        self._assumed_range = assumed_range
+        self._declared: dict[str, Feature] = {}
+        self._features: dict[str, Feature] = {}
+
+    def __getitem__(self, name: str) -> Feature:
+        if name not in self._features:
+            self._features[name] = self._infer_values(name, self._find_declared(name))
+        return self._features[name]
+
+    def __contains__(self, name: object) -> bool:
+        return name in self.variables
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.variables)
+
+    def __len__(self) -> int:
+        return len(self.variables)
+
+    def _find_declared(self, name: str) -> Feature:
+        """Return the feature with the domain that the model declares."""
+        if name not in self._declared:
+            self._declared[name] = self._make_declared(name, self._elements[name])
+        return self._declared[name]
+
+    def _make_declared(self, name: str, element: Element) -> Feature:
+        graph, variable = self._graph, self.variables[name]
+        access = Access(self._classifier, name) if "." in name else None
+        feature = make_feature(
+            graph, element, variable, self._assumed_range, self._constants, access
+        )
+        if "direction" not in element.attrs:
+            return feature
+        direction = find_direction(graph, self._classifier, name, element)
+        return replace(feature, direction=direction)
+
+    def _infer_values(self, name: str, feature: Feature) -> Feature:
+        """Return the feature with undeclared values inferred from those that the behaviour uses."""
+        if self._behaviour.kind not in _BEHAVIOURS:
+            return feature
+        if feature.is_assumed:
+            return self._widen_range(name, feature)
+        if is_string(self._graph, feature) and self._mentioned.texts:
+            return restrict_string(feature, self._text_domain)
+        return feature
+
+    def _widen_range(self, name: str, feature: Feature) -> Feature:
+        """Extend an assumed range to the numbers that the feature is compared with."""
+        numbers = self._mentioned.numbers.get(name, ())
+        if not numbers:
+            return feature
+        low, high = self._assumed_range
+        range_ = min((low, *numbers)), max((high, *numbers))
+        widened = make_feature(
+            self._graph, feature.element, feature.variable, range_, self._constants
+        )
+        return replace(widened, direction=feature.direction)
+
+    @cached_property
+    def _constants(self) -> dict[str, int]:
+        """The Integers that never change, by the names of their elements."""
+        values = ((element.name, read_constant(element)) for element in self._elements.values())
+        return {name: value for name, value in values if value is not None}
+
+    @cached_property
+    def _mentioned(self) -> "_MentionedValues":
+        return _find_mentioned_values(self._graph, self._behaviour, self._enumerations)
+
+    @cached_property
+    def _text_domain(self) -> EnumerationDomain:
+        """The texts that the behaviour mentions, the default texts, and one literal for all others.
+
+        All Strings share this domain, so that two of them can be compared.
+        """
+        strings = [
+            feature for feature in map(self._find_declared, self) if is_string(self._graph, feature)
+        ]
+        defaults = [default_text(feature.element) for feature in strings]
+        known_texts = [*self._mentioned.texts, *(text for text in defaults if text is not None)]
+        texts = tuple(dict.fromkeys(known_texts))
+        names = [text.strip() or "empty" for text in texts]
+        return EnumerationDomain(unique([*names, _OTHER_TEXT], "text"), texts)
+
+
+# -- values that a behaviour mentions ------------------------------------------------------------
+
+_BEHAVIOURS = frozenset([Kind.ACTIVITY, Kind.STATE_MACHINE])
+_TEXT_ATTRIBUTES = ("guard", "body", "condition", "value")
+_TEXT = re.compile(r'"((?:[^"\\]|\\.)*)"')
+_NAME = r"[^\W\d][\w.]*"
+_VALUE = rf"-?\d+(?![\w.])|{_NAME}::\w+"
+_NAME_FIRST = re.compile(rf"({_NAME})\s*(?:==|!=|<=|>=|<|>|:=)\s*({_VALUE})")
+_VALUE_FIRST = re.compile(rf"(?<![\w.:])({_VALUE})\s*(?:==|!=|<=|>=|<|>)\s*({_NAME})")
+_CACHE_SIZE = 4096
+"""Texts whose values are cached: the same guards occur in many behaviours."""
+_GREATEST = 255
+"""Numbers further from zero widen no range: the size of a domain is its number of values."""
+
+
+class _MentionedValues(Struct, frozen=True):
+    """The texts in a behaviour, in their order, and the numbers next to each name."""
+
+    texts: tuple[str, ...]
+    numbers: Mapping[str, tuple[int, ...]]
+
+
+def _find_mentioned_values(
+    graph: Graph, behaviour: Element, enumerations: Enumerations
+) -> _MentionedValues:
+    """Return the values with which the texts of a behaviour compare names, or which they assign."""
+    texts: dict[str, None] = {}
+    numbers: dict[str, dict[int, None]] = {}
+    for text in _iter_texts(graph, behaviour):
+        strings, pairs = _find_values(text)
+        texts |= dict.fromkeys(strings)
+        for name, value in pairs:
+            number = enumerations.number(value) if "::" in value else int(value)
+            if number is not None and abs(number) <= _GREATEST:
+                numbers.setdefault(name, {})[number] = None
+    return _MentionedValues(tuple(texts), {name: tuple(values) for name, values in numbers.items()})
+
+
+def _iter_texts(graph: Graph, behaviour: Element) -> Iterator[str]:
+    for element in graph.subtree(behaviour):
+        for key in _TEXT_ATTRIBUTES if element.kind is not Kind.COMMENT else ():
+            text = element.attrs.get(key)
+            if isinstance(text, str):
+                yield text
+
+
+@lru_cache(_CACHE_SIZE)
+def _find_values(text: str) -> tuple[tuple[str, ...], tuple[tuple[str, str], ...]]:
+    """Return the strings in an expression, and its names with the numbers or literals beside them.
+
+    Regular expressions also find the values in texts that the grammar rejects.
+    """
+    value_first = ((name, value) for value, name in _VALUE_FIRST.findall(text))
+    return tuple(_TEXT.findall(text)), (*_NAME_FIRST.findall(text), *value_first)

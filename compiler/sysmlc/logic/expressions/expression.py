@@ -1,6 +1,7 @@
-"""Expressions and effects as modellers write them: values, reader and printer.
+"""Syntax trees of expressions and effects, and their printer.
 
-The grammar is grammars/expression.lark. Printing and reading again gives the same value.
+The grammar is ``grammars/expression.lark``. Printing a tree and parsing the text gives an equal
+tree: offsets are not compared.
 """
 
 from dataclasses import dataclass, field
@@ -8,11 +9,12 @@ from dataclasses import dataclass, field
 from msgspec import Struct
 
 _WORDS = "if else implies or OR xor XOR and AND not NOT true TRUE false FALSE send to"
-KEYWORDS = frozenset(_WORDS.split(" "))
+_KEYWORDS = frozenset(_WORDS.split(" "))
+"""Names that are spelled with quotes."""
 
 
 class ExpressionError(ValueError):
-    """Text that is no expression; ``offset`` counts its characters from 0."""
+    """The text is not an expression; ``offset`` counts characters from 0."""
 
     def __init__(self, message: str, offset: int) -> None:
         super().__init__(message)
@@ -20,18 +22,19 @@ class ExpressionError(ValueError):
 
 
 class Literal(Struct, frozen=True, eq=False):
-    """A Boolean, an integer, a real number, or a string; 1 is neither ``true`` nor 1.0."""
+    """A Boolean, an integer, a real number, or a string; 1 equals neither ``true`` nor 1.0."""
 
     value: bool | int | float | str
     offset: int = 0
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, Literal) and self._typed() == other._typed()
+        return isinstance(other, Literal) and self._key() == other._key()
 
     def __hash__(self) -> int:
         return hash(self.value)
 
-    def _typed(self) -> tuple[type, bool | int | float | str]:
+    def _key(self) -> tuple[type, bool | int | float | str]:
+        # Python compares 1, 1.0 and True as equal.
         return type(self.value), self.value
 
 
@@ -45,7 +48,7 @@ class Name:
 
 @dataclass(frozen=True, slots=True)
 class Member:
-    """A feature of what the base denotes (``a.b``)."""
+    """A feature of the object that the base denotes (``a.b``)."""
 
     base: "Expression"
     name: str
@@ -63,7 +66,7 @@ class Unary:
 
 @dataclass(frozen=True, slots=True)
 class Binary:
-    """Operators: implies or xor and == != < <= > >= + - * / %."""
+    """An operator (implies or xor and == != < <= > >= + - * / %) and its two operands."""
 
     op: str
     left: "Expression"
@@ -123,7 +126,7 @@ class Send:
 
 @dataclass(frozen=True, slots=True)
 class Invocation:
-    """A call, or the name of something that is done."""
+    """A call, or the name of an operation or a behaviour to perform."""
 
     call: Expression
     offset: int = field(default=0, compare=False)
@@ -133,27 +136,27 @@ Statement = Assignment | Send | Invocation
 
 # -- printing ----------------------------------------------------------------------------------
 
-STRENGTH: dict[str, int] = {"implies": 2, "or": 3, "xor": 4, "and": 5, "==": 6, "!=": 6} | {
+_PRECEDENCE: dict[str, int] = {"implies": 2, "or": 3, "xor": 4, "and": 5, "==": 6, "!=": 6} | {
     **dict.fromkeys(("<", "<=", ">", ">="), 7),
     **dict.fromkeys("+-", 8),
     **dict.fromkeys("*/%", 9),
 }
-"""How strongly operators bind."""
+"""Precedence of the binary operators, weakest first; a conditional has 0."""
 _UNARY, _POSTFIX = 10, 11
 
 
 def print_expression(expression: Expression) -> str:
-    """The expression in KerML's spelling, with the parentheses that it needs."""
+    """Return the expression in the spelling of KerML, with the fewest parentheses."""
     return _print(expression, 0)
 
 
 def print_statement(statement: Statement) -> str:
-    """One statement of an effect."""
+    """Return one statement of an effect as text."""
     match statement:
         case Assignment(target, value):
             return f"{_print(target, _POSTFIX)} := {_print(value, 0)}"
         case Send(signal, args, receiver):
-            arguments = f"({_commas(args)})" if args else ""
+            arguments = f"({_print_arguments(args)})" if args else ""
             end = "" if receiver is None else f" to {_print(receiver, _POSTFIX)}"
             return f"send {_print(signal, _POSTFIX)}{arguments}{end}"
         case Invocation(call):
@@ -161,37 +164,47 @@ def print_statement(statement: Statement) -> str:
 
 
 def print_effect(statements: tuple[Statement, ...]) -> str:
-    """Statements separated by semicolons."""
+    """Return the statements separated by semicolons."""
     return "; ".join(print_statement(statement) for statement in statements)
 
 
-def dotted(expression: Expression) -> str | None:
-    """The name that a chain of features is (``a.b``, ``A::B``), or None for anything else."""
+def print_literal(value: bool | float | str) -> str:
+    """Return a literal as expressions spell it."""
+    if isinstance(value, str):
+        return _quote(value, '"')
+    return str(value).lower()
+
+
+def dotted_name(expression: Expression) -> str | None:
+    """Return a name or a chain of features as text (``a.b``, ``A::B``); None for any other
+    expression.
+    """
     match expression:
         case Name(path):
             return "::".join(path)
         case Member(base, name):
-            before = dotted(base)
-            return None if before is None else f"{before}.{name}"
+            base_name = dotted_name(base)
+            return None if base_name is None else f"{base_name}.{name}"
         case _:
             return None
 
 
 def name_of(expression: Expression) -> str | None:
-    """The name of a feature of the context: ``x`` and ``self.x`` are the same."""
-    name = dotted(expression)
+    """Return ``dotted_name`` without a leading ``self`` or ``this``: ``x`` equals ``self.x``."""
+    name = dotted_name(expression)
     if name is None or isinstance(expression, Name):
         return name
     head, _, rest = name.partition(".")
     return rest if head in ("self", "this") else name
 
 
-def _print(expression: Expression, strength: int) -> str:
-    text, own = _printed(expression)
-    return f"({text})" if own < strength else text
+def _print(expression: Expression, context_precedence: int) -> str:
+    text, precedence = _print_with_precedence(expression)
+    return f"({text})" if precedence < context_precedence else text
 
 
-def _printed(expression: Expression) -> tuple[str, int]:  # noqa: PLR0911 - one a kind
+def _print_with_precedence(expression: Expression) -> tuple[str, int]:  # noqa: PLR0911 - by kind
+    """Return the text without parentheses around it, and the precedence of its operator."""
     match expression:
         case Literal(value):
             return print_literal(value), _POSTFIX
@@ -200,7 +213,7 @@ def _printed(expression: Expression) -> tuple[str, int]:  # noqa: PLR0911 - one 
         case Member(base, name):
             return f"{_print(base, _POSTFIX)}.{_print_name(name)}", _POSTFIX
         case Call(function, args):
-            return f"{_print(function, _POSTFIX)}({_commas(args)})", _POSTFIX
+            return f"{_print(function, _POSTFIX)}({_print_arguments(args)})", _POSTFIX
         case Index(base, index):
             return f"{_print(base, _POSTFIX)}#({_print(index, 0)})", _POSTFIX
         case Unary(op, operand):
@@ -213,29 +226,22 @@ def _printed(expression: Expression) -> tuple[str, int]:  # noqa: PLR0911 - one 
 
 
 def _print_binary(expression: Binary) -> tuple[str, int]:
-    own = STRENGTH[expression.op]
-    to_the_right = expression.op == "implies"
-    left = _print(expression.left, own + to_the_right)
-    right = _print(expression.right, own + (not to_the_right))
-    return f"{left} {expression.op} {right}", own
+    precedence = _PRECEDENCE[expression.op]
+    is_right_associative = expression.op == "implies"
+    left = _print(expression.left, precedence + is_right_associative)
+    right = _print(expression.right, precedence + (not is_right_associative))
+    return f"{left} {expression.op} {right}", precedence
 
 
-def _commas(args: tuple[Expression, ...]) -> str:
+def _print_arguments(args: tuple[Expression, ...]) -> str:
     return ", ".join(_print(arg, 0) for arg in args)
 
 
 def _print_name(name: str) -> str:
-    plain = name.isidentifier() and name not in KEYWORDS
-    return name if plain else _quoted(name, "'")
+    is_plain = name.isidentifier() and name not in _KEYWORDS
+    return name if is_plain else _quote(name, "'")
 
 
-def print_literal(value: bool | float | str) -> str:
-    """A literal as expressions write it."""
-    if isinstance(value, str):
-        return _quoted(value, '"')
-    return str(value).lower()
-
-
-def _quoted(text: str, quote: str) -> str:
+def _quote(text: str, quote: str) -> str:
     escaped = text.replace("\\", "\\\\").replace("\n", "\\n").replace(quote, f"\\{quote}")
     return f"{quote}{escaped}{quote}"

@@ -1,118 +1,354 @@
-"""The properties that expressions may name, as variables; found out when they are asked for."""
+"""Features as variables: the domain that the model declares, and the initial value."""
 
-from collections.abc import Iterator, Mapping
-from functools import cached_property
+import re
+from collections.abc import Callable, Iterator, Mapping
+from operator import add, mul, sub
+from typing import NamedTuple
 
+from msgspec import Struct
 from msgspec.structs import replace
 
-from sysmlc.ir import Element, Graph
-from sysmlc.logic.contract import EnumerationDomain
-from sysmlc.logic.expressions import declared
-from sysmlc.logic.expressions.context_objects import direction_at
-from sysmlc.logic.expressions.declared import Feature
-from sysmlc.logic.expressions.enumerations import Enumerations
-from sysmlc.logic.expressions.mentioned import BEHAVIOURS, Mentioned, mentioned
-from sysmlc.logic.names import unique
+from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind, query
+from sysmlc.logic.contract import BooleanDomain, Domain, EnumerationDomain, IntegerDomain
+from sysmlc.logic.domains import contains
+from sysmlc.logic.expressions.expression import (
+    Binary,
+    Expression,
+    ExpressionError,
+    Member,
+    Name,
+    Unary,
+    dotted_name,
+    name_of,
+)
+from sysmlc.logic.expressions.expression import Literal as LiteralExpression
+from sysmlc.logic.expressions.named_elements import literals_of
+from sysmlc.logic.expressions.parsing import parse_expression
+from sysmlc.logic.formula import Literal
 
-_OTHER = "other"
+_BOOLEAN = frozenset(["boolean", "bool", "eboolean"])
+_INTEGER = frozenset(
+    ["integer", "int", "natural", "positive", "unlimitednatural", "eint", "short", "long", "byte"]
+)
+_UNSIGNED = frozenset(["natural", "positive", "unlimitednatural"])
+_STRING = frozenset(["string", "estring", "java.lang.string"])
+_RANGE = re.compile(r"^\s*\[?\s*(-?\d+)\s*(?:\.\.|,|:)\s*(-?\d+)\s*\]?\s*$")
+_BOUND_TAGS = (("min", "max"), ("lower", "upper"), ("minimum", "maximum"))
+_MOMENTARY = frozenset(["precondition", "postcondition", "body"])
+"""Kinds of constraints that do not hold at all times."""
+_ARITHMETIC: dict[str, Callable[..., int]] = {"+": add, "-": sub, "*": mul}
+_MIRROR = {"<": ">", "<=": ">=", ">": "<", ">=": "<="}
 
 
-class Features(Mapping[str, Feature]):
-    """The properties that a classifier and a behaviour of it know, by the names that they have.
+class Feature(Struct, frozen=True):
+    """A feature as a variable; ``domain`` is None if its values are not finite."""
 
-    Each is found out when somebody asks for it: a behaviour knows hundreds by what its parameters
-    hold, and speaks of a few.
+    element: Element
+    variable: str
+    domain: Domain | None
+    default: Literal | None = None
+    is_constant: bool = False
+    is_assumed: bool = False
+    """Whether the range is assumed; ``report_range`` reports this when the feature is used."""
+    invalid_default: str = ""
+    """A default value that is not in the domain."""
+    direction: str = ""
+    """``in``, ``out`` or ``inout`` as the owner sees it; empty if the feature has none."""
+
+
+class Access(NamedTuple):
+    """A classifier, and the dotted name by which its expressions reach a feature."""
+
+    classifier: Element
+    name: str
+
+
+def make_feature(
+    graph: Graph,
+    element: Element,
+    variable: str,
+    assumed_range: tuple[int, int],
+    constants: Mapping[str, int],
+    access: Access | None = None,
+) -> Feature:
+    """Return the feature of an element.
+
+    An Integer without a range gets *assumed_range*. *constants* are the Integers that never change,
+    by name; the bounds of ranges may name them. *access* is given if the name is dotted.
     """
-
-    def __init__(
-        self,
-        graph: Graph,
-        classifier: Element,
-        within: Element | None,
-        named: Mapping[str, Element],
-        assumed: tuple[int, int],
-        enumerations: Enumerations,
-    ) -> None:
-        self.variables = variables(graph, named)
-        self._enumerations = enumerations
-        self._graph = graph
-        self._classifier = classifier
-        self._behaviour = within or classifier
-        self._named = named
-        self._assumed = assumed
-        self._plain: dict[str, Feature] = {}
-        self._found: dict[str, Feature] = {}
-
-    def __getitem__(self, name: str) -> Feature:
-        found = self._found.get(name)
-        if found is None:
-            found = self._found[name] = self._as_mentioned(name, self._as_declared(name))
-        return found
-
-    def __contains__(self, name: object) -> bool:
-        return name in self.variables
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self.variables)
-
-    def __len__(self) -> int:
-        return len(self.variables)
-
-    def _as_declared(self, name: str) -> Feature:
-        found = self._plain.get(name)
-        if found is None:
-            found = self._plain[name] = self._made(name, self._named[name])
-        return found
-
-    def _made(self, name: str, element: Element) -> Feature:
-        graph, variable = self._graph, self.variables[name]
-        seen = (self._classifier, name) if "." in name else None
-        made = declared.feature(graph, element, variable, self._assumed, self._fixed, seen)
-        if "direction" not in element.attrs:
-            return made
-        return replace(made, direction=direction_at(graph, self._classifier, name, element))
-
-    def _as_mentioned(self, name: str, one: Feature) -> Feature:
-        """What the behaviour mentions tells the values of what is not declared."""
-        if self._behaviour.kind not in BEHAVIOURS:
-            return one
-        if one.is_assumed:
-            return self._widened(name, one)
-        if declared.is_text(self._graph, one) and self._said.texts:
-            return declared.as_text(one, self._texts)
-        return one
-
-    def _widened(self, name: str, one: Feature) -> Feature:
-        """The range of an Integer that has none, with the numbers that it is compared with."""
-        numbers = self._said.numbers.get(name, ())
-        if not numbers:
-            return one
-        low, high = self._assumed
-        wide = min((low, *numbers)), max((high, *numbers))
-        made = declared.feature(self._graph, one.element, one.variable, wide, self._fixed)
-        return replace(made, direction=one.direction)
-
-    @cached_property
-    def _fixed(self) -> dict[str, int]:
-        """Integers that never change."""
-        values = ((one.name, declared.fixed(one)) for one in self._named.values())
-        return {name: value for name, value in values if value is not None}
-
-    @cached_property
-    def _said(self) -> Mentioned:
-        return mentioned(self._graph, self._behaviour, self._enumerations)
-
-    @cached_property
-    def _texts(self) -> EnumerationDomain:
-        """The texts that the behaviour mentions, those that features start with, and any other."""
-        found = [one for one in map(self._as_declared, self) if declared.is_text(self._graph, one)]
-        defaults = [text for one in found if (text := declared.first_text(one.element)) is not None]
-        texts = tuple(dict.fromkeys([*self._said.texts, *defaults]))
-        names = [text.strip() or "empty" for text in texts]
-        return EnumerationDomain(unique([*names, _OTHER], "text"), texts)
+    type_ = query.type_of(graph, element)
+    family = [] if type_ is None else [type_, *query.generals(graph, type_)]
+    type_names = _list_type_names(family)
+    is_integer = bool(type_names & _INTEGER) or _has_untyped_default(element, type_, int)
+    domain = _find_domain(graph, element, family, type_names, is_integer, constants, access)
+    is_assumed = domain is None and is_integer
+    if is_assumed:
+        domain = _assume_domain(element, type_names, assumed_range)
+    default = _find_default(graph, element, type_, domain)
+    is_constant = element.attrs.get("readonly") is True and default is not None
+    text = element.attrs.get("default")
+    is_range = text is not None and ".." in str(text)
+    invalid_default = "" if text is None or default is not None or is_range else str(text)
+    return Feature(element, variable, domain, default, is_constant, is_assumed, invalid_default)
 
 
-def variables(graph: Graph, named: Mapping[str, Element]) -> dict[str, str]:
-    """The variables that names stand for, in the order of the document."""
-    names = sorted(named, key=lambda name: (named[name].ordinal, name))
-    return dict(zip(names, unique(names, "value", "event", "none"), strict=True))
+def _find_domain(
+    graph: Graph,
+    element: Element,
+    family: list[Element],
+    type_names: set[str],
+    is_integer: bool,
+    constants: Mapping[str, int],
+    access: Access | None,
+) -> Domain | None:
+    type_ = family[0] if family else None
+    if type_ is not None and type_.kind is Kind.ENUMERATION:
+        literals = tuple(literals_of(graph, type_).values())
+        return EnumerationDomain(literals) if literals else None
+    if type_names & _BOOLEAN or _has_untyped_default(element, type_, bool):
+        return BooleanDomain()
+    return _find_range(graph, element, family, constants, access) if is_integer else None
+
+
+def _list_type_names(family: list[Element]) -> set[str]:
+    """Return the names of types in lower case, and the names in their libraries (``href``)."""
+    hrefs = (str(type_.attrs.get("href", "")).rpartition("#")[2] for type_ in family)
+    return {type_.name.lower() for type_ in family} | {href.lower() for href in hrefs}
+
+
+def _has_untyped_default(element: Element, type_: Element | None, kind: type) -> bool:
+    return type_ is None and type(element.attrs.get("default")) is kind
+
+
+def _assume_domain(
+    element: Element, type_names: set[str], assumed_range: tuple[int, int]
+) -> Domain:
+    """Return the assumed range, without negative numbers for unsigned types and extended to the
+    default value.
+    """
+    low, high = assumed_range
+    low = max(low, 0) if type_names & _UNSIGNED else low
+    default = element.attrs.get("default")
+    if isinstance(default, int) and not isinstance(default, bool):
+        low, high = min(low, default), max(high, default)
+    return IntegerDomain(low, high)
+
+
+# -- strings -----------------------------------------------------------------------------------
+
+
+def is_string(graph: Graph, feature: Feature) -> bool:
+    """Whether the feature is a String whose values are not declared."""
+    type_ = query.type_of(graph, feature.element)
+    family = [] if type_ is None else [type_, *query.generals(graph, type_)]
+    return feature.domain is None and bool(_list_type_names(family) & _STRING)
+
+
+def restrict_string(feature: Feature, domain: EnumerationDomain) -> Feature:
+    """Return a String feature with the texts of *domain* as its values."""
+    text = default_text(feature.element)
+    default = None if text is None else domain.literals[domain.texts.index(text)]
+    is_constant = feature.element.attrs.get("readonly") is True and default is not None
+    return replace(
+        feature, domain=domain, default=default, is_constant=is_constant, invalid_default=""
+    )
+
+
+def default_text(element: Element) -> str | None:
+    """Return the initial value of a String; None if it is computed or absent."""
+    text = element.attrs.get("default")
+    return text if isinstance(text, str) and "default_language" not in element.attrs else None
+
+
+# -- default values ----------------------------------------------------------------------------
+
+
+def read_constant(element: Element) -> int | None:
+    """Return the value of a read-only Integer, or None for any other element."""
+    return _parse_integer(element.attrs.get("default")) if element.attrs.get("readonly") else None
+
+
+def _find_default(
+    graph: Graph, element: Element, type_: Element | None, domain: Domain | None
+) -> Literal | None:
+    text = element.attrs.get("default")
+    if domain is None or text is None:
+        return None
+    value = _parse_value(graph, str(text), type_, domain)
+    return value if value is not None and contains(domain, value) else None
+
+
+def _parse_value(graph: Graph, text: str, type_: Element | None, domain: Domain) -> Literal | None:
+    match domain:
+        case BooleanDomain():
+            return {"true": True, "false": False}.get(text.lower())
+        case IntegerDomain():
+            return _parse_integer(text)
+        case EnumerationDomain():
+            return None if type_ is None else _find_identifier(graph, text, type_)
+
+
+def _find_identifier(graph: Graph, text: str, enumeration: Element) -> Literal | None:
+    """Return the identifier of a literal that is given by id, name or qualified name."""
+    literal = graph.get(text)
+    name = text.replace(".", "::").rpartition("::")[2] if literal is None else literal.name
+    return literals_of(graph, enumeration).get(name)
+
+
+def _parse_integer(value: AttrValue) -> int | None:
+    text = str(value)
+    return int(text) if re.fullmatch(r"-?\d+", text) else None
+
+
+# -- ranges of Integers --------------------------------------------------------------------------
+
+
+def _find_range(
+    graph: Graph,
+    element: Element,
+    types: list[Element],
+    constants: Mapping[str, int],
+    access: Access | None,
+) -> Domain | None:
+    """Return the range given by tagged values, a bounded default, or constraints, in this order."""
+    for tagged_element in (element, *types):
+        domain = _find_tagged_range(graph, tagged_element)
+        if domain is not None:
+            return domain
+    bounds = _RANGE.match(str(element.attrs.get("default", "")))
+    if bounds and ".." in bounds[0]:
+        return _make_range(int(bounds[1]), int(bounds[2]))
+    return _find_constrained_range(graph, element, types, constants, access)
+
+
+def _make_range(low: int, high: int) -> Domain | None:
+    return IntegerDomain(low, high) if low <= high else None
+
+
+def _find_tagged_range(graph: Graph, element: Element) -> Domain | None:
+    if not query.applications(graph, element):
+        return None
+    bounds = _RANGE.match(str(query.tag(graph, element, "range") or ""))
+    if bounds:
+        return _make_range(int(bounds[1]), int(bounds[2]))
+    for low_tag, high_tag in _BOUND_TAGS:
+        low = _parse_integer(query.tag(graph, element, low_tag))
+        high = _parse_integer(query.tag(graph, element, high_tag))
+        if low is not None and high is not None:
+            return _make_range(low, high)
+    return None
+
+
+def _find_constrained_range(
+    graph: Graph,
+    element: Element,
+    types: list[Element],
+    constants: Mapping[str, int],
+    access: Access | None,
+) -> Domain | None:
+    """Return the intersection of the bounds that constraints set; None if one side is open."""
+    low: int | None = None
+    high: int | None = None
+    for names, body in _iter_constraints(graph, element, types, access):
+        for op, bound in _iter_bounds(body, names, constants):
+            lower_bound = {">": bound + 1, ">=": bound, "==": bound}.get(op)
+            upper_bound = {"<": bound - 1, "<=": bound, "==": bound}.get(op)
+            if lower_bound is not None:
+                low = lower_bound if low is None else max(low, lower_bound)
+            if upper_bound is not None:
+                high = upper_bound if high is None else min(high, upper_bound)
+    return None if low is None or high is None else _make_range(low, high)
+
+
+def _iter_constraints(
+    graph: Graph, element: Element, types: list[Element], access: Access | None
+) -> Iterator[tuple[frozenset[str], Expression]]:
+    """Yield the constraints that may bound an element, each with the element's names in it.
+
+    They belong to the owner, to the classifier that reaches the element by a dotted name, to the
+    element itself, or to its types.
+    """
+    owner = graph.owner(element)
+    if owner is not None:
+        names = frozenset([element.name, f"self.{element.name}"])
+        yield from _iter_bodies(graph, owner, names, element.name)
+    if access is not None:
+        names = frozenset([access.name, f"self.{access.name}"])
+        yield from _iter_bodies(graph, access.classifier, names, element.name)
+    yield from _iter_bodies(graph, element, frozenset([element.name, "self", "value"]))
+    for type_ in types:
+        names = frozenset(["self", "value", "self.value", type_.name])
+        yield from _iter_bodies(graph, type_, names)
+
+
+def _iter_bodies(
+    graph: Graph, owner: Element, names: frozenset[str], word: str = ""
+) -> Iterator[tuple[frozenset[str], Expression]]:
+    """Yield the constraints of an owner that hold at all times, with *names*.
+
+    Texts that cannot contain *word* are skipped before they are parsed.
+    """
+    constraints = {
+        element.id: element for element in graph.owned(owner) if element.kind is Kind.CONSTRAINT
+    }
+    for element in graph.sources(owner, Edge.REFERENCES):
+        if element.kind is Kind.CONSTRAINT:
+            constraints[element.id] = element
+    is_plain = word.isidentifier()
+    for constraint in constraints.values():
+        if constraint.subkind in _MOMENTARY:
+            continue
+        body = str(constraint.attrs.get("body", ""))
+        # A quoted name may spell the word with escapes.
+        if is_plain and word not in body and "'" not in body:
+            continue
+        try:
+            yield names, parse_expression(body)
+        except ExpressionError:
+            continue
+
+
+def _iter_bounds(
+    body: Expression, names: frozenset[str], constants: Mapping[str, int]
+) -> Iterator[tuple[str, int]]:
+    """Yield the bounds that a conjunction sets: ``x >= 0``, ``7 > x``, ``0 <= x <= limit``."""
+    match body:
+        case Binary("and", left, right):
+            yield from _iter_bounds(left, names, constants)
+            yield from _iter_bounds(right, names, constants)
+        case Binary(op, Binary(first, low, middle), high) if op in _MIRROR and first in _MIRROR:
+            yield from _match_bound(first, low, middle, names, constants)
+            yield from _match_bound(op, middle, high, names, constants)
+        case Binary(op, left, right):
+            yield from _match_bound(op, left, right, names, constants)
+
+
+def _match_bound(
+    op: str,
+    left: Expression,
+    right: Expression,
+    names: frozenset[str],
+    constants: Mapping[str, int],
+) -> Iterator[tuple[str, int]]:
+    """Yield the comparison as a bound of the named feature, which may stand on either side."""
+    if dotted_name(left) in names and (value := _evaluate(right, constants)) is not None:
+        yield op, value
+    elif dotted_name(right) in names and (value := _evaluate(left, constants)) is not None:
+        yield _MIRROR.get(op, op), value
+
+
+def _evaluate(expression: Expression, constants: Mapping[str, int]) -> int | None:
+    """Return the value of an expression over numbers and constants, else None."""
+    match expression:
+        case LiteralExpression(value) if isinstance(value, int) and not isinstance(value, bool):
+            return value
+        case Name() | Member():
+            return constants.get(name_of(expression) or "")
+        case Unary("-", operand):
+            number = _evaluate(operand, constants)
+            return None if number is None else -number
+        case Binary(op, left, right) if op in _ARITHMETIC:
+            operands = _evaluate(left, constants), _evaluate(right, constants)
+            return None if None in operands else _ARITHMETIC[op](*operands)
+        case _:
+            return None

@@ -1,50 +1,96 @@
-"""Parsing of expressions and effects, memoised by text."""
+"""Parser of expressions and effects, memoised by text: Lark runs ``grammars/expression.lark``."""
 
-from collections.abc import Callable
-from functools import lru_cache
-from typing import TypeVar
+import re
+from functools import cache, lru_cache
+from typing import TYPE_CHECKING, Any
 
-from sysmlc.logic.expressions.expression import Expression, ExpressionError, Statement
+from sysmlc.logic.expressions.expression import (
+    Assignment,
+    Binary,
+    Call,
+    Conditional,
+    Expression,
+    ExpressionError,
+    Index,
+    Invocation,
+    Literal,
+    Member,
+    Name,
+    Send,
+    Statement,
+    Unary,
+)
+from sysmlc.support import resources
 
-_T = TypeVar("_T")
-_DEEPEST = 150
-"""Levels of nesting that are read; a tuple of arguments is one."""
+if TYPE_CHECKING:
+    from lark import Lark, Token, Tree
+
+_MAX_NESTING = 150
+"""Deepest nesting of expressions; a tuple of arguments counts as one level."""
 _CACHE_SIZE = 4096
-"""Texts whose expressions are cached: every pass parses the same guards and ranges."""
+"""Texts whose trees are cached: every pass parses the same guards and ranges."""
+_SPELLING = {"&&": "and", "&": "and", "||": "or", "|": "or", "!": "not", "=": "==", "<>": "!="}
+_ESCAPE = {"n": "\n"}
+_SHOWN_CHARACTERS = 20
 
 
 @lru_cache(_CACHE_SIZE)
 def parse_expression(text: str) -> Expression:
     """Parse an expression. Raises ExpressionError."""
-    # The reader imports Lark, which takes 0.1 s, for the first expression of a process.
-    from sysmlc.logic.expressions.reader import read_expression
-
-    return _read(text, read_expression)
+    expression: Expression = _parse(text, "expression")
+    return expression
 
 
 @lru_cache(_CACHE_SIZE)
 def parse_effect(text: str) -> tuple[Statement, ...]:
     """Parse the statements of an effect, which semicolons separate. Raises ExpressionError."""
-    from sysmlc.logic.expressions.reader import read_effect
+    statements: tuple[Statement, ...] = _parse(text, "effect")
+    return statements
 
-    return _read(text, read_effect)
 
+def _parse(text: str, start_rule: str) -> Any:  # noqa: ANN401 - the type depends on the start rule
+    from lark.exceptions import UnexpectedInput
 
-def _read(text: str, read: Callable[[str], _T]) -> _T:
     try:
-        value = read(text)
+        value = _TreeBuilder().build(_make_parser().parse(text, start=start_rule))
+    except UnexpectedInput as error:
+        token = getattr(error, "token", None)
+        is_at_end = token is not None and token.type == "$END"
+        offset = len(text) if is_at_end or error.pos_in_stream is None else error.pos_in_stream
+        raise ExpressionError(_explain(text, offset), offset) from None
     except RecursionError:
         raise ExpressionError("the expression is nested too deeply", 0) from None
-    # A shorter text cannot be nested so deeply. Functions recurse over the tree.
-    if len(text) > _DEEPEST and _is_deep(value):
+    # Callers recurse over the tree. A shorter text cannot be nested so deeply.
+    if len(text) > _MAX_NESTING and _is_deep(value):
         raise ExpressionError("the expression is nested too deeply", 0)
     return value
 
 
+def _explain(text: str, offset: int) -> str:
+    words = text[offset:].split()
+    if not words:
+        return "the text ends too early"
+    return f"'{words[0][:_SHOWN_CHARACTERS]}' is not expected here"
+
+
+@cache
+def _make_parser() -> "Lark":
+    # Importing Lark and building its tables takes 0.1 s, which only models with expressions pay.
+    from lark import Lark
+
+    return Lark(
+        resources.read_text("grammars", "expression.lark"),
+        parser="lalr",
+        start=["expression", "effect"],
+        propagate_positions=True,
+        maybe_placeholders=False,
+    )
+
+
 def _is_deep(expression: object) -> bool:
-    """Whether more than ``_DEEPEST`` expressions are nested in one another."""
+    """Whether more than ``_MAX_NESTING`` expressions are nested in one another."""
     level = [expression]
-    for _ in range(_DEEPEST):
+    for _ in range(_MAX_NESTING):
         children = [part for parent in level for part in _list_parts(parent)]
         level = [part for part in children if not isinstance(part, str | int | float | None)]
         if not level:
@@ -56,3 +102,108 @@ def _list_parts(value: object) -> list[object]:
     if isinstance(value, tuple | list):
         return list(value)
     return [getattr(value, name) for name in getattr(type(value), "__match_args__", ())]
+
+
+class _TreeBuilder:
+    """Builds the syntax tree from the parse tree of Lark, with one method for each grammar rule.
+
+    A method takes the offset of the rule's text and the values of its children.
+    """
+
+    def build(self, tree: "Tree[Token]") -> Any:  # noqa: ANN401 - the type depends on the rule
+        children = [
+            child if isinstance(child, str) else self.build(child) for child in tree.children
+        ]
+        # An empty effect has no position.
+        return getattr(self, tree.data)(getattr(tree.meta, "start_pos", 0), children)
+
+    def expression(self, _offset: int, children: list[Expression]) -> Expression:
+        return children[0]
+
+    def literal(self, offset: int, children: "list[Token]") -> Literal:
+        (token,) = children
+        match token.type:
+            case "TRUE" | "FALSE":
+                return Literal(token.type == "TRUE", offset)
+            case "REAL":
+                return Literal(float(token), offset)
+            case "STRING":
+                return Literal(_unquote(token), offset)
+        try:
+            return Literal(int(token), offset)
+        except ValueError:
+            # Python limits the digits of a number (sys.set_int_max_str_digits).
+            raise ExpressionError("the number has too many digits", offset) from None
+
+    def name(self, _offset: int, children: "list[Token]") -> str:
+        (token,) = children
+        return _unquote(token) if token.type == "QUOTED_NAME" else str(token)
+
+    def qualified(self, offset: int, children: list[str]) -> Name:
+        return Name(tuple(children), offset)
+
+    def member(self, offset: int, children: list[Any]) -> Member:
+        base, name = children
+        return Member(base, name, offset)
+
+    def call(self, offset: int, children: list[Expression]) -> Call:
+        function, *arguments = children
+        return Call(function, tuple(arguments), offset)
+
+    def index(self, offset: int, children: list[Expression]) -> Index:
+        base, index = children
+        return Index(base, index, offset)
+
+    def unary(self, offset: int, children: list[Any]) -> Unary:
+        operator, operand = children
+        return Unary(_normalise(operator), operand, offset)
+
+    def binary(self, offset: int, children: list[Any]) -> Binary:
+        left, operator, right = children
+        return Binary(_normalise(operator), left, right, offset)
+
+    def conditional(self, offset: int, children: list[Expression]) -> Conditional:
+        condition, then, otherwise = children
+        return Conditional(condition, then, otherwise, offset)
+
+    def effect(self, _offset: int, children: list[Statement]) -> tuple[Statement, ...]:
+        return tuple(children)
+
+    def assignment(self, offset: int, children: list[Any]) -> Assignment:
+        target, value = children[0], children[-1]
+        if not isinstance(target, Name | Member | Index):
+            raise ExpressionError("only a feature can be assigned to", offset)
+        return Assignment(target, value, offset)
+
+    def receiver(self, _offset: int, children: list[Expression]) -> "_Receiver":
+        return _Receiver(children[0])
+
+    def send(self, offset: int, children: list[Any]) -> Send:
+        signal, *arguments = children
+        receiver = None
+        if arguments and isinstance(arguments[-1], _Receiver):
+            receiver = arguments.pop().expression
+        return Send(signal, tuple(arguments), receiver, offset)
+
+    def invocation(self, offset: int, children: list[Expression]) -> Invocation:
+        (target,) = children
+        if not isinstance(target, Name | Member | Call):
+            raise ExpressionError("this is a value and does nothing", offset)
+        return Invocation(target, offset)
+
+
+class _Receiver:
+    """Marks the receiver among the children of a send statement, which also has arguments."""
+
+    def __init__(self, expression: Expression) -> None:
+        self.expression = expression
+
+
+def _normalise(operator: str) -> str:
+    """Return the operator in the spelling of KerML."""
+    word = operator.lower()
+    return _SPELLING.get(word, word)
+
+
+def _unquote(text: str) -> str:
+    return re.sub(r"\\(.)", lambda match: _ESCAPE.get(match[1], match[1]), text[1:-1])

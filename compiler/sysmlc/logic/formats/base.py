@@ -7,7 +7,7 @@ from sysmlc.logic.formats.file import NotExpressibleError
 from sysmlc.logic.formats.lower import TooManyValuesError
 from sysmlc.logic.formats.spelt import Spelling
 from sysmlc.logic.formula import Formula, variables
-from sysmlc.logic.reduction.reduce import is_plain, reduced
+from sysmlc.logic.reduction.contract_reduction import is_gr1, reduce_contract
 
 SECTIONS = {
     (side, class_): side if class_ is Class.OTHER else f"{class_} {side}"
@@ -40,7 +40,7 @@ def game(
     """
     conjuncts = (*contract.assumptions, *contract.guarantees)
     is_game = all(_is_game(one, primed_liveness) for one in conjuncts)
-    made = contract if is_game else reduced(contract).contract
+    made = contract if is_game else reduce_contract(contract).contract
     for one in (*made.assumptions, *made.guarantees):
         if not _is_game(one, primed_liveness):
             raise NotExpressibleError(form, "no reduction to GR(1) is known for it", one)
@@ -49,7 +49,7 @@ def game(
 
 
 def _is_game(conjunct: Conjunct, primed_liveness: bool) -> bool:
-    return is_plain(conjunct) or (primed_liveness and conjunct.class_ is Class.LIVENESS)
+    return is_gr1(conjunct) or (primed_liveness and conjunct.class_ is Class.LIVENESS)
 
 
 def _check_owners(contract: Contract, form: str, apart: bool) -> None:

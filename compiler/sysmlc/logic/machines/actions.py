@@ -9,15 +9,14 @@ from sysmlc.ir import Edge, Element, Graph
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import BooleanDomain, Domain, EnumerationDomain, Owner, Variable
 from sysmlc.logic.domains import describe
-from sysmlc.logic.expressions.context import Context, note_range
-from sysmlc.logic.expressions.declared import Feature
-from sysmlc.logic.expressions.elaborate import (
+from sysmlc.logic.expressions.context import Context, report_range
+from sysmlc.logic.expressions.elaboration import (
     ElaborationError,
     Fault,
     Symbol,
-    condition,
-    literal_of,
-    meaning,
+    elaborate_condition,
+    elaborate_value,
+    find_literal,
 )
 from sysmlc.logic.expressions.expression import (
     Assignment,
@@ -27,11 +26,12 @@ from sysmlc.logic.expressions.expression import (
     Name,
     Send,
     Statement,
-    dotted,
+    dotted_name,
     name_of,
     print_expression,
     print_statement,
 )
+from sysmlc.logic.expressions.features import Feature
 from sysmlc.logic.expressions.parsing import parse_effect, parse_expression
 from sysmlc.logic.machines.machine import Action, Assign, Raise
 from sysmlc.logic.names import Names
@@ -130,13 +130,13 @@ class ReadingContext:
         """Return the symbol that *name* stands for in an expression."""
         feature = self.context.features.get(name)
         if feature is not None:
-            if feature.constant and feature.default is not None:
+            if feature.is_constant and feature.default is not None:
                 return Symbol(f.const(feature.default), feature.domain)
             return Symbol(f.var(feature.variable), feature.domain)
         for variable in self.auxiliary.values():
             if variable.name == name:
                 return Symbol(f.var(name), variable.domain)
-        return literal_of(self.context, name)
+        return find_literal(self.context, name)
 
     def variable_for(self, key: str, name: str, owner: Owner, domain: Domain, origin: str) -> str:
         """Return the variable that stands for *key*; create it on first use."""
@@ -161,7 +161,7 @@ class ReadingContext:
             feature = self.context.features.get(name) if name else None
             if feature is not None:
                 self.read_variables[feature.variable] = None
-                note_range(self.graph, feature, self.sink)
+                report_range(self.graph, feature, self.sink)
 
 
 def walk_expression(expression: Expression) -> list[Expression]:
@@ -192,7 +192,7 @@ def read_condition(reading: ReadingContext, text: str, what: str, element: Eleme
     """
     try:
         expression = parse_expression(text)
-        condition(expression, reading.find_symbol)
+        elaborate_condition(expression, reading.find_symbol)
     except ExpressionError as error:
         return _replace_by_input(reading, NOT_UNDERSTOOD, text, what, element, str(error), "")
     except ElaborationError as error:
@@ -298,7 +298,7 @@ def _read_statement(
                 reading.output_for(f"send {name}", f"send_{name}", behaviour.id), behaviour.id
             )
         case Invocation(call):
-            name = dotted(getattr(call, "function", call)) or print_expression(call)
+            name = dotted_name(getattr(call, "function", call)) or print_expression(call)
             return Raise(reading.output_for(f"done {name}", name, behaviour.id), behaviour.id)
 
 
@@ -309,13 +309,13 @@ def _read_assignment(
     feature = reading.context.features.get(name)
     subject = reading.graph.subject(behaviour)
     context = reading.context.name or "the context"
-    if feature is None or feature.domain is None or feature.constant:
+    if feature is None or feature.domain is None or feature.is_constant:
         reading.sink.report(NOT_ASSIGNABLE, subject, text=text, name=name, context=context)
         return _read_opaque_effect(reading, text, behaviour)
     if _has_other_writer(reading, feature, text, behaviour):
         return Raise(_effect_output(reading, text, behaviour), behaviour.id)
     try:
-        value = meaning(statement.value, reading.find_symbol, feature.domain)
+        value = elaborate_value(statement.value, reading.find_symbol, feature.domain)
         check_assignable(value.domain, feature.domain, statement.value)
     except ElaborationError as error:
         if error.fault is Fault.UNSUPPORTED:
@@ -332,7 +332,7 @@ def _read_assignment(
         return _read_opaque_effect(reading, text, behaviour)
     reading.record_reads(statement.value)
     reading.assigned_variables[feature.variable] = None
-    note_range(reading.graph, feature, reading.sink)
+    report_range(reading.graph, feature, reading.sink)
     return Assign(feature.variable, statement.value, behaviour.id)
 
 

@@ -15,7 +15,7 @@ from sysmlc.logic import domains
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import Domain
 from sysmlc.logic.evaluate import compile_evaluation
-from sysmlc.logic.expressions.elaborate import Scope, condition
+from sysmlc.logic.expressions.elaboration import Scope, elaborate_condition
 from sysmlc.logic.expressions.expression import Expression, name_of
 from sysmlc.logic.formula import Formula
 from sysmlc.logic.machines.actions import walk_expression
@@ -78,7 +78,7 @@ class GuardComparison:
             return f.TRUE, {}
         if transition.id not in self._guards:
             variables = dict(_find_domains(guard, self._scope))
-            self._guards[transition.id] = condition(guard, self._scope), variables
+            self._guards[transition.id] = elaborate_condition(guard, self._scope), variables
         return self._guards[transition.id]
 
 

@@ -16,7 +16,7 @@ from sysmlc.logic.contract import (
     Contract,
     IntegerDomain,
 )
-from sysmlc.logic.expressions.elaborate import condition
+from sysmlc.logic.expressions.elaboration import elaborate_condition
 from sysmlc.logic.formula import Const, Formula, Op
 from sysmlc.logic.machines import descriptions as texts
 from sysmlc.logic.machines.machine import (
@@ -128,7 +128,7 @@ def _initial_facts(exploration: Exploration, path: Path) -> dict[str, Formula]:
         if state.timer:
             facts[state.timer] = f.eq(f.var(state.timer), Const(0))
     for name, expression in machine.memories.items():
-        facts[name] = f.iff(f.var(name), condition(expression, machine.scope))
+        facts[name] = f.iff(f.var(name), elaborate_condition(expression, machine.scope))
     return facts
 
 
@@ -340,7 +340,7 @@ def _derive_memories(exploration: Exploration) -> Iterator[Conjunct]:
     """Yield the values of memories, history variables and do behaviours."""
     machine = exploration.machine
     for name, expression in machine.memories.items():
-        truth = condition(expression, machine.scope)
+        truth = elaborate_condition(expression, machine.scope)
         formula = f.iff(f.primed(f.var(name)), truth)
         yield Conjunct(
             formula, Class.SAFETY, _origin_of(exploration, name), texts.describe_memory(name, truth)

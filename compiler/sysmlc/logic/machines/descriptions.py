@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from sysmlc.logic.expressions.expression import Expression, dotted, print_expression
+from sysmlc.logic.expressions.expression import Expression, dotted_name, print_expression
 from sysmlc.logic.formula import TRUE, Const, Formula
 from sysmlc.logic.machines.machine import (
     AfterTicks,
@@ -74,7 +74,7 @@ def _describe_occurrence(occurrence: Occurrence) -> str:
 
 
 def _print_expression(expression: Expression) -> str:
-    return dotted(expression) or print_expression(expression)
+    return dotted_name(expression) or print_expression(expression)
 
 
 def _describe_outcome(machine: Machine, transition: Transition, path: Path) -> str:

@@ -7,7 +7,7 @@ defined by ``interpreter``.
 from msgspec import Struct, field
 
 from sysmlc.logic.contract import Variable
-from sysmlc.logic.expressions.elaborate import Scope
+from sysmlc.logic.expressions.elaboration import Scope
 from sysmlc.logic.expressions.expression import Expression
 from sysmlc.logic.formula import Literal
 

@@ -17,7 +17,7 @@ from sysmlc.logic.contract import (
     Domain,
 )
 from sysmlc.logic.domains import valuations
-from sysmlc.logic.expressions.elaborate import condition
+from sysmlc.logic.expressions.elaboration import elaborate_condition
 from sysmlc.logic.formula import Const, Formula, Op
 from sysmlc.logic.machines import descriptions as texts
 from sysmlc.logic.machines.conflicts import can_be_simultaneous
@@ -204,7 +204,9 @@ def _path_condition(
     machine: Machine, domains: Mapping[str, Domain], transition: Transition, paths: list[Path]
 ) -> Formula:
     """Return the condition that some path is feasible; the guard alone if it implies that."""
-    guard = f.TRUE if transition.guard is None else condition(transition.guard, machine.scope)
+    guard = (
+        f.TRUE if transition.guard is None else elaborate_condition(transition.guard, machine.scope)
+    )
     condition_of_paths = f.either(*(path.when for path in paths))
     if condition_of_paths == guard:
         return simplify_constant(guard, domains)
@@ -248,7 +250,7 @@ def _trigger_condition(machine: Machine, state: Vertex, occurrence: Occurrence) 
         case AfterTicks(count):
             return f.eq(f.var(state.timer), Const(count - 1))
         case OnRise(memory, expression):
-            truth = condition(expression, machine.scope)
+            truth = elaborate_condition(expression, machine.scope)
             return f.both(truth, f.negate(f.var(memory)))
         case OnInput(variable):
             return f.var(variable)
@@ -313,7 +315,9 @@ def _report_faults(
     target = machine.vertices[transition.target] if transition.target else None
     if target is None or target.is_stable or transition.kind == "internal":
         return
-    guard = f.TRUE if transition.guard is None else condition(transition.guard, machine.scope)
+    guard = (
+        f.TRUE if transition.guard is None else elaborate_condition(transition.guard, machine.scope)
+    )
     condition_of_paths = _path_condition(machine, domains, transition, paths)
     if simplify_constant(f.implies(guard, condition_of_paths), domains) != f.TRUE:
         vertex_name = graph[element_id(target.id)].name or target.kind

@@ -11,7 +11,7 @@ from msgspec.structs import replace
 
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import Domain, IntegerDomain
-from sysmlc.logic.expressions.elaborate import condition, meaning
+from sysmlc.logic.expressions.elaboration import elaborate_condition, elaborate_value
 from sysmlc.logic.formula import Const, Formula, Op
 from sysmlc.logic.machines.machine import (
     HISTORIES,
@@ -102,7 +102,7 @@ class PathExplorer(Struct, frozen=True):
         if source.kind == "choice":
             path = replace(path, seen=path.values)
         if transition.guard is not None:
-            truth = substitute(condition(transition.guard, self.machine.scope), path.seen)
+            truth = substitute(elaborate_condition(transition.guard, self.machine.scope), path.seen)
             path = replace(path, branch=f.both(path.branch, truth))
         if source.pick:
             path = replace(path, picked={**path.picked, source.pick: transition.literal})
@@ -157,10 +157,10 @@ class PathExplorer(Struct, frozen=True):
         """Yield the values that an assignment can give, each with its condition and whether it
         was clamped.
         """
-        result = meaning(action.value, self.machine.scope, domain)
-        for term in result.terms:
-            case = substitute(term.condition, path.values)
-            value = substitute(term.value, path.values)
+        result = elaborate_value(action.value, self.machine.scope, domain)
+        for guarded_case in result.cases:
+            case = substitute(guarded_case.condition, path.values)
+            value = substitute(guarded_case.value, path.values)
             if isinstance(domain, IntegerDomain) and isinstance(result.domain, IntegerDomain):
                 yield from split_by_range(case, value, domain, result.domain)
             else:

@@ -212,7 +212,7 @@ def _property_variables(reading: ReadingContext) -> list[Variable]:
     variables: list[Variable] = []
     for feature in reading.context.features.values():
         is_assigned = feature.variable in reading.assigned_variables
-        is_read = feature.variable in reading.read_variables and not feature.constant
+        is_read = feature.variable in reading.read_variables and not feature.is_constant
         if feature.domain is not None and (is_assigned or is_read):
             owner = Owner.SYSTEM if is_assigned else Owner.ENVIRONMENT
             variables.append(Variable(feature.variable, owner, feature.domain, feature.element.id))

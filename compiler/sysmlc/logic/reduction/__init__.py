@@ -1,1 +1,1 @@
-"""Temporal logic as GR(1), with history bits for what games have no other words for."""
+"""Reduction of temporal logic to GR(1) with history bits."""

@@ -1,1 +1,1 @@
-"""What requirements assume and demand of their subjects, as contracts."""
+"""Contracts of the subjects of requirements: assumptions and demands."""

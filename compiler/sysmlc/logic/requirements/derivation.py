@@ -1,138 +1,248 @@
-"""The contract that its requirements make with a subject."""
+"""Contracts of the subjects of requirements (thesis, 2.2.1)."""
 
 from collections.abc import Iterable, Iterator
 
 from msgspec.structs import replace
 
-from sysmlc.diagnostics import Sink
+from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Element, Graph
 from sysmlc.logic import formula as f
+from sysmlc.logic.classification import classify
 from sysmlc.logic.contract import Class, Conjunct, Contract
-from sysmlc.logic.expressions.context import context_of
+from sysmlc.logic.expressions.context import context_of, report_range
+from sysmlc.logic.expressions.elaboration import ElaborationError, Fault, elaborate_condition
+from sysmlc.logic.expressions.expression import ExpressionError
+from sysmlc.logic.expressions.parsing import parse_expression
 from sysmlc.logic.formula import Formula, Literal
 from sysmlc.logic.printing import print_literal
+from sysmlc.logic.reduction.contract_reduction import add_history_bits
 from sysmlc.logic.requirements.scope import Scope, scope_of
 from sysmlc.logic.requirements.statements import (
     Statement,
+    collect_statements,
     component_of,
     definition_of,
-    redefining,
-    statements,
+    find_redefining_operation,
 )
+from sysmlc.logic.spelling import FormulaError
+from sysmlc.logic.texts.formal import describe_error, is_formal, read_formal
+
+NOT_A_FORMULA = rule(
+    "SM522",
+    "requirement-not-understood",
+    Severity.ERROR,
+    "the formula of '{constraint}' in requirement '{requirement}' is not understood: {reason}",
+    help="write LTL (G F X U or [] <> X U) over the features of '{about}': {variables}",
+)
+NOT_FORMAL = rule(
+    "SM523",
+    "requirement-not-formal",
+    Severity.INFO,
+    "'{constraint}' of requirement '{requirement}' is in no contract: {reason}",
+)
+_EXPRESSION_LANGUAGES = ("", "kerml", "sysml", "ocl", "alf")
 
 
 def derive(
-    graph: Graph, behaviours: Iterable[Contract], assumed: tuple[int, int], sink: Sink
+    graph: Graph, behaviours: Iterable[Contract], assumed_range: tuple[int, int], sink: Sink
 ) -> Iterator[Contract]:
-    """Contracts of subjects of requirements (thesis 2.2.1): what is assumed, what is demanded.
+    """Yield the contract of each subject: the assumptions and demands of its requirements.
 
-    ``behaviours`` are the contracts of behaviours: where the subject has one, formulas may speak
-    of its variables, and the requirements are the contract ``<component>.requirements``, of which
-    the behaviour is an implementation. ``assumed`` is the range of Integers that have none.
+    *behaviours* are the contracts of behaviours. If the subject has one, formulas may use its
+    variables, and the contract of the requirements is named ``<component>.requirements``; the
+    behaviour implements it. An Integer without a range gets *assumed_range*.
     """
-    known = {one.component: one for one in behaviours}
-    for subject, said in statements(graph):
-        from sysmlc.logic.requirements.meaning import meaning
-
+    behaviour_by_component = {contract.component: contract for contract in behaviours}
+    for subject, statements in collect_statements(graph):
         component = component_of(graph, subject)
-        behaviour = known.get(component)
-        definition, within = definition_of(graph, subject), redefining(graph, subject)
-        scope = scope_of(context_of(graph, definition, assumed, within), behaviour)
+        behaviour = behaviour_by_component.get(component)
+        context = context_of(
+            graph,
+            definition_of(graph, subject),
+            assumed_range,
+            find_redefining_operation(graph, subject),
+        )
+        scope = scope_of(context, behaviour)
         assumptions: list[Conjunct] = []
         demands: list[Conjunct] = []
-        for statement in said:
-            formula = meaning(graph, scope, statement, sink)
+        for statement in statements:
+            formula = _read_statement(graph, scope, statement, sink)
             if formula is not None:
                 is_assumed = _is_assumed(scope, statement, formula)
-                into = assumptions if is_assumed else demands
-                into += _classified(scope, statement, formula, is_assumed)
+                conjuncts = assumptions if is_assumed else demands
+                conjuncts += _classify(scope, statement, formula, is_assumed)
         if demands:
             name = component if behaviour is None else f"{component}.requirements"
-            yield _contract(name, subject, scope, assumptions, demands)
+            yield _make_contract(name, subject, scope, assumptions, demands)
+
+
+def add_features(contract: Contract, scope: Scope, formula: Formula) -> Contract:
+    """Return a behaviour's contract with the features of its definition that a formula uses.
+
+    The contract fixes their initial values only; their later values are left to the formulas.
+    """
+    names = {variable.name for variable in contract.variables}
+    added = tuple(
+        variable for variable in scope.select_variables((formula,)) if variable.name not in names
+    )
+    inputs, outputs = _state_initial_values(scope, {variable.name for variable in added})
+    return replace(
+        contract,
+        variables=(*contract.variables, *added),
+        assumptions=(*contract.assumptions, *inputs),
+        guarantees=(*contract.guarantees, *outputs),
+    )
+
+
+# -- formulas of statements ----------------------------------------------------------------------
+
+
+def _read_statement(graph: Graph, scope: Scope, statement: Statement, sink: Sink) -> Formula | None:
+    """Return the formula of a statement, or report why it has none."""
+    constraint = statement.constraint
+    if _is_temporal(constraint):
+        formula = _read_temporal(graph, scope, statement, sink)
+    elif _language_of(constraint).rstrip("0123456789. ") in _EXPRESSION_LANGUAGES:
+        formula = _read_condition(graph, scope, statement, sink)
+    else:
+        formula = None
+        reason = f"it is written in {constraint.attrs['language']}"
+        _report_informal(graph, statement, sink, reason)
+    if formula is not None:
+        _report_ranges(graph, scope, formula, sink)
+    return formula
+
+
+def _is_temporal(constraint: Element) -> bool:
+    """Whether the constraint is temporal logic or a sentence of a property pattern."""
+    return is_formal(_language_of(constraint), str(constraint.attrs.get("body", "")))
+
+
+def _language_of(constraint: Element) -> str:
+    return str(constraint.attrs.get("language", "")).lower()
+
+
+def _read_temporal(graph: Graph, scope: Scope, statement: Statement, sink: Sink) -> Formula | None:
+    constraint = statement.constraint
+    body = str(constraint.attrs["body"])
+    try:
+        formula = read_formal(
+            scope.replace_dotted_names(body), _language_of(constraint), scope.domains
+        )
+    except FormulaError as error:
+        sink.report(
+            NOT_A_FORMULA,
+            graph.subject(constraint),
+            constraint=_name_constraint(statement),
+            requirement=statement.requirement.name,
+            about=scope.context.name,
+            variables=", ".join(scope.domains),
+            reason=describe_error(error, body),
+        )
+        return None
+    return scope.substitute_constants(formula)
+
+
+def _read_condition(graph: Graph, scope: Scope, statement: Statement, sink: Sink) -> Formula | None:
+    try:
+        expression = parse_expression(str(statement.constraint.attrs["body"]))
+        return elaborate_condition(expression, scope.find_symbol)
+    except (ExpressionError, ElaborationError) as error:
+        _report_informal(graph, statement, sink, _explain(scope, error))
+        return None
+
+
+def _explain(scope: Scope, error: Exception) -> str:
+    if isinstance(error, ElaborationError) and error.fault is Fault.UNKNOWN:
+        return f"'{error.name}' is no feature of '{scope.context.name}' with finitely many values"
+    return str(error)
+
+
+def _report_informal(graph: Graph, statement: Statement, sink: Sink, reason: str) -> None:
+    name, requirement = _name_constraint(statement), statement.requirement.name
+    subject = graph.subject(statement.constraint)
+    sink.report(NOT_FORMAL, subject, constraint=name, requirement=requirement, reason=reason)
+
+
+def _name_constraint(statement: Statement) -> str:
+    return statement.constraint.name or "the constraint"
+
+
+def _report_ranges(graph: Graph, scope: Scope, formula: Formula, sink: Sink) -> None:
+    used = {variable.name for variable in f.variables(formula)}
+    for feature in scope.context.features.values():
+        if feature.variable in used:
+            report_range(graph, feature, sink)
+
+
+# -- conjuncts -----------------------------------------------------------------------------------
 
 
 def _is_assumed(scope: Scope, statement: Statement, formula: Formula) -> bool:
-    return statement.is_assumed or (statement.is_open and scope.is_input(formula))
+    return statement.is_assumed or (statement.is_open and scope.is_about_inputs(formula))
 
 
-def _classified(
+def _classify(
     scope: Scope, statement: Statement, formula: Formula, is_assumed: bool
 ) -> Iterator[Conjunct]:
-    """A formula's conjuncts; a condition without temporal operators holds at all times.
-
-    One of inputs alone is assumed of the first step and of each next one, so that the
-    environment never gets where it cannot keep it.
-    """
+    """Yield the conjuncts of a formula."""
     id, name = statement.constraint.id, statement.requirement.name
-    text = _words(statement, is_assumed)
-    for class_, part in _parts(scope, statement, formula, is_assumed):
+    text = _describe(statement, is_assumed)
+    for class_, part in _split_by_class(scope, statement, formula, is_assumed):
         yield Conjunct(part, class_, id, text, name)
 
 
-def _parts(
+def _split_by_class(
     scope: Scope, statement: Statement, formula: Formula, is_assumed: bool
 ) -> Iterator[tuple[Class, Formula]]:
-    from sysmlc.logic.classification import classify
-    from sysmlc.logic.requirements.meaning import is_temporal
+    """Yield the parts of a formula; a condition without temporal operators holds at all times.
 
-    if is_temporal(statement.constraint):
+    An assumption about inputs alone is stated for the first step and for each next step, so that
+    the environment cannot reach a step in which it must break the assumption.
+    """
+    if _is_temporal(statement.constraint):
         yield from classify(formula)
-    elif is_assumed and scope.is_input(formula):
+    elif is_assumed and scope.is_about_inputs(formula):
         yield Class.INIT, formula
         yield Class.SAFETY, f.primed(formula)
     else:
         yield Class.SAFETY, formula
 
 
-def _words(statement: Statement, is_assumed: bool) -> str:
+def _describe(statement: Statement, is_assumed: bool) -> str:
     name, constraint = statement.requirement.name, statement.constraint.name
-    what = f"'{constraint}' of '{name}'" if constraint else f"'{name}'"
-    return f"{what} {'assumes' if is_assumed else 'demands'} it."
+    subject = f"'{constraint}' of '{name}'" if constraint else f"'{name}'"
+    return f"{subject} {'assumes' if is_assumed else 'demands'} it."
 
 
-def _contract(
+def _make_contract(
     name: str,
     subject: Element,
     scope: Scope,
     assumptions: list[Conjunct],
     demands: list[Conjunct],
 ) -> Contract:
-    from sysmlc.logic.reduction.reduce import remembering
-
-    used = scope.used(one.formula for one in (*assumptions, *demands))
-    starts = list(_starts(scope, {one.name for one in used}))
-    given = [one for one in starts if scope.is_input(one.formula)]
-    own = [one for one in starts if not scope.is_input(one.formula)]
-    return remembering(Contract(name, subject.id, used, (*given, *assumptions), (*own, *demands)))
-
-
-def with_features(contract: Contract, scope: Scope, formula: Formula) -> Contract:
-    """A behaviour's contract with the features of its definition that a formula speaks of.
-
-    They start with their values; what they become later is for the formulas to say.
-    """
-    known = {one.name for one in contract.variables}
-    added = tuple(one for one in scope.used((formula,)) if one.name not in known)
-    starts = list(_starts(scope, {one.name for one in added}))
-    given = tuple(one for one in starts if scope.is_input(one.formula))
-    own = tuple(one for one in starts if not scope.is_input(one.formula))
-    return replace(
-        contract,
-        variables=(*contract.variables, *added),
-        assumptions=(*contract.assumptions, *given),
-        guarantees=(*contract.guarantees, *own),
+    variables = scope.select_variables(conjunct.formula for conjunct in (*assumptions, *demands))
+    inputs, outputs = _state_initial_values(scope, {variable.name for variable in variables})
+    return add_history_bits(
+        Contract(name, subject.id, variables, (*inputs, *assumptions), (*outputs, *demands))
     )
 
 
-def _starts(scope: Scope, used: set[str]) -> Iterator[Conjunct]:
-    """What the variables start with, where their features have a value."""
-    for one in scope.context.features.values():
-        if one.variable in used and one.default is not None and not one.constant:
-            text = f"'{one.element.name}' starts with {print_literal(one.default)}."
-            yield Conjunct(_is(one.variable, one.default), Class.INIT, one.element.id, text)
+def _state_initial_values(scope: Scope, names: set[str]) -> tuple[list[Conjunct], list[Conjunct]]:
+    """Return the initial values of the named variables: those of inputs, and those of others."""
+    inputs: list[Conjunct] = []
+    outputs: list[Conjunct] = []
+    for feature in scope.context.features.values():
+        if feature.variable in names and feature.default is not None and not feature.is_constant:
+            text = f"'{feature.element.name}' starts with {print_literal(feature.default)}."
+            formula = _equals(feature.variable, feature.default)
+            conjunct = Conjunct(formula, Class.INIT, feature.element.id, text)
+            (inputs if scope.is_about_inputs(formula) else outputs).append(conjunct)
+    return inputs, outputs
 
 
-def _is(variable: str, value: Literal) -> Formula:
+def _equals(variable: str, value: Literal) -> Formula:
     if isinstance(value, bool):
         return f.var(variable) if value else f.negate(f.var(variable))
     return f.eq(f.var(variable), f.const(value))

@@ -1,4 +1,4 @@
-"""What the names in a requirement mean: features of its subject, variables of its behaviour."""
+"""Meaning of the names in a requirement: features of its subject, variables of its behaviour."""
 
 import re
 from collections.abc import Iterable, Mapping
@@ -8,16 +8,16 @@ from msgspec import Struct
 from sysmlc.ir import Kind
 from sysmlc.logic.contract import Contract, Domain, Owner, Variable
 from sysmlc.logic.expressions.context import Context
-from sysmlc.logic.expressions.declared import Feature
-from sysmlc.logic.expressions.elaborate import Symbol, literal_of
+from sysmlc.logic.expressions.elaboration import Symbol, find_literal
+from sysmlc.logic.expressions.features import Feature
 from sysmlc.logic.formula import Apply, Const, Formula, Literal, Var, var, variables
 from sysmlc.logic.simplify import rebuild
 
-_DOTTED = re.compile(r"[^\W\d]\w*(?:\.[^\W\d]\w*)+")
+_DOTTED_NAME = re.compile(r"[^\W\d]\w*(?:\.[^\W\d]\w*)+")
 
 
 class Scope(Struct, frozen=True):
-    """Variables and constants by the names that formulas have for them."""
+    """Variables and constants by the names that formulas use for them."""
 
     context: Context
     variables: Mapping[str, Variable]
@@ -25,73 +25,88 @@ class Scope(Struct, frozen=True):
 
     @property
     def domains(self) -> dict[str, Domain]:
-        """Domains of all that a formula in temporal logic may name."""
+        """The domains of all names that a formula in temporal logic may use."""
         features = self.context.features.values()
-        known = {one.variable: one.domain for one in features if one.domain is not None}
-        return known | {name: one.domain for name, one in self.variables.items()}
+        domains = {
+            feature.variable: feature.domain for feature in features if feature.domain is not None
+        }
+        return domains | {name: variable.domain for name, variable in self.variables.items()}
 
-    def symbol(self, name: str) -> Symbol | None:
-        """What a dotted name of an expression stands for; the subject may stand before it."""
-        feature = self.feature(name)
-        if feature is not None:
-            fixed = self.constants.get(feature.variable)
-            formula = var(feature.variable) if fixed is None else Const(fixed)
-            return Symbol(formula, feature.domain)
-        known = self.variables.get(name)
-        return literal_of(self.context, name) if known is None else Symbol(var(name), known.domain)
+    def find_symbol(self, name: str) -> Symbol | None:
+        """Return the symbol of a dotted name in an expression.
 
-    def feature(self, name: str) -> Feature | None:
-        """The feature of the subject that a dotted name leads to."""
-        known = self.context.features
-        return known.get(name) or known.get(name.partition(".")[2])
-
-    def undotted(self, text: str) -> str:
-        """A formula with variables for dotted names (``level.value``, ``tank.filling``).
-
-        What follows stays in its column, where there is room.
+        The name of the subject may precede the name of the feature.
         """
-        return _DOTTED.sub(self._variable, text)
+        feature = self.find_feature(name)
+        if feature is not None:
+            constant = self.constants.get(feature.variable)
+            formula = var(feature.variable) if constant is None else Const(constant)
+            return Symbol(formula, feature.domain)
+        variable = self.variables.get(name)
+        if variable is None:
+            return find_literal(self.context, name)
+        return Symbol(var(name), variable.domain)
 
-    def _variable(self, found: re.Match[str]) -> str:
-        feature = self.feature(found[0])
-        return found[0] if feature is None else feature.variable.ljust(len(found[0]))
+    def find_feature(self, name: str) -> Feature | None:
+        """Return the feature with this name, or with the name after the first dot."""
+        features = self.context.features
+        return features.get(name) or features.get(name.partition(".")[2])
 
-    def settled(self, formula: Formula) -> Formula:
-        """The formula with the values of constants in their places, in this step and the next."""
+    def replace_dotted_names(self, text: str) -> str:
+        """Replace dotted names (``level.value``, ``tank.filling``) by variables.
+
+        Variables are padded to the length of the names, so that columns in messages stay right
+        unless a variable is longer.
+        """
+        return _DOTTED_NAME.sub(self._pad_variable, text)
+
+    def _pad_variable(self, match: re.Match[str]) -> str:
+        feature = self.find_feature(match[0])
+        return match[0] if feature is None else feature.variable.ljust(len(match[0]))
+
+    def substitute_constants(self, formula: Formula) -> Formula:
+        """Replace constants by their values, also where they are primed."""
         match formula:
             case Var(name) if name in self.constants:
                 return Const(self.constants[name])
             case Apply(op, args):
-                return rebuild(op, tuple(self.settled(arg) for arg in args))
+                return rebuild(op, tuple(self.substitute_constants(arg) for arg in args))
             case _:
                 return formula
 
-    def used(self, formulas: Iterable[Formula]) -> tuple[Variable, ...]:
-        """The variables of the formulas, in the order in which the subject declares them."""
-        names = {one.name for formula in formulas for one in variables(formula)}
-        return tuple(one for name, one in self.variables.items() if name in names)
+    def select_variables(self, formulas: Iterable[Formula]) -> tuple[Variable, ...]:
+        """Return the variables of the formulas, in the order in which the subject declares them."""
+        names = {variable.name for formula in formulas for variable in variables(formula)}
+        return tuple(variable for name, variable in self.variables.items() if name in names)
 
-    def is_input(self, formula: Formula) -> bool:
-        """Whether it speaks of what the environment decides, and of nothing else."""
-        owners = {self.variables[one.name].owner for one in variables(formula)}
+    def is_about_inputs(self, formula: Formula) -> bool:
+        """Whether the formula has variables, and the environment decides all of them."""
+        owners = {self.variables[variable.name].owner for variable in variables(formula)}
         return owners == {Owner.ENVIRONMENT}
 
 
 def scope_of(context: Context, behaviour: Contract | None) -> Scope:
-    """The scope that a subject gives; variables of its behaviour's contract go before."""
-    fixed: dict[str, Literal] = {}
+    """Return the scope of a subject; variables of its behaviour's contract hide its features."""
+    constants: dict[str, Literal] = {}
     own: dict[str, Variable] = {}
-    for one in context.features.values():
-        if one.constant and one.default is not None:
-            fixed[one.variable] = one.default
-        elif one.domain is not None:
-            own[one.variable] = Variable(one.variable, _owner(one), one.domain, one.element.id)
-    known = () if behaviour is None else behaviour.variables
-    return Scope(context, own | {one.name: one for one in known}, fixed)
+    for feature in context.features.values():
+        if feature.is_constant and feature.default is not None:
+            constants[feature.variable] = feature.default
+        elif feature.domain is not None:
+            own[feature.variable] = Variable(
+                feature.variable, _find_owner(feature), feature.domain, feature.element.id
+            )
+    behaviour_variables = () if behaviour is None else behaviour.variables
+    return Scope(
+        context, own | {variable.name: variable for variable in behaviour_variables}, constants
+    )
 
 
-def _owner(feature: Feature) -> Owner:
-    """Inputs are the environment's; outputs and what the subject has itself are its own."""
-    usual = "in" if feature.element.kind is Kind.PARAMETER else "out"
-    is_input = (feature.direction or usual) == "in"
+def _find_owner(feature: Feature) -> Owner:
+    """Return the environment for inputs, else the system.
+
+    A parameter without a direction is an input, which is the default of UML.
+    """
+    default_direction = "in" if feature.element.kind is Kind.PARAMETER else "out"
+    is_input = (feature.direction or default_direction) == "in"
     return Owner.ENVIRONMENT if is_input else Owner.SYSTEM

@@ -1,4 +1,4 @@
-"""The conditions of requirements, by the element that they are about."""
+"""Constraints of requirements, by the element that the requirements are about."""
 
 from collections.abc import Iterator
 
@@ -16,89 +16,97 @@ class Statement(Struct, frozen=True):
     requirement: Element
     is_assumed: bool
     is_open: bool = False
-    """Nothing says which it is, in SysML v1: what is about inputs alone is assumed."""
-
-
-def statements(graph: Graph) -> list[tuple[Element, list[Statement]]]:
-    """Subjects in the order of the model, each with what all its requirements say of it.
-
-    A requirement about a definition is one about all that specialise it, and about operations that
-    it is the method of; a definition that is abstract, or in no file of the model, has only those.
+    """The requirement does not separate assumptions from demands (SysML v1): a formula over inputs
+    alone is then assumed.
     """
-    found: dict[str, dict[str, Statement]] = {}
+
+
+def collect_statements(graph: Graph) -> list[tuple[Element, list[Statement]]]:
+    """Return the subjects in model order, each with the statements of all its requirements.
+
+    A requirement about a definition applies to all its specialisations, and to the operations whose
+    method the definition is. An abstract or external definition is no subject itself.
+    """
+    statements: dict[str, dict[str, Statement]] = {}
     for requirement in filter(query.is_requirement, graph.of_kind(Kind.CLASS)):
-        said = list(_conditions(graph, requirement))
-        for subject in _subjects(graph, requirement) if said else ():
-            rows = found.setdefault(subject.id, {})
-            rows.update((one.constraint.id, one) for one in said)
-    return [(graph[id], list(rows.values())) for id, rows in found.items()]
+        own = list(_iter_statements(graph, requirement))
+        for subject in _iter_subjects(graph, requirement) if own else ():
+            by_constraint = statements.setdefault(subject.id, {})
+            by_constraint.update((statement.constraint.id, statement) for statement in own)
+    return [(graph[id], list(by_constraint.values())) for id, by_constraint in statements.items()]
 
 
-def _conditions(graph: Graph, requirement: Element) -> Iterator[Statement]:
-    """Its own constraints and those of the requirements that it specialises."""
+def _iter_statements(graph: Graph, requirement: Element) -> Iterator[Statement]:
+    """Yield the constraints of a requirement and of those that it specialises."""
     family = (requirement, *query.generals(graph, requirement))
-    is_open = not any(_tells_apart(graph, one) for one in family)
-    for one in family:
-        assumed = {constraint.id for constraint in graph.targets(one, Edge.ASSUMES)}
-        for constraint in graph.owned(one):
-            if constraint.kind is Kind.CONSTRAINT and constraint.attrs.get("body"):
-                is_assumed = constraint.id in assumed or _says_assume(constraint)
-                yield Statement(constraint, requirement, is_assumed, is_open)
+    is_open = not any(_separates_assumptions(graph, member) for member in family)
+    for member in family:
+        assumed_ids = {constraint.id for constraint in graph.targets(member, Edge.ASSUMES)}
+        for element in graph.owned(member):
+            if element.kind is Kind.CONSTRAINT and element.attrs.get("body"):
+                is_assumed = element.id in assumed_ids or _is_marked_assumption(element)
+                yield Statement(element, requirement, is_assumed, is_open)
 
 
-def _tells_apart(graph: Graph, requirement: Element) -> bool:
-    """Whether a requirement says what of it is assumed."""
+def _separates_assumptions(graph: Graph, requirement: Element) -> bool:
+    """Whether the requirement states which of its constraints are assumptions."""
     has_subject = bool(graph.targets(requirement, Edge.SUBJECT))
     return has_subject or any(
-        one.kind is Kind.CONSTRAINT and _says_assume(one) for one in graph.owned(requirement)
+        element.kind is Kind.CONSTRAINT and _is_marked_assumption(element)
+        for element in graph.owned(requirement)
     )
 
 
-def _says_assume(constraint: Element) -> bool:
-    """Whether a constraint of SysML v1, which has no assumptions, says it by its language."""
+def _is_marked_assumption(constraint: Element) -> bool:
+    """Whether the language of a constraint marks it as an assumption; SysML v1 has no other way."""
     return "assume" in str(constraint.attrs.get("language", "")).lower()
 
 
-def _subjects(graph: Graph, requirement: Element) -> Iterator[Element]:
-    """What satisfies it, else what it says it is about, with all that specialises that."""
+def _iter_subjects(graph: Graph, requirement: Element) -> Iterator[Element]:
+    """Yield the elements that satisfy the requirement, else its declared subject, with all their
+    specialisations.
+    """
     family = (requirement, *query.generals(graph, requirement))
     stated = graph.sources(requirement, Edge.SATISFIES)
     if not stated:
-        stated = next(filter(None, (graph.targets(one, Edge.SUBJECT) for one in family)), [])
-    for one in stated:
-        type_ = one if one.kind in _SUBJECTS else query.type_of(graph, one)
+        declared = (graph.targets(member, Edge.SUBJECT) for member in family)
+        stated = next(filter(None, declared), [])
+    for element in stated:
+        type_ = element if element.kind in _SUBJECTS else query.type_of(graph, element)
         if type_ is not None:
-            yield from _with_special(graph, type_, set())
+            yield from _iter_specialisations(graph, type_, set())
 
 
-def _with_special(graph: Graph, type_: Element, seen: set[str]) -> Iterator[Element]:
-    if type_.id in seen:
+def _iter_specialisations(graph: Graph, type_: Element, visited: set[str]) -> Iterator[Element]:
+    """Yield a type, the operations whose method it is, and both for all its specialisations."""
+    if type_.id in visited:
         return
-    seen.add(type_.id)
+    visited.add(type_.id)
     if not type_.attrs.get("external") and not type_.attrs.get("abstract"):
         yield type_
     yield from graph.sources(type_, Edge.METHOD)
     for special in graph.sources(type_, Edge.SPECIALIZES):
-        yield from _with_special(graph, special, seen)
+        yield from _iter_specialisations(graph, special, visited)
 
 
 def definition_of(graph: Graph, subject: Element) -> Element:
-    """What has the features that formulas name: of an operation that is its method."""
+    """Return the element whose features formulas may name: the method of an operation, if any."""
     method = graph.target(subject, Edge.METHOD) if subject.kind is Kind.OPERATION else None
     return method or subject
 
 
 def component_of(graph: Graph, subject: Element) -> str:
-    """Name of the component that a subject is: an operation is one of what owns it."""
+    """Return the component name of a subject; that of an operation begins with its owner's."""
     owner = graph.owner(subject) if subject.kind is Kind.OPERATION else None
     if owner is None:
         return query.component_name(graph, subject)
     return f"{query.component_name(graph, owner)}.{subject.name}"
 
 
-def redefining(graph: Graph, subject: Element) -> Element | None:
-    """An operation that gives parameters of its method other values; None when it does not."""
+def find_redefining_operation(graph: Graph, subject: Element) -> Element | None:
+    """Return the subject if it is an operation that redefines parameters of its method."""
     if subject.kind is not Kind.OPERATION:
         return None
-    own = query.parameters(graph, subject)
-    return subject if any(graph.targets(one, Edge.REDEFINES) for one in own) else None
+    parameters = query.parameters(graph, subject)
+    is_redefining = any(graph.targets(parameter, Edge.REDEFINES) for parameter in parameters)
+    return subject if is_redefining else None

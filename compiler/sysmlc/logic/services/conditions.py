@@ -8,16 +8,16 @@ from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Edge, Element, Graph, Kind, query
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import Domain
-from sysmlc.logic.expressions.context import Context, context_of, note_range
-from sysmlc.logic.expressions.declared import Feature
-from sysmlc.logic.expressions.elaborate import (
+from sysmlc.logic.expressions.context import Context, context_of, report_range
+from sysmlc.logic.expressions.elaboration import (
     ElaborationError,
     Fault,
     Symbol,
-    condition,
-    literal_of,
+    elaborate_condition,
+    find_literal,
 )
 from sysmlc.logic.expressions.expression import Binary, Expression, ExpressionError
+from sysmlc.logic.expressions.features import Feature
 from sysmlc.logic.expressions.parsing import parse_expression
 from sysmlc.logic.formula import Formula
 from sysmlc.logic.simplify import simplify_constant
@@ -124,7 +124,7 @@ def _read_service(
         variable.name: None for part in conditions for variable in f.variables(part.formula)
     }:
         feature = next(feature for feature in context.features.values() if feature.variable == name)
-        note_range(graph, feature, sink)
+        report_range(graph, feature, sink)
     return Service(service, context, conditions)
 
 
@@ -172,7 +172,7 @@ def _read_formula(context: Context, constraint: Element) -> Formula:
     if language.rstrip("0123456789. ") not in _LANGUAGES:
         raise ExpressionError(f"it is written in {constraint.attrs['language']}", 0)
     expression = _split_chain(parse_expression(str(constraint.attrs["body"])))
-    formula = condition(expression, lambda name: _find_symbol(context, name))
+    formula = elaborate_condition(expression, lambda name: _find_symbol(context, name))
     domains: dict[str, Domain] = {
         feature.variable: feature.domain
         for feature in context.features.values()
@@ -211,8 +211,8 @@ def _split_chain(expression: Expression) -> Expression:
 def _find_symbol(context: Context, name: str) -> Symbol | None:
     feature = context.features.get(name) or context.features.get(name.removeprefix("self."))
     if feature is None:
-        return literal_of(context, name)
-    if feature.constant and feature.default is not None:
+        return find_literal(context, name)
+    if feature.is_constant and feature.default is not None:
         return Symbol(f.const(feature.default), feature.domain)
     return Symbol(f.var(feature.variable), feature.domain)
 

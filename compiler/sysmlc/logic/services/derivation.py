@@ -20,7 +20,7 @@ from sysmlc.logic.contract import (
     Owner,
     Variable,
 )
-from sysmlc.logic.expressions.declared import Feature
+from sysmlc.logic.expressions.features import Feature
 from sysmlc.logic.formula import Formula
 from sysmlc.logic.names import Names
 from sysmlc.logic.services.conditions import Condition, Service, is_input, iter_services

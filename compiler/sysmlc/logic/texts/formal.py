@@ -1,50 +1,272 @@
-"""Formal texts in models: temporal logic, with the past, and property patterns as sentences.
+"""Readers of formal texts in models: temporal logic with the past, and sentences of patterns.
 
-Most models have none: what reads them is imported when there is one.
+Sentences are structured English, ``[scope,] pattern`` (after Konrad and Cheng, 2005). Scopes:
+globally; before R; after Q; between Q and R; after Q until R. Conditions are formulas about the
+present in the neutral form.
 """
 
 import re
-from collections.abc import Mapping
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Mapping
+from typing import NoReturn
 
+from msgspec.structs import replace
+
+from sysmlc.logic import formula as f
 from sysmlc.logic.contract import Domain
-from sysmlc.logic.formula import Formula
-
-if TYPE_CHECKING:
-    from sysmlc.logic.spelling import FormulaError
+from sysmlc.logic.evaluate import has_primes
+from sysmlc.logic.formula import Formula, Op
+from sysmlc.logic.infix import Part, Reader
+from sysmlc.logic.reduction.formula_reduction import has_future
+from sysmlc.logic.spelling import (
+    NEUTRAL,
+    PAST,
+    PAST_WORDS,
+    Cursor,
+    FormulaError,
+    line_and_column,
+    tokens,
+)
+from sysmlc.logic.texts import patterns
+from sysmlc.logic.texts.patterns import Scope
 
 _LANGUAGES = ("ltl", "spin", "promela", "pattern")
-_SENTENCE = r"\s*globally\s*,|.*\bit\s+is\s+(always|never|eventually)\s+the\s+case\s+that\b"
-"""What nobody writes by chance: tools call the language of any prose English."""
+_SENTENCE = re.compile(
+    r"\s*globally\s*,|.*\bit\s+is\s+(always|never|eventually)\s+the\s+case\s+that\b",
+    re.IGNORECASE | re.DOTALL,
+)
+"""The start of a sentence that no informal text contains: tools label any prose as English."""
+_MAX_TIMES = 32
+"""Most phases that a bounded existence counts; each needs a history bit."""
 
 
 def is_formal(language: str, text: str) -> bool:
-    """Whether a text in a language is meant to be a formula or a sentence of a pattern."""
+    """Whether a text in a language is meant as a formula or as a sentence of a pattern."""
     name = language.lower()
-    return any(one in name for one in _LANGUAGES) or (
-        "english" in name and re.match(_SENTENCE, text, re.IGNORECASE | re.DOTALL) is not None
-    )
+    if any(part in name for part in _LANGUAGES):
+        return True
+    return "english" in name and _SENTENCE.match(text) is not None
 
 
 def read_formal(text: str, language: str, variables: Mapping[str, Domain]) -> Formula:
-    """The formula that a text says, with operators of the past where it has them.
+    """Return the formula of a formal text; it may have operators of the past.
 
-    Raises FormulaError; ``told`` says where.
+    Raises FormulaError, which ``describe_error`` shows with its location.
     """
     name = language.lower()
     if "pattern" in name or "english" in name:
-        from sysmlc.logic.texts.sentences import read_sentence
-
         return read_sentence(text, variables)
-    from sysmlc.logic.texts.past import read_past
-
-    return read_past(text, variables)
+    return read_temporal_logic(text, variables)
 
 
-def told(error: "FormulaError", text: str) -> str:
-    """What is wrong with a text, and where: the line when there are several."""
-    from sysmlc.logic.spelling import line_and_column
-
+def describe_error(error: FormulaError, text: str) -> str:
+    """Return the message of an error with its column, and with its line if the text has several."""
     line, column = line_and_column(text, error.at)
-    place = f"line {line}, column {column}" if "\n" in text.strip() else f"column {column}"
-    return f"{error} ({place})"
+    location = f"line {line}, column {column}" if "\n" in text.strip() else f"column {column}"
+    return f"{error} ({location})"
+
+
+# -- temporal logic ------------------------------------------------------------------------------
+
+_TEMPORAL_SYNTAX = replace(
+    NEUTRAL,
+    prefix={**NEUTRAL.prefix, **PAST_WORDS},
+    infix={**NEUTRAL.infix, "S": Op.SINCE},
+)
+
+
+def read_temporal_logic(text: str, variables: Mapping[str, Domain]) -> Formula:
+    """Return the formula of a text in the neutral form with Y, O, H and S. Raises FormulaError."""
+    reader = _TemporalReader(Cursor(tokens(text, _TEMPORAL_SYNTAX)), _TEMPORAL_SYNTAX, variables)
+    formula = reader.formula()
+    if reader.cursor.next.kind != "end":
+        reader.cursor.fail()
+    return formula
+
+
+class _TemporalReader(Reader):
+    """Reader that rejects operators of the past over the future."""
+
+    def _prefixed(self, op: Op, weakest: int) -> Part:
+        return self._check_past(op, super()._prefixed(op, weakest))
+
+    def _applied(self, op: Op, left: Part) -> Part:
+        return self._check_past(op, super()._applied(op, left))
+
+    def _check_past(self, op: Op, part: Part) -> Part:
+        args = getattr(part.formula, "args", ())
+        if op in PAST and any(has_future(arg) or has_primes(arg) for arg in args):
+            raise FormulaError(f"'{op}' cannot look back at what is yet to come", part.at)
+        return part
+
+
+# -- sentences -----------------------------------------------------------------------------------
+
+_SENTENCE_SYNTAX = replace(NEUTRAL, signs=(",", "."))
+_ENDINGS: dict[str, Callable[[Scope, Formula], Formula]] = {
+    "always holds": patterns.universality,
+    "never holds": patterns.absence,
+    "eventually holds": patterns.existence,
+    "holds again and again": lambda scope, wanted: patterns.response(scope, f.TRUE, wanted),
+}
+
+
+def read_sentence(text: str, variables: Mapping[str, Domain]) -> Formula:
+    """Return the formula of a sentence. Raises FormulaError with the offset of the fault."""
+    cursor = Cursor(tokens(text, _SENTENCE_SYNTAX))
+    formula = _SentenceReader(cursor, variables).read()
+    cursor.took(".")
+    if cursor.next.kind != "end":
+        cursor.fail("the end of the sentence is expected")
+    return formula
+
+
+class _SentenceReader:
+    """Recursive-descent reader of ``[scope,] pattern``."""
+
+    def __init__(self, cursor: Cursor, variables: Mapping[str, Domain]) -> None:
+        self._cursor = cursor
+        self._conditions = _ConditionReader(cursor, _SENTENCE_SYNTAX, variables)
+
+    def read(self) -> Formula:
+        scope = self._read_scope()
+        if self._accept("it", "is"):
+            adverb = self._expect_one_of("always", "never", "eventually")
+            self._expect("the", "case", "that")
+            return self._read_after_adverb(scope, adverb)
+        for adverb in ("always", "never", "eventually"):
+            if self._accept(adverb):
+                return self._read_after_adverb(scope, adverb)
+        return self._read_condition_first(scope)
+
+    def _read_scope(self) -> Scope:
+        if self._accept("globally"):
+            scope = Scope("globally")
+        elif self._accept("before"):
+            scope = Scope("before", end=self._read_condition())
+        elif self._accept("between"):
+            start = self._read_condition()
+            self._expect("and")
+            scope = Scope("between", start, self._read_condition())
+        elif self._accept("after"):
+            start = self._read_condition()
+            if self._accept("until"):
+                scope = Scope("until", start, self._read_condition())
+            else:
+                scope = Scope("after", start)
+        else:
+            # Only a stated scope may be followed by a comma.
+            return Scope("globally")
+        self._cursor.took(",")
+        return scope
+
+    def _read_after_adverb(self, scope: Scope, adverb: str) -> Formula:
+        """Read ``always|never|eventually P [holds]``, ``always if ...``, or ``always P again and
+        again``.
+        """
+        if self._accept("if"):
+            if adverb != "always":
+                self._fail("'if' follows 'always' only; a condition")
+            return self._read_implication(scope)
+        condition = self._read_condition()
+        self._accept("holds")
+        if adverb == "always" and self._accept("again", "and", "again"):
+            return patterns.response(scope, f.TRUE, condition)
+        return _ENDINGS[f"{adverb} holds"](scope, condition)
+
+    def _read_implication(self, scope: Scope) -> Formula:
+        """Read ``P [holds][,] [then] ...`` after *if*."""
+        trigger = self._read_condition()
+        self._accept("holds")
+        self._cursor.took(",")
+        self._accept("then")
+        if self._accept("previously"):
+            return patterns.precedence(scope, self._read_held_condition(), trigger)
+        if self._accept("eventually"):
+            return patterns.response(scope, trigger, self._read_held_condition())
+        return self._read_consequence(scope, trigger, self._read_condition())
+
+    def _read_consequence(self, scope: Scope, trigger: Formula, answer: Formula) -> Formula:
+        """Read the words after the second condition, which select the pattern."""
+        if self._accept("previously", "held"):
+            return patterns.precedence(scope, answer, trigger)
+        if self._accept("eventually", "holds") or self._accept("holds", "eventually"):
+            return patterns.response(scope, trigger, answer)
+        if self._accept("holds", "within"):
+            steps = self._read_count("steps", "step")
+            return patterns.bounded_response(scope, trigger, answer, steps)
+        self._accept("holds")
+        if self._cursor.next.kind == "end" or self._cursor.has("."):
+            return patterns.universality(scope, f.implies(trigger, answer))
+        return self._fail("'eventually holds', 'previously held' or 'holds within N steps'")
+
+    def _read_condition_first(self, scope: Scope) -> Formula:
+        """Read a sentence that begins with a condition: ``P responds to Q``, ``P always holds``."""
+        condition = self._read_condition()
+        for words, make_pattern in _ENDINGS.items():
+            if self._accept(*words.split()):
+                return make_pattern(scope, condition)
+        if self._accept("responds", "to"):
+            return patterns.response(scope, self._read_condition(), condition)
+        if self._accept("precedes"):
+            return patterns.precedence(scope, condition, self._read_condition())
+        if self._accept("holds", "at", "most"):
+            return patterns.bounded_existence(scope, condition, self._read_count("times", "time"))
+        endings = "', '".join([*_ENDINGS, "responds to", "precedes"])
+        return self._fail(f"'{endings}' or 'holds at most N times'")
+
+    def _read_condition(self) -> Formula:
+        return self._conditions.formula()
+
+    def _read_held_condition(self) -> Formula:
+        """Read ``P [holds|held]``."""
+        condition = self._read_condition()
+        if not self._accept("holds"):
+            self._accept("held")
+        return condition
+
+    def _read_count(self, *units: str) -> int:
+        """Read ``once``, ``twice`` or a number with a unit."""
+        words = {"once": 1, "twice": 2}
+        token = self._cursor.next
+        if token.text.lower() in words:
+            self._cursor.take()
+            return words[token.text.lower()]
+        number = self._cursor.integer()
+        if not 0 <= number <= _MAX_TIMES:
+            raise FormulaError(f"a number from 0 to {_MAX_TIMES} is expected", token.at)
+        self._expect_one_of(*units)
+        return number
+
+    def _expect(self, *words: str) -> None:
+        for word in words:
+            self._expect_one_of(word)
+
+    def _expect_one_of(self, *words: str) -> str:
+        for word in words:
+            if self._accept(word):
+                return word
+        return self._fail(" or ".join(f"'{word}'" for word in words))
+
+    def _accept(self, *words: str) -> bool:
+        """Read the words if all of them come next, in any letter case; return whether they do."""
+        start = self._cursor.mark()
+        for word in words:
+            if self._cursor.next.text.lower() != word:
+                self._cursor.back_to(start)
+                return False
+            self._cursor.take()
+        return True
+
+    def _fail(self, expected: str) -> NoReturn:
+        self._cursor.fail(f"{expected} is expected")
+
+
+class _ConditionReader(Reader):
+    """Reader of conditions about the present: no temporal operators, no primes."""
+
+    def formula(self, weakest: int = 0) -> Formula:
+        offset = self.cursor.next.at
+        formula = super().formula(weakest)
+        if has_primes(formula) or has_future(formula):
+            raise FormulaError("a condition of a pattern is about the present", offset)
+        return formula

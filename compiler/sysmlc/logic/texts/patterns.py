@@ -1,12 +1,10 @@
-"""Property patterns, as formulas about the present and the past.
+"""Property patterns as formulas about the present and the past.
 
 Patterns and scopes are those of Dwyer, Avrunin and Corbett (Patterns in Property Specifications
-for Finite-State Verification, 1999). Every pattern is said as ``G`` and ``G F`` of what is known
-by now, which history bits bring into GR(1); the tests hold them against the published formulas.
-"After Q" means after the first Q.
+for Finite-State Verification, 1999). Every pattern is written as ``G p`` or ``G F p`` where p is
+about the present and the past, so that history bits bring it into GR(1); the tests compare the
+patterns with the published formulas. "After Q" means after the first Q.
 """
-
-from collections.abc import Callable, Mapping
 
 from msgspec import Struct
 
@@ -15,45 +13,21 @@ from sysmlc.logic.formula import Apply, Formula, Op
 
 
 class Scope(Struct, frozen=True):
-    """When a pattern must hold: ``globally``, ``before``, ``after``, ``between``, ``until``."""
+    """The steps in which a pattern must hold: ``globally``, ``before``, ``after``, ``between`` or
+    ``until``.
+    """
 
     kind: str
     start: Formula = f.TRUE
     end: Formula = f.FALSE
 
 
-# -- the past --------------------------------------------------------------------------------------
-
-
-def previous(formula: Formula) -> Formula:
-    """One step ago."""
-    return Apply(Op.PREVIOUS, (formula,))
-
-
-def once(formula: Formula) -> Formula:
-    """Now or before."""
-    return f.TRUE if formula == f.TRUE else Apply(Op.ONCE, (formula,))
-
-
-def since(stay: Formula, goal: Formula) -> Formula:
-    """The goal at some step up to now, ``stay`` at all steps after it."""
-    return Apply(Op.SINCE, (stay, goal))
-
-
-def _never(bad: Formula) -> Formula:
-    return f.always(f.negate(bad))
-
-
-def _again_not(pending: Formula) -> Formula:
-    return f.always(f.eventually(f.negate(pending)))
-
-
-# -- patterns --------------------------------------------------------------------------------------
+# -- patterns ------------------------------------------------------------------------------------
 
 
 def absence(scope: Scope, bad: Formula) -> Formula:
     """The condition never holds inside the scope."""
-    return _unless(scope, f.both(_inside(scope), bad))
+    return _forbid(scope, f.both(_is_inside(scope), bad))
 
 
 def universality(scope: Scope, good: Formula) -> Formula:
@@ -64,109 +38,140 @@ def universality(scope: Scope, good: Formula) -> Formula:
 def existence(scope: Scope, wanted: Formula) -> Formula:
     """The condition holds at some step inside the scope."""
     if scope.kind in ("globally", "after"):
-        inside = _inside(scope)
-        return _again_not(f.both(inside, f.negate(once(f.both(wanted, inside)))))
+        inside = _is_inside(scope)
+        missing = f.negate(_once(f.both(wanted, inside)))
+        return _infinitely_often_not(f.both(inside, missing))
     if scope.kind == "before":
-        return _at_end(scope, f.negate(once(wanted)))
-    return _obligation(scope, wanted, scope.start)
+        return _forbid_at_end(scope, f.negate(_once(wanted)))
+    return _require_answer(scope, wanted, scope.start)
 
 
 def precedence(scope: Scope, first: Formula, then: Formula) -> Formula:
-    """``then`` holds inside the scope only if ``first`` held there before, or holds with it."""
+    """``then`` holds inside the scope only if ``first`` held there before or holds with it."""
     missing = f.negate(first)
     if scope.kind in ("globally", "before"):
-        return _unless(scope, f.both(then, f.negate(once(first))))
+        return _forbid(scope, f.both(then, f.negate(_once(first))))
     if scope.kind == "after":
-        inside = _inside(scope)
-        return _never(f.both(inside, then, f.negate(once(f.both(first, inside)))))
-    open_ = f.negate(scope.end)
-    unprepared = since(f.both(missing, open_), f.both(scope.start, open_, missing))
-    return _unless(scope, f.both(then, unprepared))
+        inside = _is_inside(scope)
+        return _never(f.both(inside, then, f.negate(_once(f.both(first, inside)))))
+    is_open = f.negate(scope.end)
+    unprepared = _since(f.both(missing, is_open), f.both(scope.start, is_open, missing))
+    return _forbid(scope, f.both(then, unprepared))
 
 
 def response(scope: Scope, trigger: Formula, answer: Formula) -> Formula:
     """Whenever the trigger holds inside the scope, the answer holds then or later inside it."""
-    return _obligation(scope, answer, f.both(trigger, _inside(scope)))
+    return _require_answer(scope, answer, f.both(trigger, _is_inside(scope)))
 
 
-def within_steps(scope: Scope, trigger: Formula, answer: Formula, steps: int) -> Formula:
-    """As response, but at most so many steps later; what the scope's end cuts off is let off."""
+def bounded_response(scope: Scope, trigger: Formula, answer: Formula, steps: int) -> Formula:
+    """As ``response``, but at most *steps* later; no answer is due after the end of the scope."""
     missing = f.both(f.negate(answer), f.negate(scope.end))
-    waits = f.both(trigger, _inside(scope), missing)
+    waiting = f.both(trigger, _is_inside(scope), missing)
     for _ in range(steps):
-        waits = f.both(previous(waits), missing)
-    return _unless(scope, waits)
+        waiting = f.both(_previous(waiting), missing)
+    return _forbid(scope, waiting)
 
 
 def bounded_existence(scope: Scope, counted: Formula, times: int) -> Formula:
-    """There are at most so many phases inside the scope in which the condition holds."""
-    phase = f.both(counted, _inside(scope))
-    begins = f.both(phase, f.negate(previous(phase)))
-    many = _within(scope, begins)
+    """At most *times* phases inside the scope satisfy the condition."""
+    phase = f.both(counted, _is_inside(scope))
+    begins = f.both(phase, f.negate(_previous(phase)))
+    has_more = _once_inside(scope, begins)
     for _ in range(times):
-        many = _within(scope, f.both(begins, previous(many)))
-    return _unless(scope, many)
+        has_more = _once_inside(scope, f.both(begins, _previous(has_more)))
+    return _forbid(scope, has_more)
 
 
-# -- scopes ----------------------------------------------------------------------------------------
+# -- operators -----------------------------------------------------------------------------------
 
 
-def _inside(scope: Scope) -> Formula:
-    """That this step is one of the scope, as far as is known by now."""
-    open_ = f.negate(scope.end)
-    inside: Mapping[str, Callable[[], Formula]] = {
-        "globally": lambda: f.TRUE,
-        "before": lambda: f.negate(once(scope.end)),
-        "after": lambda: once(scope.start),
-    }
-    return inside.get(scope.kind, lambda: since(open_, f.both(scope.start, open_)))()
+def _previous(formula: Formula) -> Formula:
+    """The formula held one step ago."""
+    return Apply(Op.PREVIOUS, (formula,))
 
 
-def _within(scope: Scope, formula: Formula) -> Formula:
-    """That it held at some step since the scope began."""
+def _once(formula: Formula) -> Formula:
+    """The formula holds now or held at some step before."""
+    return f.TRUE if formula == f.TRUE else Apply(Op.ONCE, (formula,))
+
+
+def _since(stay: Formula, goal: Formula) -> Formula:
+    """``goal`` held at some step up to now, and ``stay`` at all steps after it."""
+    return Apply(Op.SINCE, (stay, goal))
+
+
+def _never(bad: Formula) -> Formula:
+    return f.always(f.negate(bad))
+
+
+def _infinitely_often_not(pending: Formula) -> Formula:
+    return f.always(f.eventually(f.negate(pending)))
+
+
+# -- scopes --------------------------------------------------------------------------------------
+
+
+def _is_inside(scope: Scope) -> Formula:
+    """The scope has begun and has not ended; whether an end will come is not known yet."""
+    is_open = f.negate(scope.end)
+    match scope.kind:
+        case "globally":
+            return f.TRUE
+        case "before":
+            return f.negate(_once(scope.end))
+        case "after":
+            return _once(scope.start)
+        case _:
+            return _since(is_open, f.both(scope.start, is_open))
+
+
+def _once_inside(scope: Scope, formula: Formula) -> Formula:
+    """The formula holds now or held at some step since the scope began."""
     if scope.kind in ("between", "until"):
-        return since(f.negate(scope.end), formula)
-    return once(formula)
+        return _since(f.negate(scope.end), formula)
+    return _once(formula)
 
 
-def _unless(scope: Scope, bad: Formula) -> Formula:
-    """What is bad never happens; where the scope needs an end, only what ends there counts."""
+def _forbid(scope: Scope, bad: Formula) -> Formula:
+    """``bad`` never holds; in a scope that needs an end, only if the end comes."""
     if scope.kind in ("globally", "after", "until"):
         return _never(bad)
     if scope.kind == "before":
-        return _at_end(scope, once(bad))
-    return _at_end(scope, since(f.negate(scope.end), bad))
+        return _forbid_at_end(scope, _once(bad))
+    return _forbid_at_end(scope, _since(f.negate(scope.end), bad))
 
 
-def _at_end(scope: Scope, bad: Formula) -> Formula:
-    """When the scope ends, what is bad was not so in the step before.
+def _forbid_at_end(scope: Scope, bad: Formula) -> Formula:
+    """``bad`` does not hold in the last step of the scope, the step before its end.
 
-    Before R ends at the first R, and what does not hold at any step before it, if it is the
-    first of all, is bad too.
+    "Before R" ends at the first R. If R holds in the first step, the scope is empty; then the
+    formula is violated if ``bad`` states that something is missing.
     """
     if scope.kind == "before":
-        first = f.negate(previous(once(scope.end)))
-        good = previous(f.negate(bad))
-        begun = previous(f.TRUE)
-        is_fine = f.either(good, f.negate(begun)) if _is_empty_fine(bad) else good
-        return _never(f.both(scope.end, first, f.negate(is_fine)))
-    return _never(f.both(scope.end, previous(bad)))
+        is_first_end = f.negate(_previous(_once(scope.end)))
+        is_good = _previous(f.negate(bad))
+        has_steps = _previous(f.TRUE)
+        if not _is_missing(bad):
+            is_good = f.either(is_good, f.negate(has_steps))
+        return _never(f.both(scope.end, is_first_end, f.negate(is_good)))
+    return _never(f.both(scope.end, _previous(bad)))
 
 
-def _is_empty_fine(bad: Formula) -> bool:
-    """Whether nothing bad is in a scope without steps: what is missing there is bad."""
-    return not (isinstance(bad, Apply) and bad.op is Op.NOT)
+def _is_missing(bad: Formula) -> bool:
+    """Whether the fault is the absence of something, which a scope without steps has too."""
+    return isinstance(bad, Apply) and bad.op is Op.NOT
 
 
-def _obligation(scope: Scope, answer: Formula, owed: Formula) -> Formula:
-    """What is owed inside the scope is answered inside of it."""
+def _require_answer(scope: Scope, answer: Formula, obligation: Formula) -> Formula:
+    """Every obligation inside the scope is answered inside it."""
     missing = f.negate(answer)
     if scope.kind in ("globally", "after"):
-        return _again_not(since(missing, f.both(owed, missing)))
-    open_ = f.both(missing, f.negate(scope.end))
-    pending = since(open_, f.both(owed, open_))
+        return _infinitely_often_not(_since(missing, f.both(obligation, missing)))
     if scope.kind == "before":
-        return _at_end(scope, since(missing, f.both(owed, missing)))
+        return _forbid_at_end(scope, _since(missing, f.both(obligation, missing)))
+    is_unanswered = f.both(missing, f.negate(scope.end))
+    pending = _since(is_unanswered, f.both(obligation, is_unanswered))
     if scope.kind == "between":
-        return _at_end(scope, pending)
-    return f.both(_at_end(scope, pending), _again_not(pending))
+        return _forbid_at_end(scope, pending)
+    return f.both(_forbid_at_end(scope, pending), _infinitely_often_not(pending))

@@ -8,10 +8,10 @@ from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Element, Graph, query
 from sysmlc.logic.activities.saturation import Possibility, find_saturating_writes
 from sysmlc.logic.activities.token_graph import TokenGraph
-from sysmlc.logic.expressions.context import named_values
-from sysmlc.logic.expressions.declared import Feature
-from sysmlc.logic.expressions.elaborate import ElaborationError, Fault
+from sysmlc.logic.expressions.elaboration import ElaborationError, Fault
 from sysmlc.logic.expressions.expression import Expression
+from sysmlc.logic.expressions.features import Feature
+from sysmlc.logic.expressions.named_elements import find_named_values
 from sysmlc.logic.machines.actions import NOT_ASSIGNABLE, RULE_OF_FAULT, check_assignable
 from sysmlc.logic.machines.moves import SATURATES
 from sysmlc.logic.writers import Writers, called
@@ -72,7 +72,7 @@ def report_unassignable(
         if feature is None or assignment.value is None:
             continue
         subject, text = graph.subject(assignment.action), f"{assignment.name} := {assignment.text}"
-        if feature.constant:
+        if feature.is_constant:
             context = _owner_name(graph, activity, feature)
             sink.report(NOT_ASSIGNABLE, subject, text=text, name=assignment.name, context=context)
         elif fault := _find_fault(assignment.value, feature, scope):
@@ -158,6 +158,6 @@ def _list_known_names(graph: Graph, activity: Element) -> Iterator[str]:
     """Yield the names of elements in the activity and of features of the classifiers around it."""
     scopes = (activity, *graph.ancestors(activity))
     owners = [element for element in scopes if element.kind in query.CLASSIFIERS]
-    features = (name for owner in owners for name in named_values(graph, owner))
+    features = (name for owner in owners for name in find_named_values(graph, owner))
     yield from (name for name in features if name)
     yield from (element.name for element in graph.subtree(activity) if element.name)

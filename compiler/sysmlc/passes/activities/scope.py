@@ -3,17 +3,17 @@
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Element, Graph, Kind
 from sysmlc.logic.contract import BooleanDomain, Domain, IntegerDomain, Owner, Variable
-from sysmlc.logic.expressions.context import context_of, note_range
-from sysmlc.logic.expressions.declared import Feature
-from sysmlc.logic.expressions.elaborate import (
+from sysmlc.logic.expressions.context import context_of, report_range
+from sysmlc.logic.expressions.elaboration import (
     ElaborationError,
     Fault,
-    Meaning,
+    GuardedValue,
     Symbol,
-    condition,
-    meaning,
+    elaborate_condition,
+    elaborate_value,
 )
 from sysmlc.logic.expressions.expression import Expression, ExpressionError
+from sysmlc.logic.expressions.features import Feature
 from sysmlc.logic.expressions.parsing import parse_expression
 from sysmlc.logic.formula import Formula, const, var, variables
 from sysmlc.logic.machines.actions import check_assignable
@@ -79,12 +79,12 @@ class Scope:
         """Return the variable of a property as an input. Reports an assumed range."""
         return self._make_input(name)
 
-    def evaluate(self, expression: Expression, domain: Domain) -> Meaning:
+    def evaluate(self, expression: Expression, domain: Domain) -> GuardedValue:
         """Return the values of an expression. Numbers may lie outside *domain*.
 
         Raises ElaborationError if the expression has no value of the domain's type.
         """
-        result = meaning(expression, self._find_symbol, domain)
+        result = elaborate_value(expression, self._find_symbol, domain)
         if not isinstance(result.domain, IntegerDomain) or not isinstance(domain, IntegerDomain):
             check_assignable(result.domain, domain, expression)
         return result
@@ -97,7 +97,7 @@ class Scope:
         """Return a condition and its variables. Raises UnreadableError."""
         try:
             expression = parse_expression(text)
-            formula = condition(expression, self._find_symbol)
+            formula = elaborate_condition(expression, self._find_symbol)
         except ExpressionError as error:
             raise UnreadableError(str(error)) from None
         except ElaborationError as error:
@@ -111,7 +111,7 @@ class Scope:
         """Whether the text could be read if *unknown* were a Boolean."""
         trial = {**self._extra, unknown: var(unknown)}
         try:
-            condition(parse_expression(text), lambda name: self._find_symbol(name, trial))
+            elaborate_condition(parse_expression(text), lambda name: self._find_symbol(name, trial))
         except ElaborationError as error:
             return error.fault is Fault.UNKNOWN and error.name != unknown
         return True
@@ -139,7 +139,7 @@ class Scope:
             self._feature(label) for label, variable in self._variables.items() if variable == name
         ):
             if feature is not None and feature.domain is not None:
-                note_range(self._graph, feature, self._sink)
+                report_range(self._graph, feature, self._sink)
                 return Variable(name, Owner.ENVIRONMENT, feature.domain, feature.element.id)
         return None
 
@@ -149,6 +149,6 @@ def _variable_names(formula: Formula) -> list[str]:
 
 
 def _feature_value(feature: Feature) -> Formula:
-    if feature.constant and feature.default is not None:
+    if feature.is_constant and feature.default is not None:
         return const(feature.default)
     return var(feature.variable)

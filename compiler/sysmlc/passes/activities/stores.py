@@ -12,8 +12,8 @@ from sysmlc.ir import Element, Graph, query
 from sysmlc.logic import formula as f
 from sysmlc.logic.activities.token_graph import Store, TokenGraph, Write
 from sysmlc.logic.contract import Domain, IntegerDomain, Owner, Variable
-from sysmlc.logic.expressions.declared import Feature
-from sysmlc.logic.expressions.elaborate import ElaborationError
+from sysmlc.logic.expressions.elaboration import ElaborationError
+from sysmlc.logic.expressions.features import Feature
 from sysmlc.logic.formula import Formula
 from sysmlc.logic.machines.symbolic_path import split_by_range
 from sysmlc.logic.simplify import is_satisfiable, remove_redundant, substitute
@@ -127,7 +127,9 @@ class _StoreTracker:
         if _is_outside(feature.domain, result.domain):
             self.outside.add(assignment.action.id)
         substituted = (
-            way for t in result.terms for way in _substitute_cases(t.condition, t.value, cases_of)
+            way
+            for guarded_case in result.cases
+            for way in _substitute_cases(guarded_case.condition, guarded_case.value, cases_of)
         )
         outcomes: list[_Way] = []
         for case, value in substituted:
@@ -217,7 +219,7 @@ class _StoreTracker:
             return ENDLESS
         if feature.is_assumed:
             return WIDE
-        if feature.direction in ("in", "inout") or feature.constant:
+        if feature.direction in ("in", "inout") or feature.is_constant:
             return DECIDED
         if self.scope.belongs_to_another_object(name):
             return ELSEWHERE
@@ -257,7 +259,7 @@ class _StoreTracker:
         ):
             return False
         # Assignments to constants are reported by SM415.
-        is_seen = self._is_visible(name) and not self.features[name].constant
+        is_seen = self._is_visible(name) and not self.features[name].is_constant
         return name in self.read or is_seen or self.scope.belongs_to_another_object(name)
 
 

@@ -12,12 +12,12 @@ from sysmlc.logic.classification import classify
 from sysmlc.logic.contract import Class, Conjunct, Contract, Owner
 from sysmlc.logic.expressions.context import context_of
 from sysmlc.logic.formula import Formula
-from sysmlc.logic.reduction.reduce import is_reducible, remembering
-from sysmlc.logic.requirements.derivation import with_features
+from sysmlc.logic.reduction.contract_reduction import add_history_bits, is_reducible
+from sysmlc.logic.requirements.derivation import add_features
 from sysmlc.logic.requirements.scope import Scope, scope_of
 from sysmlc.logic.requirements.statements import component_of, definition_of
 from sysmlc.logic.spelling import FormulaError
-from sysmlc.logic.texts.formal import is_formal, read_formal, told
+from sysmlc.logic.texts.formal import describe_error, is_formal, read_formal
 
 _ACTIONS = (Kind.ACTIVITY, Kind.OPERATION)
 
@@ -138,10 +138,10 @@ def _add_formula(graph: Graph, contract: Contract, constraint: Element, sink: Si
     try:
         formula = read_formal(body, str(constraint.attrs["language"]), domains)
         if scope is not None:
-            formula = scope.settled(formula)
-            contract = with_features(contract, scope, formula)
+            formula = scope.substitute_constants(formula)
+            contract = add_features(contract, scope, formula)
     except FormulaError as error:
-        variable_names, reason = ", ".join(domains), told(error, body)
+        variable_names, reason = ", ".join(domains), describe_error(error, body)
         sink.report(
             NOT_A_FORMULA, subject, constraint=name, reason=reason, variables=variable_names
         )
@@ -152,7 +152,7 @@ def _add_formula(graph: Graph, contract: Contract, constraint: Element, sink: Si
     ]
     if any(part.class_ is Class.OTHER and not is_reducible(part.formula) for part in conjuncts):
         sink.report(OUTSIDE_GR1, subject, constraint=name)
-    return remembering(_extend(contract, conjuncts))
+    return add_history_bits(_extend(contract, conjuncts))
 
 
 def report_general(graph: Graph, contracts: Iterable[Contract], sink: Sink) -> None:

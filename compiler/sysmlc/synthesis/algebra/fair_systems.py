@@ -10,8 +10,9 @@ from msgspec import Struct
 from msgspec.structs import replace
 
 from sysmlc.logic.contract import Class, Conjunct, Contract, Domain, Variable
+from sysmlc.logic.reduction.contract_reduction import as_ltl, is_gr1
+from sysmlc.logic.reduction.formula_reduction import NotReducibleError, reduce_formula
 from sysmlc.logic.reduction.history import History
-from sysmlc.logic.reduction.reduce import NotReducibleError, as_ltl, is_plain, parts_of
 from sysmlc.synthesis.bdd.manager import Manager, Node
 from sysmlc.synthesis.bdd.symbols import SymbolError, Symbols
 from sysmlc.synthesis.games.game import OutsideGr1Error
@@ -228,11 +229,11 @@ def observe_histories(contracts: Iterable[Contract]) -> ObservedContracts:
 
 def _reduce_conjuncts(conjuncts: Iterable[Conjunct], history: History) -> Iterator[Conjunct]:
     for conjunct in conjuncts:
-        if is_plain(conjunct):
+        if is_gr1(conjunct):
             yield conjunct
             continue
         try:
-            parts = parts_of(as_ltl(conjunct), history, conjunct.origin)
+            parts = reduce_formula(as_ltl(conjunct), history, conjunct.origin)
         except NotReducibleError as problem:
             raise OutsideGr1Error(conjunct, str(problem)) from None
         yield from (replace(conjunct, formula=part, class_=class_) for class_, part in parts)

@@ -8,7 +8,7 @@ from msgspec.structs import replace
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.logic.contract import Conjunct, Contract, Owner, Variable
 from sysmlc.logic.formula import Literal
-from sysmlc.logic.reduction.reduce import reduced
+from sysmlc.logic.reduction.contract_reduction import reduce_contract
 from sysmlc.synthesis.algebra.traces import Trace
 from sysmlc.synthesis.bdd.limits import LimitError
 from sysmlc.synthesis.bdd.manager import Manager
@@ -216,7 +216,7 @@ def find_environment_strategy(contract: Contract, options: Options) -> Environme
     Raises NotLostError if the contract is realizable, OutsideGr1Error, LimitError.
     """
     manager = Manager(options.engine, options.limits, options.progress)
-    game = _keep_conflicting_goals(make_game(reduced(contract).contract, manager))
+    game = _keep_conflicting_goals(make_game(reduce_contract(contract).contract, manager))
     with manager.guard():
         return EnvironmentStrategy(find_ranks(game))
 

@@ -8,7 +8,7 @@ from sysmlc.logic.domains import values
 from sysmlc.logic.evaluate import has_primes, is_true
 from sysmlc.logic.formula import Literal
 from sysmlc.logic.printing import print_formula, print_literal
-from sysmlc.logic.reduction.rules import has_past
+from sysmlc.logic.reduction.formula_reduction import has_past
 from sysmlc.synthesis.counterstrategy.environment_strategy import Bits, EnvironmentStrategy
 from sysmlc.synthesis.unrealizable.explanation import original_conjuncts
 

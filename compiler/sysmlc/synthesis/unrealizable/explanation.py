@@ -16,7 +16,7 @@ from sysmlc.logic.contract import BooleanDomain, Class, Conjunct, Contract, Owne
 from sysmlc.logic.domains import size, values
 from sysmlc.logic.formula import Formula
 from sysmlc.logic.printing import print_formula
-from sysmlc.logic.reduction.reduce import is_plain
+from sysmlc.logic.reduction.contract_reduction import is_gr1
 from sysmlc.synthesis.bdd.limits import LimitError
 from sysmlc.synthesis.games.game import Constraint, Game
 from sysmlc.synthesis.unrealizable.core import is_won, unrealizable_core
@@ -71,7 +71,7 @@ def original_conjuncts(conjuncts: Iterable[Conjunct], contract: Contract) -> lis
     guarantee_ids = {id(conjunct) for conjunct in contract.guarantees}
     formulas: dict[str, list[Conjunct]] = {}
     for conjunct in contract.guarantees:
-        if not is_plain(conjunct):
+        if not is_gr1(conjunct):
             formulas.setdefault(conjunct.origin, []).append(conjunct)
     result: dict[int, Conjunct] = {}
     for conjunct in conjuncts:

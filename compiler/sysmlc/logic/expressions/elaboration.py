@@ -1,0 +1,376 @@
+"""Elaboration of expressions to formulas: resolve names, check types, split values into cases."""
+
+from collections.abc import Callable
+from enum import StrEnum
+
+from msgspec import Struct
+
+from sysmlc.logic import domains
+from sysmlc.logic import formula as f
+from sysmlc.logic.contract import BooleanDomain, Domain, EnumerationDomain, IntegerDomain
+from sysmlc.logic.expressions.context import Context
+from sysmlc.logic.expressions.expression import (
+    Binary,
+    Conditional,
+    Expression,
+    Literal,
+    Member,
+    Name,
+    Unary,
+    dotted_name,
+    name_of,
+    print_expression,
+)
+from sysmlc.logic.formula import Const, Formula, Op
+
+
+class Fault(StrEnum):
+    """Why an expression has no formula."""
+
+    UNKNOWN = "unknown name"
+    TYPE = "type mismatch"
+    OUTSIDE = "out of domain"
+    UNSUPPORTED = "not supported"
+
+
+class ElaborationError(ValueError):
+    """An expression has no formula; ``name`` is the name or value at fault."""
+
+    def __init__(self, fault: Fault, message: str, name: str, offset: int) -> None:
+        super().__init__(message)
+        self.fault = fault
+        self.name = name
+        self.offset = offset
+
+
+class Case(Struct, frozen=True):
+    """A value, and the condition under which an expression has it."""
+
+    condition: Formula
+    value: Formula
+
+
+class GuardedValue(Struct, frozen=True):
+    """The value of an expression as cases; exactly one of their conditions holds in each step."""
+
+    cases: tuple[Case, ...]
+    domain: Domain
+
+    def as_formula(self) -> Formula:
+        """Return the formula of a Boolean value."""
+        if len(self.cases) == 1:
+            return self.cases[0].value
+        return f.either(*(f.both(case.condition, case.value) for case in self.cases))
+
+
+class Symbol(Struct, frozen=True):
+    """The formula and the domain of a name; ``number`` if an enumeration literal stands for one."""
+
+    formula: Formula
+    domain: Domain | None
+    number: int | None = None
+
+
+Scope = Callable[[str], Symbol | None]
+"""Looks up a name; None if it is unknown."""
+_ORDER = {"<": Op.LT, "<=": Op.LE, ">": Op.GT, ">=": Op.GE}
+_EQUALITY = {"==": Op.EQ, "!=": Op.NE}
+_ARITHMETIC = {"+": Op.ADD, "-": Op.SUB, "*": Op.MUL, "/": Op.DIV, "%": Op.MOD}
+_CONNECTIVE: dict[str, Callable[[Formula, Formula], Formula]] = {
+    "and": f.both,
+    "or": f.either,
+    "implies": f.implies,
+    "xor": lambda left, right: f.negate(f.iff(left, right)),
+}
+
+
+def find_literal(context: Context, name: str) -> Symbol | None:
+    """Return the symbol of an enumeration literal with a qualified name (``Mode::auto``)."""
+    entry = context.literals.get(name)
+    if entry is None or ("::" not in name and "." not in name):
+        return None
+    enumeration, identifier = entry
+    domain = context.enumerations.domains[enumeration]
+    return Symbol(f.const(identifier), domain, context.number(name))
+
+
+def elaborate_condition(expression: Expression, scope: Scope) -> Formula:
+    """Return the formula of a Boolean expression. Raises ElaborationError."""
+    value = elaborate_value(expression, scope)
+    if not isinstance(value.domain, BooleanDomain):
+        raise _mismatch(expression, "a condition", value.domain)
+    return value.as_formula()
+
+
+def elaborate_value(
+    expression: Expression, scope: Scope, expected: Domain | None = None
+) -> GuardedValue:
+    """Return the value of an expression. Raises ElaborationError.
+
+    *expected* is the domain that the surrounding expression needs; it resolves the plain names of
+    enumeration literals and decides whether a literal stands for its number.
+    """
+    match expression:
+        case Literal(value):
+            return _elaborate_literal(expression, value, expected)
+        case Name() | Member():
+            return _elaborate_name(expression, scope, expected)
+        case Unary(op, operand):
+            return _elaborate_unary(op, operand, scope)
+        case Binary():
+            return _elaborate_binary(expression, scope)
+        case Conditional():
+            return _elaborate_conditional(expression, scope, expected)
+        case _:
+            text = print_expression(expression)
+            raise ElaborationError(
+                Fault.UNSUPPORTED, f"'{text}' is not a finite value", text, expression.offset
+            )
+
+
+def _make_value(formula: Formula, domain: Domain) -> GuardedValue:
+    return GuardedValue((Case(f.TRUE, formula),), domain)
+
+
+# -- operands ------------------------------------------------------------------------------------
+
+
+def _elaborate_literal(
+    expression: Literal, value: bool | float | str, expected: Domain | None
+) -> GuardedValue:
+    if isinstance(value, bool):
+        return _make_value(Const(value), BooleanDomain())
+    if isinstance(value, int):
+        return _make_value(Const(value), IntegerDomain(value, value))
+    if isinstance(value, str) and isinstance(expected, EnumerationDomain):
+        return _elaborate_string(expression, value, expected)
+    text = print_expression(expression)
+    raise ElaborationError(
+        Fault.UNSUPPORTED, f"{text} is not a finite value", text, expression.offset
+    )
+
+
+def _elaborate_string(
+    expression: Expression, value: str, expected: EnumerationDomain
+) -> GuardedValue:
+    """Return the literal of a text, or the enumeration literal that the text names."""
+    if value in expected.texts:
+        return _make_value(Const(expected.literals[expected.texts.index(value)]), expected)
+    if expected.texts or value not in expected.literals:
+        message = f"'{value}' is none of {domains.describe(expected)}"
+        raise ElaborationError(Fault.OUTSIDE, message, value, expression.offset)
+    return _make_value(Const(value), expected)
+
+
+def _elaborate_name(
+    expression: Name | Member, scope: Scope, expected: Domain | None
+) -> GuardedValue:
+    name = name_of(expression) or print_expression(expression)
+    symbol = scope(name)
+    last = name.replace(".", "::").rpartition("::")[2]
+    if isinstance(expected, EnumerationDomain) and last in expected.literals and not expected.texts:
+        # A property hides a literal of the same name.
+        is_property = symbol is not None and not isinstance(symbol.formula, Const)
+        if not is_property:
+            return _make_value(Const(last), expected)
+    if symbol is None:
+        fault = Fault.UNKNOWN if dotted_name(expression) else Fault.UNSUPPORTED
+        raise ElaborationError(fault, f"'{name}' is not known", name, expression.offset)
+    if isinstance(expected, IntegerDomain) and symbol.number is not None:
+        return _make_value(Const(symbol.number), IntegerDomain(symbol.number, symbol.number))
+    if symbol.domain is None:
+        message = f"'{name}' has no finite type"
+        raise ElaborationError(Fault.UNSUPPORTED, message, name, expression.offset)
+    return _make_value(symbol.formula, symbol.domain)
+
+
+# -- operators -----------------------------------------------------------------------------------
+
+
+def _elaborate_unary(op: str, operand: Expression, scope: Scope) -> GuardedValue:
+    if op == "not":
+        return _make_value(f.negate(elaborate_condition(operand, scope)), BooleanDomain())
+    number = _elaborate_number(operand, scope)
+    if op == "+":
+        return number
+    return _combine(Op.SUB, _make_value(Const(0), IntegerDomain(0, 0)), number)
+
+
+_ANY_NUMBER = IntegerDomain(0, 0)
+"""An expected domain that asks for a number; its bounds are not checked."""
+
+
+def _elaborate_number(expression: Expression, scope: Scope) -> GuardedValue:
+    value = elaborate_value(expression, scope, _ANY_NUMBER)
+    if not isinstance(value.domain, IntegerDomain):
+        raise _mismatch(expression, "a number", value.domain)
+    return value
+
+
+def _elaborate_binary(expression: Binary, scope: Scope) -> GuardedValue:
+    op = expression.op
+    if op in _CONNECTIVE:
+        operands = (
+            elaborate_condition(expression.left, scope),
+            elaborate_condition(expression.right, scope),
+        )
+        return _make_value(_CONNECTIVE[op](*operands), BooleanDomain())
+    if op in _ARITHMETIC:
+        left = _elaborate_number(expression.left, scope)
+        right = _elaborate_number(expression.right, scope)
+        return _combine(_ARITHMETIC[op], left, right)
+    left, right = _elaborate_operands(expression, scope)
+    comparisons = [
+        f.both(a.condition, b.condition, _compare(op, a.value, b.value, left.domain))
+        for a in left.cases
+        for b in right.cases
+    ]
+    return _make_value(f.either(*comparisons), BooleanDomain())
+
+
+def _compare(op: str, left: Formula, right: Formula, domain: Domain) -> Formula:
+    if not isinstance(domain, BooleanDomain):
+        return f.compare(_EQUALITY.get(op) or _ORDER[op], left, right)
+    is_same = f.iff(left, right)
+    return is_same if op == "==" else f.negate(is_same)
+
+
+def _elaborate_operands(expression: Binary, scope: Scope) -> tuple[GuardedValue, GuardedValue]:
+    """Return both values of a comparison, after a check that they can be compared."""
+    left, right = _infer_operands(expression.left, expression.right, scope)
+    if type(left.domain) is not type(right.domain):
+        raise _mismatch(expression.right, _describe_kind(left.domain), right.domain)
+    if expression.op in _ORDER and not isinstance(left.domain, IntegerDomain):
+        raise _mismatch(expression.left, "a number", left.domain)
+    if isinstance(left.domain, EnumerationDomain) and left.domain != right.domain:
+        raise _mismatch(expression.right, f"one of {domains.describe(left.domain)}", right.domain)
+    _check_range(expression, left, right)
+    _check_texts(expression, left, right)
+    return left, right
+
+
+def _infer_operands(
+    left: Expression, right: Expression, scope: Scope
+) -> tuple[GuardedValue, GuardedValue]:
+    """Return both values; the domain of one resolves the literals of the other."""
+    try:
+        left_value = elaborate_value(left, scope)
+    except ElaborationError:
+        right_value = elaborate_value(right, scope)
+        return elaborate_value(left, scope, right_value.domain), right_value
+    right_value = elaborate_value(right, scope, left_value.domain)
+    if isinstance(left_value.domain, EnumerationDomain) and isinstance(
+        right_value.domain, IntegerDomain
+    ):
+        left_value = elaborate_value(left, scope, right_value.domain)
+    return left_value, right_value
+
+
+def _check_range(expression: Binary, left: GuardedValue, right: GuardedValue) -> None:
+    """Raise ElaborationError if a number is outside the range of the other operand.
+
+    An order may use the number next to the range (``x < 8`` for 0..7).
+    """
+    for operand, domain, other_domain in (
+        (expression.right, right.domain, left.domain),
+        (expression.left, left.domain, right.domain),
+    ):
+        if not isinstance(operand, Literal | Unary) or not isinstance(domain, IntegerDomain):
+            continue
+        slack = 0 if expression.op in _EQUALITY else 1
+        if isinstance(other_domain, IntegerDomain) and not (
+            other_domain.low - slack <= domain.low <= other_domain.high + slack
+        ):
+            text = print_expression(operand)
+            message = f"{text} is outside {domains.describe(other_domain)}"
+            raise ElaborationError(Fault.OUTSIDE, message, text, operand.offset)
+
+
+def _check_texts(expression: Binary, left: GuardedValue, right: GuardedValue) -> None:
+    """Raise ElaborationError if two String features are compared with each other.
+
+    The last literal of a String stands for all other texts, so that equal literals may be
+    different texts.
+    """
+    is_text = isinstance(left.domain, EnumerationDomain) and bool(left.domain.texts)
+    has_constant = any(
+        isinstance(case.value, Const) for side in (left, right) for case in side.cases
+    )
+    if is_text and not has_constant:
+        text = print_expression(expression)
+        message = f"'{text}' compares texts of which neither is known"
+        raise ElaborationError(Fault.UNSUPPORTED, message, text, expression.offset)
+
+
+def _combine(op: Op, left: GuardedValue, right: GuardedValue) -> GuardedValue:
+    """Apply an arithmetic operator to all pairs of cases."""
+    cases = tuple(
+        Case(f.both(a.condition, b.condition), _fold(op, a.value, b.value))
+        for a in left.cases
+        for b in right.cases
+    )
+    return GuardedValue(cases, _bound_result(op, left.domain, right.domain))
+
+
+def _fold(op: Op, left: Formula, right: Formula) -> Formula:
+    if isinstance(left, Const) and isinstance(right, Const) and op in (Op.ADD, Op.SUB, Op.MUL):
+        a, b = int(left.value), int(right.value)
+        return Const({Op.ADD: a + b, Op.SUB: a - b, Op.MUL: a * b}[op])
+    return f.compare(op, left, right)
+
+
+def _bound_result(op: Op, left: Domain, right: Domain) -> Domain:
+    """Return bounds of the results of an arithmetic operator (interval arithmetic)."""
+    assert isinstance(left, IntegerDomain)
+    assert isinstance(right, IntegerDomain)
+    match op:
+        case Op.ADD:
+            return IntegerDomain(left.low + right.low, left.high + right.high)
+        case Op.SUB:
+            return IntegerDomain(left.low - right.high, left.high - right.low)
+        case Op.MUL:
+            products = [a * b for a in (left.low, left.high) for b in (right.low, right.high)]
+            return IntegerDomain(min(products), max(products))
+    # The absolute values of quotient and remainder are at most that of the dividend.
+    greatest = max(abs(left.low), abs(left.high))
+    return IntegerDomain(-greatest, greatest)
+
+
+def _elaborate_conditional(
+    expression: Conditional, scope: Scope, expected: Domain | None
+) -> GuardedValue:
+    test = elaborate_condition(expression.condition, scope)
+    then = elaborate_value(expression.then, scope, expected)
+    otherwise = elaborate_value(expression.otherwise, scope, expected or then.domain)
+    if type(then.domain) is not type(otherwise.domain):
+        raise _mismatch(expression.otherwise, _describe_kind(then.domain), otherwise.domain)
+    cases = [Case(f.both(test, case.condition), case.value) for case in then.cases]
+    negated = f.negate(test)
+    cases += [Case(f.both(negated, case.condition), case.value) for case in otherwise.cases]
+    return GuardedValue(tuple(cases), _join_domains(then.domain, otherwise.domain))
+
+
+def _join_domains(left: Domain, right: Domain) -> Domain:
+    """Return the domain of both branches: the smallest range that contains the two ranges."""
+    if isinstance(left, IntegerDomain) and isinstance(right, IntegerDomain):
+        return IntegerDomain(min(left.low, right.low), max(left.high, right.high))
+    return left
+
+
+# -- errors --------------------------------------------------------------------------------------
+
+
+def _describe_kind(domain: Domain) -> str:
+    match domain:
+        case BooleanDomain():
+            return "a condition"
+        case IntegerDomain():
+            return "a number"
+        case EnumerationDomain():
+            return f"one of {domains.describe(domain)}"
+
+
+def _mismatch(expression: Expression, expected: str, actual: Domain) -> ElaborationError:
+    text = print_expression(expression)
+    message = f"'{text}' is {_describe_kind(actual)}, not {expected}"
+    return ElaborationError(Fault.TYPE, message, text, expression.offset)

@@ -1,0 +1,225 @@
+"""Elements of a model by the names that expressions use for them.
+
+A name is plain (``level``), dotted (``machine.busy``, ``level.value``), or names an enumeration
+literal (``Mode::auto``).
+"""
+
+from collections.abc import Iterable, Iterator
+from functools import cached_property
+
+from sysmlc.ir import Edge, Element, Graph, Kind, query
+from sysmlc.logic.contract import EnumerationDomain
+from sysmlc.logic.names import unique
+
+VALUE_KINDS = (Kind.PROPERTY, Kind.PORT, Kind.FLOW_PROPERTY, Kind.PARAMETER)
+"""Kinds of the elements that have a value in a context."""
+_STEPS = (Kind.ACTION, Kind.STRUCTURED)
+_OBJECTS = (Kind.CLASS, Kind.COMPONENT, Kind.SIGNAL, Kind.DATA_TYPE)
+_CALLED = (Kind.OPERATION, Kind.ACTIVITY)
+
+# -- features of the classifier ------------------------------------------------------------------
+
+
+def find_named_values(graph: Graph, classifier: Element) -> dict[str, Element]:
+    """Return the features and parameters of a classifier by name, inherited ones included.
+
+    The classifier's own elements take precedence over inherited ones.
+    """
+    own = [*query.features(graph, classifier), *query.parameters(graph, classifier)]
+    values = [element for element in own if element.name and element.kind in VALUE_KINDS]
+    inherited = _iter_inherited_values(graph, classifier)
+    # The first element of a name wins, so it must be the last one that the dictionary stores.
+    return {element.name: element for element in reversed([*values, *inherited])}
+
+
+def _iter_inherited_values(graph: Graph, classifier: Element) -> Iterator[Element]:
+    for general in query.generals(graph, classifier):
+        for element in graph.owned(general):
+            if element.name and element.kind in VALUE_KINDS:
+                yield element
+
+
+def find_port_values(graph: Graph, classifier: Element) -> dict[str, Element]:
+    """Return the items that flow through the ports of a classifier, by dotted name.
+
+    ``level.value`` is a flow property of the type of port ``level`` (SysML 1.6 clause 9.3.2.7).
+    """
+    values: dict[str, Element] = {}
+    for port in query.ports(graph, classifier):
+        type_ = query.type_of(graph, port) if port.name else None
+        if type_ is not None and type_.kind in _OBJECTS:
+            for item in _iter_port_items(graph, type_):
+                values.setdefault(f"{port.name}.{item.name}", item)
+    return values
+
+
+def _iter_port_items(graph: Graph, port_type: Element) -> Iterator[Element]:
+    for feature in query.features(graph, port_type):
+        if feature.name and (query.is_flow_property(feature) or feature.role == "value"):
+            yield feature
+
+
+def find_direction(graph: Graph, classifier: Element, name: str, element: Element) -> str:
+    """Return the direction of a feature as seen by the classifier; empty if it has none.
+
+    A conjugated port reverses the directions of its flow properties (SysML 1.6 clause 9.3.2.15).
+    """
+    attribute = element.attrs.get("direction")
+    direction = attribute if isinstance(attribute, str) else ""
+    head, dot, _ = name.partition(".")
+    if not dot or not direction:
+        return direction
+    port = next((port for port in query.ports(graph, classifier) if port.name == head), None)
+    is_reversed = port is not None and port.attrs.get("conjugated")
+    return (query.opposite(direction) or direction) if is_reversed else direction
+
+
+# -- values of the objects that a behaviour handles ----------------------------------------------
+
+
+def find_object_values(graph: Graph, behaviour: Element) -> dict[str, Element]:
+    """Return the values of arguments, payloads, pins and loop variables of a behaviour, by name.
+
+    ``machine.busy`` is a value of an argument, ``fault.severity`` a value of the payload of a
+    trigger, ``weigh.mass`` an output pin of a step, ``look.image.sharp`` a value of the object in
+    such a pin, ``p.number`` a value of the variable p of a structured node.
+    """
+    arguments = (parameter for parameter in query.parameters(graph, behaviour) if parameter.name)
+    values = dict(_iter_values(graph, ((argument.name, argument) for argument in arguments)))
+    values |= _iter_values(graph, _iter_payloads(graph, behaviour))
+    if behaviour.kind is Kind.ACTIVITY and _has_dotted_guard(graph, behaviour):
+        pins = list(_iter_output_pins(graph, behaviour, ""))
+        values |= pins
+        values |= _iter_values(graph, [*pins, *_iter_loop_variables(graph, behaviour)])
+    return values
+
+
+def _iter_values(
+    graph: Graph, objects: Iterable[tuple[str, Element]]
+) -> Iterator[tuple[str, Element]]:
+    """Yield the values of each object with dotted names that begin with the object's name."""
+    for name, typed_element in objects:
+        type_ = query.type_of(graph, typed_element)
+        if type_ is not None and type_.kind in (*_OBJECTS, *_CALLED):
+            for value in _iter_values_of_type(graph, type_):
+                yield f"{name}.{value.name}", value
+
+
+def _iter_values_of_type(graph: Graph, type_: Element) -> Iterator[Element]:
+    """Yield the value properties of a type, or the parameters of an operation or an activity."""
+    if type_.kind in _CALLED:
+        yield from (element for element in graph.owned(type_) if element.kind is Kind.PARAMETER)
+        return
+    generals = query.generals(graph, type_)
+    inherited = (element for general in generals for element in graph.owned(general))
+    for element in (*query.features(graph, type_), *inherited):
+        if element.kind is Kind.PROPERTY and element.role == "value":
+            yield element
+
+
+def _iter_payloads(graph: Graph, behaviour: Element) -> Iterator[tuple[str, Element]]:
+    """Yield the triggers of a state machine by the names of their payloads."""
+    if behaviour.kind is not Kind.STATE_MACHINE:
+        return
+    for element in graph.subtree(behaviour):
+        if element.kind is Kind.TRIGGER and "payload" in element.attrs:
+            yield str(element.attrs["payload"]), element
+
+
+def _iter_output_pins(graph: Graph, owner: Element, prefix: str) -> Iterator[tuple[str, Element]]:
+    """Yield the output pins of steps by name.
+
+    A step inside a structured node may be named with and without the name of that node.
+    """
+    for step in graph.owned(owner):
+        if step.kind not in _STEPS:
+            continue
+        if step.kind is Kind.STRUCTURED:
+            yield from _iter_output_pins(graph, step, prefix)
+            if step.name:
+                yield from _iter_output_pins(graph, step, f"{prefix}{step.name}.")
+        for pin in graph.owned(step) if step.name else ():
+            if pin.kind is Kind.PIN and pin.name and pin.attrs.get("direction") == "out":
+                yield f"{prefix}{step.name}.{pin.name}", pin
+
+
+def _iter_loop_variables(graph: Graph, owner: Element) -> Iterator[tuple[str, Element]]:
+    """Yield the variables of structured nodes, such as the current element of a loop."""
+    for element in graph.owned(owner):
+        if element.kind is Kind.STRUCTURED:
+            yield from _iter_loop_variables(graph, element)
+        elif element.kind is Kind.PROPERTY and element.subkind == "variable" and element.name:
+            yield element.name, element
+
+
+def _has_dotted_guard(graph: Graph, owner: Element) -> bool:
+    """Whether a guard or a change condition may name a pin or a variable; few activities do."""
+    for element in graph.owned(owner):
+        if "." in str(element.attrs.get("guard", "")):
+            return True
+        if element.kind is Kind.STRUCTURED and _has_dotted_guard(graph, element):
+            return True
+        if element.kind is Kind.ACTION and _has_dotted_trigger(graph, element):
+            return True
+    return False
+
+
+def _has_dotted_trigger(graph: Graph, action: Element) -> bool:
+    triggers = graph.targets(action, Edge.TRIGGER)
+    return any("." in str(trigger.attrs.get("condition", "")) for trigger in triggers)
+
+
+# -- enumeration literals ------------------------------------------------------------------------
+
+
+def literals_of(graph: Graph, enumeration: Element) -> dict[str, str]:
+    """Return the identifiers of the literals of an enumeration, by literal name."""
+    owned = graph.owned(enumeration)
+    names = [element.name for element in owned if element.kind is Kind.ENUMERATION_LITERAL]
+    return dict(zip(names, unique(names, "literal"), strict=True))
+
+
+class Enumerations:
+    """The literals of all enumerations of a model, collected when the first one is looked up."""
+
+    def __init__(self, graph: Graph) -> None:
+        self._graph = graph
+        self._numbers: dict[str, int | None] = {}
+
+    @cached_property
+    def literals(self) -> dict[str, tuple[str, str]]:
+        """(Enumeration, identifier) of each literal, by plain and by qualified name."""
+        literals: dict[str, tuple[str, str]] = {}
+        for enumeration in self._graph.of_kind(Kind.ENUMERATION):
+            for name, identifier in literals_of(self._graph, enumeration).items():
+                for spelling in (name, *_qualified_names(enumeration.name, name)):
+                    literals.setdefault(spelling, (enumeration.name, identifier))
+        return literals
+
+    @cached_property
+    def domains(self) -> dict[str, EnumerationDomain]:
+        """The domain of each enumeration, by name."""
+        identifiers: dict[str, dict[str, None]] = {}
+        for enumeration, identifier in self.literals.values():
+            identifiers.setdefault(enumeration, {})[identifier] = None
+        return {name: EnumerationDomain(tuple(members)) for name, members in identifiers.items()}
+
+    def number(self, name: str) -> int | None:
+        """Return the number that the literal of a qualified name stands for."""
+        if name not in self._numbers:
+            self._numbers[name] = self._find_number(name)
+        return self._numbers[name]
+
+    def _find_number(self, name: str) -> int | None:
+        for literal in self._graph.of_kind(Kind.ENUMERATION_LITERAL):
+            owner = self._graph.owner(literal) if name.endswith(literal.name) else None
+            if owner is None or name not in _qualified_names(owner.name, literal.name):
+                continue
+            value = literal.attrs.get("value")
+            if isinstance(value, int) and not isinstance(value, bool):
+                return value
+        return None
+
+
+def _qualified_names(enumeration: str, literal: str) -> tuple[str, str]:
+    return f"{enumeration}::{literal}", f"{enumeration}.{literal}"

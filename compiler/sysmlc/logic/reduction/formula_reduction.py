@@ -1,0 +1,327 @@
+"""Rules that reduce formulas of temporal logic to GR(1) with history bits.
+
+The reductions are known: response, next inside liveness, bounded response, precedence, the past
+(Bloem et al., Synthesis of Reactive(1) Designs; Pnueli's testers; Maoz and Ringert, GR(1) with
+patterns). Every rule is an equivalence in all traces in which the bits follow their rules.
+"""
+
+from collections.abc import Iterator
+
+from sysmlc.logic import formula as f
+from sysmlc.logic.classification import classify
+from sysmlc.logic.contract import Class
+from sysmlc.logic.evaluate import has_primes
+from sysmlc.logic.formula import Apply, Formula, Op
+from sysmlc.logic.reduction.history import History
+from sysmlc.logic.spelling import PAST, TEMPORAL
+
+_MAX_NEXT_DEPTH = 64
+"""Most nested X of a formula; each level needs a history bit."""
+Part = tuple[Class, Formula]
+"""A conjunct of GR(1): its class, and its formula without the operators that the class implies."""
+
+
+class NotReducibleError(ValueError):
+    """No known reduction brings the formula into GR(1); ``part`` is the part at fault."""
+
+    def __init__(self, part: Formula) -> None:
+        super().__init__("no reduction to GR(1) is known for it")
+        self.part = part
+
+
+def reduce_formula(formula: Formula, history: History, origin: str = "") -> list[Part]:
+    """Return the formula as conjuncts of GR(1), and add the bits that they need to *history*.
+
+    Raises NotReducibleError; then the history is unchanged.
+    """
+    trial = history.copy()
+    parts = list(FormulaReduction(trial, origin).reduce(formula))
+    history.adopt(trial)
+    return parts
+
+
+class FormulaReduction:
+    """Applies the rules to a formula and creates history bits as it needs them.
+
+    All methods raise NotReducibleError. In their parameters, *trigger* is a formula about the
+    present and the past, and *body* is what must hold from every step in which the trigger holds.
+    """
+
+    def __init__(self, history: History, origin: str) -> None:
+        self._history = history
+        self._origin = origin
+
+    def reduce(self, formula: Formula) -> Iterator[Part]:
+        """Yield the conjuncts of a formula about the first step."""
+        for class_, part in classify(self.replace_past(formula)):
+            if class_ is Class.LIVENESS and has_primes(part):
+                yield Class.LIVENESS, self._last_step(part)
+            elif class_ is not Class.OTHER:
+                yield class_, part
+            else:
+                yield from self._reduce_general(part)
+
+    def _reduce_general(self, formula: Formula) -> Iterator[Part]:
+        match formula:
+            case Apply(Op.ALWAYS, (Apply(Op.EVENTUALLY, (inner,)),)) if (
+                depth := _next_depth(inner)
+            ) and not has_primes(inner):
+                has_occurred = f.both(self._has_steps(depth), self._look_back(inner, depth))
+                yield Class.LIVENESS, self._last_step(has_occurred)
+            case Apply(Op.ALWAYS, (inner,)):
+                yield from self._require(f.TRUE, inner)
+            case _:
+                yield from self._require(self._is_first_step(), formula)
+
+    def replace_past(self, formula: Formula) -> Formula:
+        """Replace the operators of the past by history bits."""
+        if not isinstance(formula, Apply):
+            return formula
+        args = tuple(self.replace_past(arg) for arg in formula.args)
+        if formula.op not in PAST:
+            return _apply(formula.op, args)
+        if any(has_future(arg) or has_primes(arg) for arg in args):
+            raise NotReducibleError(formula)
+        history, origin = self._history, self._origin
+        match formula.op:
+            case Op.SINCE:
+                return history.since(args[0], args[1], origin)
+            case Op.ONCE:
+                return history.once(args[0], origin)
+            case Op.PREVIOUS:
+                return history.previous(args[0], origin)
+            case _:
+                return history.historically(args[0], origin)
+
+    # -- obligations: G (trigger -> body) --------------------------------------------------------
+
+    def _require(self, trigger: Formula, body: Formula) -> Iterator[Part]:
+        """Reduce ``G (trigger -> body)``."""
+        if not has_future(body):
+            yield Class.SAFETY, f.implies(trigger, body)
+            return
+        assert isinstance(body, Apply)
+        bounded = self._reduce_next(trigger, body)
+        if bounded is not None:
+            yield Class.SAFETY, bounded
+            return
+        yield from self._require_operator(trigger, body, body.op)
+
+    def _require_operator(self, trigger: Formula, body: Apply, op: Op) -> Iterator[Part]:
+        """Reduce an obligation by the outermost operator of its body."""
+        args = body.args
+        if op is Op.AND:
+            for arg in args:
+                yield from self._require(trigger, arg)
+        elif op is Op.IMPLIES and not has_future(args[0]):
+            yield from self._require(f.both(trigger, args[0]), args[1])
+        elif op is Op.OR and sum(map(has_future, args)) == 1:
+            negated = [f.negate(arg) for arg in args if not has_future(arg)]
+            (future,) = (arg for arg in args if has_future(arg))
+            yield from self._require(f.both(trigger, *negated), future)
+        elif op is Op.NOT:
+            yield from self._require(trigger, _push_negation(args[0]))
+        elif op is Op.NEXT:
+            _check_unprimed(trigger, body)
+            yield from self._require(self._previous(trigger), args[0])
+        elif op is Op.ALWAYS:
+            yield from self._require(self._history.once(trigger, self._origin), args[0])
+        elif op in _WAITING and not any(map(has_future, args)):
+            yield from self._require_waiting(trigger, body)
+        elif op is Op.EVENTUALLY:
+            yield from self._require_eventually(trigger, body, args[0])
+        else:
+            raise NotReducibleError(body)
+
+    def _require_waiting(self, trigger: Formula, body: Apply) -> Iterator[Part]:
+        """Reduce until, weak until, release and eventually over the present.
+
+        A bit stores that an obligation is pending: the trigger held, and the goal did not hold
+        since then.
+        """
+        if any(map(has_primes, body.args)):
+            raise NotReducibleError(body)
+        goal = body.args[0] if body.op is Op.RELEASE else body.args[-1]
+        is_missing = f.negate(goal)
+        pending = self._since(is_missing, f.both(trigger, is_missing))
+        if body.op is Op.RELEASE:
+            was_pending = self._previous(pending)
+            yield Class.SAFETY, f.implies(f.either(trigger, was_pending), body.args[1])
+            return
+        if body.op is not Op.EVENTUALLY:
+            yield Class.SAFETY, f.implies(pending, body.args[0])
+        if body.op is not Op.WEAK_UNTIL:
+            yield Class.LIVENESS, f.negate(pending)
+
+    def _require_eventually(self, trigger: Formula, body: Apply, inner: Formula) -> Iterator[Part]:
+        """Reduce ``F inner`` where *inner* is about a bounded number of steps, or is ``F q`` or
+        ``a & F b``.
+
+        In ``F (a & F b)`` the first a can be taken, because every b after another a follows it too.
+        """
+        depth = _next_depth(inner)
+        if depth and not has_primes(body):
+            _check_unprimed(trigger, body)
+            has_occurred = f.both(self._has_steps(depth), self._look_back(inner, depth))
+            goal = f.eventually(self._last_step(has_occurred))
+            yield from self._require(self._shift_back(trigger, depth), goal)
+            return
+        parts = inner.args if isinstance(inner, Apply) and inner.op is Op.AND else (inner,)
+        future = [part for part in parts if has_future(part)]
+        if (
+            len(future) != 1
+            or not isinstance(future[0], Apply)
+            or future[0].op is not Op.EVENTUALLY
+        ):
+            raise NotReducibleError(body)
+        present = f.both(*(part for part in parts if part != future[0]))
+        yield from self._require_in_order(trigger, body, present, future[0])
+
+    def _require_in_order(
+        self, trigger: Formula, body: Apply, present: Formula, future: Formula
+    ) -> Iterator[Part]:
+        """Reduce an obligation that *present* holds at some step, and *future* from that step."""
+        is_missing = f.negate(present)
+        if has_primes(present) or has_primes(trigger):
+            raise NotReducibleError(body)
+        if present == f.TRUE:
+            yield from self._require(trigger, future)
+            return
+        pending = self._since(is_missing, f.both(trigger, is_missing))
+        yield Class.LIVENESS, f.negate(pending)
+        is_due = f.either(trigger, self._previous(pending))
+        yield from self._require(f.both(present, is_due), future)
+
+    # -- bounded look-ahead: X --------------------------------------------------------------------
+
+    def _reduce_next(self, trigger: Formula, body: Formula) -> Formula | None:
+        """Reduce a body whose only temporal operator is X; None for any other body.
+
+        The formula is evaluated from the last step that it refers to; bits store the steps before.
+        """
+        depth = _next_depth(body)
+        if depth is None or has_primes(body) or has_primes(trigger):
+            return None
+        obligation = f.implies(trigger, body)
+        return f.implies(self._has_steps(depth), self._look_back(obligation, depth))
+
+    def _has_steps(self, depth: int) -> Formula:
+        """Return that at least ``depth - 1`` steps precede this one."""
+        if depth > _MAX_NEXT_DEPTH:
+            raise NotReducibleError(f.TRUE)
+        has_steps: Formula = f.TRUE
+        for _ in range(depth - 1):
+            has_steps = self._previous(has_steps)
+        return has_steps
+
+    def _look_back(self, formula: Formula, depth: int) -> Formula:
+        """Return *formula*, evaluated ``depth - 1`` steps ago, as a formula about this step."""
+        match formula:
+            case Apply(Op.NEXT, (inner,)):
+                return self._look_back(inner, depth - 1)
+            case Apply(op, args) if _next_depth(formula):
+                return _apply(op, tuple(self._look_back(arg, depth) for arg in args))
+            case _:
+                return self._shift_back(formula, depth - 1)
+
+    def _shift_back(self, formula: Formula, steps: int) -> Formula:
+        """Return that *formula* held some steps ago, or holds in the next step for -1 steps."""
+        if steps < 0:
+            return f.primed(formula)
+        for _ in range(steps):
+            formula = self._previous(formula)
+        return formula
+
+    # -- history bits -----------------------------------------------------------------------------
+
+    def _previous(self, formula: Formula) -> Formula:
+        return self._history.previous(formula, self._origin)
+
+    def _since(self, stay: Formula, goal: Formula) -> Formula:
+        return self._history.since(stay, goal, self._origin)
+
+    def _last_step(self, step: Formula) -> Formula:
+        """Return a bit that is true infinitely often if and only if *step* is."""
+        return self._history.last_step(step, self._origin)
+
+    def _is_first_step(self) -> Formula:
+        return f.negate(self._previous(f.TRUE))
+
+
+# -- formulas ------------------------------------------------------------------------------------
+
+_WAITING = (Op.EVENTUALLY, Op.UNTIL, Op.WEAK_UNTIL, Op.RELEASE)
+_DUAL = {
+    Op.AND: Op.OR,
+    Op.OR: Op.AND,
+    Op.NEXT: Op.NEXT,
+    Op.ALWAYS: Op.EVENTUALLY,
+    Op.EVENTUALLY: Op.ALWAYS,
+    Op.IMPLIES: Op.AND,
+    Op.UNTIL: Op.RELEASE,
+    Op.RELEASE: Op.UNTIL,
+    Op.WEAK_UNTIL: Op.UNTIL,
+}
+
+
+def has_future(formula: Formula) -> bool:
+    """Whether the formula has temporal operators of the future; primes do not count."""
+    if not isinstance(formula, Apply):
+        return False
+    return formula.op in TEMPORAL or any(map(has_future, formula.args))
+
+
+def has_past(formula: Formula) -> bool:
+    """Whether the formula has operators of the past."""
+    if not isinstance(formula, Apply):
+        return False
+    return formula.op in PAST or any(map(has_past, formula.args))
+
+
+def _push_negation(body: Formula) -> Formula:
+    """Return ``not body`` with the negation moved to the operands (De Morgan, duality)."""
+    if not isinstance(body, Apply) or body.op not in _DUAL:
+        raise NotReducibleError(body)
+    negated = tuple(map(f.negate, body.args))
+    match body.op:
+        case Op.IMPLIES:
+            return f.both(body.args[0], negated[1])
+        case Op.WEAK_UNTIL:
+            left, right = negated
+            return Apply(Op.UNTIL, (right, f.both(left, right)))
+        case op:
+            return _apply(_DUAL[op], negated)
+
+
+def _check_unprimed(trigger: Formula, body: Formula) -> None:
+    """Raise NotReducibleError if the trigger has primes: no bit can store it."""
+    if has_primes(trigger):
+        raise NotReducibleError(body)
+
+
+def _apply(op: Op, args: tuple[Formula, ...]) -> Formula:
+    """Apply an operator; connectives are flattened and fold constants."""
+    match op:
+        case Op.AND:
+            return f.both(*args)
+        case Op.OR:
+            return f.either(*args)
+        case Op.NOT:
+            return f.negate(args[0])
+        case Op.IMPLIES:
+            return f.implies(*args)
+        case _:
+            return Apply(op, args)
+
+
+def _next_depth(formula: Formula) -> int | None:
+    """Return the deepest nesting of X; None if the formula has other operators of the future."""
+    if not isinstance(formula, Apply):
+        return 0
+    if formula.op in TEMPORAL and formula.op is not Op.NEXT:
+        return None
+    depths = [_next_depth(arg) for arg in formula.args]
+    known = [depth for depth in depths if depth is not None]
+    if len(known) < len(depths):
+        return None
+    return max(known, default=0) + (formula.op is Op.NEXT)
