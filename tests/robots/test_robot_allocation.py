@@ -67,7 +67,7 @@ def test_orders_and_carrying_are_kept_and_the_best_is_no_worse(study):
         for order in study.orders:
             assert schedule.reached[order.earlier] < schedule.reached[order.later]
         owner = {t: r for r, own in enumerate(schedule.allocation) for t in own}
-        assert all(owner[one] == owner[other] for one, other in study.carried.items())
+        assert all(owner[one] == owner[other] for one, other in study.carried_targets.items())
     if first is not None:
         assert found is not None
         assert found.schedule.cost <= first.cost

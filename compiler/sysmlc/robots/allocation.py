@@ -23,7 +23,7 @@ def sort_targets(study: Study) -> Iterator[int]:
     """
     remaining = list(range(len(study.targets)))
     visited: set[int] = set()
-    carried = study.carried
+    carried = study.carried_targets
     while remaining:
         ready_targets = (
             candidate for candidate in remaining if visited.issuperset(study.earlier(candidate))
@@ -60,8 +60,8 @@ def allocate_greedily(study: Study, travel: TravelTimes) -> Schedule | None:
         best = min(costs_by_robot, key=lambda robot: (costs_by_robot[robot], robot))
         costs[best] = costs_by_robot[best]
         lists[best].append(target)
-        if target in study.carried:
-            carriers[study.carried[target]] = best
+        if target in study.carried_targets:
+            carriers[study.carried_targets[target]] = best
     return build_schedule(study, travel, tuple(map(tuple, lists)))
 
 
@@ -71,7 +71,7 @@ def _last_place(targets: list[int]) -> int:
 
 def _sort_carried_chains(study: Study) -> Iterator[int]:
     """Yield the targets in order; carried ones directly behind their origin."""
-    carried = study.carried
+    carried = study.carried_targets
     visited: set[int] = set()
     for target in sort_targets(study):
         target_in_chain: int | None = None if target in carried.values() else target
@@ -126,7 +126,7 @@ def neighbour_allocations(
     study: Study, travel: TravelTimes, schedule: Schedule
 ) -> Iterator[Schedule]:
     """Yield allocations in which one chain of carried targets has another position."""
-    carried = study.carried
+    carried = study.carried_targets
     for chain_head in range(len(study.targets)):
         if chain_head in carried.values():
             continue
@@ -156,7 +156,7 @@ class _BranchAndBound:
         self.nodes = 0
         self.lists: list[list[int]] = [[] for _ in study.robots]
         self.reached: dict[int, int] = {}
-        self.carried = study.carried
+        self.carried = study.carried_targets
         self.carrying = {later: earlier for earlier, later in self.carried.items()}
         self.earlier = [study.earlier(target) for target in range(len(study.targets))]
         self.fewest_steps = [self._fewest_steps_to(target) for target in range(len(study.targets))]

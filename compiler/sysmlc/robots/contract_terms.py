@@ -47,7 +47,7 @@ def sensor(robot: Robot, way: str) -> str:
     return f"{robot.word}_sensor_{way}"
 
 
-def done(target: Target) -> str:
+def completion(target: Target) -> str:
     """Return the variable that tells whether a target has been reached."""
     return f"{target.word}_done"
 

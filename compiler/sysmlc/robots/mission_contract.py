@@ -54,7 +54,7 @@ def _declare_variables(study: Study, travel: TravelTimes) -> Iterator[Variable]:
         goals = EnumerationDomain((NONE, *names))
         yield Variable(terms.goal(robot), Owner.SYSTEM, goals, robot.origin)
     for target in study.targets:
-        yield Variable(terms.done(target), Owner.SYSTEM, BooleanDomain(), target.origin)
+        yield Variable(terms.completion(target), Owner.SYSTEM, BooleanDomain(), target.origin)
 
 
 def _last_deadline(study: Study) -> int:
@@ -135,7 +135,7 @@ def _limit_travel_time(
 def _list_guarantees(study: Study, travel: TravelTimes) -> Iterator[Conjunct]:
     for target in study.targets:
         text = f"At first '{target.name}' has not been reached."
-        yield terms.initial_conjunct(f.negate(f.var(terms.done(target))), target.origin, text)
+        yield terms.initial_conjunct(f.negate(f.var(terms.completion(target))), target.origin, text)
     for robot in study.robots:
         text = f"At first '{robot.name}' has no target."
         yield terms.initial_conjunct(terms.equals(terms.goal(robot), NONE), robot.origin, text)
@@ -147,7 +147,7 @@ def _list_guarantees(study: Study, travel: TravelTimes) -> Iterator[Conjunct]:
 
 def _target_guarantees(study: Study, number: int) -> Iterator[Conjunct]:
     target = study.targets[number]
-    is_done = f.var(terms.done(target))
+    is_done = f.var(terms.completion(target))
     arrivals = [_arrives_at(robot, target) for robot in study.robots]
     text = f"'{target.name}' has been reached when a robot has."
     definition = f.iff(f.primed(is_done), f.either(is_done, *arrivals))
@@ -180,7 +180,7 @@ def _respect_orders(study: Study) -> Iterator[Conjunct]:
         for robot in study.robots:
             is_sent = terms.equals(terms.goal(robot), later.word)
             text = f"'{later.name}' comes after '{earlier.name}'."
-            waits_for_earlier = f.primed(f.implies(is_sent, f.var(terms.done(earlier))))
+            waits_for_earlier = f.primed(f.implies(is_sent, f.var(terms.completion(earlier))))
             yield terms.safety_conjunct(waits_for_earlier, order.origin, text)
             if order.is_carried:
                 yield from _carry(robot, earlier, later, order.origin)
@@ -191,7 +191,7 @@ def _carry(robot: Robot, earlier: Target, later: Target, origin: str) -> Iterato
     is_sent = f.primed(terms.equals(terms.goal(robot), later.word))
     has_arrived = f.primed(terms.equals(terms.place(robot), earlier.word))
     yield terms.safety_conjunct(f.implies(is_sent, has_arrived), origin, text)
-    is_not_done = f.negate(f.primed(f.var(terms.done(later))))
+    is_not_done = f.negate(f.primed(f.var(terms.completion(later))))
     has_no_target = f.primed(terms.equals(terms.goal(robot), NONE))
     continues = f.implies(f.both(has_arrived, is_not_done), f.either(is_sent, has_no_target))
     yield terms.safety_conjunct(continues, origin, text)
@@ -200,7 +200,7 @@ def _carry(robot: Robot, earlier: Target, later: Target, origin: str) -> Iterato
 def _meet_deadlines(study: Study) -> Iterator[Conjunct]:
     for target in study.targets:
         limit = study.limit(target)
-        is_done = f.var(terms.done(target))
+        is_done = f.var(terms.completion(target))
         if limit is None:
             text = f"'{target.name}' is reached."
             yield terms.liveness_conjunct(is_done, target.origin, text)

@@ -118,7 +118,7 @@ def respects_orders(study: Study, allocation: Allocation) -> bool:
     successors = {
         target: next_target for targets in allocation for target, next_target in pairwise(targets)
     }
-    return all(successors.get(target) == later for target, later in study.carried.items())
+    return all(successors.get(target) == later for target, later in study.carried_targets.items())
 
 
 def meets_deadlines(study: Study, schedule: Schedule) -> bool:

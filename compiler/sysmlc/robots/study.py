@@ -148,7 +148,7 @@ class Study(Struct, frozen=True):
         return min((deadline for deadline in deadlines if deadline is not None), default=None)
 
     @property
-    def carried(self) -> dict[int, int]:
+    def carried_targets(self) -> dict[int, int]:
         """The target at which the same robot must continue, by the target that it has reached."""
         return {order.earlier: order.later for order in self.orders if order.is_carried}
 

@@ -15,7 +15,13 @@ from msgspec import Struct
 from sysmlc.robots.answers import Answers
 from sysmlc.robots.merging import Batch, StateSet
 from sysmlc.robots.run_sets import P
-from sysmlc.robots.starts import MAX_CHUNK_RUNS, count_starts, iter_start_chunks, pick_start
+from sysmlc.robots.starts import (
+    MAX_CHUNK_RUNS,
+    count_starts,
+    iter_start_chunks,
+    pick_start,
+    symbolic_starts,
+)
 from sysmlc.robots.study import Study
 from sysmlc.robots.world import Allocation, World
 
@@ -133,8 +139,6 @@ def validate_symbolically(
     study: Study, allocation: Allocation, answers: Sequence[Answers]
 ) -> Validation:
     """Validate on decision diagrams over the starts of the robots. Raises LimitError."""
-    from sysmlc.robots.starts import symbolic_starts
-
     runs, start_count = symbolic_starts(study)
     simulation = Simulation(World(study, allocation, answers, runs))
     failure = simulation.run()
