@@ -127,7 +127,7 @@ class StepFormulas:
         """A region ends from *inner* up to, not including, *outer*."""
         if inner == outer:
             return f.FALSE
-        return f.either(*map(self._node_end_formula, self.graph.between(inner, outer)))
+        return f.either(*map(self._node_end_formula, self.graph.nodes_between(inner, outer)))
 
     def _node_end_formula(self, around: TokenNode) -> Formula:
         return f.both(f.var(around.run), self.complete_formula(around.id))

@@ -339,7 +339,7 @@ class TokenGraph(Struct, frozen=True, dict=True):
             yield node
             region = node.region
 
-    def between(self, inner: str, outer: str) -> Iterator[TokenNode]:
+    def nodes_between(self, inner: str, outer: str) -> Iterator[TokenNode]:
         """Yield the structured nodes from region *inner* up to, not including, region *outer*."""
         for node in self.regions_around(inner):
             if node.id == outer:

@@ -195,13 +195,13 @@ class _FeatureTable(Mapping[str, Feature]):
             return feature
         if feature.is_assumed:
             return self._widen_range(name, feature)
-        if is_string(self._graph, feature) and self._mentioned.texts:
+        if is_string(self._graph, feature) and self._mentioned_values.texts:
             return restrict_string(feature, self._text_domain)
         return feature
 
     def _widen_range(self, name: str, feature: Feature) -> Feature:
         """Extend an assumed range to the numbers that the feature is compared with."""
-        numbers = self._mentioned.numbers.get(name, ())
+        numbers = self._mentioned_values.numbers.get(name, ())
         if not numbers:
             return feature
         low, high = self._assumed_range
@@ -218,7 +218,7 @@ class _FeatureTable(Mapping[str, Feature]):
         return {name: value for name, value in values if value is not None}
 
     @cached_property
-    def _mentioned(self) -> "_MentionedValues":
+    def _mentioned_values(self) -> "_MentionedValues":
         return _find_mentioned_values(self._graph, self._behaviour, self._enumerations)
 
     @cached_property
@@ -231,7 +231,10 @@ class _FeatureTable(Mapping[str, Feature]):
             feature for feature in map(self._find_declared, self) if is_string(self._graph, feature)
         ]
         defaults = [default_text(feature.element) for feature in strings]
-        known_texts = [*self._mentioned.texts, *(text for text in defaults if text is not None)]
+        known_texts = [
+            *self._mentioned_values.texts,
+            *(text for text in defaults if text is not None),
+        ]
         texts = tuple(dict.fromkeys(known_texts))
         names = [text.strip() or "empty" for text in texts]
         return EnumerationDomain(unique([*names, _OTHER_TEXT], "text"), texts)

@@ -139,7 +139,7 @@ class _TreeBuilder:
         (token,) = children
         return _unquote(token) if token.type == "QUOTED_NAME" else str(token)
 
-    def qualified(self, offset: int, children: list[str]) -> Name:
+    def qualified_name(self, offset: int, children: list[str]) -> Name:
         return Name(tuple(children), offset)
 
     def member(self, offset: int, children: list[Any]) -> Member:
