@@ -59,7 +59,7 @@ def find_players(graph: Graph) -> dict[str, Player]:
     for tokens in graph.derived(TokenGraph):
         players_by_name.setdefault(tokens.component, ActivityPlayer(tokens))
     for element in graph.of_kind(Kind.STATE_MACHINE):
-        # What is wrong with the machine has been reported by the pass that derives contracts.
+        # The pass that derives contracts has reported the faults of the machine.
         machine = read_machine(graph, element, Sink())
         if machine is not None:
             name = query.component_name(graph, element)
@@ -126,33 +126,35 @@ class ActivityPlayer(Struct, frozen=True, dict=True):
         states: dict[token_game.State, None] = {}
         worklist: list[list[int]] = [[]]
         while worklist:
-            chooser = _BranchPlan(worklist.pop())
-            states[
-                token_game.next_state(self.tokens, state, now, evaluate.is_true, chooser.choose)
-            ] = None
-            worklist += chooser.list_alternatives()
+            plan = _BranchPlan(worklist.pop())
+            successor = token_game.next_state(
+                self.tokens, state, now, evaluate.is_true, plan.choose
+            )
+            states[successor] = None
+            worklist += plan.list_alternatives()
         return [{**inputs, **token_game.values_of(self.tokens, after)} for after in states]
 
 
 class _BranchPlan:
-    """Takes the planned branches, then the first branch of each choice, and records the
-    alternatives.
+    """A choice function that takes the planned branches, then the first branch of each choice.
+
+    It counts the options of every choice, so that ``list_alternatives`` can plan the other
+    branches (backtracking by replay).
     """
 
-    def __init__(self, given: list[int]) -> None:
-        self._given = given
+    def __init__(self, planned: list[int]) -> None:
+        self._planned = planned
         self._counts: list[int] = []
 
-    def choose(self, node: TokenNode, options: Sequence[_T]) -> _T:
-        del node
+    def choose(self, _node: TokenNode, options: Sequence[_T]) -> _T:
         self._counts.append(len(options))
         position = len(self._counts) - 1
-        return options[self._given[position] if position < len(self._given) else 0]
+        return options[self._planned[position] if position < len(self._planned) else 0]
 
     def list_alternatives(self) -> Iterator[list[int]]:
         """Yield the plans that differ from this one at one choice after the planned ones."""
-        branches = [*self._given, *[0] * (len(self._counts) - len(self._given))]
-        for position in range(len(self._given), len(self._counts)):
+        branches = [*self._planned, *[0] * (len(self._counts) - len(self._planned))]
+        for position in range(len(self._planned), len(self._counts)):
             for branch in range(1, self._counts[position]):
                 yield [*branches[:position], branch]
 

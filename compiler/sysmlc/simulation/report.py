@@ -18,12 +18,12 @@ class Difference(Struct, frozen=True):
     step: int
     variable: str
     expected: Literal
-    found: Literal | None
+    actual: Literal | None
     line: int
 
     def __str__(self) -> str:
-        expected, found = _show_value(self.expected), _show_value(self.found)
-        return f"step {self.step}: {self.variable} is {found}, expected {expected}"
+        expected, actual = show_value(self.expected), show_value(self.actual)
+        return f"step {self.step}: {self.variable} is {actual}, expected {expected}"
 
 
 class Result(Struct, frozen=True):
@@ -63,18 +63,19 @@ class Report(Struct, frozen=True):
         return "\n".join([*lines, f"{passed} of {len(self.results)} scenarios passed"]) + "\n"
 
     def _result_lines(self, result: Result) -> Iterator[str]:
-        what = escape_invisible(f"{result.component}: {result.name}")
+        title = escape_invisible(f"{result.component}: {result.name}")
         if result.passed:
-            yield f"passed  {what} ({_count_steps(len(result.trace))})"
+            yield f"passed  {title} ({_count_steps(len(result.trace))})"
         elif result.difference is None:
-            yield f"invalid {what}"
+            yield f"invalid {title}"
         else:
-            yield f"FAILED  {what}"
+            yield f"FAILED  {title}"
             difference = escape_invisible(str(result.difference))
             yield f"        {self.file}:{result.difference.line}: {difference}"
 
     def as_junit(self) -> str:
-        """Return JUnit XML without times, so that equal runs give equal bytes."""
+        """Return the report as JUnit XML."""
+        # Without times, equal runs give equal bytes.
         failures = sum(result.difference is not None for result in self.results)
         errors = sum(not result.is_valid for result in self.results)
         counts = {"tests": len(self.results), "failures": failures, "errors": errors}
@@ -122,7 +123,8 @@ def _count_steps(number: int) -> str:
     return "1 step" if number == 1 else f"{number} steps"
 
 
-def _show_value(value: Literal | None) -> str:
+def show_value(value: Literal | None) -> str:
+    """Return a value as scenarios spell it."""
     if isinstance(value, bool):
         return str(value).lower()
     return "unknown" if value is None else str(value)
@@ -138,32 +140,33 @@ def _diagram_lines(result: Result) -> Iterator[str]:
     yield "participant environment"
     yield f'participant "{escape_line(result.component)}" as component'
     previous: Valuation = {}
-    for number, now in enumerate(result.trace):
-        messages = list(_message_lines(result, previous, now))
+    for number, valuation in enumerate(result.trace):
+        messages = list(_message_lines(result, previous, valuation))
         failed = result.difference is not None and result.difference.step == number
         if messages or failed:
             yield f"== step {number} =="
         yield from messages
         if failed:
             yield from _note_lines(result)
-        previous = now
+        previous = valuation
     yield "@enduml"
 
 
-def _message_lines(result: Result, before: Valuation, now: Valuation) -> Iterator[str]:
-    """Yield a message for each value that differs from the previous step; in the first step,
-    from false.
+def _message_lines(result: Result, before: Valuation, after: Valuation) -> Iterator[str]:
+    """Yield a message for each value that differs from the previous step, inputs first.
+
+    Before the first step all values count as false.
     """
-    changed = [name for name in now if now[name] != before.get(name, False)]
+    changed = [name for name in after if after[name] != before.get(name, False)]
     for name in sorted(changed, key=lambda name: name not in result.inputs):
         arrow = "environment -> component" if name in result.inputs else "component -> environment"
-        yield f"{arrow} : {escape_line(name)} = {escape_line(_show_value(now[name]))}"
+        yield f"{arrow} : {escape_line(name)} = {escape_line(show_value(after[name]))}"
 
 
 def _note_lines(result: Result) -> Iterator[str]:
     assert result.difference is not None
     difference = result.difference
     yield "note over component #FFDDDD"
-    yield f"  {escape_line(difference.variable)} is {escape_line(_show_value(difference.found))}"
-    yield f"  expected: {escape_line(_show_value(difference.expected))}"
+    yield f"  {escape_line(difference.variable)} is {escape_line(show_value(difference.actual))}"
+    yield f"  expected: {escape_line(show_value(difference.expected))}"
     yield "end note"

@@ -1,4 +1,4 @@
-"""Scenario runner: at least one run of the diagram must show the values that each step expects."""
+"""Runner of scenarios: a scenario passes if some run of the diagram shows every expected value."""
 
 from collections.abc import Iterable, Mapping
 from difflib import get_close_matches
@@ -10,7 +10,7 @@ from sysmlc.logic.domains import contains, describe
 from sysmlc.logic.formula import Literal
 from sysmlc.simulation import rules
 from sysmlc.simulation.players import Player, Valuation, find_players, find_resting_value
-from sysmlc.simulation.report import Difference, Report, Result
+from sysmlc.simulation.report import Difference, Report, Result, show_value
 from sysmlc.simulation.scenario import Entry, Scenario, read_scenarios
 from sysmlc.sources import Source
 
@@ -26,8 +26,8 @@ def run_scenarios(graph: Graph, scenario_source: Source, sink: Sink) -> Report:
     Faults of the file are reported to *sink*; a scenario with a fault fails.
     """
     scenarios = read_scenarios(scenario_source, sink)
-    known = find_players(graph) if scenarios else {}
-    results = [_play_scenario(graph, scenario, known, sink) for scenario in scenarios]
+    players = find_players(graph) if scenarios else {}
+    results = [_play_scenario(graph, scenario, players, sink) for scenario in scenarios]
     return Report(scenario_source.name, tuple(results))
 
 
@@ -36,7 +36,7 @@ def _play_scenario(
 ) -> Result:
     player = _find_player(scenario, players_by_name, sink)
     if player is None or not _has_valid_entries(scenario, player, sink):
-        return Result(scenario.name, scenario.component, scenario.spot.line, is_valid=False)
+        return Result(scenario.name, scenario.component, scenario.location.line, is_valid=False)
     resting_values = {
         variable.name: find_resting_value(graph, variable)
         for variable in player.variables
@@ -59,7 +59,7 @@ def _find_player(
         return players_by_name[matches[0]]
     names = ", ".join(sorted(matches or players_by_name)) or "none"
     sink.report(
-        rules.COMPONENT, scenario.subject(scenario.spot), name=scenario.component, known=names
+        rules.COMPONENT, scenario.subject(scenario.location), name=scenario.component, known=names
     )
     return None
 
@@ -91,15 +91,21 @@ def _is_valid_entry(
     if variable is None:
         hint = _suggest_name(name, variables)
         sink.report(
-            rules.VARIABLE, scenario.subject(entry.spot), component=component, name=name, hint=hint
+            rules.VARIABLE,
+            scenario.subject(entry.location),
+            component=component,
+            name=name,
+            hint=hint,
         )
     elif not contains(variable.domain, entry.value):
         shown, domain = show_value(entry.value), describe(variable.domain)
         sink.report(
-            rules.VALUE, scenario.subject(entry.spot), value=shown, name=name, domain=domain
+            rules.VALUE, scenario.subject(entry.location), value=shown, name=name, domain=domain
         )
     elif is_input and variable.owner is Owner.SYSTEM:
-        sink.report(rules.NOT_INPUT, scenario.subject(entry.spot), name=name, component=component)
+        sink.report(
+            rules.NOT_INPUT, scenario.subject(entry.location), name=name, component=component
+        )
     else:
         return True
     return False
@@ -114,12 +120,14 @@ def _suggest_name(name: str, names: Iterable[str]) -> str:
 
 
 def _follow_runs(scenario: Scenario, player: Player, resting_values: Valuation) -> Result:
-    """Follow all runs that show the expected values; the first step without such a run is the
-    difference.
+    """Follow all runs that show the expected values.
+
+    The first step without such a run is the difference; the run nearest to it is the trace.
     """
     inputs = dict(resting_values)
     traces: list[_Trace] = [()]
     for number, step in enumerate(scenario.steps):
+        # Other inputs keep their value until a scenario sets them again.
         inputs.update({name: resting_values[name] for name in player.pulses})
         inputs.update({entry.name: entry.value for entry in step.inputs})
         traces = _extend_traces(player, traces, dict(inputs))
@@ -127,18 +135,23 @@ def _follow_runs(scenario: Scenario, player: Player, resting_values: Valuation) 
         if not matching:
             trace, entry = _find_nearest(traces, step.expect)
             actual = trace[-1].get(entry.name)
-            difference = Difference(number, entry.name, entry.value, actual, entry.spot.line)
+            difference = Difference(number, entry.name, entry.value, actual, entry.location.line)
             return Result(
                 scenario.name,
                 player.component,
-                scenario.spot.line,
+                scenario.location.line,
                 trace,
                 difference,
                 _input_names(player),
             )
         traces = matching
     return Result(
-        scenario.name, player.component, scenario.spot.line, traces[0], None, _input_names(player)
+        scenario.name,
+        player.component,
+        scenario.location.line,
+        traces[0],
+        None,
+        _input_names(player),
     )
 
 
@@ -170,8 +183,3 @@ def _find_nearest(traces: list[_Trace], expect: tuple[Entry, ...]) -> tuple[_Tra
     entry = _find_missed(nearest[-1], expect)
     assert entry is not None
     return nearest, entry
-
-
-def show_value(value: Literal) -> str:
-    """Return a value as scenarios spell it."""
-    return str(value).lower() if isinstance(value, bool) else str(value)

@@ -1,6 +1,4 @@
-"""Scenarios: read from YAML and validated against their schema, with the location of every
-value.
-"""
+"""Reader of scenarios: YAML, validated against a schema, with the location of every value."""
 
 import json
 import warnings
@@ -34,7 +32,7 @@ class Entry(Struct, frozen=True):
 
     name: str
     value: Literal
-    spot: Location
+    location: Location
 
 
 class Step(Struct, frozen=True):
@@ -42,26 +40,28 @@ class Step(Struct, frozen=True):
 
     inputs: tuple[Entry, ...]
     expect: tuple[Entry, ...]
-    spot: Location
+    location: Location
 
 
 class Scenario(Struct, frozen=True):
-    """One scenario; its steps are already repeated, and ``trace`` is part of what they expect."""
+    """One scenario. Its steps are expanded: ``repeat`` is unrolled, and ``trace`` is added to what
+    they expect.
+    """
 
     name: str
     component: str
     steps: tuple[Step, ...]
     file: str
-    spot: Location
+    location: Location
 
-    def subject(self, spot: Location) -> Subject:
+    def subject(self, location: Location) -> Subject:
         """Return a location in the scenario as the subject of a diagnostic."""
-        place = Place(self.file, line=spot.line, column=spot.column)
+        place = Place(self.file, line=location.line, column=location.column)
         return Subject(self.component, place=place)
 
 
 def read_scenarios(source: Source, sink: Sink) -> list[Scenario]:
-    """Return the scenarios of a file; none, which is reported, if the file cannot be read."""
+    """Return the scenarios of a file; report a file that cannot be read, and return none."""
     try:
         return _read_document(source, sink)
     except RecursionError:
@@ -87,6 +87,7 @@ def _load_yaml(source: Source, sink: Sink) -> "Mapping[str, object] | None":
 
     try:
         with warnings.catch_warnings():
+            # ruamel warns about anchors that are defined twice, which YAML allows.
             warnings.simplefilter("ignore")
             document = YAML(typ="rt").load(source.data.decode("utf-8-sig"))
     except MarkedYAMLError as error:
@@ -103,8 +104,8 @@ def _load_yaml(source: Source, sink: Sink) -> "Mapping[str, object] | None":
     return document
 
 
-def _report_syntax(source: Source, sink: Sink, spot: Location, problem: str) -> None:
-    sink.report(rules.SYNTAX, _subject_at(source, spot), problem=problem)
+def _report_syntax(source: Source, sink: Sink, location: Location, problem: str) -> None:
+    sink.report(rules.SYNTAX, _subject_at(source, location), problem=problem)
 
 
 def _location_of(error: "MarkedYAMLError") -> Location:
@@ -112,12 +113,12 @@ def _location_of(error: "MarkedYAMLError") -> Location:
     return Location() if mark is None else Location(mark.line + 1, mark.column + 1)
 
 
-def _subject_at(source: Source, spot: Location) -> Subject:
-    place = Place(source.name, line=spot.line, column=spot.column)
+def _subject_at(source: Source, location: Location) -> Subject:
+    place = Place(source.name, line=location.line, column=location.column)
     return Subject(source.name, place=place)
 
 
-# -- shape -------------------------------------------------------------------------------------
+# -- schema ------------------------------------------------------------------------------------
 
 
 def _is_valid(document: Mapping[str, object], source: Source, sink: Sink) -> bool:
@@ -125,7 +126,7 @@ def _is_valid(document: Mapping[str, object], source: Source, sink: Sink) -> boo
     from jsonschema.exceptions import best_match
 
     schema = json.loads(resources.read_text("metamodels", "sysmlc-scenario.schema.json"))
-    # The schema of what the document means to be gives better messages than ``oneOf``.
+    # One alternative of the schema gives better messages than ``oneOf``.
     definition = schema["oneOf"][1] if "scenarios" in document else schema["oneOf"][0]
     validator = Draft202012Validator({**definition, "$defs": schema["$defs"]})
     error = best_match(validator.iter_errors(document))
@@ -144,19 +145,20 @@ def _shorten_message(error: "ValidationError") -> str:
 
 
 def _locate_path(node: object, path: Sequence[str | int]) -> Location:
-    spot = Location(1, 1)
+    location = Location(1, 1)
     for key in path:
-        spot = _locate_item(node, key) or spot
+        location = _locate_item(node, key) or location
         node = node[key] if isinstance(node, Mapping | list) else None  # type: ignore[index]
-    return spot
+    return location
 
 
 def _locate_item(node: object, key: str | int) -> Location | None:
-    """Return where the value of a key, or an item, starts; ruamel counts from 0."""
+    """Return the start of the value of a key, or of a list item."""
     position = getattr(node, "lc", None)
     data = getattr(position, "data", None) or {}
     if key not in data:
         return None
+    # ruamel counts lines and columns from 0.
     line, column = data[key][0], data[key][1]
     return Location(line + 1, column + 1)
 
@@ -170,19 +172,19 @@ def _read_scenario(
     steps: list[Step] = []
     for index, item in enumerate(_list_items(part["steps"])):
         inputs, expect = _read_entries(item, "inputs"), _read_entries(item, "expect")
-        spot = _locate_item(part["steps"], index) or Location()
-        steps += [Step(inputs, expect, spot)] * int(str(item.get("repeat", 1)))
+        location = _locate_item(part["steps"], index) or Location()
+        steps += [Step(inputs, expect, location)] * int(str(item.get("repeat", 1)))
     trace = _list_items(part.get("trace") or [])
-    spot = _locate_item(part, "component") or Location()
+    location = _locate_item(part, "component") or Location()
     if len(trace) > len(steps):
-        where = _subject_at(source, _locate_item(part, "trace") or spot)
+        where = _subject_at(source, _locate_item(part, "trace") or location)
         sink.report(rules.LONG_TRACE, where, lines=len(trace), steps=len(steps))
         return None
     for index, item in enumerate(trace):
         step = steps[index]
-        steps[index] = Step(step.inputs, (*step.expect, *_read_values(item)), step.spot)
+        steps[index] = Step(step.inputs, (*step.expect, *_read_values(item)), step.location)
     name = str(part.get("name") or f"scenario {number}")
-    return Scenario(name, str(part["component"]), tuple(steps), source.name, spot)
+    return Scenario(name, str(part["component"]), tuple(steps), source.name, location)
 
 
 def _list_items(value: object) -> list[Mapping[str, object]]:
@@ -203,7 +205,8 @@ def _read_values(mapping: object) -> tuple[Entry, ...]:
 
 
 def _as_literal(value: object) -> Literal:
-    """Return a plain value: the scalars of ruamel are subclasses of Python's."""
+    """Return a value of Python's own types."""
+    # The scalars of ruamel are subclasses that carry comments and formatting.
     if isinstance(value, bool):
         return value
     return int(value) if isinstance(value, int) else str(value)
