@@ -5,6 +5,7 @@ from functools import lru_cache
 
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import Class
+from sysmlc.logic.evaluate import has_primes
 from sysmlc.logic.formula import Apply, Formula, Op
 
 _TEMPORAL = frozenset([Op.NEXT, Op.ALWAYS, Op.EVENTUALLY, Op.UNTIL, Op.RELEASE, Op.WEAK_UNTIL])
@@ -34,8 +35,8 @@ def classify(formula: Formula) -> Iterator[tuple[Class, Formula]]:
         case Apply(Op.ALWAYS, (inner,)) if (step := replace_next_by_primes(inner)) is not None:
             yield Class.SAFETY, step
         case _:
-            is_plain = not _is_temporal(formula) and not _is_primed(formula)
-            yield (Class.INIT if is_plain else Class.OTHER), formula
+            is_initial = not has_future(formula) and not has_primes(formula)
+            yield (Class.INIT if is_initial else Class.OTHER), formula
 
 
 def convert_to_class(formula: Formula, class_: Class) -> Formula | None:
@@ -46,15 +47,15 @@ def convert_to_class(formula: Formula, class_: Class) -> Formula | None:
     """
     if class_ is Class.OTHER:
         return formula
-    step = replace_next_by_primes(formula) if _is_temporal(formula) else formula
-    return None if class_ is Class.INIT and step is not None and _is_primed(step) else step
+    step = replace_next_by_primes(formula) if has_future(formula) else formula
+    return None if class_ is Class.INIT and step is not None and has_primes(step) else step
 
 
 def replace_next_by_primes(formula: Formula) -> Formula | None:
     """Return the formula with primes for X, or None if it reaches further than one step."""
     match formula:
         case Apply(Op.NEXT, (inner,)):
-            is_one_step = not _is_temporal(inner) and not _is_primed(inner)
+            is_one_step = not has_future(inner) and not has_primes(inner)
             return f.primed(inner) if is_one_step else None
         case Apply(op, _) if op in _TEMPORAL:
             return None
@@ -77,13 +78,10 @@ def _apply(op: Op, args: tuple[Formula, ...]) -> Formula:
 
 
 @lru_cache(1 << 14)
-def _is_temporal(formula: Formula) -> bool:
+def has_future(formula: Formula) -> bool:
+    """Whether the formula has temporal operators of the future; primes do not count."""
     match formula:
         case Apply(op, args):
-            return op in _TEMPORAL or any(_is_temporal(arg) for arg in args)
+            return op in _TEMPORAL or any(has_future(arg) for arg in args)
         case _:
             return False
-
-
-def _is_primed(formula: Formula) -> bool:
-    return any(variable.primed for variable in f.variables(formula))

@@ -106,8 +106,8 @@ class Composite(Struct, frozen=True):
     """A block with parts; ``whole`` is the contract of the block itself, in the same variables.
 
     ``wiring`` states what connectors imply beyond shared names, such as that an event of the
-    receiver occurs when the sender sends it; it restricts no part. ``crowding`` states when no
-    message is lost; no part guarantees it.
+    receiver occurs when the sender sends it; it restricts no part. ``exclusions`` states which
+    messages must not be sent in the same step, because one would be lost; no part guarantees it.
     """
 
     component: str
@@ -115,4 +115,4 @@ class Composite(Struct, frozen=True):
     parts: tuple[Part, ...]
     wiring: tuple[Conjunct, ...] = ()
     whole: Contract | None = None
-    crowding: tuple[Conjunct, ...] = ()
+    exclusions: tuple[Conjunct, ...] = ()

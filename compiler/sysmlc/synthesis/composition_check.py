@@ -275,7 +275,7 @@ def _restrict_composite(
         composite,
         parts=tuple(composite.parts[number] for number in group),
         wiring=select_conjuncts(composite.wiring),
-        crowding=select_conjuncts(composite.crowding),
+        exclusions=select_conjuncts(composite.exclusions),
         whole=_restrict_whole(composite.whole, variable_sets, key),
     )
 

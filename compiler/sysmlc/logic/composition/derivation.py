@@ -122,7 +122,7 @@ def _make_composite(block: Block, whole: Member | None, sink: Sink) -> Composite
         ),
         wiring=tuple(derive_wiring(block, block.members, wires)),
         whole=None if whole is None else rename_contract(whole, wires),
-        crowding=tuple(derive_exclusions(block, block.members, wires)),
+        exclusions=tuple(derive_exclusions(block, block.members, wires)),
     )
 
 

@@ -25,8 +25,8 @@ def find_named_values(graph: Graph, classifier: Element) -> dict[str, Element]:
 
     The classifier's own elements take precedence over inherited ones.
     """
-    own = [*query.features(graph, classifier), *query.parameters(graph, classifier)]
-    values = [element for element in own if element.name and element.kind in VALUE_KINDS]
+    elements = [*query.features(graph, classifier), *query.parameters(graph, classifier)]
+    values = [element for element in elements if element.name and element.kind in VALUE_KINDS]
     inherited = _iter_inherited_values(graph, classifier)
     # The first element of a name wins, so it must be the last one that the dictionary stores.
     return {element.name: element for element in reversed([*values, *inherited])}

@@ -8,7 +8,7 @@ patterns). Every rule is an equivalence in all traces in which the bits follow t
 from collections.abc import Iterator
 
 from sysmlc.logic import formula as f
-from sysmlc.logic.classification import classify
+from sysmlc.logic.classification import classify, has_future
 from sysmlc.logic.contract import Class
 from sysmlc.logic.evaluate import has_primes
 from sysmlc.logic.formula import Apply, Formula, Op
@@ -264,13 +264,6 @@ _DUAL = {
 }
 
 
-def has_future(formula: Formula) -> bool:
-    """Whether the formula has temporal operators of the future; primes do not count."""
-    if not isinstance(formula, Apply):
-        return False
-    return formula.op in TEMPORAL or any(map(has_future, formula.args))
-
-
 def has_past(formula: Formula) -> bool:
     """Whether the formula has operators of the past."""
     if not isinstance(formula, Apply):
@@ -320,8 +313,10 @@ def _next_depth(formula: Formula) -> int | None:
         return 0
     if formula.op in TEMPORAL and formula.op is not Op.NEXT:
         return None
-    depths = [_next_depth(arg) for arg in formula.args]
-    known = [depth for depth in depths if depth is not None]
-    if len(known) < len(depths):
-        return None
-    return max(known, default=0) + (formula.op is Op.NEXT)
+    deepest = 0
+    for arg in formula.args:
+        depth = _next_depth(arg)
+        if depth is None:
+            return None
+        deepest = max(deepest, depth)
+    return deepest + (formula.op is Op.NEXT)

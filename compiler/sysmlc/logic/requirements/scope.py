@@ -88,18 +88,17 @@ class Scope(Struct, frozen=True):
 def scope_of(context: Context, behaviour: Contract | None) -> Scope:
     """Return the scope of a subject; variables of its behaviour's contract hide its features."""
     constants: dict[str, Literal] = {}
-    own: dict[str, Variable] = {}
+    feature_variables: dict[str, Variable] = {}
     for feature in context.features.values():
         if feature.is_constant and feature.default is not None:
             constants[feature.variable] = feature.default
         elif feature.domain is not None:
-            own[feature.variable] = Variable(
+            feature_variables[feature.variable] = Variable(
                 feature.variable, _find_owner(feature), feature.domain, feature.element.id
             )
-    behaviour_variables = () if behaviour is None else behaviour.variables
-    return Scope(
-        context, own | {variable.name: variable for variable in behaviour_variables}, constants
-    )
+    variables_of_behaviour = () if behaviour is None else behaviour.variables
+    by_name = {variable.name: variable for variable in variables_of_behaviour}
+    return Scope(context, feature_variables | by_name, constants)
 
 
 def _find_owner(feature: Feature) -> Owner:

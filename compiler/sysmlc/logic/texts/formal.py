@@ -12,11 +12,11 @@ from typing import NoReturn
 from msgspec.structs import replace
 
 from sysmlc.logic import formula as f
+from sysmlc.logic.classification import has_future
 from sysmlc.logic.contract import Domain
 from sysmlc.logic.evaluate import has_primes
 from sysmlc.logic.formula import Formula, Op
 from sysmlc.logic.infix import Part, Reader
-from sysmlc.logic.reduction.formula_reduction import has_future
 from sysmlc.logic.spelling import (
     NEUTRAL,
     PAST,

@@ -77,7 +77,7 @@ def _compose(composite: Composite, manager: Manager) -> Composition:
     )
     runs = Entailment(universe, universe.system(discharge_result.facts))
     failures = tuple(_find_violations(whole_contract.guarantees, runs))
-    losses = tuple(_find_violations(composite.crowding, runs))
+    losses = tuple(_find_violations(composite.exclusions, runs))
     return Composition(contract, discharge_result.open, failures, losses)
 
 
