@@ -1,4 +1,4 @@
-"""What names mean: domains of properties, ranges, defaults; and what elaboration refuses."""
+"""Contexts: domains, ranges and defaults of properties; elaboration and its errors."""
 
 import pytest
 
@@ -121,8 +121,8 @@ SYMBOLS = {
     ],
 )
 def test_expressions_become_formulas(text, formula):
-    found = print_formula(elaborate_condition(parse_expression(text), SYMBOLS.get))
-    assert found in (formula, formula.replace("mode=hand", "hand=mode"))
+    printed = print_formula(elaborate_condition(parse_expression(text), SYMBOLS.get))
+    assert printed in (formula, formula.replace("mode=hand", "hand=mode"))
 
 
 @pytest.mark.parametrize(
@@ -142,7 +142,7 @@ def test_expressions_become_formulas(text, formula):
         ("bay > 1.5", Fault.UNSUPPORTED, "1.5"),
     ],
 )
-def test_what_has_no_meaning_is_refused_with_the_reason(text, fault, name):
+def test_an_expression_without_a_formula_is_rejected_with_the_reason(text, fault, name):
     with pytest.raises(ElaborationError) as caught:
         elaborate_condition(parse_expression(text), SYMBOLS.get)
     assert (caught.value.fault, caught.value.name) == (fault, name)

@@ -1,4 +1,4 @@
-"""The expression grammar: what modellers write, what it means, and that printing loses nothing."""
+"""The expression grammar: spellings, errors with offsets, and printing without loss."""
 
 import pytest
 from hypothesis import given, settings
@@ -25,7 +25,7 @@ from sysmlc.logic.expressions.parsing import parse_effect, parse_expression
 
 
 @pytest.mark.parametrize(
-    ("written", "meant"),
+    ("text", "printed"),
     [
         ("a && b || !c", "a and b or not c"),
         ("a & b | c", "a and b or c"),
@@ -48,8 +48,8 @@ from sysmlc.logic.expressions.parsing import parse_effect, parse_expression
         ("a // remark\n and b", "a and b"),
     ],
 )
-def test_spellings(written, meant):
-    assert print_expression(parse_expression(written)) == meant
+def test_spellings_are_normalised(text, printed):
+    assert print_expression(parse_expression(text)) == printed
 
 
 def test_equality_binds_weaker_than_comparison_and_stronger_than_and():
@@ -68,13 +68,13 @@ def test_offsets_count_characters():
 @pytest.mark.parametrize(
     ("text", "offset"), [("a and", 5), ("a b", 2), ("", 0), ("x > 3 °C", 6), ("((a)", 4)]
 )
-def test_what_is_no_expression_is_refused_with_its_place(text, offset):
+def test_a_malformed_expression_is_rejected_with_its_offset(text, offset):
     with pytest.raises(ExpressionError) as caught:
         parse_expression(text)
     assert caught.value.offset == offset
 
 
-def test_deep_nesting_is_no_crash():
+def test_deep_nesting_is_rejected_without_a_crash():
     assert parse_expression("(" * 20_000 + "a" + ")" * 20_000) == Name(("a",))
     with pytest.raises(ExpressionError, match="nested too deeply"):
         parse_expression("not " * 20_000 + "a")
@@ -93,7 +93,7 @@ def test_effects():
 
 
 @pytest.mark.parametrize("text", ["f(x) := 2", "3", "x > 2"])
-def test_what_does_nothing_is_no_effect(text):
+def test_a_value_is_no_effect(text):
     with pytest.raises(ExpressionError):
         parse_effect(text)
 
@@ -133,7 +133,7 @@ expressions = st.recursive(_atoms, _compound, max_leaves=12)
 
 @given(expressions)
 @settings(max_examples=150, deadline=None)
-def test_printing_and_reading_again_gives_the_same(expression):
+def test_parsing_the_printed_text_gives_an_equal_tree(expression):
     assert parse_expression(print_expression(expression)) == expression
 
 
@@ -165,7 +165,7 @@ _soups = st.lists(
 
 @given(_soups)
 @settings(max_examples=300, deadline=None)
-def test_any_text_is_read_or_refused_at_a_place_in_it(text):
+def test_any_text_is_parsed_or_rejected_at_an_offset_in_it(text):
     for parse in (parse_expression, parse_effect):
         assert 0 <= _find_fault(parse, text) <= len(text)
 
@@ -179,7 +179,7 @@ def _find_fault(parse, text):
     return 0
 
 
-def test_a_truth_is_no_number_in_expressions():
+def test_a_boolean_equals_no_number():
     assert len({Literal(True), Literal(1), Literal(1.0)}) == 3
     assert Binary("==", Name(("x",)), Literal(1)) != Binary("==", Name(("x",)), Literal(True))
 
@@ -190,7 +190,7 @@ def test_number_with_more_digits_than_python_reads_is_refused():
 
 
 @pytest.mark.parametrize("text", ["- " * 500 + "1", "not " * 200 + "a", "a" + " + a" * 400])
-def test_what_nests_deeper_than_any_expression_is_refused(text):
+def test_nesting_deeper_than_the_limit_is_rejected(text):
     with pytest.raises(ExpressionError, match="nested too deeply"):
         parse_expression(text)
 
@@ -198,5 +198,5 @@ def test_what_nests_deeper_than_any_expression_is_refused(text):
 @pytest.mark.parametrize(
     "text", ["- " * 100 + "1", "a" + " + a" * 100, "max(" + "a, " * 400 + "a)"]
 )
-def test_what_is_long_but_not_deep_is_read(text):
+def test_a_long_but_flat_expression_is_parsed(text):
     parse_expression(text)

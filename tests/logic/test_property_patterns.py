@@ -1,11 +1,11 @@
-"""Property patterns: Spot holds them against the published formulas, in every scope."""
+"""Property patterns; Spot compares them with the published formulas, in every scope."""
 
 import pytest
 import spot
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from test_formats_spot import for_spot
-from test_reductions import ltl
+from test_reductions import bit_rules, ltl
 
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import BooleanDomain, IntegerDomain
@@ -66,22 +66,26 @@ DWYER = {
         "until": "G (q & !r -> ((p -> (!r U (s & !r))) W r))",
     },
 }
-CASES = [(text, scope, one) for text, rows in DWYER.items() for scope, one in rows.items()]
+CASES = [
+    (text, scope, formula)
+    for text, formulas in DWYER.items()
+    for scope, formula in formulas.items()
+]
 
 
 @pytest.mark.parametrize(("text", "scope", "published"), CASES)
-def test_a_sentence_says_what_the_published_formula_says(text, scope, published):
+def test_a_sentence_means_the_published_formula(text, scope, published):
     history = History(DOMAINS)
     parts = reduce_formula(read_sentence(SCOPES[scope] + text, DOMAINS), history)
-    ruled = for_spot(ltl([(one.class_, one.formula) for one in history.conjuncts]))
-    claim = spot.formula(f"({ruled}) & !(({published}) <-> ({for_spot(ltl(parts))}))")
-    assert not spot.translate(spot.formula(ruled)).is_empty()
+    rules = for_spot(bit_rules(history))
+    claim = spot.formula(f"({rules}) & !(({published}) <-> ({for_spot(ltl(parts))}))")
+    assert not spot.translate(spot.formula(rules)).is_empty()
     counterexample = spot.translate(claim).accepting_word()
     assert counterexample is None
 
 
 @pytest.mark.parametrize(
-    ("one", "other"),
+    ("short", "full"),
     [
         ("always p", "Globally, it is always the case that p holds."),
         ("p responds to q", "always if q holds, then p eventually holds"),
@@ -93,24 +97,22 @@ def test_a_sentence_says_what_the_published_formula_says(text, scope, published)
         ("after q, always if p then s", "After q, it is always the case that !p | s holds"),
     ],
 )
-def test_sentences_may_be_short(one, other):
-    told = [_meaning(text) for text in (one, other)]
-    assert spot.are_equivalent(*told)
+def test_a_short_sentence_means_the_full_one(short, full):
+    assert spot.are_equivalent(_translate(short), _translate(full))
 
 
-def _meaning(text):
+def _translate(text):
     text = text.replace("n=3", "s")
     history = History(DOMAINS)
     parts = reduce_formula(read_sentence(text, DOMAINS), history)
-    rules = [(one.class_, one.formula) for one in history.conjuncts]
-    return spot.formula(for_spot(f.both(ltl(rules), ltl(parts))))
+    return spot.formula(for_spot(f.both(bit_rules(history), ltl(parts))))
 
 
 SOON = "(p -> (s | r | X (s | r | X (s | r))))"
 
 
 @pytest.mark.parametrize(
-    ("scope", "wanted"),
+    ("scope", "expected"),
     [
         ("", "G (p -> (s | X s | X X s))"),
         ("Before r, ", f"F r -> ({SOON} U r)"),
@@ -119,12 +121,12 @@ SOON = "(p -> (s | r | X (s | r | X (s | r))))"
         ("After q until r, ", f"G (q & !r -> ({SOON} W r))"),
     ],
 )
-def test_an_answer_within_some_steps(scope, wanted):
+def test_a_bounded_response_means_nested_nexts(scope, expected):
     history = History(DOMAINS)
     text = f"{scope}always if p then s holds within 2 steps"
     parts = reduce_formula(read_sentence(text, DOMAINS), history)
-    ruled = for_spot(ltl([(one.class_, one.formula) for one in history.conjuncts]))
-    claim = spot.formula(f"({ruled}) & !(({wanted}) <-> ({for_spot(ltl(parts))}))")
+    rules = for_spot(bit_rules(history))
+    claim = spot.formula(f"({rules}) & !(({expected}) <-> ({for_spot(ltl(parts))}))")
     assert spot.translate(claim).is_empty()
 
 
@@ -144,7 +146,7 @@ def test_an_answer_within_some_steps(scope, wanted):
         ("never if p then s", (1, 10), "'if' follows 'always' only; a condition is expected"),
     ],
 )
-def test_what_is_no_sentence_is_told_with_its_place(text, place, reason):
+def test_a_malformed_sentence_is_reported_with_its_location(text, place, reason):
     with pytest.raises(FormulaError) as caught:
         read_sentence(text, DOMAINS)
     assert line_and_column(text, caught.value.at) == place
@@ -161,7 +163,7 @@ WORDS = [
 
 @given(st.lists(st.sampled_from(WORDS), max_size=12))
 @settings(max_examples=600, deadline=None)
-def test_any_words_are_a_sentence_or_told_with_a_place(words):
+def test_any_words_are_a_sentence_or_a_fault_with_a_location(words):
     text = " ".join(words)
     try:
         formula = read_sentence(text, DOMAINS)
@@ -174,7 +176,7 @@ def test_any_words_are_a_sentence_or_told_with_a_place(words):
 @pytest.mark.parametrize(
     "text", ["!(a U " * 60 + "b" + ")" * 60, "X " * 150 + "a", "X " * 30 + "a"]
 )
-def test_deep_formulas_are_reduced_or_not_but_never_fail(text):
+def test_deep_formulas_do_not_exhaust_the_stack(text):
     formula = parse_formula(text, {name: BooleanDomain() for name in "ab"})
     try:
         assert reduce_formula(formula, History("ab"))

@@ -1,4 +1,4 @@
-"""Reductions to GR(1): Spot finds every one of them to be an equivalence."""
+"""Reductions to GR(1); Spot judges that every one is an equivalence."""
 
 import pytest
 import spot
@@ -25,17 +25,21 @@ def parse(text):
 
 
 def ltl(parts):
-    made = []
+    """The conjunction of parts, with the operators that their classes imply."""
+    formulas = []
     for class_, part in parts:
         inner = f.eventually(part) if class_ is Class.LIVENESS else part
-        made.append(f.always(inner) if class_ in (Class.SAFETY, Class.LIVENESS) else inner)
-    return f.both(*made)
+        formulas.append(f.always(inner) if class_ in (Class.SAFETY, Class.LIVENESS) else inner)
+    return f.both(*formulas)
 
 
-def same(formula, parts, history):
-    """Whether the parts say what the formula says, wherever the bits follow their rules."""
-    ruled = ltl([(one.class_, one.formula) for one in history.conjuncts])
-    claim = f.implies(ruled, f.iff(formula, ltl(parts)))
+def bit_rules(history):
+    return ltl([(conjunct.class_, conjunct.formula) for conjunct in history.conjuncts])
+
+
+def are_equivalent(formula, parts, history):
+    """Whether the parts mean the formula in all traces in which the bits follow their rules."""
+    claim = f.implies(bit_rules(history), f.iff(formula, ltl(parts)))
     return spot.translate(spot.formula(for_spot(f.negate(claim)))).is_empty()
 
 
@@ -72,12 +76,12 @@ def same(formula, parts, history):
         ("F (a & X X b)", None, None),
     ],
 )
-def test_what_is_known_to_be_in_gr1_is_brought_there(text, parts, bits):
+def test_formulas_with_a_known_reduction_become_gr1(text, parts, bits):
     history = History(DOMAINS)
-    found = reduce_formula(parse(text), history)
-    assert same(parse(text), found, history)
+    reduced = reduce_formula(parse(text), history)
+    assert are_equivalent(parse(text), reduced, history)
     if parts is not None:
-        assert [(str(class_), print_formula(part)) for class_, part in found] == parts
+        assert [(str(class_), print_formula(part)) for class_, part in reduced] == parts
         assert len(history.variables) == bits
 
 
@@ -94,32 +98,30 @@ def test_what_is_known_to_be_in_gr1_is_brought_there(text, parts, bits):
         ("G (a S false -> c) & G (Y a -> b)", "G (a -> X b)"),
     ],
 )
-def test_the_past_is_remembered(text, future):
+def test_history_bits_replace_the_past(text, future):
     history = History(DOMAINS)
-    assert same(parse(future), reduce_formula(read_temporal_logic(text, DOMAINS), history), history)
+    parts = reduce_formula(read_temporal_logic(text, DOMAINS), history)
+    assert are_equivalent(parse(future), parts, history)
 
 
-def test_the_same_past_has_one_bit_and_another_past_another_one():
+def test_equal_facts_about_the_past_share_one_bit():
     history, a, b = History(DOMAINS), Var("a"), Var("b")
-    once = [history.previous(a), history.historically(a), history.since(a, b), history.since(b, a)]
-    # What can never begin, and what follows from a variable with a name of a bit's kind.
-    once += [history.since(a, f.FALSE), history.since(a, Var("since")), history.since(a, f.TRUE)]
-    once += [history.once(a), history.last_step(a)]
-    assert len(history.variables) == len(once)
-    again = [
-        history.previous(a),
-        history.historically(a),
-        history.since(a, b),
-        history.last_step(a),
-    ]
-    assert again == [*once[:3], once[-1]]
-    assert len(history.variables) == len(once)
+    shared = [history.previous(a), history.historically(a), history.since(a, b)]
+    shared.append(history.last_step(a))
+    # A goal that never holds, and a variable with the name of a kind of bits.
+    different = [history.since(a, f.FALSE), history.since(a, Var("since")), history.once(a)]
+    different += [history.since(b, a), history.since(a, f.TRUE)]
+    assert len(history.variables) == len(shared) + len(different)
+    repeated = [history.previous(a), history.historically(a), history.since(a, b)]
+    repeated.append(history.last_step(a))
+    assert repeated == shared
+    assert len(history.variables) == len(shared) + len(different)
 
 
 @pytest.mark.parametrize(
     "text", ["F G a", "G F a -> G F b", "G (a -> F (b & G c))", "G (F a | F b)"]
 )
-def test_what_no_reduction_is_known_for_is_told(text):
+def test_a_formula_without_a_known_reduction_adds_no_bits(text):
     history = History(DOMAINS)
     with pytest.raises(NotReducibleError):
         reduce_formula(parse(text), history)
@@ -138,12 +140,12 @@ BODIES = st.recursive(
         st.builds(f.both, inner, inner),
         st.builds(f.negate, inner),
         st.builds(
-            lambda op, one: Apply(op, (one,)),
+            lambda op, operand: Apply(op, (operand,)),
             st.sampled_from([Op.NEXT, Op.ALWAYS, Op.EVENTUALLY]),
             inner,
         ),
         st.builds(
-            lambda op, one, other: Apply(op, (one, other)),
+            lambda op, left, right: Apply(op, (left, right)),
             st.sampled_from([Op.UNTIL, Op.WEAK_UNTIL, Op.RELEASE]),
             STATES,
             STATES,
@@ -162,10 +164,10 @@ def test_every_reduction_is_an_equivalence(formula):
     except NotReducibleError:
         return
     if len(history.variables) <= 5:
-        assert same(formula, parts, history)
+        assert are_equivalent(formula, parts, history)
 
 
-def test_a_contract_keeps_what_it_was_and_gets_bits_behind():
+def test_a_reduced_contract_has_its_bits_after_its_own_variables_and_guarantees():
     variables = tuple(
         Variable(name, Owner.ENVIRONMENT if name in "ab" else Owner.SYSTEM, BooleanDomain())
         for name in "abcd"
@@ -173,14 +175,15 @@ def test_a_contract_keeps_what_it_was_and_gets_bits_behind():
     response = Conjunct(parse("G (a -> F c)"), Class.OTHER, "model::Req1", "Answer.")
     stable = Conjunct(parse("F G c"), Class.OTHER, "model::Req2")
     plain = Conjunct(parse("d"), Class.INIT, "model::Req3")
-    made = reduce_contract(Contract("C", "", variables, (), (response, stable, plain)))
-    assert made.irreducible == (stable,)
-    assert made.contract.variables[:4] == variables
-    assert [(one.class_, one.origin) for one in made.contract.guarantees] == [
+    reduced = reduce_contract(Contract("C", "", variables, (), (response, stable, plain)))
+    assert reduced.irreducible == (stable,)
+    assert reduced.contract.variables[:4] == variables
+    guarantees = reduced.contract.guarantees
+    assert [(conjunct.class_, conjunct.origin) for conjunct in guarantees] == [
         (Class.LIVENESS, "model::Req1"),
         (Class.OTHER, "model::Req2"),
         (Class.INIT, "model::Req3"),
         (Class.INIT, "model::Req1"),
         (Class.SAFETY, "model::Req1"),
     ]
-    assert reduce_contract(made.contract).contract == made.contract
+    assert reduce_contract(reduced.contract).contract == reduced.contract

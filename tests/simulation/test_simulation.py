@@ -1,4 +1,4 @@
-"""Scenarios on the reference interpreters: what passes, what fails, and how it is told."""
+"""Scenarios on the reference interpreters: which ones pass, and how failures are reported."""
 
 from xml.etree import ElementTree
 
@@ -62,10 +62,10 @@ steps:
 
 
 def simulate(text: str, model: str = GATE):
-    graph, sink = parse_text(model), Sink()
-    Activities().run(graph, sink)
-    found = Sink()
-    return run_scenarios(graph, Source("s.yaml", text.encode()), found), found
+    graph = parse_text(model)
+    Activities().run(graph, Sink())
+    sink = Sink()
+    return run_scenarios(graph, Source("s.yaml", text.encode()), sink), sink
 
 
 def test_a_scenario_that_the_diagram_shows_passes():
@@ -83,7 +83,7 @@ def test_properties_keep_their_value_and_ends_of_actions_last_one_step():
     assert str(report.results[0].difference) == "step 4: run_pull is false, expected true"
 
 
-def test_the_first_difference_is_told_with_its_line():
+def test_the_first_difference_is_reported_with_its_line():
     report, _ = simulate(PULLS.replace("run_pull: true", "run_pull: false"))
     assert not report.passed
     assert report.as_text() == (
@@ -142,7 +142,7 @@ def test_the_failing_run_is_drawn_with_a_message_for_each_change():
     )
 
 
-def test_steps_can_be_repeated_and_a_trace_be_expected():
+def test_steps_are_repeated_and_a_trace_is_expected():
     report, _ = simulate(
         "component: pass\nsteps:\n  - repeat: 4\ntrace:\n  - {run_read: false}\n"
         "  - {run_read: true}\n  - {run_read: true}\n"
@@ -217,12 +217,12 @@ def test_one_of_the_runs_that_a_choice_allows_is_enough(last, passes):
         ("\x00", "SM550", "the scenario is not YAML", 0),
     ],
 )
-def test_what_is_wrong_with_a_scenario_is_reported_at_its_line(text, code, message, line):
+def test_a_fault_of_a_scenario_is_reported_at_its_line(text, code, message, line):
     report, sink = simulate(text)
-    (found,) = sink
-    assert found.rule.code == code
-    assert message in found.message
-    assert found.subject.place.line == line
+    (diagnostic,) = sink
+    assert diagnostic.rule.code == code
+    assert message in diagnostic.message
+    assert diagnostic.subject.place.line == line
     assert not report.passed
 
 
@@ -232,7 +232,7 @@ def test_what_is_wrong_with_a_scenario_is_reported_at_its_line(text, code, messa
 def test_each_rule_about_scenarios_has_a_wrong_and_a_right_example(rule):
     model = GATE.replace('Class gate "Gate"', 'Class gate "Gate"\n  -> classifier-behavior pass')
     _, sink = simulate(rule.read_page().wrong, model)
-    assert [found.rule.code for found in sink] == [rule.code]
+    assert [diagnostic.rule.code for diagnostic in sink] == [rule.code]
     report, sink = simulate(rule.read_page().right, model)
     assert list(sink) == []
     assert report.results
