@@ -64,7 +64,7 @@ class Context(Struct, frozen=True):
 
     @property
     def literals(self) -> dict[str, tuple[str, str]]:
-        """(Enumeration, identifier) of each enumeration literal, by plain and qualified name."""
+        """Enumeration and identifier of each literal, by plain and by qualified name."""
         return self.enumerations.literals
 
     def number(self, name: str) -> int | None:

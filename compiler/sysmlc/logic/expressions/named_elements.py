@@ -188,7 +188,7 @@ class Enumerations:
 
     @cached_property
     def literals(self) -> dict[str, tuple[str, str]]:
-        """(Enumeration, identifier) of each literal, by plain and by qualified name."""
+        """Enumeration and identifier of each literal, by plain and by qualified name."""
         literals: dict[str, tuple[str, str]] = {}
         for enumeration in self._graph.of_kind(Kind.ENUMERATION):
             for name, identifier in literals_of(self._graph, enumeration).items():

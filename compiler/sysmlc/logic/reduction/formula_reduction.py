@@ -206,7 +206,7 @@ class FormulaReduction:
         return f.implies(self._has_steps(depth), self._look_back(obligation, depth))
 
     def _has_steps(self, depth: int) -> Formula:
-        """Return that at least ``depth - 1`` steps precede this one."""
+        """Return the condition that at least ``depth - 1`` steps precede this one."""
         if depth > _MAX_NEXT_DEPTH:
             raise NotReducibleError(f.TRUE)
         has_steps: Formula = f.TRUE
@@ -225,7 +225,7 @@ class FormulaReduction:
                 return self._shift_back(formula, depth - 1)
 
     def _shift_back(self, formula: Formula, steps: int) -> Formula:
-        """Return that *formula* held some steps ago, or holds in the next step for -1 steps."""
+        """Return the condition that *formula* held some steps ago; -1 is the next step."""
         if steps < 0:
             return f.primed(formula)
         for _ in range(steps):

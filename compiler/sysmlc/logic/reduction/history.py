@@ -36,25 +36,28 @@ class History:
         self.variables, self.conjuncts = extended.variables, extended.conjuncts
 
     def previous(self, formula: Formula, origin: str = "") -> Formula:
-        """Return that the formula held one step ago; false in the first step."""
+        """Return the condition that the formula held one step ago; false in the first step."""
         return self._find_bit("was", formula, f.FALSE, False, origin)
 
     def once(self, formula: Formula, origin: str = "") -> Formula:
-        """Return that the formula holds now or held at some step before."""
+        """Return the condition that the formula holds now or held at some step before."""
         return self.since(f.TRUE, formula, origin)
 
     def historically(self, formula: Formula, origin: str = "") -> Formula:
-        """Return that the formula holds now and held at all steps before."""
+        """Return the condition that the formula holds now and held at all steps before."""
         bit = self._find_bit("always_was", formula, f.FALSE, True, origin)
         return f.both(formula, bit)
 
     def since(self, stay: Formula, goal: Formula, origin: str = "") -> Formula:
-        """Return that *goal* held at some step up to now, and *stay* at all steps after it."""
+        """Return the condition that *goal* held at some step up to now, and *stay* since then."""
         bit = self._find_bit("since", stay, goal, False, origin)
         return f.either(goal, f.both(stay, bit))
 
     def last_step(self, step: Formula, origin: str = "") -> Formula:
-        """Return that *step*, which may have primes, was true of the last step; initially false."""
+        """Return the condition that *step*, a formula with primes, was true of the last step.
+
+        It is false in the first step.
+        """
         key = ("did", step, f.FALSE)
         if key not in self._bits:
             self._bits[key] = Var(self._make_name("did"))

@@ -185,7 +185,7 @@ def _is_assumed(scope: Scope, statement: Statement, formula: Formula) -> bool:
 def _classify(
     scope: Scope, statement: Statement, formula: Formula, is_assumed: bool
 ) -> Iterator[Conjunct]:
-    """Yield the conjuncts of a formula."""
+    """Yield the conjuncts of a statement, with a text that names its requirement."""
     id, name = statement.constraint.id, statement.requirement.name
     text = _describe(statement, is_assumed)
     for class_, part in _split_by_class(scope, statement, formula, is_assumed):

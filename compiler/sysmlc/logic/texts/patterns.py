@@ -65,7 +65,10 @@ def response(scope: Scope, trigger: Formula, answer: Formula) -> Formula:
 
 
 def bounded_response(scope: Scope, trigger: Formula, answer: Formula, steps: int) -> Formula:
-    """As ``response``, but at most *steps* later; no answer is due after the end of the scope."""
+    """As ``response``, but the answer holds at most *steps* later.
+
+    A trigger fewer steps before the end of the scope needs no answer.
+    """
     missing = f.both(f.negate(answer), f.negate(scope.end))
     waiting = f.both(trigger, _is_inside(scope), missing)
     for _ in range(steps):

@@ -43,7 +43,7 @@ def translate_expression(  # noqa: PLR0911 - one for each kind
     expression: source.Expression,
 ) -> source.Expression:
     """Return a parsed expression in the normal form of recipes."""
-    name = source.dotted(expression)
+    name = source.dotted_name(expression)
     if name is not None:
         return make_variable(name)
     match expression:
@@ -58,7 +58,7 @@ def translate_expression(  # noqa: PLR0911 - one for each kind
             operator = _OPERATORS.get(op, op)
             return source.Binary(operator, translate_expression(left), translate_expression(right))
         case source.Call(function, args):
-            function_name = source.dotted(function) or source.print_expression(function)
+            function_name = source.dotted_name(function) or source.print_expression(function)
             return _make_call(function_name, *args)
         case source.Conditional(condition, then, otherwise):
             return _make_call("if", condition, then, otherwise)
@@ -82,7 +82,7 @@ def read_assignments(text: str) -> list[tuple[str, source.Expression]] | None:
     for statement in statements:
         if not isinstance(statement, source.Assignment):
             return None
-        target = source.dotted(statement.target)
+        target = source.dotted_name(statement.target)
         if target is None:
             return None
         pairs.append((target, translate_expression(statement.value)))
