@@ -6,7 +6,7 @@ import pytest
 from plants import baygate, refined, sources, units
 
 from graph_differences import diff
-from sysmlc.backends.uml.document import document
+from sysmlc.backends.uml.backend import write_document
 from sysmlc.diagnostics import Sink
 from sysmlc.frontends.xmi import FRONTEND
 from sysmlc.ir.verify import verify
@@ -20,7 +20,7 @@ NAMED = "a value names an ID, which XML does not allow for xmi:id: another one i
 
 def saved(graph):
     sink = Sink()
-    return document(graph, sink), Counter(found.rule.code for found in sink)
+    return write_document(graph, sink), Counter(found.rule.code for found in sink)
 
 
 def read_back(text):

@@ -10,7 +10,7 @@ from lxml import etree
 from plants import baygate, refined, sources, units
 
 from graph_differences import diff
-from sysmlc.backends.aml.document import documents
+from sysmlc.backends.aml.backend import write_files
 from sysmlc.diagnostics import Sink
 from sysmlc.sources import Source, SourceError, load
 
@@ -28,7 +28,7 @@ REASONS = {
 
 def written(graph):
     sink = Sink()
-    return documents(graph, "plant", sink), Counter(found.rule.code for found in sink)
+    return write_files(graph, "plant", sink), Counter(found.rule.code for found in sink)
 
 
 def read_back(texts):

@@ -1,5 +1,6 @@
 """What a back end is: a name and ``emit``. It reads the graph and never changes it."""
 
+import posixpath
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Protocol
@@ -50,3 +51,12 @@ class Backend(Protocol):
 
     def emit(self, graph: Graph, output: Output, sink: Sink, options: EmitOptions) -> None:
         """Add files to ``output``; report what the target cannot express."""
+
+
+def find_unit_name(graph: Graph, options: EmitOptions) -> str:
+    """Return the name of the first input without its suffix, else the name of the first root."""
+    if options.inputs:
+        # The path of an input in an archive is ``archive!entry``.
+        file_name = posixpath.basename(options.inputs[0].path.partition("!")[0])
+        return file_name.partition(".")[0] or file_name
+    return next((root.name for root in graph.roots() if root.name), "model")

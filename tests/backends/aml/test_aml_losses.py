@@ -6,12 +6,12 @@ from writing_aml import refined, saved
 from sysmlc.backends.aml import rules
 
 RULES = (
-    rules.UNSAID_KIND,
-    rules.UNSAID_EDGE,
-    rules.UNSAID_ATTRIBUTE,
+    rules.UNSUPPORTED_KIND,
+    rules.UNSUPPORTED_EDGE,
+    rules.UNSUPPORTED_ATTRIBUTE,
     rules.MOVED,
     rules.APPROXIMATED,
-    rules.ILLEGAL,
+    rules.ILLEGAL_CHARACTERS,
     rules.ADDED,
 )
 

@@ -3,7 +3,7 @@
 from lxml import etree
 
 from graph_differences import diff
-from sysmlc.backends.aml.document import documents
+from sysmlc.backends.aml.backend import write_files
 from sysmlc.diagnostics import Coverage, Sink
 from sysmlc.frontends.caex import FRONTEND
 from sysmlc.ir import Graph, parse_text
@@ -34,7 +34,7 @@ def refined(text):
 def saved(graph, unit="plant"):
     """The files by path, and what they do not say: codes and messages."""
     sink = Sink()
-    texts = documents(graph, unit, sink)
+    texts = write_files(graph, unit, sink)
     return texts, [f"{found.rule.code} {found.message}" for found in sink]
 
 

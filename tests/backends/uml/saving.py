@@ -1,7 +1,7 @@
 """Saves graphs as UML and reads them back, for the tests of the back end ``uml``."""
 
 from graph_differences import diff
-from sysmlc.backends.uml.document import document
+from sysmlc.backends.uml.backend import write_document
 from sysmlc.diagnostics import Coverage, Sink
 from sysmlc.frontends.xmi import FRONTEND
 from sysmlc.ir import Graph, parse_text
@@ -30,7 +30,7 @@ def refined(text):
 def saved(graph):
     """The document, and what it could not say: codes and messages."""
     sink = Sink()
-    text = document(graph, sink)
+    text = write_document(graph, sink)
     return text, [f"{found.rule.code} {found.message}" for found in sink]
 
 

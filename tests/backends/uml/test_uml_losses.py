@@ -9,12 +9,12 @@ from sysmlc.backends.uml import rules
 from sysmlc.ir import Edge, Kind
 
 RULES = (
-    rules.UNSAID_KIND,
-    rules.UNSAID_EDGE,
-    rules.UNSAID_ATTRIBUTE,
+    rules.UNSUPPORTED_KIND,
+    rules.UNSUPPORTED_EDGE,
+    rules.UNSUPPORTED_ATTRIBUTE,
     rules.MOVED,
     rules.APPROXIMATED,
-    rules.ILLEGAL,
+    rules.ILLEGAL_CHARACTERS,
     rules.RESPELT_ID,
 )
 

@@ -10,7 +10,7 @@ from saving import PASSES, read, refined, round_trip, saved
 
 from dialects.papyrus import XMI
 from dialects.random_plants import random_plant
-from sysmlc.backends.uml.document import document
+from sysmlc.backends.uml.backend import write_document
 from sysmlc.diagnostics import Coverage, Sink
 from sysmlc.frontends.caex import FRONTEND
 from sysmlc.frontends.xmi import FRONTEND as XMI_FRONTEND
@@ -73,7 +73,7 @@ def test_a_plant_comes_back_whole(plant):
 
 def test_the_comment_is_told_once_with_what_it_keeps(plant):
     sink = Sink()
-    document(plant, sink)
+    write_document(plant, sink)
     (told,) = [found for found in sink if found.rule.code == "SM726"]
     assert "UML has no place for Document (1)" in told.notes
     assert {found.rule.code for found in sink} <= {"SM723", "SM724", "SM726"}

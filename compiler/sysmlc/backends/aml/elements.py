@@ -1,294 +1,291 @@
-"""Internal elements: parts of classes, and instances with the values that they give."""
+"""Internal elements: parts of classes, instances, facets and groups."""
 
-from dataclasses import dataclass, field
-
-from sysmlc.backends.aml import attributes, groups, header, interfaces, roles
-from sysmlc.backends.aml.attributes import unresolved
-from sysmlc.backends.aml.book import Book, File
-from sysmlc.backends.aml.families import Family, is_inline
+from sysmlc.backends.aml import roles
+from sysmlc.backends.aml.attributes import is_attribute, make_attribute
+from sysmlc.backends.aml.class_kinds import ClassKind, find_class_kind, is_inline
+from sysmlc.backends.aml.context import Context, File, find_unresolved
+from sysmlc.backends.aml.header import write_header
+from sysmlc.backends.aml.instances import (
+    SystemUnit,
+    is_part,
+    write_feature_description,
+    write_interface_ids,
+    write_slot,
+)
+from sysmlc.backends.aml.interfaces import write_interface
 from sysmlc.backends.aml.node import Node
-from sysmlc.backends.aml.rules import UNSAID_EDGE
-from sysmlc.backends.aml.values import text_of
 from sysmlc.ir import Edge, Element, Kind
+from sysmlc.ir.identity import derived_id
 
 _REFERENCE = "RefBaseSystemUnitPath"
-_PARTS = frozenset({"part", "reference"})
+_INTERNAL_ELEMENT = ("InternalElement", _REFERENCE)
+_BASE_ROLE = "AutomationMLBaseRoleClassLib/AutomationMLBaseRole"
+_GROUP_ROLES = {Kind.FACET: f"{_BASE_ROLE}/Facet", Kind.GROUP: f"{_BASE_ROLE}/Group"}
+"""Role classes that make an internal element a facet or a group (IEC 62714-1)."""
+_FACET_MIRRORS = {
+    Kind.PROPERTY: ("Attribute", "RefAttributeType"),
+    Kind.PORT: ("ExternalInterface", "RefBaseClassPath"),
+}
+"""Tag of the mirror, and its XML attribute that names the master, by the kind of the master."""
 
 
-@dataclass(slots=True, eq=False)
-class Unit:
-    """What one internal element is in the graph: a part, its instance, the class made for it."""
-
-    node: Node
-    file: File
-    part: Element | None = None
-    instance: Element | None = None
-    own: Element | None = None
-    inside: list["Unit"] = field(default_factory=list)
-
-    @property
-    def players(self) -> list[Element]:
-        """The elements that it is."""
-        return [one for one in (self.own, self.part, self.instance) if one is not None]
+def fill_class(context: Context, element: Element, node: Node, file: File) -> None:
+    """Write the content of a system unit class or role class, with all internal elements in it."""
+    _fill_unit(context, SystemUnit(node, file, own_class=element))
 
 
-def fill_class(book: Book, element: Element, node: Node, file: File) -> None:
-    """What a system unit class or role class holds, with all internal elements below."""
-    _fill(book, Unit(node, file, own=element))
+def fill_hierarchy(context: Context, package: Element, node: Node, file: File) -> None:
+    """Write the internal elements of an instance hierarchy, with all internal elements in them."""
+    for element in context.graph.owned(package):
+        if _is_plant_object(context, element):
+            _fill_unit(context, _make_unit(context, node, file, None, element))
+        elif element.kind in _GROUP_ROLES:
+            node.add(_make_group(context, element, file))
 
 
-def fill_hierarchy(book: Book, package: Element, node: Node, file: File) -> None:
-    """The internal elements at the top of a hierarchy, with all below."""
-    for one in book.graph.owned(package):
-        if one.kind is Kind.INSTANCE and is_plant(book, one):
-            unit = _unit(book, node, file, None, one)
-            _fill(book, unit)
-        elif one.kind in groups.ROLES:
-            node.add(groups.write(book, one, file))
+def has_plant_objects(context: Context, package: Element) -> bool:
+    """Return whether a package owns instances that an instance hierarchy holds."""
+    return any(_is_plant_object(context, element) for element in context.graph.owned(package))
 
 
-def has_instances(book: Book, package: Element) -> bool:
-    """Whether a package holds instances of blocks."""
-    return any(
-        one.kind is Kind.INSTANCE and is_plant(book, one) for one in book.graph.owned(package)
-    )
-
-
-def is_plant(book: Book, instance: Element) -> bool:
-    """Whether an instance is part of a plant: of a block, or nobody knows of what."""
-    if book.ids.is_ours(instance):
-        return True
-    type_ = book.graph.target(instance, Edge.INSTANCE_OF)
-    if type_ is None or instance.role or type_.attrs.get("external"):
+def _is_plant_object(context: Context, element: Element) -> bool:
+    """Return whether the element is an instance of a block, or any instance in AutomationML."""
+    if element.kind is not Kind.INSTANCE:
         return False
-    return book.families.of(type_) is Family.SYSTEM_UNIT
-
-
-def _fill(book: Book, top: Unit) -> None:
-    waiting = [top]
-    while waiting:
-        unit = waiting.pop()
-        _members(book, unit)
-        players = [one for one in unit.players if one is not unit.part or unit.own is None]
-        roles.write(book, unit.node, unit.file, *dict.fromkeys([*players, *unit.players]))
-        if unit.players != [unit.own] and not _is_mirror(book, unit):
-            declared = _declared(book, unit)
-            if declared is not None:
-                roles.inherited(book, unit.node, unit.file, declared)
-                book.copies.append((unit.node, declared))
-        for type_ in (unit.own, _declared(book, unit)):
-            if type_ is not None:
-                roles.map_features(book, unit.node, unit.file, type_)
-        waiting += reversed(unit.inside)
-
-
-def _members(book: Book, unit: Unit) -> None:
-    """Attributes, interfaces and elements: those of the class made for it, then the instance's."""
-    graph = book.graph
-    for one in book.owned(unit.own):
-        if attributes.is_attribute(book, one):
-            unit.node.add(attributes.write(book, one, unit.file))
-        elif one.kind is Kind.PORT:
-            interfaces.write(book, one, unit.file, unit.node)
-        elif _is_part(book, one):
-            below = _instance_of_part(book, unit, one)
-            unit.inside.append(_unit(book, unit.node, unit.file, one, below))
-        elif one.kind in groups.ROLES:
-            unit.node.add(groups.write(book, one, unit.file))
-    _interface_ids(book, unit)
-    for one in [*book.owned(unit.instance), *_values_of_class(book, unit)]:
-        if one.kind is Kind.SLOT:
-            _slot(book, unit, one)
-        elif one.kind is Kind.INSTANCE and one.subkind == "part" and one.id not in book.said:
-            unit.inside.append(_unit(book, unit.node, unit.file, None, one))
-        elif one.kind is Kind.COMMENT and graph.targets(one, Edge.REFERENCES):
-            _description(book, unit, one)
-
-
-def _is_part(book: Book, one: Element) -> bool:
-    if one.kind is not Kind.PROPERTY or one.role not in _PARTS:
-        return False
-    if one.role == "part":
-        return not book.graph.target(one, Edge.TYPED_BY) or _is_unit_type(book, one)
-    return book.ids.is_ours(one)
-
-
-def _is_unit_type(book: Book, part: Element) -> bool:
-    type_ = book.graph.target(part, Edge.TYPED_BY)
-    if type_ is None or is_inline(type_):
+    if context.ids.is_from_caex(element):
         return True
-    place = book.places.get(type_.id)
-    return place is None or place.family is Family.SYSTEM_UNIT
+    type_ = context.graph.target(element, Edge.INSTANCE_OF)
+    if type_ is None or element.role or type_.attrs.get("external"):
+        return False
+    return find_class_kind(context.graph, type_) is ClassKind.SYSTEM_UNIT
 
 
-def _values_of_class(book: Book, unit: Unit) -> list[Element]:
-    """Instances that a class owns for the values of its parts, and slots of its own."""
-    if unit.instance is not None or unit.own is None:
+def _fill_unit(context: Context, root: SystemUnit) -> None:
+    stack = [root]
+    while stack:
+        unit = stack.pop()
+        _write_members(context, unit)
+        _write_roles(context, unit)
+        stack += reversed(unit.children)
+
+
+def _write_roles(context: Context, unit: SystemUnit) -> None:
+    """Write the roles, those of the class included, and the mappings to features of roles."""
+    elements = unit.elements
+    if unit.own_class is not None and unit.part is not None:
+        # The inline class has the roles that the file states; the part repeats some of them.
+        elements = [item for item in elements if item is not unit.part] + [unit.part]
+    roles.write_roles(context, unit.node, unit.file, elements)
+    declared = _find_declared_class(context, unit)
+    is_internal_element = unit.elements != [unit.own_class]
+    if declared is not None and is_internal_element and not _is_mirror(context, unit):
+        roles.repeat_class_roles(context, unit.node, unit.file, declared)
+        context.copies.append((unit.node, declared))
+    for type_ in (unit.own_class, declared):
+        if type_ is not None:
+            roles.map_features(context, unit.node, unit.file, type_)
+
+
+def _write_members(context: Context, unit: SystemUnit) -> None:
+    """Write the members that the class declares, then the values that the instance gives."""
+    graph = context.graph
+    for member in context.list_owned(unit.own_class):
+        if is_attribute(context, member):
+            unit.node.add(make_attribute(context, member, unit.file))
+        elif member.kind is Kind.PORT:
+            write_interface(context, member, unit.file, unit.node)
+        elif is_part(context, member):
+            instance = _find_part_instance(context, unit, member)
+            unit.children.append(_make_unit(context, unit.node, unit.file, member, instance))
+        elif member.kind in _GROUP_ROLES:
+            unit.node.add(_make_group(context, member, unit.file))
+    write_interface_ids(context, unit)
+    for member in [*context.list_owned(unit.instance), *_list_class_values(context, unit)]:
+        if member.kind is Kind.SLOT:
+            write_slot(context, unit, member)
+        elif member.kind is Kind.INSTANCE:
+            if member.subkind == "part" and member.id not in context.written:
+                unit.children.append(_make_unit(context, unit.node, unit.file, None, member))
+        elif member.kind is Kind.COMMENT and graph.targets(member, Edge.REFERENCES):
+            write_feature_description(context, unit, member)
+
+
+def _list_class_values(context: Context, unit: SystemUnit) -> list[Element]:
+    """Return the slots, comments and instances of parts that a class itself owns."""
+    if unit.instance is not None:
         return []
     kinds = (Kind.INSTANCE, Kind.SLOT, Kind.COMMENT)
-    return [one for one in book.graph.owned(unit.own) if one.kind in kinds]
+    return [member for member in context.list_owned(unit.own_class) if member.kind in kinds]
 
 
-def _instance_of_part(book: Book, unit: Unit, part: Element) -> Element | None:
-    """The instance that holds the values of a part of this element."""
-    owners = {one.id for one in (unit.instance, unit.own) if one is not None}
-    found = (i for i in book.graph.sources(part, Edge.REPRESENTS) if i.owner in owners)
-    return next((one for one in found if one.kind is Kind.INSTANCE), None)
-
-
-def _unit(
-    book: Book, above: Node, file: File, part: Element | None, instance: Element | None
-) -> Unit:
-    """A new internal element; it says its class unless only the class above knows that."""
-    known = part or instance
-    node = above.add(Node("InternalElement", {"Name": known.name if known else ""}))
-    unit = Unit(node, file, part, instance)
-    unit.own = _own(book, unit)
-    node.attributes["ID"] = book.ids.of(part, instance, unit.own)
-    for one in unit.players:
-        book.put(one, node)
-        header.write(book, one, node)
-    _refer(book, unit)
-    _enter(book, above, unit)
-    return unit
-
-
-def _enter(book: Book, above: Node, unit: Unit) -> None:
-    """Let links find the element by the part of the class above that it stands for."""
-    graph = book.graph
-    waiting = [unit.part] if unit.part is not None else []
-    if unit.instance is not None:
-        for one in graph.targets(unit.instance, Edge.REPRESENTS):
-            book.say(Edge.REPRESENTS, unit.instance, one)
-            waiting.append(one)
-    while waiting:
-        one = waiting.pop()
-        if one.id not in above.parts:
-            above.parts[one.id] = unit.node
-            waiting += graph.targets(one, Edge.REDEFINES)
-
-
-def _types(book: Book, unit: Unit) -> list[Element]:
-    graph, found = book.graph, []
-    for one, edge in ((unit.part, Edge.TYPED_BY), (unit.instance, Edge.INSTANCE_OF)):
-        for type_ in graph.targets(one, edge) if one is not None else ():
-            book.say(edge, one, type_) if one is not None else None
-            found.append(type_)
-    return found
-
-
-def _own(book: Book, unit: Unit) -> Element | None:
-    """The class that was made for this element alone."""
-    owner = unit.part.owner if unit.part is not None else None
-    if unit.part is None and unit.instance is not None and unit.instance.subkind != "part":
-        owner = unit.instance.owner
-    of_masters = _types_of_masters(book, unit)
-    for one in _types(book, unit):
-        is_own = one.kind is Kind.CLASS and one.subkind == "internal-element"
-        if is_own and one.owner == owner and one.id not in of_masters:
-            return one
+def _find_part_instance(context: Context, unit: SystemUnit, part: Element) -> Element | None:
+    """Return the instance that holds the values of a part in this unit, or None."""
+    owners = {owner.id for owner in (unit.instance, unit.own_class) if owner is not None}
+    for source in context.graph.sources(part, Edge.REPRESENTS):
+        if source.owner in owners and source.kind is Kind.INSTANCE:
+            return source
     return None
 
 
-def _types_of_masters(book: Book, unit: Unit) -> set[str]:
-    """Ids of the classes of what a mirror stands for: they are not its own."""
-    graph, edges = book.graph, (Edge.TYPED_BY, Edge.INSTANCE_OF)
-    players = [one for one in (unit.part, unit.instance) if one is not None]
-    masters = [master for one in players for master in graph.targets(one, Edge.MIRRORS)]
-    return {type_.id for one in masters for edge in edges for type_ in graph.targets(one, edge)}
+def _make_unit(
+    context: Context, parent: Node, file: File, part: Element | None, instance: Element | None
+) -> SystemUnit:
+    """Add an internal element for a part, an instance, or the instance of a part."""
+    named = part or instance
+    node = parent.add(Node("InternalElement", {"Name": named.name if named else ""}))
+    unit = SystemUnit(node, file, part, instance)
+    unit.own_class = _find_inline_class(context, unit)
+    node.attributes["ID"] = context.ids.choose(part, instance, unit.own_class)
+    for element in unit.elements:
+        context.register(element, node)
+        write_header(context, element, node)
+    _write_class_reference(context, unit)
+    _index_parts(context, parent, unit)
+    return unit
 
 
-def _declared(book: Book, unit: Unit) -> Element | None:
-    """The class that the element says; of a part that its class has the one there."""
-    if unit.own is not None:
-        return book.graph.target(unit.own, Edge.SPECIALIZES)
-    return next(iter(_types(book, unit)), None)
+def _index_parts(context: Context, parent: Node, unit: SystemUnit) -> None:
+    """Register the node under the parts of the class that it represents or redefines.
+
+    The paths of links consist of parts of the class.
+    """
+    graph = context.graph
+    stack = [unit.part] if unit.part is not None else []
+    if unit.instance is not None:
+        for represented in graph.targets(unit.instance, Edge.REPRESENTS):
+            context.mark_edge(Edge.REPRESENTS, unit.instance, represented)
+            stack.append(represented)
+    while stack:
+        part = stack.pop()
+        if part.id not in parent.parts:
+            parent.parts[part.id] = unit.node
+            stack += graph.targets(part, Edge.REDEFINES)
 
 
-def _refer(book: Book, unit: Unit) -> None:
-    for one in unit.players:
-        for master in book.graph.targets(one, Edge.MIRRORS):
-            book.say(Edge.MIRRORS, one, master)
-            book.late.append((unit.node, _REFERENCE, master))
-    declared = _declared(book, unit)
-    if unit.own is not None and declared is not None:
-        book.say(Edge.SPECIALIZES, unit.own, declared)
-    if _is_mirror(book, unit):
+# -- classes of internal elements --------------------------------------------------------------
+
+
+def _list_types(context: Context, unit: SystemUnit) -> list[Element]:
+    """Return the types of the part and of the instance."""
+    types = []
+    for element, edge in ((unit.part, Edge.TYPED_BY), (unit.instance, Edge.INSTANCE_OF)):
+        if element is not None:
+            for type_ in context.graph.targets(element, edge):
+                context.mark_edge(edge, element, type_)
+                types.append(type_)
+    return types
+
+
+def _find_inline_class(context: Context, unit: SystemUnit) -> Element | None:
+    """Return the class that the front end made for this internal element alone, or None."""
+    owner = unit.part.owner if unit.part is not None else None
+    if unit.part is None and unit.instance is not None and unit.instance.subkind != "part":
+        owner = unit.instance.owner
+    master_types = _list_master_types(context, unit)
+    for type_ in _list_types(context, unit):
+        is_internal = type_.kind is Kind.CLASS and type_.subkind == "internal-element"
+        if is_internal and type_.owner == owner and type_.id not in master_types:
+            return type_
+    return None
+
+
+def _list_master_types(context: Context, unit: SystemUnit) -> set[str]:
+    """Return the ids of the masters' classes; a mirror has the class of its master."""
+    graph = context.graph
+    sources = [element for element in (unit.part, unit.instance) if element is not None]
+    masters = [master for source in sources for master in graph.targets(source, Edge.MIRRORS)]
+    edges = (Edge.TYPED_BY, Edge.INSTANCE_OF)
+    return {
+        type_.id for master in masters for edge in edges for type_ in graph.targets(master, edge)
+    }
+
+
+def _find_declared_class(context: Context, unit: SystemUnit) -> Element | None:
+    """Return the class that an internal element references, or the base class of a class."""
+    if unit.own_class is not None:
+        return context.graph.target(unit.own_class, Edge.SPECIALIZES)
+    return next(iter(_list_types(context, unit)), None)
+
+
+def _write_class_reference(context: Context, unit: SystemUnit) -> None:
+    """Write the path of the class, or postpone the ID of the master of a mirror object."""
+    for element in unit.elements:
+        for master in context.graph.targets(element, Edge.MIRRORS):
+            context.mark_edge(Edge.MIRRORS, element, master)
+            context.pending_references.append((unit.node, _REFERENCE, master))
+    declared = _find_declared_class(context, unit)
+    if unit.own_class is not None and declared is not None:
+        context.mark_edge(Edge.SPECIALIZES, unit.own_class, declared)
+    if _is_mirror(context, unit):
         return
-    path = book.path(declared, unit.file) if declared is not None else ""
-    missing = next((p for one in unit.players if (p := unresolved(one, "InternalElement"))), "")
-    if path or missing:
-        unit.node.attributes[_REFERENCE] = path or missing
+    path = context.make_class_path(declared, unit.file) if declared is not None else ""
+    unresolved = (find_unresolved(element, "InternalElement") for element in unit.elements)
+    path = path or next(filter(None, unresolved), "")
+    if path:
+        unit.node.attributes[_REFERENCE] = path
     elif declared is not None and not is_inline(declared):
-        facts = {"edge": "typed-by", "kind": "part", "target": str(declared.kind)}
-        book.losses.note(UNSAID_EDGE, unit.players[0], **facts)
+        context.losses.note_untyped(unit.elements[0], "part", declared)
 
 
-def _is_mirror(book: Book, unit: Unit) -> bool:
-    return any(book.graph.targets(one, Edge.MIRRORS) for one in unit.players)
+def _is_mirror(context: Context, unit: SystemUnit) -> bool:
+    return any(context.graph.targets(element, Edge.MIRRORS) for element in unit.elements)
 
 
-# -- values ------------------------------------------------------------------------------------
+# -- facets and groups -------------------------------------------------------------------------
 
 
-def _slot(book: Book, unit: Unit, slot: Element) -> None:
-    feature = book.graph.target(slot, Edge.INSTANCE_OF)
-    if feature is None or not (feature.kind is Kind.PORT or attributes.is_attribute(book, feature)):
-        return
-    book.say(Edge.INSTANCE_OF, slot, feature)
-    path = _path(book, slot)
-    if feature.kind is Kind.PORT:
-        for one in path:
-            interfaces.repeated(book, one, unit.file, unit.node)
-        node = interfaces.repeated(book, feature, unit.file, unit.node)
-        interfaces.say(book, slot, feature, node)
-    else:
-        node = _attribute(book, unit, [*path, feature])
-        if slot.attrs.get("value") is not None or not _texts(node):
-            node.say("Value", text_of(slot.attrs.get("value", "")))
-    book.put(slot, node)
-    header.write(book, slot, node)
-
-
-def _texts(node: Node) -> bool:
-    return any(child.tag == "Value" for child in node.children)
-
-
-def _path(book: Book, element: Element) -> list[Element]:
-    found = book.graph.targets(element, Edge.PATH)
-    for one in found:
-        book.say(Edge.PATH, element, one)
-    return found
-
-
-def _attribute(book: Book, unit: Unit, path: list[Element]) -> Node:
-    """The attribute of the element that repeats one of its class; added when it is not there."""
-    node = unit.node
-    for feature in path:
-        known = node.child("Attribute", feature.name)
-        if known is None:
-            known = node.add(Node("Attribute", {"Name": feature.name}, is_copy=True))
-            attributes.declare(book, feature, known, unit.file)
-        node = known
+def _make_group(context: Context, element: Element, file: File) -> Node:
+    """Return the internal element of a facet or group, with mirrors of its references."""
+    node = context.register(element, Node("InternalElement", {"Name": element.name}))
+    node.attributes["ID"] = context.ids.choose(element)
+    write_header(context, element, node)
+    if "associated_facet" in element.attrs:
+        facet = node.add(Node("Attribute", {"Name": "AssociatedFacet"}))
+        facet.attributes["AttributeDataType"] = "xs:string"
+        facet.add_text("Value", str(element.attrs["associated_facet"]))
+    for target in context.graph.targets(element, Edge.REFERENCES):
+        context.mark_edge(Edge.REFERENCES, element, target)
+        for name, id in _list_mirrors(element, target):
+            _write_mirror(context, element, node, target, name, id)
+    for member in context.list_owned(element):
+        if member.kind is Kind.GROUP:
+            node.add(_make_group(context, member, file))
+    roles.write_roles(context, node, file, [element])
+    if all(child.tag != "RoleRequirements" for child in node.children):
+        path = _find_group_role(context, element, file)
+        node.add(Node("RoleRequirements", {"RefBaseRoleClassPath": path}))
     return node
 
 
-def _description(book: Book, unit: Unit, comment: Element) -> None:
-    """A text about an attribute of the class, told in this element alone."""
-    for feature in book.graph.targets(comment, Edge.REFERENCES):
-        if feature.kind is Kind.PROPERTY and not _is_part(book, feature):
-            node = _attribute(book, unit, [*_path(book, comment), feature])
-            header.describe(book, comment, node)
-            book.say(Edge.REFERENCES, comment, feature)
+def _list_mirrors(element: Element, target: Element) -> list[tuple[str, str]]:
+    """Return name and ID of each mirror of *target*; a mirror with its name may have no ID."""
+    triples = element.attrs.get("mirrors")
+    mirrors = [
+        (str(triple[1]), str(triple[2]))
+        for triple in (triples if isinstance(triples, tuple) else ())
+        if isinstance(triple, tuple) and triple[0] == target.id
+    ]
+    return mirrors or [(target.name, "")]
 
 
-def _interface_ids(book: Book, unit: Unit) -> None:
-    """The ids that interfaces of the class have in this element."""
-    for one in unit.players:
-        found = one.attrs.get("interface_ids")
-        for pair in found if isinstance(found, tuple) else ():
-            if isinstance(pair, tuple) and len(pair) == 2:
-                port = book.graph.get(str(pair[0]))
-                if port is not None:
-                    node = interfaces.repeated(book, port, unit.file, unit.node)
-                    node.attributes["ID"] = str(pair[1])
+def _find_group_role(context: Context, element: Element, file: File) -> str:
+    """Return the path of the role class in this file, where an alias may precede it."""
+    path = _GROUP_ROLES[element.kind]
+    for id, entry in context.classes.items():
+        if "/".join(entry.names) == path:
+            return context.make_class_path(context.graph[id], file) or path
+    return path
+
+
+def _write_mirror(
+    context: Context, element: Element, parent: Node, target: Element, name: str, id: str
+) -> None:
+    """Add a mirror; groups mirror only objects, facets also attributes and interfaces."""
+    is_facet = element.kind is Kind.FACET
+    tag, attribute = (
+        _FACET_MIRRORS.get(target.kind, _INTERNAL_ELEMENT) if is_facet else _INTERNAL_ELEMENT
+    )
+    node = parent.add(Node(tag, {"Name": name}))
+    if id or tag != "Attribute":
+        node.attributes["ID"] = id or derived_id(element.id, f"caex mirror {target.id}")
+    context.pending_references.append((node, attribute, target))

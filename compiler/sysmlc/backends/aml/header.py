@@ -1,161 +1,183 @@
-"""What CAEX says about any object beside its structure: description, version, origin."""
+"""What CAEX states about any object beside its structure: description, version, origin."""
 
 import re
 
-from sysmlc.backends.aml.book import Book
-from sysmlc.backends.aml.node import Node, parsed
-from sysmlc.backends.aml.rules import ADDED, APPROXIMATED
+from sysmlc.backends.aml.context import Context
+from sysmlc.backends.aml.node import Node, parse_fragment
+from sysmlc.backends.aml.rules import ADDED
 from sysmlc.ir import Edge, Element, Kind
 
-_DATE = "1970-01-01T00:00:00Z"
-"""Written where the schema wants a date and nobody gives one: files must not depend on the day."""
-_WRITTEN = "LastWritingDateTime"
-_TIME = re.compile(r"(\d{4}-\d\d-\d\d)(?:[T ](\d\d:\d\d:\d\d(?:\.\d+)?)(Z|[+-]\d\d:\d\d)?)?$")
-REQUIRED = {
-    "SourceDocumentInformation": {
+_DEFAULT_DATE = "1970-01-01T00:00:00Z"
+"""Written where the schema requires a date and the source has none.
+
+It is constant because outputs must not depend on the day.
+"""
+_WRITING_DATE = "LastWritingDateTime"
+_DATE = re.compile(r"(\d{4}-\d\d-\d\d)(?:[T ](\d\d:\d\d:\d\d(?:\.\d+)?)(Z|[+-]\d\d:\d\d)?)?$")
+_SOURCE_DOCUMENT = "SourceDocumentInformation"
+_REQUIRED_ATTRIBUTES = {
+    _SOURCE_DOCUMENT: {
         "OriginName": "sysmlc",
         "OriginID": "sysmlc",
         "OriginVersion": "",
-        "LastWritingDateTime": _DATE,
+        _WRITING_DATE: _DEFAULT_DATE,
     },
     "SourceObjectInformation": {"OriginID": ""},
 }
-"""Attributes that the schema of CAEX 3.0 wants, and what is written where none is known."""
-_TEXTS = {"RevisionDate": _DATE, "AuthorName": ""}
-"""The same for what a Revision holds, in the order of the schema."""
+"""XML attributes that the schema of CAEX 3.0 requires, with the values written by default."""
+_REQUIRED_IN_REVISION = {"RevisionDate": _DEFAULT_DATE, "AuthorName": ""}
+"""Children that the schema requires in a Revision, with the texts written by default."""
 _REVISION = ("RevisionDate", "OldVersion", "NewVersion", "AuthorName", "Comment")
-_WRITER = {
+"""Children of a Revision in the order of the schema."""
+_WRITER_HEADER = {
     "OriginName": "WriterName",
     "OriginID": "WriterID",
     "OriginVendor": "WriterVendor",
     "OriginVendorURL": "WriterVendorURL",
     "OriginVersion": "WriterVersion",
     "OriginRelease": "WriterRelease",
-    "LastWritingDateTime": "LastWritingDateTime",
+    _WRITING_DATE: _WRITING_DATE,
     "OriginProjectTitle": "WriterProjectTitle",
     "OriginProjectID": "WriterProjectID",
 }
-"""What the header of CAEX 2.15 calls the same (AutomationML Part 1, 2014)."""
+"""XML attributes of CAEX 3.0 and the elements of CAEX 2.15 that hold the same.
+
+The WriterHeader of CAEX 2.15 is defined in AutomationML Part 1 (2014).
+"""
 
 
-def write(book: Book, element: Element, node: Node) -> None:
-    """Add what is told of an element to its node."""
-    _comments(book, element, node)
+def write_header(context: Context, element: Element, node: Node) -> None:
+    """Add comments, version, copyright, change mode and further XML of an element to its node."""
+    _write_comments(context, element, node)
     for name, tag in (("version", "Version"), ("copyright", "Copyright")):
         if name in element.attrs:
-            node.say(tag, str(element.attrs[name]))
+            node.add_text(tag, str(element.attrs[name]))
     if "change_mode" in element.attrs:
         node.attributes["ChangeMode"] = str(element.attrs["change_mode"])
-    for one in book.graph.owned(element):
-        if one.kind is Kind.METADATA and "xml" in one.attrs:
-            _metadata(book, one, node)
+    for child in context.graph.owned(element):
+        if child.kind is Kind.METADATA and "xml" in child.attrs:
+            _write_metadata(context, child, node)
 
 
-def semantics(element: Element, node: Node) -> None:
+def write_semantics(element: Element, node: Node) -> None:
     """Add the references to dictionaries of terms."""
-    found = element.attrs.get("semantics")
-    for path in found if isinstance(found, tuple) else ():
+    paths = element.attrs.get("semantics")
+    for path in paths if isinstance(paths, tuple) else ():
         node.add(Node("RefSemantic", {"CorrespondingAttributePath": str(path)}))
 
 
-def describe(book: Book, comment: Element, node: Node) -> None:
-    """Add a comment as the description; CAEX has one, so that several become one."""
+def add_description(context: Context, comment: Element, node: Node) -> None:
+    """Add a comment to the Description; CAEX allows only one, so comments are joined."""
     body = str(comment.attrs.get("body", ""))
-    known = next((c for c in node.children if c.tag == "Description"), None)
-    book.said.add(comment.id)
-    if known is None:
-        node.say("Description", body)
+    description = next((child for child in node.children if child.tag == "Description"), None)
+    context.written.add(comment.id)
+    if description is None:
+        node.add_text("Description", body)
     else:
-        known.text = f"{known.text}\n\n{body}"
-        said = "a further comment"
-        book.losses.note(APPROXIMATED, comment, said=said, written="part of the Description")
+        description.text = f"{description.text}\n\n{body}"
+        context.losses.note_approximation(comment, "a further comment", "part of the Description")
 
 
-def _comments(book: Book, element: Element, node: Node) -> None:
-    graph = book.graph
-    own = [c for c in graph.owned(element) if c.kind is Kind.COMMENT]
-    about = [c for c in graph.sources(element, Edge.REFERENCES) if _is_about(book, c)]
-    for comment in [*(c for c in own if not graph.targets(c, Edge.REFERENCES)), *about]:
-        if comment.id not in book.said:
-            describe(book, comment, node)
-        if comment in about:
-            book.say(Edge.REFERENCES, comment, element)
+def _write_comments(context: Context, element: Element, node: Node) -> None:
+    """Add the comments that the element owns, and those elsewhere that refer to it."""
+    graph = context.graph
+    comments = [child for child in graph.owned(element) if child.kind is Kind.COMMENT]
+    owned = [comment for comment in comments if not graph.targets(comment, Edge.REFERENCES)]
+    referring = [
+        source
+        for source in graph.sources(element, Edge.REFERENCES)
+        if _is_general_comment(context, source)
+    ]
+    for comment in [*owned, *referring]:
+        if comment.id not in context.written:
+            add_description(context, comment, node)
+        if comment in referring:
+            context.mark_edge(Edge.REFERENCES, comment, element)
 
 
-def _is_about(book: Book, comment: Element) -> bool:
-    """Whether a comment is about what it refers to wherever that is, not in one instance."""
-    owner = book.graph.owner(comment)
-    return comment.kind is Kind.COMMENT and (owner is None or owner.kind is not Kind.INSTANCE)
+def _is_general_comment(context: Context, element: Element) -> bool:
+    """Return whether it is a comment, but not one that an instance has on a feature of its class.
+
+    The writer of internal elements adds the latter (``instances.py``).
+    """
+    owner = context.graph.owner(element)
+    return element.kind is Kind.COMMENT and (owner is None or owner.kind is not Kind.INSTANCE)
 
 
-def _metadata(book: Book, element: Element, node: Node) -> None:
-    made = parsed(str(element.attrs["xml"]))
-    book.said.add(element.id)
-    for target in book.graph.targets(element, Edge.REFERENCES):
-        book.say(Edge.REFERENCES, element, target)
-    complete(book, element, made)
-    node.add(made)
+def _write_metadata(context: Context, element: Element, node: Node) -> None:
+    fragment = parse_fragment(str(element.attrs["xml"]))
+    context.written.add(element.id)
+    for target in context.graph.targets(element, Edge.REFERENCES):
+        context.mark_edge(Edge.REFERENCES, element, target)
+    _complete_fragment(context, element, fragment)
+    node.add(fragment)
 
 
-def complete(book: Book, element: Element, node: Node) -> None:
-    """Add what the schema wants and the source does not say."""
-    if node.tag == "SourceDocumentInformation":
-        _dated(book, element, node)
-    for name, value in REQUIRED.get(node.tag, {}).items():
+def _complete_fragment(context: Context, element: Element, node: Node) -> None:
+    """Add what the schema of CAEX 3.0 requires and the source lacks, e.g. CAEX 2.15."""
+    if node.tag == _SOURCE_DOCUMENT:
+        _normalise_date(context, element, node)
+    for name, value in _REQUIRED_ATTRIBUTES.get(node.tag, {}).items():
         if name not in node.attributes:
             node.attributes[name] = value
-            _added(book, element, name, value)
+            _note_addition(context, element, name, value)
     if node.tag == "Revision":
-        known = {child.tag: child for child in node.children}
-        for name, value in _TEXTS.items():
-            if name not in known:
-                known[name] = Node(name, text=value)
-                _added(book, element, name, value)
-        rest = [c for c in node.children if c.tag not in _REVISION]
-        node.children = rest + [known[name] for name in _REVISION if name in known]
+        _complete_revision(context, element, node)
 
 
-def _dated(book: Book, element: Element, node: Node) -> None:
-    """Write the date as XML Schema does; one that is none is left out."""
-    text = node.attributes.get(_WRITTEN)
+def _complete_revision(context: Context, element: Element, node: Node) -> None:
+    parts = {child.tag: child for child in node.children}
+    for name, value in _REQUIRED_IN_REVISION.items():
+        if name not in parts:
+            parts[name] = Node(name, text=value)
+            _note_addition(context, element, name, value)
+    rest = [child for child in node.children if child.tag not in _REVISION]
+    node.children = rest + [parts[name] for name in _REVISION if name in parts]
+
+
+def _normalise_date(context: Context, element: Element, node: Node) -> None:
+    """Write the date in the form of XML Schema; replace a text that is no date."""
+    text = node.attributes.get(_WRITING_DATE)
     if text is None:
         return
-    found = _TIME.match(text.strip())
-    made = f"{found[1]}T{found[2] or '00:00:00'}{found[3] or ''}" if found else _DATE
-    if made != text:
-        node.attributes[_WRITTEN] = made
-        facts = {"said": f"the date '{text}'", "written": f"'{made}'"}
-        book.losses.note(APPROXIMATED, element, **facts)
+    match = _DATE.match(text.strip())
+    date = f"{match[1]}T{match[2] or '00:00:00'}{match[3] or ''}" if match else _DEFAULT_DATE
+    if date != text:
+        node.attributes[_WRITING_DATE] = date
+        context.losses.note_approximation(element, f"the date '{text}'", f"'{date}'")
 
 
-def _added(book: Book, element: Element, what: str, value: str) -> None:
-    facts = {"element": element.name, "what": what, "value": value}
-    book.losses.note(ADDED, element, **facts)
+def _note_addition(context: Context, element: Element, what: str, value: str) -> None:
+    context.losses.note(ADDED, element, element=element.name, what=what, value=value)
 
 
-def source_document(book: Book, element: Element | None, root: Node) -> None:
-    """Say who wrote the file, as CAEX 3.0 wants: the writer that CAEX 2.15 names, else we."""
-    if any(child.tag == "SourceDocumentInformation" for child in root.children):
+def write_source_document(context: Context, document: Element | None, root: Node) -> None:
+    """Add the SourceDocumentInformation, which CAEX 3.0 requires, unless the file has one.
+
+    It names the writer in the WriterHeader of a file in CAEX 2.15, else sysmlc.
+    """
+    if any(child.tag == _SOURCE_DOCUMENT for child in root.children):
         return
-    node = Node("SourceDocumentInformation")
-    writer = _writer(root)
-    for name, old in _WRITER.items():
-        if writer.get(old):
-            node.attributes[name] = writer[old]
-    if element is not None:
-        _dated(book, element, node)
-        what = "SourceDocumentInformation"
-        known = node.attributes.get("OriginName", "sysmlc")
-        book.losses.note(ADDED, element, element=element.name, what=what, value=known)
-    node.attributes = REQUIRED[node.tag] | node.attributes
+    node = Node(_SOURCE_DOCUMENT)
+    writer = _read_writer_header(root)
+    for name, old_name in _WRITER_HEADER.items():
+        if writer.get(old_name):
+            node.attributes[name] = writer[old_name]
+    if document is not None:
+        _normalise_date(context, document, node)
+        _note_addition(
+            context, document, _SOURCE_DOCUMENT, node.attributes.get("OriginName", "sysmlc")
+        )
+    node.attributes = _REQUIRED_ATTRIBUTES[_SOURCE_DOCUMENT] | node.attributes
     root.add(node)
 
 
-def _writer(root: Node) -> dict[str, str]:
-    waiting = [child for child in root.children if child.tag == "AdditionalInformation"]
-    while waiting:
-        node = waiting.pop(0)
+def _read_writer_header(root: Node) -> dict[str, str]:
+    """Return the texts in the first WriterHeader below any AdditionalInformation."""
+    queue = [child for child in root.children if child.tag == "AdditionalInformation"]
+    while queue:
+        node = queue.pop(0)
         if node.tag == "WriterHeader":
             return {child.tag: child.text.strip() for child in node.children}
-        waiting += node.children
+        queue += node.children
     return {}

@@ -1,191 +1,193 @@
 """External interfaces: ports, with direction, cardinality, category and values."""
 
-from sysmlc.backends.aml import attributes, header
-from sysmlc.backends.aml.attributes import unresolved
-from sysmlc.backends.aml.book import Book, File
-from sysmlc.backends.aml.families import Family, is_inline
-from sysmlc.backends.aml.node import Node
-from sysmlc.backends.aml.rules import UNSAID_EDGE
-from sysmlc.backends.aml.values import text_of, type_of
+from sysmlc.backends.aml.attributes import is_attribute, make_attribute
+from sysmlc.backends.aml.class_kinds import ClassKind, is_inline
+from sysmlc.backends.aml.context import Context, File, find_unresolved
+from sysmlc.backends.aml.header import write_header
+from sysmlc.backends.aml.node import Node, find_data_type, format_value
 from sysmlc.ir import AttrValue, Edge, Element, Kind
 
 _DIRECTIONS = {"in": "In", "out": "Out", "inout": "InOut"}
+"""Values of the attribute Direction of the class Port (IEC 62714-1)."""
 _VALUE = "value."
+"""Prefix of the attributes of a port, or slot, that hold values of interface attributes."""
 
 
-def write(book: Book, port: Element, file: File, above: Node) -> Node:
-    """Add the external interface of a port, with those below it, up to one that holds itself."""
-    top = _interface(book, port, file, above)
-    waiting: list[tuple[Node, Element | None, frozenset[str]]]
-    waiting = [(top, _own_type(book, port), frozenset())]
-    while waiting:
-        node, type_, around = waiting.pop()
-        if type_ is None or type_.id in around:
+def write_interface(context: Context, port: Element, file: File, parent: Node) -> Node:
+    """Add the external interface of a port with all interfaces and attributes below it.
+
+    A port whose type contains ports of the same type is written down to the first repetition.
+    """
+    root = _add_interface(context, port, file, parent)
+    stack: list[tuple[Node, Element | None, frozenset[str]]]
+    stack = [(root, _find_inline_type(context, port), frozenset())]
+    while stack:
+        node, type_, outer_types = stack.pop()
+        if type_ is None or type_.id in outer_types:
             continue
-        for one in book.owned(type_):
-            if one.kind is Kind.PORT:
-                inner = _interface(book, one, file, node)
-                waiting.append((inner, _own_type(book, one), around | {type_.id}))
-            elif attributes.is_attribute(book, one):
-                _full(node, attributes.write(book, one, file))
-    return top
+        for member in context.list_owned(type_):
+            if member.kind is Kind.PORT:
+                inner = _add_interface(context, member, file, node)
+                inner_type = _find_inline_type(context, member)
+                stack.append((inner, inner_type, outer_types | {type_.id}))
+            elif is_attribute(context, member):
+                _replace_attribute(node, make_attribute(context, member, file))
+    return root
 
 
-def _full(interface: Node, attribute: Node) -> None:
-    """Put an attribute with all that it says in the place of that with its value alone."""
-    known = interface.child("Attribute", attribute.attributes["Name"])
+def _replace_attribute(interface: Node, attribute: Node) -> None:
+    """Add an attribute in the place of one of the same name that has only a value."""
+    previous = interface.find_child("Attribute", attribute.attributes["Name"])
     interface.add(attribute)
-    if known is not None:
-        said = {child.tag for child in attribute.children}
-        attribute.children += [child for child in known.children if child.tag not in said]
-        interface.children.remove(known)
+    if previous is not None:
+        present = {child.tag for child in attribute.children}
+        attribute.children += [c for c in previous.children if c.tag not in present]
+        interface.children.remove(previous)
 
 
-def _interface(book: Book, port: Element, file: File, above: Node) -> Node:
-    node = book.put(port, Node("ExternalInterface", {"Name": port.name}))
-    node.attributes["ID"] = book.ids.of(port)
-    above.add(node)
-    above.interfaces[port.id] = node
-    for target in book.graph.targets(port, Edge.REDEFINES):
-        above.interfaces.setdefault(target.id, node)
-    _refer(book, port, node, file)
-    say(book, port, port, node)
-    header.write(book, port, node)
+def _add_interface(context: Context, port: Element, file: File, parent: Node) -> Node:
+    node = context.register(port, Node("ExternalInterface", {"Name": port.name}))
+    node.attributes["ID"] = context.ids.choose(port)
+    parent.add(node)
+    parent.interfaces[port.id] = node
+    for target in context.graph.targets(port, Edge.REDEFINES):
+        parent.interfaces.setdefault(target.id, node)
+    _write_class_reference(context, port, node, file)
+    write_port_attributes(context, port, port, node)
+    write_header(context, port, node)
     return node
 
 
-def _refer(book: Book, port: Element, node: Node, file: File) -> None:
-    graph = book.graph
+def _write_class_reference(context: Context, port: Element, node: Node, file: File) -> None:
+    """Write the path of the interface class, or postpone the ID of the master of a mirror."""
+    graph = context.graph
     master = graph.target(port, Edge.MIRRORS)
-    types = graph.targets(port, Edge.TYPED_BY)
     if master is not None:
-        for one in types:
-            book.say(Edge.TYPED_BY, port, one)
-        book.say(Edge.MIRRORS, port, master)
-        book.late.append((node, "RefBaseClassPath", master))
+        for type_ in graph.targets(port, Edge.TYPED_BY):
+            context.mark_edge(Edge.TYPED_BY, port, type_)
+        context.mark_edge(Edge.MIRRORS, port, master)
+        context.pending_references.append((node, "RefBaseClassPath", master))
         return
-    path = class_path(book, port, file) or unresolved(port, "ExternalInterface")
+    path = _find_class_path(context, port, file) or find_unresolved(port, "ExternalInterface")
     if path:
         node.attributes["RefBaseClassPath"] = path
 
 
-def class_path(book: Book, port: Element, file: File) -> str:
-    """Path of the interface class that types a port, or the empty string."""
-    graph = book.graph
-    for one in graph.targets(port, Edge.TYPED_BY):
-        declared = graph.target(one, Edge.SPECIALIZES) if is_inline(one) else one
-        if is_inline(one):
-            book.said.add(one.id)
-            book.say(Edge.TYPED_BY, port, one)
+def _find_class_path(context: Context, port: Element, file: File) -> str:
+    """Return the path of the interface class that types a port, or the empty string."""
+    graph = context.graph
+    for type_ in graph.targets(port, Edge.TYPED_BY):
+        declared: Element | None = type_
+        if is_inline(type_):
+            declared = graph.target(type_, Edge.SPECIALIZES)
+            context.written.add(type_.id)
+            context.mark_edge(Edge.TYPED_BY, port, type_)
         if declared is None:
             continue
-        place = book.places.get(declared.id)
-        if place is not None and place.family is Family.INTERFACE:
-            path = book.path(declared, file)
+        context.mark_edge(Edge.TYPED_BY, port, type_)
+        entry = context.classes.get(declared.id)
+        if entry is not None and entry.kind is ClassKind.INTERFACE:
+            path = context.make_class_path(declared, file)
             if path:
-                book.say(Edge.TYPED_BY, port, one)
                 return path
-        facts = {"edge": "typed-by", "kind": str(port.kind), "target": str(declared.kind)}
-        book.losses.note(UNSAID_EDGE, port, **facts)
-        book.say(Edge.TYPED_BY, port, one)
+        context.losses.note_untyped(port, str(port.kind), declared)
     return ""
 
 
-def _own_type(book: Book, port: Element) -> Element | None:
-    """The class that was made for an interface with interfaces of its own."""
-    type_ = book.graph.target(port, Edge.TYPED_BY)
+def _find_inline_type(context: Context, port: Element) -> Element | None:
+    """Return the type that the front end made for an interface with members of its own."""
+    type_ = context.graph.target(port, Edge.TYPED_BY)
     return type_ if type_ is not None and is_inline(type_) else None
 
 
-def say(book: Book, element: Element, port: Element, node: Node) -> None:
-    """Add as attributes what a port, or a slot for it, says."""
+# -- attributes --------------------------------------------------------------------------------
+
+
+def write_port_attributes(context: Context, element: Element, port: Element, node: Node) -> None:
+    """Add the attributes for direction, multiplicity, category and values of *element*.
+
+    *element* is the port itself, or a slot with the values that an instance gives to the port.
+    """
     attrs = element.attrs
     direction = _DIRECTIONS.get(str(attrs.get("direction")))
     if direction:
-        _attribute(node, "Direction", direction)
+        _write_value(node, ["Direction"], direction)
     if "multiplicity" in attrs:
-        _cardinality(node, str(attrs["multiplicity"]))
+        lower, dots, upper = str(attrs["multiplicity"]).partition("..")
+        cardinality = node.add(Node("Attribute", {"Name": "Cardinality"}))
+        _write_value(cardinality, ["MinOccur"], lower)
+        _write_value(cardinality, ["MaxOccur"], upper if dots else lower)
     if "category" in attrs:
-        _attribute(node, "Category", str(attrs["category"]))
+        _write_value(node, ["Category"], str(attrs["category"]))
     for key in sorted(attrs):
         if key.startswith(_VALUE):
-            _value(node, key.removeprefix(_VALUE).split("."), attrs[key])
-    _type_as_in_class(book, book.graph.target(port, Edge.TYPED_BY), node)
+            _write_value(node, key.removeprefix(_VALUE).split("."), attrs[key])
+    _use_data_types_of_class(context, context.graph.target(port, Edge.TYPED_BY), node)
 
 
-def _type_as_in_class(book: Book, type_: Element | None, above: Node) -> None:
-    """Let attributes have the data types that the class of their interface gives them."""
-    waiting = [(type_, above)]
-    while waiting:
-        one, node = waiting.pop()
-        features = _values_of(book, one)
+def _write_value(node: Node, path: list[str], value: AttrValue) -> None:
+    """Add a value to the attribute at a path of names; add the attributes that are absent."""
+    for name in path:
+        node = node.find_child("Attribute", name) or node.add(Node("Attribute", {"Name": name}))
+    if find_data_type(value):
+        node.attributes["AttributeDataType"] = find_data_type(value)
+    node.add_text("Value", format_value(value))
+
+
+def _use_data_types_of_class(context: Context, type_: Element | None, interface: Node) -> None:
+    """Replace the data types derived from values by those that the interface class declares."""
+    stack = [(type_, interface)]
+    while stack:
+        node_type, node = stack.pop()
+        features = _find_value_properties(context, node_type)
         for child in node.children:
             feature = features.get(child.attributes.get("Name", ""))
             if child.tag != "Attribute" or feature is None:
                 continue
             if child.attributes.pop("AttributeDataType", None) and "data_type" in feature.attrs:
                 child.attributes["AttributeDataType"] = str(feature.attrs["data_type"])
-            waiting.append((book.graph.target(feature, Edge.TYPED_BY), child))
+            stack.append((context.graph.target(feature, Edge.TYPED_BY), child))
 
 
-def _values_of(book: Book, type_: Element | None) -> dict[str, Element]:
-    """The value properties of a type and of those that it specialises, the nearest first."""
-    found: dict[str, Element] = {}
-    seen: set[str] = set()
-    while type_ is not None and type_.id not in seen:
-        seen.add(type_.id)
-        for one in book.graph.owned(type_):
-            if one.kind is Kind.PROPERTY:
-                found.setdefault(one.name, one)
-        type_ = book.graph.target(type_, Edge.SPECIALIZES)
-    return found
+def _find_value_properties(context: Context, type_: Element | None) -> dict[str, Element]:
+    """Return the own and inherited properties of a type by name; the nearest hides the others."""
+    properties: dict[str, Element] = {}
+    for base in context.iter_bases(type_):
+        for member in context.graph.owned(base):
+            if member.kind is Kind.PROPERTY:
+                properties.setdefault(member.name, member)
+    return properties
 
 
-def _cardinality(node: Node, multiplicity: str) -> None:
-    lower, between, upper = multiplicity.partition("..")
-    made = node.add(Node("Attribute", {"Name": "Cardinality"}))
-    _attribute(made, "MinOccur", lower)
-    _attribute(made, "MaxOccur", upper if between else lower)
+# -- interfaces of internal elements -----------------------------------------------------------
 
 
-def _attribute(node: Node, name: str, value: AttrValue) -> None:
-    made = node.child("Attribute", name) or node.add(Node("Attribute", {"Name": name}))
-    if type_of(value):
-        made.attributes["AttributeDataType"] = type_of(value)
-    made.say("Value", text_of(value))
+def find_or_repeat(context: Context, port: Element, file: File, parent: Node) -> Node:
+    """Return the node for a port of the class in an internal element; add a copy if it is absent.
 
-
-def _value(node: Node, names: list[str], value: AttrValue) -> None:
-    for name in names[:-1]:
-        node = node.child("Attribute", name) or node.add(Node("Attribute", {"Name": name}))
-    _attribute(node, names[-1], value)
-
-
-# -- in an instance ----------------------------------------------------------------------------
-
-
-def repeated(book: Book, port: Element, file: File, above: Node) -> Node:
-    """The interface of an internal element that its class has too; added when it is not there."""
-    for one in [*reversed(_around(book, port)), port]:
-        known = above.interfaces.get(one.id)
-        if known is None:
-            known = above.add(Node("ExternalInterface", {"Name": one.name}, is_copy=True))
-            above.interfaces[one.id] = known
-            path = class_path(book, one, file)
+    The copy of a nested port stands in copies of the outer ports.
+    """
+    for step in [*reversed(_list_outer_ports(context, port)), port]:
+        node = parent.interfaces.get(step.id)
+        if node is None:
+            node = parent.add(Node("ExternalInterface", {"Name": step.name}, is_copy=True))
+            parent.interfaces[step.id] = node
+            path = _find_class_path(context, step, file)
             if path:
-                known.attributes["RefBaseClassPath"] = path
-        above = known
-    return above
+                node.attributes["RefBaseClassPath"] = path
+        parent = node
+    return parent
 
 
-def _around(book: Book, port: Element) -> list[Element]:
-    """The ports that a port is nested in, nearest first."""
-    graph, found = book.graph, []
+def _list_outer_ports(context: Context, port: Element) -> list[Element]:
+    """Return the ports that a port is nested in, the nearest first."""
+    graph = context.graph
+    outer_ports: list[Element] = []
     owner = graph.owner(port)
     while owner is not None and is_inline(owner) and owner.subkind == "external-interface":
         outer = graph.source(owner, Edge.TYPED_BY)
-        if outer is None or outer in found:
+        if outer is None or outer in outer_ports:
             break
-        found.append(outer)
+        outer_ports.append(outer)
         owner = graph.owner(outer)
-    return found
+    return outer_ports

@@ -1,180 +1,197 @@
-"""Libraries: every class gets its place first, so that paths are known, and then its content."""
+"""Class libraries and instance hierarchies.
 
-from sysmlc.backends.aml import attributes, elements, header, interfaces, roles
-from sysmlc.backends.aml.attributes import unresolved
-from sysmlc.backends.aml.book import Book, File, Place
-from sysmlc.backends.aml.families import HIERARCHY, LIBRARIES, Family
+``place_classes`` gives every class its node and path; ``fill_classes`` and ``write_hierarchies``
+then write the content, which refers to classes by their paths.
+"""
+
+from sysmlc.backends.aml.attributes import fill_attribute_type, is_attribute, make_attribute
+from sysmlc.backends.aml.class_kinds import HIERARCHY, LIBRARIES, ClassKind, find_class_kind
+from sysmlc.backends.aml.context import ClassEntry, Context, File, find_unresolved
+from sysmlc.backends.aml.elements import fill_class, fill_hierarchy, has_plant_objects
+from sysmlc.backends.aml.header import write_header
+from sysmlc.backends.aml.interfaces import write_interface
 from sysmlc.backends.aml.node import Node
-from sysmlc.backends.aml.rules import APPROXIMATED, MOVED
+from sysmlc.backends.aml.roles import find_role_features
+from sysmlc.backends.aml.rules import MOVED
 from sysmlc.ir import Edge, Element, Kind
 
 
-def place(book: Book) -> None:
-    """Give every library and class a node, those of the standard that no file holds a path."""
-    waiting = list(reversed(book.graph.roots()))
-    while waiting:
-        one = waiting.pop()
-        waiting += reversed(book.graph.owned(one))
-        if one.subkind in LIBRARIES and one.kind is Kind.PACKAGE:
-            _library(book, one)
+def place_classes(context: Context) -> None:
+    """Give every library and class a node.
+
+    A class of a standard library that no file of the unit holds gets only a path.
+    """
+    stack = list(reversed(context.graph.roots()))
+    while stack:
+        element = stack.pop()
+        stack += reversed(context.graph.owned(element))
+        if element.subkind in LIBRARIES and element.kind is Kind.PACKAGE:
+            _place_library(context, element)
         else:
-            family = book.families.of(one)
-            if family is not None and (not one.attrs.get("external") or _is_held(book, one)):
-                _class(book, one, family)
+            kind = find_class_kind(context.graph, element)
+            is_external = element.attrs.get("external") and not _is_in_library(context, element)
+            if kind is not None and not is_external:
+                _place_class(context, element, kind)
 
 
-def _library(book: Book, package: Element) -> None:
-    if package.attrs.get("external") and not _is_held(book, package):
-        return
-    file = book.file_of(package)
-    _new_library(book, package, LIBRARIES[package.subkind], file, package.name)
-
-
-def _is_held(book: Book, element: Element) -> bool:
-    """Whether it stands in a file of the unit, or is of a standard library that none holds."""
-    return book.ids.is_ours(element) or (not element.source and _is_standard(book, element))
-
-
-def _is_standard(book: Book, element: Element) -> bool:
-    return element.subkind not in LIBRARIES and any(
-        one.subkind in LIBRARIES for one in book.graph.ancestors(element)
+def _is_in_library(context: Context, element: Element) -> bool:
+    """Return whether the element is in a file of the unit or in a standard library."""
+    return context.ids.is_from_caex(element) or (
+        not element.source and _is_library_content(context, element)
     )
 
 
-def _new_library(book: Book, package: Element, family: Family, file: File, name: str) -> Node:
-    node = file.root.add(Node(family.library, {"Name": name}))
-    if book.ids.literal(package):
-        node.attributes["ID"] = book.ids.literal(package)
-    book.put(package, node)
-    header.write(book, package, node)
-    return node
+def _is_library_content(context: Context, element: Element) -> bool:
+    return element.subkind not in LIBRARIES and any(
+        ancestor.subkind in LIBRARIES for ancestor in context.graph.ancestors(element)
+    )
 
 
-def _class(book: Book, element: Element, family: Family) -> None:
-    owner = book.graph.owner(element)
-    above = book.places.get(owner.id) if owner is not None else None
-    if above is not None and above.family is not family and owner is not None:
-        facts = {"kind": f"{family} {element.kind}", "owner": str(above.family)}
-        book.losses.note(MOVED, element, kind=str(element.kind), owner=facts["owner"])
-        above = None
-    if above is not None:
-        holder, names, file = above.node, above.names, above.file
-    else:
-        holder, names, file = _holder(book, element, family)
-    if file is None:
-        book.enter(element, Place(None, (*names, element.name), None, family))
+def _place_library(context: Context, package: Element) -> None:
+    if package.attrs.get("external") and not _is_in_library(context, package):
         return
-    node = Node(family.value, {"Name": _name(element, holder, book)})
-    if book.ids.literal(element):
-        node.attributes["ID"] = book.ids.literal(element)
-    if holder is not None:
-        holder.add(node)
-    book.put(element, node)
-    book.enter(element, Place(node, (*names, node.attributes["Name"]), file, family))
+    root = context.find_file(package).root
+    node = root.add(Node(LIBRARIES[package.subkind].library, {"Name": package.name}))
+    context.copy_id(package, node)
+    context.register(package, node)
+    write_header(context, package, node)
 
 
-def _name(element: Element, holder: Node | None, book: Book) -> str:
-    """The name; in a model of UML made different from that of another sort of class."""
+def _place_class(context: Context, element: Element, kind: ClassKind) -> None:
+    """Add a class to the class that owns it, or to a library if the owner is of another kind."""
+    owner = context.classes.get(element.owner or "")
+    if owner is not None and owner.kind is not kind:
+        context.losses.note(MOVED, element, kind=str(element.kind), owner=str(owner.kind))
+        owner = None
+    if owner is not None:
+        parent, names, file = owner.node, owner.names, owner.file
+    else:
+        parent, names, file = _find_or_add_library(context, element, kind)
+    if file is None:
+        context.add_class(element, ClassEntry(None, (*names, element.name), None, kind))
+        return
+    name = _choose_name(context, element, parent)
+    node = Node(kind.value, {"Name": name})
+    context.copy_id(element, node)
+    if parent is not None:
+        parent.add(node)
+    context.register(element, node)
+    context.add_class(element, ClassEntry(node, (*names, name), file, kind))
+
+
+def _choose_name(context: Context, element: Element, parent: Node | None) -> str:
+    """Return the name of a class, with a number if a sibling has the same name.
+
+    UML allows classifiers of different kinds to have one name. An AutomationML file keeps its
+    names, however wrong they are.
+    """
     name, number = element.name, 1
-    if holder is not None and not book.ids.is_ours(element):
-        taken = {child.attributes.get("Name") for child in holder.children}
-        while name in taken:
+    if parent is not None and not context.ids.is_from_caex(element):
+        used = {child.attributes.get("Name") for child in parent.children}
+        while name in used:
             number += 1
             name = f"{element.name} ({number})"
     if number > 1:
-        facts = {"said": "a second class of one name", "written": "one with a number"}
-        book.losses.note(APPROXIMATED, element, **facts)
+        context.losses.note_approximation(
+            element, "a second class of one name", "one with a number"
+        )
     return name
 
 
-def _holder(
-    book: Book, element: Element, family: Family
+def _find_or_add_library(
+    context: Context, element: Element, kind: ClassKind
 ) -> tuple[Node | None, tuple[str, ...], File | None]:
-    """The library for a class that is in no other: that of the nearest package."""
-    package = next((p for p in book.graph.ancestors(element) if p.kind is Kind.PACKAGE), None)
+    """Return the library of the nearest package: its node, the path to it, and its file.
+
+    Node and file are None for a library that no file of the unit holds.
+    """
+    ancestors = context.graph.ancestors(element)
+    package = next((item for item in ancestors if item.kind is Kind.PACKAGE), None)
+    file = context.find_file(element)
     if package is not None and package.subkind in LIBRARIES:
-        known = book.nodes.get(package.id)
-        file = book.file_of(element) if known is not None else None
-        return known, (package.name,), file
-    file = book.file_of(element)
-    name = library_name(book, package)
+        node = context.nodes.get(package.id)
+        return node, (package.name,), file if node is not None else None
+    name = _make_library_name(context, package)
     for node in file.root.children:
-        if node.tag == family.library and node.attributes["Name"] == name:
+        if node.tag == kind.library and node.attributes["Name"] == name:
             return node, (name,), file
-    made = file.root.add(Node(family.library, {"Name": name}))
+    library = file.root.add(Node(kind.library, {"Name": name}))
     if package is not None:
-        book.put(package, made)
-        header.write(book, package, made)
-        _nested(book, package)
-    return made, (name,), file
+        context.register(package, library)
+        write_header(context, package, library)
+        if package.owner is not None:
+            context.losses.note_approximation(
+                package, "a package in a package", "a library with its whole name"
+            )
+    return library, (name,), file
 
 
-def library_name(book: Book, package: Element | None) -> str:
-    """Name of the library for the classes of a package: its whole name."""
-    name = book.graph.qualified_name(package) if package is not None else "Model"
+def _make_library_name(context: Context, package: Element | None) -> str:
+    """Return the qualified name of a package with dots: libraries are not nested."""
+    name = context.graph.qualified_name(package) if package is not None else "Model"
     return name.replace("::", ".")
 
 
-def _nested(book: Book, package: Element) -> None:
-    if package.owner is not None:
-        facts = {"said": "a package in a package", "written": "a library with its whole name"}
-        book.losses.note(APPROXIMATED, package, **facts)
+# -- content -----------------------------------------------------------------------------------
 
 
-def fill(book: Book) -> None:
-    """Add what classes hold."""
-    book.mapped = roles.mapped(book)
-    for id, place in list(book.places.items()):
-        if place.node is None or place.file is None:
+def fill_classes(context: Context) -> None:
+    """Write the content of all classes."""
+    context.role_features = find_role_features(context)
+    for id, entry in list(context.classes.items()):
+        node, file = entry.node, entry.file
+        if node is None or file is None:
             continue
-        element = book.graph[id]
-        _base(book, element, place)
-        header.write(book, element, place.node)
-        if place.family is Family.ATTRIBUTE:
-            attributes.fill_type(book, element, place.node, place.file)
-        elif place.family is Family.INTERFACE:
-            _interface_class(book, element, place.node, place.file)
+        element = context.graph[id]
+        _write_base_class(context, element, node, file, entry.kind)
+        write_header(context, element, node)
+        if entry.kind is ClassKind.ATTRIBUTE:
+            fill_attribute_type(context, element, node, file)
+        elif entry.kind is ClassKind.INTERFACE:
+            _fill_interface_class(context, element, node, file)
         else:
-            elements.fill_class(book, element, place.node, place.file)
+            fill_class(context, element, node, file)
 
 
-def _base(book: Book, element: Element, place: Place) -> None:
-    if place.node is None or place.file is None:
-        return
-    for general in book.graph.targets(element, Edge.SPECIALIZES):
-        known = book.places.get(general.id)
-        if known is None and place.family is Family.ATTRIBUTE:
-            book.say(Edge.SPECIALIZES, element, general)
-        elif known is not None and known.family is place.family:
-            path = book.path(general, place.file)
-            if path and place.family.base not in place.node.attributes:
-                place.node.attributes[place.family.base] = path
-                book.say(Edge.SPECIALIZES, element, general)
-    missing = unresolved(element, place.family.value)
-    if missing:
-        place.node.attributes.setdefault(place.family.base, missing)
+def _write_base_class(
+    context: Context, element: Element, node: Node, file: File, kind: ClassKind
+) -> None:
+    """Write the path of the first base class of the same kind; CAEX has single inheritance."""
+    for general in context.graph.targets(element, Edge.SPECIALIZES):
+        base = context.classes.get(general.id)
+        if base is None and kind is ClassKind.ATTRIBUTE:
+            # A primitive type: the attribute's data type expresses it.
+            context.mark_edge(Edge.SPECIALIZES, element, general)
+        elif base is not None and base.kind is kind:
+            path = context.make_class_path(general, file)
+            if path and kind.base not in node.attributes:
+                node.attributes[kind.base] = path
+                context.mark_edge(Edge.SPECIALIZES, element, general)
+    unresolved = find_unresolved(element, kind.value)
+    if unresolved:
+        node.attributes.setdefault(kind.base, unresolved)
 
 
-def _interface_class(book: Book, element: Element, node: Node, file: File) -> None:
-    for one in book.graph.owned(element):
-        if attributes.is_attribute(book, one):
-            node.add(attributes.write(book, one, file))
-        elif one.kind is Kind.PORT:
-            interfaces.write(book, one, file, node)
+def _fill_interface_class(context: Context, element: Element, node: Node, file: File) -> None:
+    for member in context.graph.owned(element):
+        if is_attribute(context, member):
+            node.add(make_attribute(context, member, file))
+        elif member.kind is Kind.PORT:
+            write_interface(context, member, file, node)
 
 
-def hierarchies(book: Book) -> None:
-    """Add the instance hierarchies: those of files, and packages that hold instances."""
-    for package in book.graph.of_kind(Kind.PACKAGE):
+def write_hierarchies(context: Context) -> None:
+    """Add an instance hierarchy for each one of the source and each package with instances."""
+    for package in context.graph.of_kind(Kind.PACKAGE):
+        file = context.find_file(package)
         if package.subkind == HIERARCHY:
-            node = Node("InstanceHierarchy", {"Name": package.name})
-            if book.ids.literal(package):
-                node.attributes["ID"] = book.ids.literal(package)
-            book.put(package, book.file_of(package).root.add(node))
-            header.write(book, package, node)
-            elements.fill_hierarchy(book, package, node, book.file_of(package))
-        elif package.subkind not in LIBRARIES and elements.has_instances(book, package):
-            name = library_name(book, package)
-            node = Node("InstanceHierarchy", {"Name": name})
-            book.put(package, book.file_of(package).root.add(node))
-            elements.fill_hierarchy(book, package, node, book.file_of(package))
+            node = file.root.add(Node("InstanceHierarchy", {"Name": package.name}))
+            context.copy_id(package, node)
+            context.register(package, node)
+            write_header(context, package, node)
+            fill_hierarchy(context, package, node, file)
+        elif package.subkind not in LIBRARIES and has_plant_objects(context, package):
+            name = _make_library_name(context, package)
+            node = file.root.add(Node("InstanceHierarchy", {"Name": name}))
+            context.register(package, node)
+            fill_hierarchy(context, package, node, file)

@@ -1,25 +1,27 @@
-"""XML elements of CAEX 3.0 as they are written: children in the order of its schema."""
+"""XML elements of CAEX 3.0, and values in the lexical forms of XML Schema."""
 
+import math
 import re
 from dataclasses import dataclass, field
 from typing import Any
 
 from lxml import etree
 
+from sysmlc.ir import AttrValue
 from sysmlc.sources.caex import NAMESPACE, ORDER
 
 _ILLEGAL = re.compile("[^\t\n\r\u0020-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
-_FREE = frozenset({"AdditionalInformation"})
-"""What may hold any XML: its inner order is that of the author."""
+"""Characters outside the production Char (XML 1.0, 2.2)."""
+_UNORDERED = frozenset({"AdditionalInformation"})
+"""Elements that may hold any XML, so that their children stay in the author's order."""
 
 
 @dataclass(slots=True, eq=False)
 class Node:
     """One XML element.
 
-    ``is_copy`` tells what only repeats a feature of the class. ``parts`` and ``interfaces`` find
-    internal elements and external interfaces below it by the ids of the parts and ports that
-    they stand for.
+    A node with *is_copy* only repeats a feature of a class. *parts* and *interfaces* find the
+    internal elements and external interfaces below the node by the ids of their parts and ports.
     """
 
     tag: str
@@ -35,69 +37,93 @@ class Node:
         self.children.append(child)
         return child
 
-    def say(self, tag: str, text: str) -> None:
-        """Add a child that holds text alone."""
+    def add_text(self, tag: str, text: str) -> None:
+        """Add a child that holds only text."""
         self.add(Node(tag, text=text))
 
-    def child(self, tag: str, name: str) -> "Node | None":
-        """The first child of this tag and ``Name``."""
-        found = (c for c in self.children if c.tag == tag and c.attributes.get("Name") == name)
-        return next(found, None)
+    def find_child(self, tag: str, name: str) -> "Node | None":
+        """Return the first child with this tag and ``Name``, or None."""
+        for child in self.children:
+            if child.tag == tag and child.attributes.get("Name") == name:
+                return child
+        return None
 
     @property
     def id(self) -> str:
-        """Its ``ID``, or the empty string."""
+        """The ``ID``, or the empty string."""
         return self.attributes.get("ID", "")
 
 
-def printed(root: Node) -> tuple[str, int]:
-    """The document as text, and how many characters XML cannot hold were replaced in it."""
+def print_document(root: Node) -> tuple[str, int]:
+    """Return the document as text, and the number of illegal characters replaced in it."""
     replaced = 0
 
-    def legal(text: str) -> str:
+    def make_legal(text: str) -> str:
         nonlocal replaced
-        made, count = _ILLEGAL.subn("\ufffd", text)
+        legal, count = _ILLEGAL.subn("\ufffd", text)
         replaced += count
-        return made
+        return legal
 
     # The stubs of lxml do not know that None is the prefix of the default namespace.
-    spaces: Any = {None: NAMESPACE}
-    top = etree.Element(f"{{{NAMESPACE}}}{root.tag}", nsmap=spaces)
-    waiting = [(root, top)]
-    while waiting:
-        node, made = waiting.pop()
+    namespaces: Any = {None: NAMESPACE}
+    top = etree.Element(f"{{{NAMESPACE}}}{root.tag}", nsmap=namespaces)
+    # A stack instead of recursion: models nest more deeply than Python's stack.
+    stack = [(root, top)]
+    while stack:
+        node, target = stack.pop()
         for name, value in node.attributes.items():
-            made.set(name, legal(value))
+            target.set(name, make_legal(value))
         if node.text:
-            made.text = legal(node.text)
-        below = [(c, etree.SubElement(made, f"{{{NAMESPACE}}}{c.tag}")) for c in ordered(node)]
-        waiting.extend(reversed(below))
+            target.text = make_legal(node.text)
+        for child in _sort_children(node):
+            stack.append((child, etree.SubElement(target, f"{{{NAMESPACE}}}{child.tag}")))
     data = etree.tostring(top, pretty_print=True, xml_declaration=True, encoding="UTF-8")
     return data.decode(), replaced
 
 
-def ordered(node: Node) -> list[Node]:
-    """The children in the order of the schema; those of one tag as they were added."""
-    if node.tag in _FREE:
+def _sort_children(node: Node) -> list[Node]:
+    """Return the children in the order of the schema; children of one tag keep their order."""
+    if node.tag in _UNORDERED:
         return node.children
     return sorted(node.children, key=lambda child: ORDER.get(child.tag, len(ORDER)))
 
 
-def parsed(text: str) -> Node:
-    """The nodes that a text means; it is XML that a front end wrote, as deep as it reads any."""
+def parse_fragment(text: str) -> Node:
+    """Return the tree of an XML fragment that the front end ``caex`` stored in the graph."""
+    # The front end accepts any depth, so the parser must not stop at 256 levels: huge_tree.
     parser = etree.XMLParser(
         resolve_entities=False, no_network=True, load_dtd=False, huge_tree=True
     )
     source = etree.fromstring(text.encode(), parser)
-    root = _node(source)
-    waiting = [(source, root)]
-    while waiting:
-        one, node = waiting.pop()
-        for child in one:
-            waiting.append((child, node.add(_node(child))))
+    root = _convert_element(source)
+    stack = [(source, root)]
+    while stack:
+        element, node = stack.pop()
+        for child in element:
+            stack.append((child, node.add(_convert_element(child))))
     return root
 
 
-def _node(source: "etree._Element") -> Node:
+def _convert_element(source: "etree._Element") -> Node:
     attributes = {str(name): str(value) for name, value in source.attrib.items()}
     return Node(str(source.tag), attributes, text=source.text or "")
+
+
+def format_value(value: AttrValue) -> str:
+    """Return the lexical form of a value; the items of a list are separated by blanks."""
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, float) and not math.isfinite(value):
+        return "NaN" if math.isnan(value) else "INF" if value > 0 else "-INF"
+    if isinstance(value, tuple):
+        return " ".join(map(format_value, value))
+    return "" if value is None else str(value)
+
+
+def find_data_type(value: AttrValue) -> str:
+    """Return the XML Schema type of a number or truth value, for other values nothing."""
+    if isinstance(value, bool):
+        return "xs:boolean"
+    if isinstance(value, int):
+        return "xs:integer"
+    return "xs:double" if isinstance(value, float) else ""

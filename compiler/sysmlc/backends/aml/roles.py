@@ -1,127 +1,127 @@
-"""Roles: what a class supports, what an internal element requires, and mapping objects."""
+"""Roles: those that a class supports, those that an internal element requires, and mappings."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable
 
-from sysmlc.backends.aml.book import Book, File
-from sysmlc.backends.aml.families import Family
-from sysmlc.backends.aml.node import Node
-from sysmlc.backends.aml.values import text_of
+from sysmlc.backends.aml.class_kinds import ClassKind
+from sysmlc.backends.aml.context import Context, File, iter_unresolved
+from sysmlc.backends.aml.node import Node, format_value
 from sysmlc.ir import Edge, Element, Kind
 
-_TAGS = ("SupportedRoleClass", "RoleRequirements")
-_PATHS = {"SupportedRoleClass": "RefRoleClassPath", "RoleRequirements": "RefBaseRoleClassPath"}
+_SUPPORTED, _REQUIRED = "SupportedRoleClass", "RoleRequirements"
+_TAGS = (_SUPPORTED, _REQUIRED)
+_PATHS = {_SUPPORTED: "RefRoleClassPath", _REQUIRED: "RefBaseRoleClassPath"}
+"""XML attribute that names the role class, by tag."""
 
 
-def write(book: Book, node: Node, file: File, *players: Element) -> None:
-    """Add the roles that some elements play, which one node stands for."""
-    tag = _TAGS[node.tag == "InternalElement"]
-    for player in players:
-        for role in book.graph.targets(player, Edge.REALIZES):
-            if path := _path(book, role, file):
-                book.say(Edge.REALIZES, player, role)
-                _role(node, tag, path)
-        _unresolved(player, node)
-        _required(book, player, node)
+def write_roles(context: Context, node: Node, file: File, elements: Iterable[Element]) -> None:
+    """Add the roles of the elements that a node represents."""
+    tag = _REQUIRED if node.tag == "InternalElement" else _SUPPORTED
+    for element in elements:
+        for role in context.graph.targets(element, Edge.REALIZES):
+            if path := _make_role_path(context, role, file):
+                context.mark_edge(Edge.REALIZES, element, role)
+                _find_or_add_role(node, tag, path)
+        _write_unresolved_roles(element, node)
+        _write_requirements(context, element, node)
 
 
-def inherited(book: Book, node: Node, file: File, type_: Element) -> None:
-    """Let an instance play the roles that its class supports, as AutomationML wants."""
-    for one in _chain(book, type_):
-        for role in book.graph.targets(one, Edge.REALIZES):
-            if path := _path(book, role, file):
-                _role(node, "RoleRequirements", path)
+def repeat_class_roles(context: Context, node: Node, file: File, type_: Element) -> None:
+    """Require in an instance the roles that its class supports, as AutomationML demands."""
+    for base in context.iter_bases(type_):
+        for role in context.graph.targets(base, Edge.REALIZES):
+            if path := _make_role_path(context, role, file):
+                _find_or_add_role(node, _REQUIRED, path)
 
 
-def _path(book: Book, role: Element, file: File) -> str:
-    place = book.places.get(role.id)
-    return book.path(role, file) if place is not None and place.family is Family.ROLE else ""
+def _make_role_path(context: Context, role: Element, file: File) -> str:
+    entry = context.classes.get(role.id)
+    is_role = entry is not None and entry.kind is ClassKind.ROLE
+    return context.make_class_path(role, file) if is_role else ""
 
 
-def _role(node: Node, tag: str, path: str) -> Node:
-    """The element that names a role; there is one for each role."""
+def _find_or_add_role(node: Node, tag: str, path: str) -> Node:
+    """Return the child that names a role; a role has one child."""
     for child in node.children:
         if child.tag == tag and child.attributes.get(_PATHS[tag]) == path:
             return child
     return node.add(Node(tag, {_PATHS[tag]: path}))
 
 
-def _unresolved(player: Element, node: Node) -> None:
-    found = player.attrs.get("unresolved_paths")
-    for pair in found if isinstance(found, tuple) else ():
-        if isinstance(pair, tuple) and pair[0] in _TAGS:
-            tag = "SupportedRoleClass" if node.tag != "InternalElement" else str(pair[0])
-            _role(node, tag, str(pair[1]))
+def _write_unresolved_roles(element: Element, node: Node) -> None:
+    """Add the references to unknown role classes as they were written."""
+    for tag, path in iter_unresolved(element, *_TAGS):
+        _find_or_add_role(node, tag if node.tag == "InternalElement" else _SUPPORTED, path)
 
 
-def _required(book: Book, player: Element, node: Node) -> None:
-    for one in book.graph.owned(player):
-        if one.kind is Kind.METADATA and one.name == "RoleRequirements":
-            path = str(one.attrs.get("role_class", ""))
-            made = _role(node, "RoleRequirements", path)
-            name = str(one.attrs.get("attribute", ""))
-            attribute = made.add(Node("Attribute", {"Name": name}))
-            if one.attrs.get("unit"):
-                attribute.attributes["Unit"] = str(one.attrs["unit"])
-            attribute.say("Value", text_of(one.attrs.get("required", "")))
-            book.said.add(one.id)
-            for target in book.graph.targets(one, Edge.REFERENCES):
-                book.say(Edge.REFERENCES, one, target)
+def _write_requirements(context: Context, element: Element, node: Node) -> None:
+    """Add the values that a role requirement demands of attributes."""
+    for metadata in context.graph.owned(element):
+        if metadata.kind is not Kind.METADATA or metadata.name != _REQUIRED:
+            continue
+        attrs = metadata.attrs
+        role = _find_or_add_role(node, _REQUIRED, str(attrs.get("role_class", "")))
+        attribute = role.add(Node("Attribute", {"Name": str(attrs.get("attribute", ""))}))
+        if attrs.get("unit"):
+            attribute.attributes["Unit"] = str(attrs["unit"])
+        attribute.add_text("Value", format_value(attrs.get("required", "")))
+        context.written.add(metadata.id)
+        for target in context.graph.targets(metadata, Edge.REFERENCES):
+            context.mark_edge(Edge.REFERENCES, metadata, target)
 
 
-# -- mapping objects ---------------------------------------------------------------------------
+# -- mappings of features ----------------------------------------------------------------------
 
 
-def mapped(book: Book) -> dict[str, list[tuple[Element, Element]]]:
-    """Features that redefine those of roles, by the id of the class that has them."""
-    found: dict[str, list[tuple[Element, Element]]] = {}
-    for _, source, target in book.graph.edges(Edge.REDEFINES):
-        feature, of_role = book.graph[source], book.graph[target]
-        place = book.places.get(of_role.owner or "")
-        if place is not None and place.family is Family.ROLE and feature.owner is not None:
-            found.setdefault(feature.owner, []).append((feature, of_role))
-    return found
+def find_role_features(context: Context) -> dict[str, list[tuple[Element, Element]]]:
+    """Return the features that redefine features of roles, by the id of the owning class."""
+    features: dict[str, list[tuple[Element, Element]]] = {}
+    for _, source, target in context.graph.edges(Edge.REDEFINES):
+        feature, role_feature = context.graph[source], context.graph[target]
+        entry = context.classes.get(role_feature.owner or "")
+        if entry is not None and entry.kind is ClassKind.ROLE and feature.owner is not None:
+            features.setdefault(feature.owner, []).append((feature, role_feature))
+    return features
 
 
-def map_features(book: Book, node: Node, file: File, type_: Element) -> None:
-    """Add the mapping objects for features of a class and of those that it specialises."""
-    for one in _chain(book, type_) if book.mapped else ():
-        for feature, target in book.mapped.get(one.id, ()):
-            if (Edge.REDEFINES, feature.id, target.id) in book.relations:
+def map_features(context: Context, node: Node, file: File, type_: Element) -> None:
+    """Add the MappingObjects for features of a class and of its base classes."""
+    if not context.role_features:
+        return
+    for base in context.iter_bases(type_):
+        for feature, role_feature in context.role_features.get(base.id, ()):
+            if (Edge.REDEFINES, feature.id, role_feature.id) in context.written_edges:
                 continue
-            role = _role_with(book, node, file, target)
+            role = _find_role_with(context, node, file, role_feature)
             if role is not None:
-                holder = next((c for c in role.children if c.tag == "MappingObject"), None)
-                holder = holder or role.add(Node("MappingObject"))
-                holder.add(_mapping(book, feature, target))
-                book.say(Edge.REDEFINES, feature, target)
+                _find_or_add_mapping_object(role).add(_make_mapping(context, feature, role_feature))
+                context.mark_edge(Edge.REDEFINES, feature, role_feature)
 
 
-def _role_with(book: Book, node: Node, file: File, target: Element) -> Node | None:
-    """The role of an element that has a feature, of its own or inherited."""
+def _find_role_with(context: Context, node: Node, file: File, role_feature: Element) -> Node | None:
+    """Return the child of *node* that names a role with the feature, own or inherited."""
     for child in node.children:
         if child.tag in _TAGS:
             path = child.attributes.get(_PATHS[child.tag], "")
-            role = book.class_at(path, Family.ROLE, file)
-            if role is not None and any(one.id == target.owner for one in _chain(book, role)):
+            role = context.find_class(path, ClassKind.ROLE, file)
+            if any(base.id == role_feature.owner for base in context.iter_bases(role)):
                 return child
     return None
 
 
-def _mapping(book: Book, feature: Element, target: Element) -> Node:
+def _find_or_add_mapping_object(role: Node) -> Node:
+    for child in role.children:
+        if child.tag == "MappingObject":
+            return child
+    return role.add(Node("MappingObject"))
+
+
+def _make_mapping(context: Context, feature: Element, role_feature: Element) -> Node:
+    """Return the mapping; CAEX 3.0 maps interfaces by ID and attributes by name."""
     if feature.kind is Kind.PORT:
         ids = {
-            "SystemUnitInterfaceID": book.ids.of(feature),
-            "RoleInterfaceID": book.ids.of(target),
+            "SystemUnitInterfaceID": context.ids.choose(feature),
+            "RoleInterfaceID": context.ids.choose(role_feature),
         }
         return Node("InterfaceIDMapping", ids)
-    names = {"SystemUnitAttributeName": feature.name, "RoleAttributeName": target.name}
+    names = {"SystemUnitAttributeName": feature.name, "RoleAttributeName": role_feature.name}
     return Node("AttributeNameMapping", names)
-
-
-def _chain(book: Book, role: Element) -> Iterator[Element]:
-    seen: set[str] = set()
-    one: Element | None = role
-    while one is not None and one.id not in seen:
-        seen.add(one.id)
-        yield one
-        one = book.graph.target(one, Edge.SPECIALIZES)

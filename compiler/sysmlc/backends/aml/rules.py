@@ -1,25 +1,25 @@
-"""What CAEX cannot say, and how it is counted: one finding for each kind of loss."""
+"""Rules for what CAEX cannot express, and the counter of such losses."""
 
 from dataclasses import dataclass, field
 
 from sysmlc.diagnostics import Rule, Severity, Sink, rule
 from sysmlc.ir import Element, Graph
 
-UNSAID_KIND = rule(
+UNSUPPORTED_KIND = rule(
     "SM740",
     "caex-without-kind",
     Severity.WARNING,
     "AutomationML has no place for {kind} ({count} left out of the saved plant)",
     help="--emit +uml, +sysml, +ir or +ecore saves them",
 )
-UNSAID_EDGE = rule(
+UNSUPPORTED_EDGE = rule(
     "SM741",
     "caex-without-relation",
     Severity.WARNING,
     "AutomationML has no '{edge}' from {kind} to {target} ({count} left out of the saved plant)",
     help="--emit +uml, +sysml, +ir or +ecore saves them",
 )
-UNSAID_ATTRIBUTE = rule(
+UNSUPPORTED_ATTRIBUTE = rule(
     "SM742",
     "caex-without-attribute",
     Severity.WARNING,
@@ -38,7 +38,7 @@ APPROXIMATED = rule(
     Severity.INFO,
     "{said} is saved as {written} ({count})",
 )
-ILLEGAL = rule(
+ILLEGAL_CHARACTERS = rule(
     "SM745",
     "caex-illegal-character",
     Severity.WARNING,
@@ -51,24 +51,35 @@ ADDED = rule(
     "'{element}' has no {what}, which the schema of CAEX 3.0 wants: '{value}' is written",
 )
 
+_Key = tuple[str, tuple[tuple[str, str], ...]]
+"""Code of the rule, and the sorted facts of its message."""
+
 
 @dataclass(slots=True)
 class Losses:
-    """Counts losses by rule and facts; each is reported once, at the first element."""
+    """Counts losses by rule and facts; each combination becomes one diagnostic."""
 
     graph: Graph
-    _found: dict[tuple[str, tuple[tuple[str, str], ...]], tuple[Rule, Element, int]] = field(
-        default_factory=dict
-    )
+    _counts: dict[_Key, tuple[Rule, Element, int]] = field(default_factory=dict)
+    """The rule, the first element and the number of losses."""
 
     def note(self, loss: Rule, element: Element, /, **facts: str) -> None:
-        """One more element with this loss."""
+        """Count one more element with this loss."""
         key = (loss.code, tuple(sorted(facts.items())))
-        _, first, count = self._found.get(key, (loss, element, 0))
-        self._found[key] = (loss, first, count + 1)
+        _, first, count = self._counts.get(key, (loss, element, 0))
+        self._counts[key] = (loss, first, count + 1)
+
+    def note_approximation(self, element: Element, original: str, replacement: str) -> None:
+        """Count an element that is saved in another form."""
+        self.note(APPROXIMATED, element, said=original, written=replacement)
+
+    def note_untyped(self, feature: Element, kind: str, type_: Element) -> None:
+        """Count a feature whose type CAEX cannot reference."""
+        facts = {"edge": "typed-by", "kind": kind, "target": str(type_.kind)}
+        self.note(UNSUPPORTED_EDGE, feature, **facts)
 
     def report(self, sink: Sink) -> None:
-        """Report what was counted."""
-        for (_, facts), (lost, first, count) in self._found.items():
-            told: dict[str, object] = {"count": count, **dict(facts)}
-            sink.report(lost, self.graph.subject(first), notes=(), help="", **told)
+        """Report each loss at the first element that has it."""
+        for (_, pairs), (loss, first, count) in self._counts.items():
+            facts: dict[str, object] = {"count": count, **dict(pairs)}
+            sink.report(loss, self.graph.subject(first), notes=(), help="", **facts)

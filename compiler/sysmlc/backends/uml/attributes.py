@@ -2,226 +2,255 @@
 
 from collections.abc import Callable
 
-from sysmlc.backends.uml import events, values
-from sysmlc.backends.uml.book import Book
-from sysmlc.backends.uml.meant import applications
-from sysmlc.backends.uml.names import camel, feature_of
+from sysmlc.backends.uml.context import Context
+from sysmlc.backends.uml.events import find_or_add_signature
+from sysmlc.backends.uml.features import find_attribute_feature, to_camel_case
 from sysmlc.backends.uml.node import Node
-from sysmlc.backends.uml.rules import UNSAID_ATTRIBUTE
+from sysmlc.backends.uml.sysml_profile import iter_applications
+from sysmlc.backends.uml.values import (
+    add_expression,
+    add_literal,
+    add_text,
+    fill_packaged_value,
+    format_value,
+    read_bodies,
+    write_bodies,
+    write_guard,
+    write_multiplicity,
+    write_value,
+)
 from sysmlc.ir import AttrValue, Edge, Element, Kind
 from sysmlc.ir.query import flow_properties, type_of
 
-_Writer = Callable[[Book, Element, str, AttrValue], None]
+_Writer = Callable[[Context, Element, str, AttrValue], None]
 
-_OF_PASSES_NAMES = """
+_DERIVED_NAMES = """
     role level origin unresolved lineage message_kind path_multiplicity item_property usage
     property_specific req_id text external href library qualified_name stereotype namespace on"""
-_OF_PASSES = frozenset(_OF_PASSES_NAMES.split())
-"""What passes work out again, or what stereotype applications hold."""
-_OF_TAGS_NAMES = """encapsulated rate probability no_buffer overwrite distribution
+_DERIVED = frozenset(_DERIVED_NAMES.split())
+"""Attributes that passes derive, or that belong to stereotype applications."""
+_FROM_TAGS_NAMES = """encapsulated rate probability no_buffer overwrite distribution
     criterion source_context source_path target_context target_path feature_direction symbol
     description definition_uri domain"""
-_OF_TAGS = frozenset(_OF_TAGS_NAMES.split())
-"""What passes work out from tags of applications, or slots of units."""
+_FROM_TAGS = frozenset(_FROM_TAGS_NAMES.split())
+"""Attributes that passes derive from tags of applications, or from slots of units."""
 _PATHS = ("source_path", "target_path")
-_KEPT = frozenset({"unit", "language", "unresolved"})
-"""What UML says in other words, and AutomationML in these too."""
-_ONE = ("multiplicity", "1")
-"""What UML says by silence."""
-_SUFFIXES = ("_language", "_languages", "_bodies", "_instance", "_literal")
-_VALUES = {
+_STORED = frozenset({"unit", "language", "unresolved"})
+"""Attributes that UML expresses only in part, so that a plant stores them for the way back."""
+_DEFAULT_MULTIPLICITY = ("multiplicity", "1")
+_COMPANIONS = ("_language", "_languages", "_bodies", "_instance", "_literal")
+"""Ends of attributes that belong to the attribute with the rest of the name."""
+_VALUE_FEATURES = {
     Kind.INSTANCE: "specification",
     Kind.ENUMERATION_LITERAL: "specification",
     Kind.TEMPLATE_SUBSTITUTION: "ownedActual",
 }
+"""The feature for ``value``, of other kinds ``value``."""
 
 
-def write(book: Book, element: Element) -> None:
-    """Write all attributes of an element whose node is made."""
-    for key, given in element.attrs.items():
+def write_attributes(context: Context, element: Element) -> None:
+    """Write all attributes of an element."""
+    round_trip = context.losses.round_trip
+    for key, value in element.attrs.items():
         writer = _WRITERS.get(key)
         if writer is not None:
-            writer(book, element, key, given)
-            if (key, given) == _ONE and book.losses.kept is not None:
-                book.losses.kept.attribute(element, key)
-        elif not _is_said_otherwise(book, element, key):
-            _plain(book, element, key, given)
-        elif key in _KEPT and book.losses.kept is not None:
-            book.losses.kept.attribute(element, key)
-    if "body" not in element.attrs and element.kind is not Kind.CONSTRAINT:
-        _language(book, element)
+            writer(context, element, key, value)
+            # UML omits the default, and a reader cannot tell it from an absent multiplicity.
+            if (key, value) == _DEFAULT_MULTIPLICITY and round_trip is not None:
+                round_trip.store_attribute(element, key)
+        elif not _is_expressed_otherwise(context, element, key):
+            _write_feature(context, element, key, value)
+        elif key in _STORED and round_trip is not None:
+            round_trip.store_attribute(element, key)
+    language = element.attrs.get("language")
+    if language and "body" not in element.attrs and element.kind is not Kind.CONSTRAINT:
+        # An opaque element without a body.
+        context.find_node(element).add(Node("language", text=format_value(language)))
 
 
-def _is_said_otherwise(book: Book, element: Element, key: str) -> bool:
-    if key in _OF_PASSES or any(key.endswith(suffix) for suffix in _SUFFIXES):
+def _is_expressed_otherwise(context: Context, element: Element, key: str) -> bool:
+    """Return whether another attribute, an application or a pass accounts for the attribute."""
+    if key in _DERIVED or key.endswith(_COMPANIONS):
         return True
     if key in ("languages", "bodies", "language"):
         return True
     if key == "unit" and element.role == "value type":
         return True
-    return key in _OF_TAGS and _has_meaning(book, element, key)
+    return key in _FROM_TAGS and _has_tags(context, element, key)
 
 
-def _has_meaning(book: Book, element: Element, key: str) -> bool:
+def _has_tags(context: Context, element: Element, key: str) -> bool:
+    """Return whether the source of a derived attribute is written: tags, slots or item flows."""
     is_flow = element.kind in (Kind.ITEM_FLOW, Kind.CONNECTOR) and key not in _PATHS
     is_unit = element.role in ("unit", "quantity kind")
-    return is_flow or is_unit or any(applications(book.graph, element))
+    return is_flow or is_unit or any(iter_applications(context.graph, element))
 
 
-def _plain(book: Book, element: Element, key: str, given: AttrValue) -> None:
-    feature = feature_of(key)
+def _write_feature(context: Context, element: Element, key: str, value: AttrValue) -> None:
+    """Write an attribute as a feature: references, texts or one XML attribute."""
+    feature = find_attribute_feature(key)
     if not feature:
         name = "tagged values without stereotype" if key.startswith("tag.") else key
-        book.losses.note(UNSAID_ATTRIBUTE, element, attribute=name, kind=str(element.kind))
-    elif not _references(book, element, key, feature, given):
-        node = book.node(element)
-        if isinstance(given, tuple):
-            for one in given:
-                node.add(Node(feature, text=values.shown(one)))
+        context.losses.note_attribute(element, name)
+    elif not _write_references(context, element, key, feature, value):
+        node = context.find_node(element)
+        if isinstance(value, tuple):
+            for item in value:
+                node.add(Node(feature, text=format_value(item)))
         else:
-            node.attributes[feature] = values.shown(given)
+            node.attributes[feature] = format_value(value)
 
 
-def _references(book: Book, element: Element, key: str, feature: str, given: AttrValue) -> bool:
-    named = given if isinstance(given, tuple) else (given,)
-    found = [book.graph.get(one) if isinstance(one, str) else None for one in named]
-    targets = [one for one in found if one is not None]
-    if not targets or len(targets) < len(found):
+def _write_references(
+    context: Context, element: Element, key: str, feature: str, value: AttrValue
+) -> bool:
+    """Write a value that consists of ids as references; return whether it does."""
+    ids = _as_tuple(value)
+    targets = [context.graph.get(id) if isinstance(id, str) else None for id in ids]
+    elements = [target for target in targets if target is not None]
+    if not elements or len(elements) < len(targets):
         return False
-    book.refer(element, book.node(element), feature, targets, key)
+    context.write_references(element, context.find_node(element), feature, elements, key)
     return True
+
+
+def _as_tuple(value: AttrValue) -> tuple[AttrValue, ...]:
+    return value if isinstance(value, tuple) else (value,)
+
+
+def _join_ids(context: Context, values: AttrValue) -> str:
+    """Return the ids in the file of those elements that are written."""
+    ids = [str(id) for id in _as_tuple(values)]
+    return " ".join(context.ids[id] for id in ids if id in context.nodes)
 
 
 # -- values ------------------------------------------------------------------------------------
 
 
-def _bounds(book: Book, element: Element, _key: str, given: AttrValue) -> None:
-    if given != "1":
-        values.bounds(book, element)
+def _write_bounds(context: Context, element: Element, _key: str, value: AttrValue) -> None:
+    if value != "1":
+        write_multiplicity(context, element)
 
 
-def _default(book: Book, element: Element, key: str, given: AttrValue) -> None:
+def _write_default(context: Context, element: Element, key: str, value: AttrValue) -> None:
     if element.kind is not Kind.TEMPLATE_PARAMETER:
-        values.value(book, element, key, "defaultValue")
-    elif not _references(book, element, key, "default", given):
-        values.value(book, element, key, "ownedDefault")
+        write_value(context, element, key, "defaultValue")
+    elif not _write_references(context, element, key, "default", value):
+        write_value(context, element, key, "ownedDefault")
 
 
-def _value(book: Book, element: Element, key: str, given: AttrValue) -> None:
+def _write_any_value(context: Context, element: Element, key: str, value: AttrValue) -> None:
     if element.kind is Kind.EXPRESSION:
-        values.packaged(book, element)
+        fill_packaged_value(context, element)
     elif element.kind is Kind.SLOT:
-        for one in given if isinstance(given, tuple) else (given,):
-            values.literal(book, element, book.node(element), "value", one)
+        node = context.find_node(element)
+        for item in _as_tuple(value):
+            add_literal(context, element, node, "value", item)
     else:
-        values.value(book, element, key, _VALUES.get(element.kind, "value"))
+        write_value(context, element, key, _VALUE_FEATURES.get(element.kind, "value"))
 
 
-def _guard(book: Book, element: Element, _key: str, _given: AttrValue) -> None:
+def _write_any_guard(context: Context, element: Element, _key: str, _value: AttrValue) -> None:
+    """Write a guard; one that is a constraint of its own is an edge."""
     if element.kind in (Kind.CONTROL_FLOW, Kind.OBJECT_FLOW):
-        values.guard(book, element)
-    elif book.graph.target(element, Edge.GUARD) is None:
-        _own_guard(book, element)
+        write_guard(context, element)
+    elif context.graph.target(element, Edge.GUARD) is None:
+        _add_guard_constraint(context, element)
 
 
-def _own_guard(book: Book, element: Element) -> None:
-    """A guard that only a text says needs a constraint that holds it."""
-    node = book.node(element)
+def _add_guard_constraint(context: Context, element: Element) -> None:
+    """Add the constraint for a guard of which the graph has only the text."""
+    node = context.find_node(element)
     if element.kind is Kind.OPERAND:
-        rule = book.part(element, node, "guard", "InteractionConstraint")
+        constraint = context.add_part(element, node, "guard", "InteractionConstraint")
     else:
-        rule = book.part(element, node, "ownedRule", "Constraint")
-        node.attributes["guard"] = rule.id
-    language = values.shown(element.attrs.get("guard_language"))
-    said = values.shown(element.attrs.get("guard"))
-    values.opaque(book, element, rule, "specification", said, language)
+        constraint = context.add_part(element, node, "ownedRule", "Constraint")
+        node.attributes["guard"] = constraint.id
+    language = format_value(element.attrs.get("guard_language"))
+    body = format_value(element.attrs.get("guard"))
+    add_expression(context, element, constraint, "specification", body, language)
 
 
-def _weight(book: Book, element: Element, _key: str, given: AttrValue) -> None:
-    values.literal(book, element, book.node(element), "weight", given)
+def _write_weight(context: Context, element: Element, _key: str, value: AttrValue) -> None:
+    add_literal(context, element, context.find_node(element), "weight", value)
 
 
-def _body(book: Book, element: Element, _key: str, given: AttrValue) -> None:
-    attrs, node = element.attrs, book.node(element)
-    language = values.shown(attrs.get("language"))
-    said = values.texts(attrs) or ((values.shown(given),), (language,))
+def _write_body(context: Context, element: Element, _key: str, value: AttrValue) -> None:
+    attrs, node = element.attrs, context.find_node(element)
+    body, language = format_value(value), format_value(attrs.get("language"))
+    bodies = read_bodies(attrs) or ((body,), (language,))
     if element.kind is not Kind.CONSTRAINT:
-        values.say(node, said[0], said[1])
+        write_bodies(node, *bodies)
     elif element.subkind in ("duration", "time", "interval"):
-        _interval(book, element, node, values.shown(given), language)
+        _write_interval(context, element, node, body, language)
     else:
-        made = book.part(element, node, "specification", "OpaqueExpression")
-        values.say(made, said[0], said[1])
+        write_bodies(context.add_part(element, node, "specification", "OpaqueExpression"), *bodies)
 
 
-def _language(book: Book, element: Element) -> None:
-    """The language of an opaque element that says nothing yet."""
-    language = element.attrs.get("language")
-    if language:
-        book.node(element).add(Node("language", text=values.shown(language)))
+def _write_interval(
+    context: Context, element: Element, node: Node, body: str, language: str
+) -> None:
+    """Write the bounds of a time or duration constraint as one expression.
 
-
-def _interval(book: Book, element: Element, node: Node, said: str, language: str) -> None:
-    """Eclipse keeps the bounds of intervals elsewhere; one expression says both."""
+    In Eclipse UML, the bounds are further elements, which the graph does not have.
+    """
     metaclass = "TimeExpression" if element.subkind == "time" else "Duration"
-    made = book.part(element, node, "specification", metaclass)
-    given = element.attrs.get("observations", ())
-    ids = [str(one) for one in given] if isinstance(given, tuple) else [str(given)]
-    known = [book.ids[id] for id in ids if id in book.nodes]
-    if known:
-        made.attributes["observation"] = " ".join(known)
-    values.opaque(book, element, made, "expr", said, language)
+    time = context.add_part(element, node, "specification", metaclass)
+    observations = _join_ids(context, element.attrs.get("observations", ()))
+    if observations:
+        time.attributes["observation"] = observations
+    add_expression(context, element, time, "expr", body, language)
 
 
-def _text_value(tag: str) -> _Writer:
-    def write(book: Book, element: Element, key: str, given: AttrValue) -> None:
-        node, several = book.node(element), values.texts(element.attrs, f"{key}_")
-        if several:
-            made = book.part(element, node, tag, "OpaqueExpression")
-            values.say(made, several[0], several[1])
+def _make_text_writer(tag: str) -> _Writer:
+    def write_text(context: Context, element: Element, key: str, value: AttrValue) -> None:
+        """Write a text as the expression that UML requires."""
+        node, bodies = context.find_node(element), read_bodies(element.attrs, f"{key}_")
+        if bodies is not None:
+            write_bodies(context.add_part(element, node, tag, "OpaqueExpression"), *bodies)
         elif tag == "nameExpression":
-            made = book.part(element, node, tag, "StringExpression")
-            made.attributes["symbol"] = values.shown(given)
+            expression = context.add_part(element, node, tag, "StringExpression")
+            expression.attributes["symbol"] = format_value(value)
         else:
-            values.text(book, element, node, tag, given)
+            add_text(context, element, node, tag, value)
 
-    return write
-
-
-def _arguments(book: Book, element: Element, _key: str, given: AttrValue) -> None:
-    for one in given if isinstance(given, tuple) else (given,):
-        values.text(book, element, book.node(element), "argument", one)
+    return write_text
 
 
-def _times(tag: str) -> _Writer:
-    """Bounds of a loop stand in the constraint of its operand."""
+def _write_arguments(context: Context, element: Element, _key: str, value: AttrValue) -> None:
+    for argument in _as_tuple(value):
+        add_text(context, element, context.find_node(element), "argument", argument)
 
-    def write(book: Book, element: Element, key: str, given: AttrValue) -> None:
-        node = book.node(element)
+
+def _make_loop_bound_writer(tag: str) -> _Writer:
+    def write_loop_bound(context: Context, element: Element, _key: str, value: AttrValue) -> None:
+        """Write a bound of a loop; the guard of the operand holds it (UML 2.5.1 clause 17.6)."""
+        node = context.find_node(element)
         if element.kind is Kind.OPERAND:
-            found = next((one for one in node.children if one.tag == "guard"), None)
-            node = found or book.part(element, node, "guard", "InteractionConstraint")
-        values.literal(book, element, node, tag, given)
+            guard = next((child for child in node.children if child.tag == "guard"), None)
+            node = guard or context.add_part(element, node, "guard", "InteractionConstraint")
+        add_literal(context, element, node, tag, value)
 
-    return write
+    return write_loop_bound
 
 
 # -- texts -------------------------------------------------------------------------------------
 
 
-def _direction(book: Book, element: Element, key: str, given: AttrValue) -> None:
+def _write_direction(context: Context, element: Element, key: str, value: AttrValue) -> None:
+    """Write the direction of a parameter; count a direction that nothing in the file implies."""
     if element.kind in (Kind.PIN, Kind.ACTIVITY_PARAMETER, Kind.FLOW_PROPERTY):
         return
     if element.kind is Kind.PARAMETER:
-        if given != "in":
-            book.node(element).attributes["direction"] = values.shown(given)
-    elif element.role != "flow property" and not _gives_direction(book, element):
-        book.losses.note(UNSAID_ATTRIBUTE, element, attribute=key, kind=str(element.kind))
+        if value != "in":
+            context.find_node(element).attributes["direction"] = format_value(value)
+    elif element.role != "flow property" and not _is_direction_implied(context, element):
+        context.losses.note_attribute(element, key)
 
 
-def _gives_direction(book: Book, port: Element) -> bool:
-    """Whether the model tells the direction of a port otherwise."""
-    graph, type_ = book.graph, type_of(book.graph, port)
+def _is_direction_implied(context: Context, port: Element) -> bool:
+    """Return whether passes derive the direction from the rest of the model."""
+    graph, type_ = context.graph, type_of(context.graph, port)
     if port.role == "flow port" or graph.targets(port, Edge.REDEFINES):
         return True
     if any(graph.sources(port, edge) for edge in (Edge.FLOW_SOURCE, Edge.FLOW_TARGET)):
@@ -229,116 +258,121 @@ def _gives_direction(book: Book, port: Element) -> bool:
     if type_ is None:
         return False
     features = graph.targets(type_, Edge.FEATURE)
-    called = any(one.kind is Kind.OPERATION for one in features)
-    return called or bool(flow_properties(graph, type_)) or _is_conjugated(book, type_)
+    has_operations = any(feature.kind is Kind.OPERATION for feature in features)
+    return has_operations or bool(flow_properties(graph, type_)) or _is_conjugate(context, type_)
 
 
-def _is_conjugated(book: Book, type_: Element) -> bool:
-    return any("tag.original" in one.attrs for one in applications(book.graph, type_))
+def _is_conjugate(context: Context, type_: Element) -> bool:
+    """Return whether SysML's tag ``original`` makes the type a conjugated interface block."""
+    applications = iter_applications(context.graph, type_)
+    return any("tag.original" in application.attrs for application in applications)
 
 
-def _subkind(book: Book, element: Element, _key: str, given: AttrValue) -> None:
-    """Subkinds that an attribute says, not the metaclass."""
-    named = {
-        Kind.FRAGMENT: ("interactionOperator", "seq"),
-        Kind.MESSAGE: ("messageSort", "synch-call"),
-        Kind.PSEUDOSTATE: ("kind", "initial"),
-        Kind.TRANSITION: ("kind", "external"),
-    }.get(element.kind)
-    metaclass = book.node(element).metaclass
-    if named is None or metaclass not in _SORTED or given == named[1]:
-        return
-    book.node(element).attributes[named[0]] = camel(values.shown(given))
-
-
-_SORTED = frozenset(
+_SUBKIND_FEATURES = {
+    Kind.FRAGMENT: ("interactionOperator", "seq"),
+    Kind.MESSAGE: ("messageSort", "synch-call"),
+    Kind.PSEUDOSTATE: ("kind", "initial"),
+    Kind.TRANSITION: ("kind", "external"),
+}
+"""The feature that expresses the subkind, and its default."""
+_WITH_SUBKIND = frozenset(
     {"CombinedFragment", "ConsiderIgnoreFragment", "Message", "Pseudostate", "Transition"}
 )
+"""Metaclasses that have these features; others express the subkind themselves."""
 
 
-def _first_event(book: Book, element: Element, _key: str, given: AttrValue) -> None:
-    node = book.node(element)
-    if isinstance(given, tuple) or element.subkind == "duration":
-        for one in given if isinstance(given, tuple) else (given,):
-            node.add(Node("firstEvent", text=values.shown(one)))
+def _write_subkind(context: Context, element: Element, _key: str, value: AttrValue) -> None:
+    node = context.find_node(element)
+    if element.kind in _SUBKIND_FEATURES and node.metaclass in _WITH_SUBKIND:
+        feature, default = _SUBKIND_FEATURES[element.kind]
+        if value != default:
+            node.attributes[feature] = to_camel_case(format_value(value))
+
+
+def _write_first_event(context: Context, element: Element, _key: str, value: AttrValue) -> None:
+    """Write ``firstEvent``: a duration has one for each of two events, a time has one alone."""
+    node = context.find_node(element)
+    if isinstance(value, tuple) or element.subkind == "duration":
+        for item in _as_tuple(value):
+            node.add(Node("firstEvent", text=format_value(item)))
     else:
-        node.attributes["firstEvent"] = values.shown(given)
+        node.attributes["firstEvent"] = format_value(value)
 
 
-def _nothing(book: Book, element: Element, key: str, given: AttrValue) -> None:
-    """Something else says it: the event of a trigger, the value of a constraint."""
+def _write_nothing(context: Context, element: Element, key: str, value: AttrValue) -> None:
+    """Write nothing: the event of the trigger or the value of the constraint expresses it."""
 
 
 # -- records -----------------------------------------------------------------------------------
 
 
-def _records(tag: str, metaclass: str, *features: str) -> _Writer:
-    def write(book: Book, element: Element, _key: str, given: AttrValue) -> None:
-        node = book.node(element)
-        for number, record in enumerate(given if isinstance(given, tuple) else ()):
-            made = _record(book, element, node, tag, metaclass, number)
+def _make_record_writer(tag: str, metaclass: str, *features: str) -> _Writer:
+    def write_records(context: Context, element: Element, _key: str, value: AttrValue) -> None:
+        """Write each record as a child; its columns are ids of elements, one list per feature."""
+        node = context.find_node(element)
+        for index, record in enumerate(value if isinstance(value, tuple) else ()):
+            child = _find_or_add_record(context, element, node, tag, metaclass, index)
             columns = record if isinstance(record, tuple) else ()
             for feature, ids in zip(features, columns, strict=False):
-                _column(book, made, feature, ids)
+                references = _join_ids(context, ids) if isinstance(ids, tuple) else ""
+                if references:
+                    child.attributes[feature] = references
 
-    return write
+    return write_records
 
 
-def _record(
-    book: Book, element: Element, node: Node, tag: str, metaclass: str, number: int
+def _find_or_add_record(
+    context: Context, element: Element, node: Node, tag: str, metaclass: str, index: int
 ) -> Node:
-    """The record of this number, which other columns may have begun."""
-    begun = [child for child in node.children if child.tag == tag]
-    if number < len(begun):
-        return begun[number]
-    ends = {"create-link": "LinkEndCreationData", "destroy-link": "LinkEndDestructionData"}
-    name = ends.get(element.subkind, metaclass) if tag == "endData" else metaclass
-    return book.part(element, node, tag, name)
+    """Return the child of a record; another attribute of the element may have added it."""
+    records = [child for child in node.children if child.tag == tag]
+    if index < len(records):
+        return records[index]
+    if tag == "endData":
+        ends = {"create-link": "LinkEndCreationData", "destroy-link": "LinkEndDestructionData"}
+        metaclass = ends.get(element.subkind, metaclass)
+    return context.add_part(element, node, tag, metaclass)
 
 
-def _column(book: Book, node: Node, feature: str, ids: AttrValue) -> None:
-    named = [str(id) for id in ids] if isinstance(ids, tuple) else []
-    known = [book.ids[id] for id in named if id in book.nodes]
-    if known:
-        node.attributes[feature] = " ".join(known)
-
-
-def _extended_signature(book: Book, element: Element, _key: str, given: AttrValue) -> None:
-    """The signature of a template extends those of other templates."""
-    ids = [str(id) for id in (given if isinstance(given, tuple) else (given,))]
-    known = [events.signature(book, book.graph[id]).id for id in ids if id in book.nodes]
-    if known:
-        events.signature(book, element).attributes["extendedSignature"] = " ".join(known)
+def _write_extended_signature(
+    context: Context, element: Element, _key: str, value: AttrValue
+) -> None:
+    """Write the signatures that the signature of a template extends; the value names templates."""
+    templates = [context.graph[str(id)] for id in _as_tuple(value) if str(id) in context.nodes]
+    ids = [find_or_add_signature(context, template).id for template in templates]
+    if ids:
+        signature = find_or_add_signature(context, element)
+        signature.attributes["extendedSignature"] = " ".join(ids)
 
 
 _WRITERS: dict[str, _Writer] = {
-    "multiplicity": _bounds,
-    "default": _default,
-    "value": _value,
-    "guard": _guard,
-    "weight": _weight,
-    "body": _body,
-    "join_spec": _text_value("joinSpec"),
-    "upper_bound": _text_value("upperBound"),
-    "name_expression": _text_value("nameExpression"),
-    "selector": _text_value("selector"),
-    "return_value": _text_value("returnValue"),
-    "arguments": _arguments,
-    "min": _times("minint"),
-    "max": _times("maxint"),
-    "direction": _direction,
-    "subkind": _subkind,
-    "first_event": _first_event,
-    "observations": _nothing,
-    "when": _nothing,
-    "condition": _nothing,
-    "relative": _nothing,
-    "deferred": _nothing,
-    "clauses": _records("clause", "Clause", "test", "body"),
-    "clause_outputs": _records("clause", "Clause", "decider", "bodyOutput"),
-    "handlers": _records(
+    "multiplicity": _write_bounds,
+    "default": _write_default,
+    "value": _write_any_value,
+    "guard": _write_any_guard,
+    "weight": _write_weight,
+    "body": _write_body,
+    "join_spec": _make_text_writer("joinSpec"),
+    "upper_bound": _make_text_writer("upperBound"),
+    "name_expression": _make_text_writer("nameExpression"),
+    "selector": _make_text_writer("selector"),
+    "return_value": _make_text_writer("returnValue"),
+    "arguments": _write_arguments,
+    "min": _make_loop_bound_writer("minint"),
+    "max": _make_loop_bound_writer("maxint"),
+    "direction": _write_direction,
+    "subkind": _write_subkind,
+    "first_event": _write_first_event,
+    "observations": _write_nothing,
+    "when": _write_nothing,
+    "condition": _write_nothing,
+    "relative": _write_nothing,
+    "deferred": _write_nothing,
+    "clauses": _make_record_writer("clause", "Clause", "test", "body"),
+    "clause_outputs": _make_record_writer("clause", "Clause", "decider", "bodyOutput"),
+    "handlers": _make_record_writer(
         "handler", "ExceptionHandler", "handlerBody", "exceptionInput", "exceptionType"
     ),
-    "link_ends": _records("endData", "LinkEndData", "end", "value"),
-    "extended_signature": _extended_signature,
+    "link_ends": _make_record_writer("endData", "LinkEndData", "end", "value"),
+    "extended_signature": _write_extended_signature,
 }

@@ -1,110 +1,111 @@
-"""Parts that the graph folds into elements: events of triggers, signatures of templates."""
+"""Elements of UML that the graph folds into others: events of triggers, template signatures."""
 
-from sysmlc.backends.uml import values
-from sysmlc.backends.uml.book import Book
-from sysmlc.backends.uml.hrefs import is_outside, reference
-from sysmlc.backends.uml.identity import part_id
+from sysmlc.backends.uml.context import Context, make_part_id
+from sysmlc.backends.uml.hrefs import is_external, make_reference
 from sysmlc.backends.uml.metaclasses import EVENTS
 from sysmlc.backends.uml.node import Node
+from sysmlc.backends.uml.values import (
+    add_expression,
+    add_time,
+    format_value,
+    read_bodies,
+    write_bodies,
+)
 from sysmlc.ir import Edge, Element, Graph, Kind
 
 _PACKAGES = (Kind.PACKAGE, Kind.PROFILE)
 
 
-def write_events(book: Book) -> None:
-    """An event for each trigger; triggers on whose event one stereotype is applied share it."""
-    shared = _shared(book.graph)
-    made: dict[str, Node] = {}
-    for trigger in book.graph.of_kind(Kind.TRIGGER):
-        if trigger.id in book.nodes:
-            _event(book, trigger, shared.get(trigger.id, trigger.id), made)
+def write_events(context: Context) -> None:
+    """Add an event for each trigger.
+
+    Triggers share an event if one application gives their events a stereotype.
+    """
+    keys = _find_shared_events(context.graph)
+    events: dict[str, Node] = {}
+    for trigger in context.graph.of_kind(Kind.TRIGGER):
+        if trigger.id in context.nodes:
+            _write_event(context, trigger, keys.get(trigger.id, trigger.id), events)
 
 
-def _shared(graph: Graph) -> dict[str, str]:
-    found: dict[str, str] = {}
+def _find_shared_events(graph: Graph) -> dict[str, str]:
+    """Return the id of the first trigger with the same event, by the id of a trigger."""
+    keys: dict[str, str] = {}
     for application in graph.of_kind(Kind.APPLICATION):
         if str(application.attrs.get("on", "")).endswith("-event"):
-            holders = graph.targets(application, Edge.REFERENCES)
-            first = next((found[one.id] for one in holders if one.id in found), None)
-            for one in holders:
-                found.setdefault(one.id, first or holders[0].id)
-    return found
+            triggers = graph.targets(application, Edge.REFERENCES)
+            shared = next((keys[trigger.id] for trigger in triggers if trigger.id in keys), None)
+            for trigger in triggers:
+                keys.setdefault(trigger.id, shared or triggers[0].id)
+    return keys
 
 
-def _event(book: Book, trigger: Element, key: str, made: dict[str, Node]) -> None:
-    graph, node = book.graph, book.node(trigger)
-    outside = [one for one in graph.targets(trigger, Edge.REFERENCES) if is_outside(one)]
-    if outside and not graph.targets(trigger, Edge.TYPED_BY):
-        node.add(_outside(graph, trigger, outside[0]))
-        return
+def _write_event(context: Context, trigger: Element, key: str, events: dict[str, Node]) -> None:
+    """Refer to the event of a trigger; add the event if no trigger with the key has one."""
+    graph, node = context.graph, context.find_node(trigger)
+    references = graph.targets(trigger, Edge.REFERENCES)
+    external = next((target for target in references if is_external(target)), None)
     metaclass = EVENTS.get(trigger.subkind)
+    if external is not None and not graph.targets(trigger, Edge.TYPED_BY):
+        reference = node.add(make_reference(graph, "event", external))
+        if metaclass is not None:
+            reference.attributes["xmi:type"] = f"uml:{metaclass}"
+        return
     if metaclass is None:
         return
-    if key not in made:
-        made[key] = _new_event(book, trigger, metaclass)
-    node.attributes["event"] = made[key].id
+    if key not in events:
+        events[key] = _make_event(context, trigger, metaclass)
+    node.attributes["event"] = events[key].id
 
 
-def _outside(graph: Graph, trigger: Element, event: Element) -> Node:
-    made = reference(graph, "event", event)
-    if trigger.subkind in EVENTS:
-        made.attributes["xmi:type"] = f"uml:{EVENTS[trigger.subkind]}"
-    return made
-
-
-def _new_event(book: Book, trigger: Element, metaclass: str) -> Node:
-    graph = book.graph
-    above = [one for one in graph.ancestors(trigger) if one.kind in _PACKAGES]
-    id = part_id(trigger.id, "event")
-    if above:
-        made = book.node(above[0]).add(Node("packagedElement"))
-        made.attributes = {"xmi:type": f"uml:{metaclass}", "xmi:id": id}
+def _make_event(context: Context, trigger: Element, metaclass: str) -> Node:
+    """Add an event to the nearest package of the trigger, or to the top of the document."""
+    graph = context.graph
+    packages = [owner for owner in graph.ancestors(trigger) if owner.kind in _PACKAGES]
+    id = make_part_id(trigger.id, "event")
+    if packages:
+        event = context.find_node(packages[0]).add(Node("packagedElement"))
+        event.attributes = {"xmi:type": f"uml:{metaclass}", "xmi:id": id}
     else:
-        made = Node(f"uml:{metaclass}", {"xmi:id": id})
-        book.tops.append(made)
+        event = Node(f"uml:{metaclass}", {"xmi:id": id})
+        context.roots.append(event)
     if trigger.name:
-        made.attributes["name"] = trigger.name
+        event.attributes["name"] = trigger.name
     feature = "operation" if trigger.subkind == "call" else "signal"
     targets = graph.targets(trigger, Edge.TYPED_BY)
     if targets and metaclass in ("SignalEvent", "CallEvent"):
-        book.refer(trigger, made, feature, targets, "typed-by")
-    _details(book, trigger, made)
-    return made
+        context.write_references(trigger, event, feature, targets, "typed-by")
+    _write_time_and_condition(context, trigger, event)
+    return event
 
 
-def _details(book: Book, trigger: Element, event: Node) -> None:
+def _write_time_and_condition(context: Context, trigger: Element, event: Node) -> None:
     attrs = trigger.attrs
     for key, tag in (("when", "when"), ("condition", "changeExpression")):
         if key not in attrs:
             continue
-        said, several = values.shown(attrs[key]), values.texts(attrs, f"{key}_")
-        if several:
-            made = book.part(trigger, event, tag, "OpaqueExpression")
-            values.say(made, several[0], several[1])
+        text, bodies = format_value(attrs[key]), read_bodies(attrs, f"{key}_")
+        if bodies is not None:
+            write_bodies(context.add_part(trigger, event, tag, "OpaqueExpression"), *bodies)
         elif key == "when":
-            values.timed(book, trigger, event, tag, "TimeExpression", said)
+            add_time(context, trigger, event, tag, "TimeExpression", text)
         else:
-            values.opaque(book, trigger, event, tag, said)
+            add_expression(context, trigger, event, tag, text)
     if attrs.get("relative"):
         event.attributes["isRelative"] = "true"
 
 
-def signature_id(book: Book, template: str) -> str:
-    """Id of the signature of the template with this id in the graph."""
-    return part_id(template, "signature")
-
-
-def signature(book: Book, template: Element) -> Node:
-    """The signature that holds the parameters of a template."""
-    node = book.node(template)
+def find_or_add_signature(context: Context, template: Element) -> Node:
+    """Return the signature that holds the parameters of a template."""
+    node = context.find_node(template)
     for child in node.children:
         if child.tag == "ownedTemplateSignature":
             return child
     is_classifier = template.kind not in (Kind.PACKAGE, Kind.OPERATION)
     metaclass = "RedefinableTemplateSignature" if is_classifier else "TemplateSignature"
-    made = node.add(Node("ownedTemplateSignature"))
-    made.attributes = {
+    signature = node.add(Node("ownedTemplateSignature"))
+    signature.attributes = {
         "xmi:type": f"uml:{metaclass}",
-        "xmi:id": signature_id(book, template.id),
+        "xmi:id": make_part_id(template.id, "signature"),
     }
-    return made
+    return signature

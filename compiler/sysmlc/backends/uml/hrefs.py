@@ -1,8 +1,8 @@
-"""References out of the saved model, as Papyrus writes those into the standards' libraries."""
+"""References to elements outside the saved model, in the form that Papyrus writes."""
 
 from urllib.parse import quote
 
-from sysmlc.backends.uml.metaclasses import metaclass_of
+from sysmlc.backends.uml.metaclasses import find_metaclass
 from sysmlc.backends.uml.node import Node
 from sysmlc.ir import Element, Graph, Kind
 
@@ -13,73 +13,80 @@ _FILES = {
     f"{_UML}PrimitiveTypes.xmi#": "pathmap://UML_LIBRARIES/UMLPrimitiveTypes.library.uml#",
     f"{_UML}StandardProfile.xmi#": "pathmap://UML_PROFILES/Standard.profile.uml#",
 }
+"""The files of the OMG, and those of Eclipse with the same fragments."""
 _PROFILE = "pathmap://SysML16_PROFILES/SysML.profile.uml#SysML"
 _LIBRARY = "pathmap://SysML16_LIBRARIES/SysML-Standard-Library.uml#SysML"
-_OURS = "pathmap://SYSMLC_LIBRARIES/"
+_OWN_LIBRARIES = "pathmap://SYSMLC_LIBRARIES/"
 _STEPS = {
     Kind.STEREOTYPE: "stereotype",
     Kind.DATA_TYPE: "dataType",
     Kind.ENUMERATION: "enumeration",
     Kind.CLASS: "class",
 }
+"""Words for elements in the ids of Papyrus's SysML profile; others are packages."""
 
 
-def is_outside(element: Element) -> bool:
-    """Whether a file that is not part of the unit holds the element."""
+def is_external(element: Element) -> bool:
+    """Return whether the element is a stub for one outside the compile unit."""
     return bool(element.attrs.get("external"))
 
 
-def href_of(graph: Graph, element: Element) -> str:
-    """Where an element outside the unit is; one of our own libraries is named by its path."""
+def make_href(graph: Graph, element: Element) -> str:
+    """Return the href of an external stub; an element of our own libraries has its path."""
     href = str(element.attrs.get("href", ""))
     if not href:
-        above = reversed([element, *graph.ancestors(element)])
-        file, *path = [quote(_own_name(one), safe="") for one in above]
-        return f"{_OURS}{file}#{'/'.join(path) or file}"
-    for ours, theirs in _FILES.items():
-        if href.startswith(ours):
-            return theirs + href.removeprefix(ours)
-    return _sysml(element, href.removeprefix(_SYSML)) if href.startswith(_SYSML) else href
+        path = reversed([element, *graph.ancestors(element)])
+        file, *steps = [quote(_find_unique_name(step), safe="") for step in path]
+        return f"{_OWN_LIBRARIES}{file}#{'/'.join(steps) or file}"
+    for prefix, replacement in _FILES.items():
+        if href.startswith(prefix):
+            return replacement + href.removeprefix(prefix)
+    if href.startswith(_SYSML):
+        return _make_sysml_href(element, href.removeprefix(_SYSML))
+    return href
 
 
-def _own_name(element: Element) -> str:
-    """The name; of types for one unit, of which several have one name, the id."""
+def _find_unique_name(element: Element) -> str:
+    """Return the name, or the id of a type with a unit: several of these have the same name."""
     return element.id if element.name.endswith("]") else element.name
 
 
-def _sysml(element: Element, path: str) -> str:
+def _make_sysml_href(element: Element, path: str) -> str:
+    """Return Papyrus's href of a SysML element that the OMG's file has under a dotted path."""
     if path == "_0":
         return _PROFILE
-    *packages, last = path.split(".")
-    steps = [f"package_packagedElement_{_coded(name)}" for name in packages]
-    steps.append(f"{_STEPS.get(element.kind, 'package')}_packagedElement_{_coded(last)}")
+    *packages, name = path.split(".")
+    steps = [f"package_packagedElement_{_escape_name(package)}" for package in packages]
+    steps.append(f"{_STEPS.get(element.kind, 'package')}_packagedElement_{_escape_name(name)}")
     file = _LIBRARY if path.split(".")[0] == "Libraries" else _PROFILE
     return ".".join((file, *steps))
 
 
-def _coded(name: str) -> str:
-    plain = (char if char.isalnum() or char in "-_" else f"_u{ord(char):04x}" for char in name)
-    return "".join(plain)
+def _escape_name(name: str) -> str:
+    """Write special characters as Papyrus does: ``Ports&Flows`` is ``Ports_u0026Flows``."""
+    return "".join(c if c.isalnum() or c in "-_" else f"_u{ord(c):04x}" for c in name)
 
 
-def _shows(href: str, name: str) -> bool:
-    """Whether a reader sees the name in the fragment, or in the name of the file."""
+def _contains_name(href: str, name: str) -> bool:
+    """Return whether a reader finds the name at the end of the href, or as the name of its file."""
     file = href.partition("#")[0].rpartition("/")[2]
     return href.endswith(name) or file.partition(".")[0] == name
 
 
-def reference(graph: Graph, tag: str, target: Element) -> Node:
-    """A child that refers to an element outside the unit.
+def make_reference(graph: Graph, tag: str, target: Element) -> Node:
+    """Return a child that refers to an element outside the unit.
 
-    A name that the href does not show is written beside it, as MagicDraw does.
+    A name that the href does not contain stands in an extension, as MagicDraw writes it.
     """
-    href = href_of(graph, target)
-    node = Node(tag, {"xmi:type": f"uml:{metaclass_of(graph, target)[0]}", "href": href})
+    href = make_href(graph, target)
+    node = Node(tag, {"xmi:type": f"uml:{find_metaclass(graph, target)[0]}", "href": href})
     if target.kind in (Kind.UNIT, Kind.QUANTITY_KIND):
+        # Without a type, the front end takes the kind from the feature: unit or quantityKind.
         del node.attributes["xmi:type"]
     path = str(target.attrs.get("qualified_name", "")) or target.name
-    is_told = "qualified_name" not in target.attrs and _shows(href, target.name)
-    if path and not is_told and not target.attrs.get("library") and "pathmap:" not in href:
+    is_in_href = "qualified_name" not in target.attrs and _contains_name(href, target.name)
+    is_standard = bool(target.attrs.get("library")) or "pathmap:" in href
+    if path and not is_in_href and not is_standard:
         extension = node.add(Node("xmi:Extension", {"extender": "sysmlc"}))
         extension.add(Node("referenceExtension", {"referentPath": path}))
     return node

@@ -1,9 +1,9 @@
-"""Tables: the metaclass of UML that each kind of the graph is written as (docs/ir.md)."""
+"""The metaclass of UML that each kind of the graph is written as (docs/ir.md)."""
 
-from sysmlc.backends.uml.names import capital
+from sysmlc.backends.uml.features import to_class_name
 from sysmlc.ir import Element, Graph, Kind
 
-_PLAIN = {
+_BY_KIND = {
     Kind.PACKAGE: "Package",
     Kind.PROFILE: "Profile",
     Kind.CLASS: "Class",
@@ -75,7 +75,7 @@ _PLAIN = {
     Kind.PIN: "InputPin",
     Kind.EXPRESSION: "OpaqueExpression",
 }
-_DIVIDED: dict[tuple[Kind, str], str] = {
+_BY_SUBKIND: dict[tuple[Kind, str], str] = {
     (Kind.PACKAGE, "model"): "Model",
     (Kind.DATA_TYPE, "primitive"): "PrimitiveType",
     (Kind.ASSOCIATION, "association-class"): "AssociationClass",
@@ -115,7 +115,7 @@ _DIVIDED: dict[tuple[Kind, str], str] = {
     (Kind.STRUCTURED, "expansion"): "ExpansionRegion",
     (Kind.STRUCTURED, "interruptible"): "InterruptibleActivityRegion",
     **{
-        (Kind.CLASS, name): capital(name)
+        (Kind.CLASS, name): to_class_name(name)
         for name in (
             "collaboration",
             "node",
@@ -126,7 +126,7 @@ _DIVIDED: dict[tuple[Kind, str], str] = {
         )
     },
     **{
-        (Kind.DEPENDENCY, name): capital(name)
+        (Kind.DEPENDENCY, name): to_class_name(name)
         for name in (
             "abstraction",
             "realization",
@@ -138,7 +138,7 @@ _DIVIDED: dict[tuple[Kind, str], str] = {
         )
     },
     **{
-        (Kind.CONSTRAINT, name): f"{capital(name)}Constraint"
+        (Kind.CONSTRAINT, name): f"{to_class_name(name)}Constraint"
         for name in ("interaction", "interval", "duration", "time")
     },
 }
@@ -157,39 +157,42 @@ _ACTIONS = {
     "raise": "RaiseException",
     "start": "StartObjectBehavior",
 }
-_OTHER_NAMES = """add-variable-value broadcast-signal call-behavior call-operation clear-association
+_SAME_ACTION_NAMES = """
+    add-variable-value broadcast-signal call-behavior call-operation clear-association
     clear-variable create-link create-link-object destroy-link opaque read-extent
     read-is-classified-object read-link read-link-object-end read-link-object-end-qualifier
     read-self read-variable reclassify-object reduce remove-variable-value reply send-object
     start-classifier-behavior test-identity unmarshall
     """
-_OTHER_ACTIONS = frozenset(_OTHER_NAMES.split())
-UNSAID = frozenset(
+_SAME_ACTIONS = frozenset(_SAME_ACTION_NAMES.split())
+"""Subkinds of actions that are named after the metaclass."""
+UNSUPPORTED_KINDS = frozenset(
     {Kind.DOCUMENT, Kind.METADATA, Kind.ALIAS, Kind.FACET, Kind.GROUP, Kind.VIEW, Kind.APPLICATION}
 )
-"""Kinds that are no element of UML."""
-APPROXIMATED = frozenset(
+"""Kinds without a metaclass of UML."""
+RECLASSIFIED_KINDS = frozenset(
     {Kind.REQUIREMENT, Kind.TEST_CASE, Kind.FLOW_PROPERTY, Kind.UNIT, Kind.QUANTITY_KIND}
 )
-"""Kinds that come back as another kind with the same role."""
+"""Kinds that the front end reads back as another kind, with the same role."""
 
 
-def metaclass_of(graph: Graph, element: Element) -> tuple[str, bool]:
-    """Metaclass of UML for an element, and whether it says all that the subkind says."""
+def find_metaclass(graph: Graph, element: Element) -> tuple[str, bool]:
+    """Return the metaclass of an element, and whether UML expresses the subkind."""
     kind, subkind = element.kind, element.subkind
     if kind is Kind.ACTION:
-        return _action(subkind)
+        return _find_action_metaclass(subkind)
     if kind is Kind.PIN:
-        return _pin(graph, element), True
+        return _find_pin_metaclass(graph, element), True
     if kind is Kind.EXPRESSION and subkind:
-        return capital(subkind), True
-    known = _DIVIDED.get((kind, subkind))
-    return known or _PLAIN[kind], bool(known) or not subkind or subkind in _SAID.get(kind, ())
+        return to_class_name(subkind), True
+    if (kind, subkind) in _BY_SUBKIND:
+        return _BY_SUBKIND[kind, subkind], True
+    return _BY_KIND[kind], not subkind or subkind in _EXPRESSED_SUBKINDS.get(kind, ())
 
 
 _CONDITIONS = ("precondition", "postcondition", "body", "invariant", "condition")
 _OPERATORS = "alt opt loop break par seq strict critical neg assert"
-_SAID: dict[Kind, tuple[str, ...]] = {
+_EXPRESSED_SUBKINDS: dict[Kind, tuple[str, ...]] = {
     Kind.CONSTRAINT: _CONDITIONS,
     Kind.FRAGMENT: tuple(_OPERATORS.split()),
     Kind.IMPORT: ("package",),
@@ -221,24 +224,25 @@ _SAID: dict[Kind, tuple[str, ...]] = {
         "terminate",
     ),
 }
-"""Subkinds that another feature than the metaclass says."""
+"""Subkinds that another feature than the metaclass expresses."""
 
 
-def _action(subkind: str) -> tuple[str, bool]:
+def _find_action_metaclass(subkind: str) -> tuple[str, bool]:
+    """Return the metaclass of an action, and whether UML expresses the subkind."""
     if subkind in _ACTIONS:
         return f"{_ACTIONS[subkind]}Action", True
-    if subkind in _OTHER_ACTIONS:
-        return f"{capital(subkind)}Action", True
+    if subkind in _SAME_ACTIONS:
+        return f"{to_class_name(subkind)}Action", True
     return "OpaqueAction", not subkind
 
 
-def _pin(graph: Graph, pin: Element) -> str:
+def _find_pin_metaclass(graph: Graph, pin: Element) -> str:
     if pin.attrs.get("direction") == "out":
         return "OutputPin"
     if any(key == "value" or key.startswith("value_") for key in pin.attrs):
         return "ValuePin"
     owned = graph.owned(pin)
-    return "ActionInputPin" if any(one.kind is Kind.ACTION for one in owned) else "InputPin"
+    return "ActionInputPin" if any(member.kind is Kind.ACTION for member in owned) else "InputPin"
 
 
 EVENTS = {

@@ -1,19 +1,19 @@
-"""Edges of elements: references, and the relations that UML holds as parts of an element."""
+"""Edges: references, and relations that UML contains as parts of an element or as dependencies."""
 
 from collections.abc import Callable, Sequence
 
-from sysmlc.backends.uml import events, values
-from sysmlc.backends.uml.book import Book
-from sysmlc.backends.uml.hrefs import href_of, is_outside
-from sysmlc.backends.uml.links import feature
-from sysmlc.backends.uml.meant import applications, is_meant
+from sysmlc.backends.uml.context import Context
+from sysmlc.backends.uml.events import find_or_add_signature
+from sysmlc.backends.uml.features import find_edge_feature
+from sysmlc.backends.uml.hrefs import is_external, make_href
 from sysmlc.backends.uml.node import Node
-from sysmlc.backends.uml.rules import APPROXIMATED
+from sysmlc.backends.uml.sysml_profile import is_implied, iter_applications
+from sysmlc.backends.uml.values import add_instance_value
 from sysmlc.ir import Edge, Element, Kind
 
 _Targets = Sequence[Element]
-_Writer = Callable[[Book, Element, _Targets], None]
-_BEHAVIOURED = (
+_Writer = Callable[[Context, Element, _Targets], None]
+_BEHAVIORED = (
     Kind.CLASS,
     Kind.COMPONENT,
     Kind.ACTOR,
@@ -23,171 +23,7 @@ _BEHAVIOURED = (
     Kind.INTERACTION,
     Kind.ASSOCIATION,
 )
-
-
-def write(book: Book, element: Element) -> None:
-    """Write all edges that leave an element whose node is made."""
-    for edge in book.edges:
-        targets = book.graph.targets(element, edge)
-        if not targets:
-            continue
-        writer = _WRITERS.get(edge) or _WRITERS_OF.get((element.kind, edge))
-        if writer is not None:
-            writer(book, element, targets)
-        else:
-            _plain(book, element, edge, targets)
-
-
-def _plain(book: Book, element: Element, edge: Edge, targets: _Targets) -> None:
-    by_feature: dict[str, list[Element]] = {}
-    for target in targets:
-        name = feature(element, edge, target)
-        if name and not (element.kind is Kind.COMMENT and _is_member(book, element, target)):
-            by_feature.setdefault(name, []).append(target)
-        elif not is_meant(book.graph, element, edge, target):
-            _relation(book, element, edge, target)
-    for name, named in by_feature.items():
-        book.refer(element, book.node(element), name, named, edge.value)
-
-
-def _is_member(book: Book, comment: Element, target: Element) -> bool:
-    """Members of an element group are told by its stereotype."""
-    if comment.role != "element group":
-        return False
-    for one in applications(book.graph, comment):
-        for given in (one.attrs.get("tag.member"), one.attrs.get("tag.orderedMember")):
-            if target.id in (given if isinstance(given, tuple) else (given,)):
-                return True
-    return False
-
-
-# -- parts of the element ----------------------------------------------------------------------
-
-
-def _folded(
-    book: Book, element: Element, tag: str, metaclass: str, name: str, target: Element
-) -> None:
-    if not is_outside(target) and target.id not in book.nodes:
-        book.lost(element, name, target)
-        return
-    made = book.part(element, book.node(element), tag, metaclass)
-    book.refer(element, made, name, [target], name)
-
-
-def _specializes(book: Book, element: Element, targets: _Targets) -> None:
-    for target in targets:
-        _folded(book, element, "generalization", "Generalization", "general", target)
-
-
-def _includes(book: Book, element: Element, targets: _Targets) -> None:
-    for target in targets:
-        _folded(book, element, "include", "Include", "addition", target)
-
-
-def _realizes(book: Book, element: Element, targets: _Targets) -> None:
-    for target in targets:
-        if is_meant(book.graph, element, Edge.REALIZES, target):
-            continue
-        if element.kind is Kind.STATE_MACHINE and target.kind is Kind.STATE_MACHINE:
-            name = ("conformance", "ProtocolConformance", "generalMachine")
-            _folded(book, element, *name, target)
-        elif element.kind in _BEHAVIOURED and target.kind is Kind.INTERFACE:
-            name = ("interfaceRealization", "InterfaceRealization", "contract")
-            _folded(book, element, *name, target)
-            _client(book, element, target)
-        else:
-            _relation(book, element, Edge.REALIZES, target)
-
-
-def _client(book: Book, element: Element, target: Element) -> None:
-    """An interface realization is a dependency from the classifier to the interface."""
-    made = book.node(element).children[-1] if book.node(element).children else None
-    if made is None or made.tag != "interfaceRealization":
-        return
-    made.attributes["client"] = book.ids[element.id]
-    if not is_outside(target):
-        made.attributes["supplier"] = book.ids[target.id]
-
-
-def _applies(book: Book, element: Element, targets: _Targets) -> None:
-    for target in targets:
-        _folded(book, element, "profileApplication", "ProfileApplication", "appliedProfile", target)
-
-
-def _extends(book: Book, element: Element, targets: _Targets) -> None:
-    if element.kind is Kind.STEREOTYPE:
-        for target in targets:
-            _extension(book, element, target)
-        return
-    held = [one for one in book.graph.owned(element) if one.kind is Kind.EXTEND]
-    told = {t.id for one in held for t in book.graph.targets(one, Edge.EXTENDS)}
-    for target in targets:
-        if target.id not in told:
-            _folded(book, element, "extend", "Extend", "extendedCase", target)
-
-
-def _extension(book: Book, stereotype: Element, metaclass: Element) -> None:
-    """A property of the stereotype and an extension of its profile."""
-    node, name = book.node(stereotype), metaclass.name
-    base = book.part(stereotype, node, "ownedAttribute", "Property")
-    base.attributes["name"] = f"base_{name}"
-    kind = {"xmi:type": "uml:Class", "href": href_of(book.graph, metaclass)}
-    base.add(Node("type", kind))
-    above = book.graph.owner(stereotype)
-    if above is None:
-        return
-    holder = book.node(above)
-    extension = book.part(stereotype, holder, "packagedElement", "Extension")
-    base.attributes["association"] = extension.id
-    extension.attributes["name"] = f"E_{stereotype.name}_{name}"
-    end = book.part(stereotype, extension, "ownedEnd", "ExtensionEnd")
-    end.attributes |= {
-        "name": f"extension_{stereotype.name}",
-        "type": book.ids[stereotype.id],
-        "aggregation": "composite",
-        "association": extension.id,
-    }
-    extension.attributes["memberEnd"] = f"{end.id} {base.id}"
-
-
-def _guard(book: Book, element: Element, targets: _Targets) -> None:
-    if element.kind is Kind.TRANSITION:
-        book.refer(element, book.node(element), "guard", targets, "guard")
-
-
-def _held(book: Book, element: Element, targets: _Targets) -> None:
-    """Behaviours of states stand in them; one that stands elsewhere UML cannot name."""
-    for target in targets:
-        if target.owner != element.id:
-            book.lost(element, "behaviour of another owner", target)
-
-
-def _relation(book: Book, element: Element, edge: Edge, target: Element) -> None:
-    """A relation that UML says by a dependency in a package."""
-    known = _DEPENDENCIES.get(edge)
-    if known is None or not (is_outside(target) or target.id in book.nodes):
-        book.lost(element, edge.value, target)
-        return
-    metaclass, stereotype = known
-    packages = (one for one in book.graph.ancestors(element) if one.kind is Kind.PACKAGE)
-    above = next((book.nodes[one.id] for one in packages if one.id in book.nodes), None)
-    if above is None:
-        above = Node("")
-    made = book.part(element, above, "packagedElement", metaclass)
-    made.attributes["client"] = book.ids[element.id]
-    book.refer(element, made, "supplier", [target], edge.value)
-    if not above.tag:
-        made.tag = f"uml:{made.attributes.pop('xmi:type').removeprefix('uml:')}"
-        book.tops.append(made)
-    if stereotype:
-        book.relations.append((stereotype, made.id))
-    if book.losses.kept is not None:
-        book.losses.kept.made.append(made.id)
-        book.losses.kept.edge(edge.value, element, target)
-    facts = {"said": f"'{edge}' from {element.kind}", "written": metaclass}
-    book.losses.note(APPROXIMATED, element, **facts)
-
-
+"""Behaviored classifiers, which own interface realizations (UML 2.5.1 clause 10.4)."""
 _DEPENDENCIES = {
     Edge.REALIZES: ("Realization", ""),
     Edge.DEPENDS: ("Dependency", ""),
@@ -198,119 +34,305 @@ _DEPENDENCIES = {
     Edge.TRACES: ("Abstraction", "Trace"),
     Edge.ALLOCATED_TO: ("Abstraction", "Allocate"),
 }
-"""Metaclass and stereotype of the dependency that means an edge."""
+"""Metaclass and stereotype of the dependency from which ``classify`` derives an edge."""
 
 
-# -- single kinds ------------------------------------------------------------------------------
-
-
-def _slot_values(book: Book, element: Element, targets: _Targets) -> None:
-    for target in targets:
-        if is_outside(target) or target.id in book.nodes:
-            values.instance(book, element, book.node(element), "value", target)
+def write_edges(context: Context, element: Element) -> None:
+    """Write all edges that leave an element."""
+    for edge in context.edges:
+        targets = context.graph.targets(element, edge)
+        if not targets:
+            continue
+        writer = _WRITERS.get(edge) or _WRITERS_BY_KIND.get((element.kind, edge))
+        if writer is not None:
+            writer(context, element, targets)
         else:
-            book.lost(element, "references", target)
+            _write_references(context, element, edge, targets)
 
 
-def _path(book: Book, element: Element, targets: _Targets) -> None:
-    """The last part of the path holds the port; a nested path is told by its stereotype."""
-    if book.losses.kept is not None:
+def _write_references(context: Context, element: Element, edge: Edge, targets: _Targets) -> None:
+    """Write edges as references; an edge without feature becomes a dependency if not implied."""
+    by_feature: dict[str, list[Element]] = {}
+    for target in targets:
+        feature = find_edge_feature(element, edge, target)
+        if feature and not _is_group_member(context, element, target):
+            by_feature.setdefault(feature, []).append(target)
+        elif not is_implied(context.graph, element, edge, target):
+            _add_dependency(context, element, edge, target)
+    node = context.find_node(element)
+    for feature, elements in by_feature.items():
+        context.write_references(element, node, feature, elements, edge.value)
+
+
+def _is_group_member(context: Context, comment: Element, target: Element) -> bool:
+    """Return whether the stereotype of an element group lists the target as a member."""
+    if comment.kind is not Kind.COMMENT or comment.role != "element group":
+        return False
+    for application in iter_applications(context.graph, comment):
+        for name in ("tag.member", "tag.orderedMember"):
+            value = application.attrs.get(name)
+            if target.id in (value if isinstance(value, tuple) else (value,)):
+                return True
+    return False
+
+
+def _add_dependency(context: Context, element: Element, edge: Edge, target: Element) -> None:
+    """Add a dependency that expresses an edge to the nearest package, or to the document."""
+    if edge not in _DEPENDENCIES or not context.is_available(target):
+        context.note_lost_edge(element, edge.value, target)
+        return
+    metaclass, stereotype = _DEPENDENCIES[edge]
+    owners = context.graph.ancestors(element)
+    packages = (owner for owner in owners if owner.kind is Kind.PACKAGE)
+    parent = next((context.nodes[p.id] for p in packages if p.id in context.nodes), None)
+    dependency = context.add_part(element, parent or Node(""), "packagedElement", metaclass)
+    dependency.attributes["client"] = context.ids[element.id]
+    context.write_references(element, dependency, "supplier", [target], edge.value)
+    if parent is None:
+        dependency.tag = dependency.attributes.pop("xmi:type")
+        context.roots.append(dependency)
+    if stereotype:
+        context.relation_stereotypes.append((stereotype, dependency.id))
+    if context.losses.round_trip is not None:
+        context.losses.round_trip.added.append(dependency.id)
+        context.losses.round_trip.store_edge(edge.value, element, target)
+    context.losses.note_approximation(element, f"'{edge}' from {element.kind}", metaclass)
+
+
+# -- parts of the source -----------------------------------------------------------------------
+
+
+def _add_relation(
+    context: Context, element: Element, tag: str, metaclass: str, feature: str, target: Element
+) -> Node | None:
+    """Add a directed relationship as a part of its source; None if the target is not written."""
+    if not context.is_available(target):
+        context.note_lost_edge(element, feature, target)
+        return None
+    relation = context.add_part(element, context.find_node(element), tag, metaclass)
+    context.write_references(element, relation, feature, [target], feature)
+    return relation
+
+
+def _write_generalizations(context: Context, element: Element, targets: _Targets) -> None:
+    for target in targets:
+        _add_relation(context, element, "generalization", "Generalization", "general", target)
+
+
+def _write_includes(context: Context, element: Element, targets: _Targets) -> None:
+    for target in targets:
+        _add_relation(context, element, "include", "Include", "addition", target)
+
+
+def _write_profile_applications(context: Context, element: Element, targets: _Targets) -> None:
+    tag, metaclass = "profileApplication", "ProfileApplication"
+    for target in targets:
+        _add_relation(context, element, tag, metaclass, "appliedProfile", target)
+
+
+def _write_realizations(context: Context, element: Element, targets: _Targets) -> None:
+    for target in targets:
+        if is_implied(context.graph, element, Edge.REALIZES, target):
+            continue
+        if element.kind is Kind.STATE_MACHINE and target.kind is Kind.STATE_MACHINE:
+            tag, metaclass = "conformance", "ProtocolConformance"
+            _add_relation(context, element, tag, metaclass, "generalMachine", target)
+        elif element.kind in _BEHAVIORED and target.kind is Kind.INTERFACE:
+            _add_interface_realization(context, element, target)
+        else:
+            _add_dependency(context, element, Edge.REALIZES, target)
+
+
+def _add_interface_realization(context: Context, element: Element, target: Element) -> None:
+    """Add an interface realization, which is a dependency and so has client and supplier, too."""
+    tag, metaclass = "interfaceRealization", "InterfaceRealization"
+    realization = _add_relation(context, element, tag, metaclass, "contract", target)
+    if realization is not None:
+        realization.attributes["client"] = context.ids[element.id]
+        if not is_external(target):
+            realization.attributes["supplier"] = context.ids[target.id]
+
+
+def _write_extends(context: Context, element: Element, targets: _Targets) -> None:
+    """Write the extends of a use case that no element Extend expresses."""
+    extends = (part for part in context.graph.owned(element) if part.kind is Kind.EXTEND)
+    expressed = {
+        target.id for part in extends for target in context.graph.targets(part, Edge.EXTENDS)
+    }
+    for target in targets:
+        if target.id not in expressed:
+            _add_relation(context, element, "extend", "Extend", "extendedCase", target)
+
+
+def _write_extensions(context: Context, stereotype: Element, metaclasses: _Targets) -> None:
+    """Write each extension of a metaclass (UML 2.5.1 clause 12.3).
+
+    It is a property of the stereotype, and an association in the profile that owns its other end.
+    """
+    node = context.find_node(stereotype)
+    profile = context.graph.owner(stereotype)
+    for metaclass in metaclasses:
+        name = metaclass.name
+        base = context.add_part(stereotype, node, "ownedAttribute", "Property")
+        base.attributes["name"] = f"base_{name}"
+        href = make_href(context.graph, metaclass)
+        base.add(Node("type", {"xmi:type": "uml:Class", "href": href}))
+        if profile is None:
+            continue
+        profile_node = context.find_node(profile)
+        extension = context.add_part(stereotype, profile_node, "packagedElement", "Extension")
+        base.attributes["association"] = extension.id
+        extension.attributes["name"] = f"E_{stereotype.name}_{name}"
+        end = context.add_part(stereotype, extension, "ownedEnd", "ExtensionEnd")
+        end.attributes |= {
+            "name": f"extension_{stereotype.name}",
+            "type": context.ids[stereotype.id],
+            "aggregation": "composite",
+            "association": extension.id,
+        }
+        extension.attributes["memberEnd"] = f"{end.id} {base.id}"
+
+
+# -- edges of single kinds ---------------------------------------------------------------------
+
+
+def _write_guard(context: Context, element: Element, targets: _Targets) -> None:
+    if element.kind is Kind.TRANSITION:
+        node = context.find_node(element)
+        context.write_references(element, node, "guard", targets, "guard")
+
+
+def _note_foreign_behaviours(context: Context, element: Element, targets: _Targets) -> None:
+    """Count behaviours of a state that another element owns; UML can only contain them."""
+    for target in targets:
+        if target.owner != element.id:
+            context.note_lost_edge(element, "behaviour of another owner", target)
+
+
+def _write_slot_instances(context: Context, slot: Element, targets: _Targets) -> None:
+    for target in targets:
+        if context.is_available(target):
+            add_instance_value(context, slot, context.find_node(slot), "value", target)
+        else:
+            context.note_lost_edge(slot, "references", target)
+
+
+def _write_part_with_port(context: Context, end: Element, targets: _Targets) -> None:
+    """Write the last part on the path to the port; SysML's stereotype has the whole path."""
+    if context.losses.round_trip is not None:
         for target in targets:
-            book.losses.kept.edge("path", element, target)
-    role = book.graph.target(element, Edge.ROLE)
+            context.losses.round_trip.store_edge("path", end, target)
+    role = context.graph.target(end, Edge.ROLE)
     last = targets[-1]
     if role is None or role.kind is Kind.PORT or last is role or len(targets) == 1:
-        book.refer(element, book.node(element), "partWithPort", [last], "path")
+        node = context.find_node(end)
+        context.write_references(end, node, "partWithPort", [last], "path")
 
 
-def _general_set(book: Book, element: Element, targets: _Targets) -> None:
-    """A set is of generalizations; the graph has the classifiers that they are of."""
-    made = [_first_part(book, target, "generalization") for target in targets]
-    for target, id in zip(targets, made, strict=True):
-        if not id:
-            book.lost(element, "references", target)
-    book.node(element).attributes["generalization"] = " ".join(filter(None, made))
+def _write_generalization_set(context: Context, element: Element, targets: _Targets) -> None:
+    """Refer to the first generalization of each classifier.
 
-
-def _first_part(book: Book, element: Element, tag: str) -> str:
-    """Id of the first part of an element with the tag, or the empty string."""
-    node = book.nodes.get(element.id)
-    return next((one.id for one in node.children if one.tag == tag), "") if node else ""
-
-
-def _binds(book: Book, element: Element, targets: _Targets) -> None:
+    The graph has edges to the classifiers, because its generalizations are no elements.
+    """
+    ids = []
     for target in targets:
-        if target.id in book.nodes:
-            made = events.signature(book, target)
-            book.node(element).attributes["signature"] = made.id
-        elif is_outside(target):
-            book.refer(element, book.node(element), "signature", [target], "binds")
-            made = book.node(element).children[-1]
-            made.attributes["xmi:type"] = "uml:TemplateSignature"
+        id = _find_generalization_id(context, target)
+        if id:
+            ids.append(id)
+        else:
+            context.note_lost_edge(element, "references", target)
+    context.find_node(element).attributes["generalization"] = " ".join(ids)
 
 
-def _trigger(book: Book, element: Element, targets: _Targets) -> None:
-    """The events of triggers are written when everything else is."""
+def _find_generalization_id(context: Context, element: Element) -> str:
+    """Return the id of the first generalization of an element, or the empty string."""
+    node = context.nodes.get(element.id)
+    for child in node.children if node is not None else ():
+        if child.tag == "generalization":
+            return child.id
+    return ""
+
+
+def _write_template_binding(context: Context, binding: Element, targets: _Targets) -> None:
+    node = context.find_node(binding)
     for target in targets:
-        if element.kind is Kind.TRIGGER or target.owner == element.id:
-            continue
-        book.lost(element, "trigger", target)
+        if target.id in context.nodes:
+            node.attributes["signature"] = find_or_add_signature(context, target).id
+        elif is_external(target):
+            context.write_references(binding, node, "signature", [target], "binds")
+            # The stub is the template, the reference leads to its signature.
+            node.children[-1].attributes["xmi:type"] = "uml:TemplateSignature"
 
 
-def _message_ends(book: Book, element: Element, targets: _Targets) -> None:
-    """What the occurrences at the ends of a message cover tells its lifelines."""
-    ends = (Edge.SEND_EVENT, Edge.RECEIVE_EVENT)
-    if not any(book.graph.targets(element, edge) for edge in ends):
+def _note_foreign_triggers(context: Context, element: Element, targets: _Targets) -> None:
+    """Count triggers of other owners; ``events.py`` writes the events of triggers."""
+    for target in targets:
+        if element.kind is not Kind.TRIGGER and target.owner != element.id:
+            context.note_lost_edge(element, "trigger", target)
+
+
+def _note_ends_without_occurrence(context: Context, message: Element, targets: _Targets) -> None:
+    """Count the lifelines of a message without events.
+
+    UML relates a message to lifelines only by the occurrences at its ends (UML 2.5.1 clause 17.4).
+    """
+    edges = (Edge.SEND_EVENT, Edge.RECEIVE_EVENT)
+    if not any(context.graph.targets(message, edge) for edge in edges):
         for target in targets:
-            book.lost(element, "end without occurrence", target)
+            context.note_lost_edge(message, "end without occurrence", target)
 
 
-def _message_event(edge: Edge, name: str) -> _Writer:
-    def write(book: Book, element: Element, targets: _Targets) -> None:
-        book.refer(element, book.node(element), name, targets, edge.value)
+def _make_message_event_writer(edge: Edge, feature: str) -> _Writer:
+    def write_message_event(context: Context, message: Element, targets: _Targets) -> None:
+        """Write the event of a message, and the message of the event."""
+        node = context.find_node(message)
+        context.write_references(message, node, feature, targets, edge.value)
         for target in targets:
-            if target.id in book.nodes:
-                book.node(target).attributes["message"] = book.ids[element.id]
+            if target.id in context.nodes:
+                context.find_node(target).attributes["message"] = context.ids[message.id]
 
-    return write
+    return write_message_event
 
 
-def _member_ends(book: Book, element: Element, targets: _Targets) -> None:
-    book.refer(element, book.node(element), "memberEnd", targets, "end")
+def _write_member_ends(context: Context, association: Element, targets: _Targets) -> None:
+    node = context.find_node(association)
+    context.write_references(association, node, "memberEnd", targets, "end")
     for target in targets:
-        if target.id in book.nodes:
-            book.node(target).attributes["association"] = book.ids[element.id]
+        if target.id in context.nodes:
+            context.find_node(target).attributes["association"] = context.ids[association.id]
 
 
-def _nothing(book: Book, element: Element, targets: _Targets) -> None:
-    """Ownership, or what passes add, says it."""
+def _write_nothing(context: Context, element: Element, targets: _Targets) -> None:
+    """Write nothing, because containment expresses the edge."""
 
 
 _WRITERS: dict[Edge, _Writer] = {
-    Edge.SPECIALIZES: _specializes,
-    Edge.INCLUDES: _includes,
-    Edge.REALIZES: _realizes,
-    Edge.APPLIES: _applies,
-    Edge.GUARD: _guard,
-    Edge.ENTRY: _held,
-    Edge.DO: _held,
-    Edge.EXIT: _held,
-    Edge.EFFECT: _held,
-    Edge.TRIGGER: _trigger,
+    Edge.SPECIALIZES: _write_generalizations,
+    Edge.INCLUDES: _write_includes,
+    Edge.REALIZES: _write_realizations,
+    Edge.APPLIES: _write_profile_applications,
+    Edge.GUARD: _write_guard,
+    Edge.ENTRY: _note_foreign_behaviours,
+    Edge.DO: _note_foreign_behaviours,
+    Edge.EXIT: _note_foreign_behaviours,
+    Edge.EFFECT: _note_foreign_behaviours,
+    Edge.TRIGGER: _note_foreign_triggers,
 }
-_WRITERS_OF: dict[tuple[Kind, Edge], _Writer] = {
-    (Kind.USE_CASE, Edge.EXTENDS): _extends,
-    (Kind.STEREOTYPE, Edge.EXTENDS): _extends,
-    (Kind.SLOT, Edge.REFERENCES): _slot_values,
-    (Kind.CONNECTOR_END, Edge.PATH): _path,
-    (Kind.CONNECTOR, Edge.END): _nothing,
-    (Kind.ASSOCIATION, Edge.END): _member_ends,
-    (Kind.GENERALIZATION_SET, Edge.REFERENCES): _general_set,
-    (Kind.TEMPLATE_BINDING, Edge.BINDS): _binds,
-    (Kind.TRIGGER, Edge.TYPED_BY): _trigger,
-    (Kind.TRIGGER, Edge.REFERENCES): _trigger,
-    (Kind.MESSAGE, Edge.FLOW_SOURCE): _message_ends,
-    (Kind.MESSAGE, Edge.FLOW_TARGET): _message_ends,
-    (Kind.MESSAGE, Edge.SEND_EVENT): _message_event(Edge.SEND_EVENT, "sendEvent"),
-    (Kind.MESSAGE, Edge.RECEIVE_EVENT): _message_event(Edge.RECEIVE_EVENT, "receiveEvent"),
+_WRITERS_BY_KIND: dict[tuple[Kind, Edge], _Writer] = {
+    (Kind.USE_CASE, Edge.EXTENDS): _write_extends,
+    (Kind.STEREOTYPE, Edge.EXTENDS): _write_extensions,
+    (Kind.SLOT, Edge.REFERENCES): _write_slot_instances,
+    (Kind.CONNECTOR_END, Edge.PATH): _write_part_with_port,
+    (Kind.CONNECTOR, Edge.END): _write_nothing,
+    (Kind.ASSOCIATION, Edge.END): _write_member_ends,
+    (Kind.GENERALIZATION_SET, Edge.REFERENCES): _write_generalization_set,
+    (Kind.TEMPLATE_BINDING, Edge.BINDS): _write_template_binding,
+    (Kind.TRIGGER, Edge.TYPED_BY): _note_foreign_triggers,
+    (Kind.TRIGGER, Edge.REFERENCES): _note_foreign_triggers,
+    (Kind.MESSAGE, Edge.FLOW_SOURCE): _note_ends_without_occurrence,
+    (Kind.MESSAGE, Edge.FLOW_TARGET): _note_ends_without_occurrence,
+    (Kind.MESSAGE, Edge.SEND_EVENT): _make_message_event_writer(Edge.SEND_EVENT, "sendEvent"),
+    (Kind.MESSAGE, Edge.RECEIVE_EVENT): _make_message_event_writer(
+        Edge.RECEIVE_EVENT, "receiveEvent"
+    ),
 }

@@ -1,26 +1,32 @@
-"""What UML cannot say, and how it is counted: one finding for each kind of loss."""
+"""Rules for what UML cannot express, the counter of such losses, and facts for the way back.
 
+A model from AutomationML loses nothing: what UML cannot express is stored in a comment, and the
+pass ``kept`` restores it when the saved model is read.
+"""
+
+import json
 from dataclasses import dataclass, field
 
-from sysmlc.backends.uml.kept import Kept
+from sysmlc.backends.uml.hrefs import make_href
 from sysmlc.diagnostics import Rule, Severity, Sink, rule
-from sysmlc.ir import Element, Graph
+from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind
+from sysmlc.ir.round_trip import PREFIX
 
-UNSAID_KIND = rule(
+UNSUPPORTED_KIND = rule(
     "SM720",
     "uml-without-kind",
     Severity.WARNING,
     "UML has no place for {kind} ({count} left out of the saved model)",
     help="--emit +ir or +ecore saves the whole graph",
 )
-UNSAID_EDGE = rule(
+UNSUPPORTED_EDGE = rule(
     "SM721",
     "uml-without-relation",
     Severity.WARNING,
     "UML has no '{edge}' from {kind} to {target} ({count} left out of the saved model)",
     help="--emit +ir or +ecore saves the whole graph",
 )
-UNSAID_ATTRIBUTE = rule(
+UNSUPPORTED_ATTRIBUTE = rule(
     "SM722",
     "uml-without-attribute",
     Severity.WARNING,
@@ -39,13 +45,13 @@ APPROXIMATED = rule(
     Severity.INFO,
     "{said} is saved as {written} ({count})",
 )
-ILLEGAL = rule(
+ILLEGAL_CHARACTERS = rule(
     "SM725",
     "uml-illegal-character",
     Severity.WARNING,
     "{count} characters that XML cannot hold were replaced in the saved model",
 )
-KEPT = rule(
+STORED_FACTS = rule(
     "SM726",
     "uml-kept",
     Severity.INFO,
@@ -61,57 +67,169 @@ RESPELT_ID = rule(
         "plant and not in the saved model"
     ),
 )
-_UNSAID = frozenset({UNSAID_KIND, UNSAID_EDGE, UNSAID_ATTRIBUTE})
+_UNSUPPORTED = frozenset({UNSUPPORTED_KIND, UNSUPPORTED_EDGE, UNSUPPORTED_ATTRIBUTE})
+
+
+# -- facts for the way back --------------------------------------------------------------------
+
+_IMPLIED_EDGES = frozenset({Edge.OWNS, Edge.FEATURE})
+"""Edges that containment expresses, or that passes add again."""
+_Json = str | int | float | bool | None | list["_Json"]
+
+
+def is_plant(graph: Graph) -> bool:
+    """Return whether the graph comes from AutomationML."""
+    documents = graph.of_kind(Kind.DOCUMENT)
+    return any(document.subkind == "caex" and document.owner is None for document in documents)
+
+
+@dataclass(slots=True)
+class RoundTripFacts:
+    """What UML cannot express of a plant, by the ids that elements have in the file."""
+
+    graph: Graph
+    ids: dict[str, str]
+    """The id in the file, by the id in the graph."""
+    added: list[str] = field(default_factory=list)
+    """Ids of elements that are written only because UML or SysML requires them."""
+    profiled: list[str] = field(default_factory=list)
+    """Ids of packages that apply SysML only because the saved model does."""
+    _elements: dict[str, Element] = field(default_factory=dict)
+    _attributes: dict[str, dict[str, _Json]] = field(default_factory=dict)
+    _names: dict[str, str] = field(default_factory=dict)
+    _owners: dict[str, str | None] = field(default_factory=dict)
+    _edges: dict[tuple[str, str, str], None] = field(default_factory=dict)
+
+    def store_attribute(self, element: Element, name: str) -> None:
+        """Store an attribute; ``name`` is the name of an element that has none in UML."""
+        if name == "name":
+            self._names[self.ids[element.id]] = element.name
+        elif name in element.attrs:
+            attributes = self._attributes.setdefault(self.ids[element.id], {})
+            attributes[name] = self._encode_value(element.attrs[name])
+
+    def store_owner(self, element: Element) -> None:
+        """Store the owner of an element that is saved with another owner."""
+        owner = element.owner
+        self._owners[self.ids[element.id]] = None if owner is None else self.ids[owner]
+
+    def store_edge(self, edge: str, source: Element, target: Element) -> None:
+        """Store an edge."""
+        self._edges[edge, self.ids[source.id], self.ids[target.id]] = None
+
+    def store_element(self, element: Element) -> None:
+        """Store an element with all its attributes and edges."""
+        if element.id in self._elements:
+            return
+        self._elements[element.id] = element
+        for name in element.attrs:
+            self.store_attribute(element, name)
+        for edge in Edge:
+            for target in () if edge in _IMPLIED_EDGES else self.graph.targets(element, edge):
+                self.store_edge(edge.value, element, target)
+                if "href" in target.attrs:
+                    self.store_element(target)
+
+    def store_libraries(self) -> None:
+        """Store the library elements that no file holds: units, standard libraries."""
+        for element in self.graph:
+            if element.attrs.get("library") and not element.attrs.get("href"):
+                for member in self.graph.subtree(element):
+                    self.store_element(member)
+
+    def encode(self) -> str:
+        """Return the body of the comment."""
+        # Owners come before the elements that they own, as the reader needs them.
+        members = (item for root in self.graph.roots() for item in self.graph.subtree(root))
+        elements = [item for item in members if item.id in self._elements]
+        record = {
+            "elements": [self._encode_element(element) for element in elements],
+            "attributes": self._attributes,
+            "names": self._names,
+            "owners": self._owners,
+            "edges": [list(edge) for edge in self._edges],
+            "made": self.added,
+            "applied": self.profiled,
+        }
+        return PREFIX + json.dumps(record, ensure_ascii=True, separators=(",", ":"))
+
+    def _encode_element(self, element: Element) -> list[str | None]:
+        """Return id, kind, name, owner and, for an external stub, the href."""
+        owner = None if element.owner is None else self.ids[element.owner]
+        href = None
+        if element.attrs.get("external"):
+            href = str(element.attrs.get("href") or make_href(self.graph, element))
+        return [self.ids[element.id], element.kind.value, element.name, owner, href]
+
+    def _encode_value(self, value: AttrValue) -> _Json:
+        """Return a value as JSON; ids become those of the file."""
+        if isinstance(value, tuple):
+            return [self._encode_value(item) for item in value]
+        return self.ids.get(value, value) if isinstance(value, str) else value
+
+
+# -- losses ------------------------------------------------------------------------------------
+
+_Key = tuple[str, tuple[tuple[str, str], ...]]
+"""Code of the rule, and the sorted facts of its message."""
 
 
 @dataclass(slots=True)
 class Losses:
-    """Counts losses by rule and facts; each is reported once, at the first element."""
+    """Counts losses by rule and facts; each combination becomes one diagnostic."""
 
     graph: Graph
-    kept: Kept | None = None
-    """What a plant keeps for the way back; of other models nothing is kept."""
-    _found: dict[tuple[str, tuple[tuple[str, str], ...]], tuple[Rule, Element, int]] = field(
-        default_factory=dict
-    )
+    round_trip: RoundTripFacts | None = None
+    """The facts that a plant stores for the way back; None for other models."""
+    _counts: dict[_Key, tuple[Rule, Element, int]] = field(default_factory=dict)
+    """The rule, the first element and the number of losses."""
 
     def note(self, loss: Rule, element: Element, **facts: str) -> None:
-        """One more element with this loss."""
-        if self.kept is not None:
-            self._keep(self.kept, loss, element, facts)
+        """Count one more element with this loss."""
+        if self.round_trip is not None:
+            self._store(self.round_trip, loss, element, facts)
         key = (loss.code, tuple(sorted(facts.items())))
-        _, first, count = self._found.get(key, (loss, element, 0))
-        self._found[key] = (loss, first, count + 1)
+        _, first, count = self._counts.get(key, (loss, element, 0))
+        self._counts[key] = (loss, first, count + 1)
 
-    def _keep(self, kept: Kept, loss: Rule, element: Element, facts: dict[str, str]) -> None:
-        if loss is UNSAID_ATTRIBUTE:
-            kept.attribute(element, facts["attribute"])
-        elif loss is UNSAID_KIND:
-            kept.whole(element)
+    def note_approximation(self, element: Element, original: str, replacement: str) -> None:
+        """Count an element that is saved in another form."""
+        self.note(APPROXIMATED, element, said=original, written=replacement)
+
+    def note_attribute(self, element: Element, name: str) -> None:
+        """Count an attribute that UML cannot express."""
+        self.note(UNSUPPORTED_ATTRIBUTE, element, attribute=name, kind=str(element.kind))
+
+    def _store(
+        self, round_trip: RoundTripFacts, loss: Rule, element: Element, facts: dict[str, str]
+    ) -> None:
+        if loss is UNSUPPORTED_ATTRIBUTE:
+            round_trip.store_attribute(element, facts["attribute"])
+        elif loss is UNSUPPORTED_KIND:
+            round_trip.store_element(element)
         elif loss is MOVED:
-            kept.owner(element)
+            round_trip.store_owner(element)
         elif loss is APPROXIMATED:
-            kept.attribute(element, "subkind")
+            round_trip.store_attribute(element, "subkind")
 
     def report(self, sink: Sink) -> None:
-        """Report what was counted."""
-        found = dict(self._found)
-        if self.kept is not None:
-            self._report_kept(sink)
-            found = {key: one for key, one in found.items() if one[0] not in _UNSAID}
-        for (_, facts), (lost, first, count) in found.items():
-            told: dict[str, object] = {"count": count, **dict(facts)}
-            sink.report(lost, self.graph.subject(first), notes=(), help="", **told)
+        """Report each loss at the first element that has it."""
+        if self.round_trip is not None:
+            self._report_stored_facts(sink)
+        for (_, pairs), (loss, first, count) in self._counts.items():
+            if self.round_trip is None or loss not in _UNSUPPORTED:
+                facts: dict[str, object] = {"count": count, **dict(pairs)}
+                sink.report(loss, self.graph.subject(first), notes=(), help="", **facts)
 
-    def _report_kept(self, sink: Sink) -> None:
-        """One finding for all that is kept; its notes say what."""
-        kept = [(facts, one) for (_, facts), one in self._found.items() if one[0] in _UNSAID]
-        if not kept:
-            return
-        notes = []
-        for facts, (lost, _, count) in kept:
-            told: dict[str, object] = {"count": count, **dict(facts)}
-            notes.append(lost.phrase.format(**told).replace(" left out of the saved model", ""))
-        first = self.graph.subject(kept[0][1][1])
-        total = sum(count for _, (_, _, count) in kept)
-        sink.report(KEPT, first, notes=tuple(notes), count=total)
+    def _report_stored_facts(self, sink: Sink) -> None:
+        """Report all facts in the comment by one diagnostic; its notes list them."""
+        notes, subject, total = [], None, 0
+        for (_, pairs), (loss, first, count) in self._counts.items():
+            if loss in _UNSUPPORTED:
+                facts: dict[str, object] = {"count": count, **dict(pairs)}
+                phrase = loss.phrase.format(**facts)
+                notes.append(phrase.replace(" left out of the saved model", ""))
+                subject = self.graph.subject(first) if subject is None else subject
+                total += count
+        if subject is not None:
+            sink.report(STORED_FACTS, subject, notes=tuple(notes), count=total)

@@ -1,34 +1,41 @@
-"""Value specifications (UML 2.5.1 clause 8) for what the graph keeps as values and texts."""
+"""Value specifications (UML 2.5.1 clause 8) for the values and texts of the graph."""
 
 import re
 from collections.abc import Mapping
 
-from sysmlc.backends.uml.book import Book
-from sysmlc.backends.uml.hrefs import is_outside, reference
-from sysmlc.backends.uml.names import capital
+from sysmlc.backends.uml.context import Context
+from sysmlc.backends.uml.features import to_class_name
+from sysmlc.backends.uml.hrefs import is_external, make_reference
 from sysmlc.backends.uml.node import Node
 from sysmlc.ir import AttrValue, Element
 
 _INTEGER = re.compile(r"-?(0|[1-9][0-9]*)")
+_Texts = tuple[str, ...]
 
 
-def shown(value: AttrValue) -> str:
-    """A value as XML holds it."""
+def format_value(value: AttrValue) -> str:
+    """Return a value in the lexical form of XMI."""
     if isinstance(value, bool):
         return "true" if value else "false"
     return "" if value is None else str(value)
 
 
-def literal(book: Book, holder: Element, above: Node, tag: str, value: AttrValue) -> Node:
-    """A literal of the value's type; one with the default has no value attribute."""
-    metaclass, default = _literal(value)
-    made = book.part(holder, above, tag, metaclass)
-    if metaclass != "LiteralNull" and shown(value) != default:
-        made.attributes["value"] = shown(value)
-    return made
+# -- literals and expressions ------------------------------------------------------------------
 
 
-def _literal(value: AttrValue) -> tuple[str, str]:
+def add_literal(
+    context: Context, holder: Element, parent: Node, tag: str, value: AttrValue
+) -> Node:
+    """Add a literal of the value's type; the default of the metaclass is omitted."""
+    metaclass, default = _find_literal_metaclass(value)
+    literal = context.add_part(holder, parent, tag, metaclass)
+    if metaclass != "LiteralNull" and format_value(value) != default:
+        literal.attributes["value"] = format_value(value)
+    return literal
+
+
+def _find_literal_metaclass(value: AttrValue) -> tuple[str, str]:
+    """Return the metaclass of a literal, and the default of its feature ``value``."""
     if isinstance(value, bool):
         return "LiteralBoolean", "false"
     if isinstance(value, int):
@@ -40,139 +47,151 @@ def _literal(value: AttrValue) -> tuple[str, str]:
     return ("LiteralNull" if value == "null" else "LiteralString"), ""
 
 
-def text(book: Book, holder: Element, above: Node, tag: str, value: AttrValue) -> Node:
-    """An opaque expression with the text, or a number when it is one."""
-    written = shown(value)
-    if _INTEGER.fullmatch(written):
-        return literal(book, holder, above, tag, int(written))
-    return opaque(book, holder, above, tag, written)
-
-
-def opaque(
-    book: Book, holder: Element, above: Node, tag: str, body: str, language: str = ""
+def add_expression(
+    context: Context, holder: Element, parent: Node, tag: str, body: str, language: str = ""
 ) -> Node:
-    """An opaque expression."""
-    made = book.part(holder, above, tag, "OpaqueExpression")
-    say(made, (body,), (language,))
-    return made
+    """Add an opaque expression with one body."""
+    expression = context.add_part(holder, parent, tag, "OpaqueExpression")
+    write_bodies(expression, (body,), (language,))
+    return expression
 
 
-def say(node: Node, bodies: tuple[str, ...], languages: tuple[str, ...]) -> None:
-    """Give an opaque element its texts and their languages."""
+def add_text(context: Context, holder: Element, parent: Node, tag: str, value: AttrValue) -> Node:
+    """Add a literal if the value is an integer or the text of one, else an opaque expression."""
+    text = format_value(value)
+    if _INTEGER.fullmatch(text):
+        return add_literal(context, holder, parent, tag, int(text))
+    return add_expression(context, holder, parent, tag, text)
+
+
+def add_time(
+    context: Context, holder: Element, parent: Node, tag: str, metaclass: str, text: str
+) -> Node:
+    """Add a time expression or duration with its expression."""
+    time = context.add_part(holder, parent, tag, metaclass)
+    add_text(context, holder, time, "expr", text)
+    return time
+
+
+def add_instance_value(
+    context: Context, holder: Element, parent: Node, tag: str, instance: Element
+) -> Node:
+    """Add a value that is an instance, or a literal of an enumeration."""
+    value = context.add_part(holder, parent, tag, "InstanceValue")
+    if is_external(instance):
+        value.add(make_reference(context.graph, "instance", instance))
+    else:
+        value.attributes["instance"] = context.ids[instance.id]
+    return value
+
+
+def write_bodies(node: Node, bodies: _Texts, languages: _Texts) -> None:
+    """Add bodies and their languages to the node of an opaque element.
+
+    UML relates both by position, so empty languages at the end are omitted.
+    """
     while languages and not languages[-1]:
         languages = languages[:-1]
     for tag, texts in (("language", languages), ("body", bodies)):
-        for one in texts:
-            node.add(Node(tag, text=one))
+        for text in texts:
+            node.add(Node(tag, text=text))
 
 
-def texts(attrs: Mapping[str, AttrValue], prefix: str = "") -> tuple[tuple[str, ...], ...]:
-    """All bodies and languages that an element keeps under ``<prefix>bodies``, or none."""
+def read_bodies(attrs: Mapping[str, AttrValue], prefix: str = "") -> tuple[_Texts, _Texts] | None:
+    """Return the bodies and languages of an element that has several, or None.
+
+    The attributes are ``<prefix>bodies`` and ``<prefix>languages``.
+    """
     bodies, languages = attrs.get(f"{prefix}bodies"), attrs.get(f"{prefix}languages")
     if not isinstance(bodies, tuple) or not isinstance(languages, tuple):
-        return ()
-    return tuple(map(shown, bodies)), tuple(map(shown, languages))
+        return None
+    return tuple(map(format_value, bodies)), tuple(map(format_value, languages))
 
 
-def value(book: Book, element: Element, key: str, tag: str) -> None:
-    """The value under ``key``: an instance, an expression or a literal."""
-    attrs, node = element.attrs, book.node(element)
-    named = book.graph.get(str(attrs.get(f"{key}_instance", "")))
-    several = texts(attrs, f"{key}_")
-    if named is not None and (is_outside(named) or named.id in book.nodes):
-        _instance(book, element, node, tag, named, attrs.get(key))
-    elif several:
-        say(book.part(element, node, tag, "OpaqueExpression"), several[0], several[1])
+# -- values of elements ------------------------------------------------------------------------
+
+
+def write_value(context: Context, element: Element, key: str, tag: str) -> None:
+    """Write the attribute *key*: an instance, an expression or a literal.
+
+    Further attributes say which: ``<key>_instance``, ``<key>_bodies`` and ``<key>_language``.
+    """
+    attrs, node = element.attrs, context.find_node(element)
+    instance = context.graph.get(str(attrs.get(f"{key}_instance", "")))
+    bodies = read_bodies(attrs, f"{key}_")
+    if instance is not None and context.is_available(instance):
+        value = add_instance_value(context, element, node, tag, instance)
+        if is_external(instance) and attrs.get(key):
+            value.attributes["name"] = format_value(attrs.get(key))
+    elif bodies is not None:
+        write_bodies(context.add_part(element, node, tag, "OpaqueExpression"), *bodies)
     elif f"{key}_language" in attrs:
-        language = shown(attrs[f"{key}_language"])
-        opaque(book, element, node, tag, shown(attrs.get(key)), language)
+        language = format_value(attrs[f"{key}_language"])
+        add_expression(context, element, node, tag, format_value(attrs.get(key)), language)
     else:
-        literal(book, element, node, tag, attrs.get(key))
+        add_literal(context, element, node, tag, attrs.get(key))
 
 
-def _instance(
-    book: Book, holder: Element, above: Node, tag: str, named: Element, name: AttrValue
-) -> None:
-    made = instance(book, holder, above, tag, named)
-    if is_outside(named) and name:
-        made.attributes["name"] = shown(name)
-
-
-def instance(book: Book, holder: Element, above: Node, tag: str, named: Element) -> Node:
-    """A value that is an instance, or a literal of an enumeration."""
-    made = book.part(holder, above, tag, "InstanceValue")
-    if is_outside(named):
-        made.add(reference(book.graph, "instance", named))
-    else:
-        made.attributes["instance"] = book.ids[named.id]
-    return made
-
-
-def guard(book: Book, element: Element, tag: str = "guard") -> None:
-    """The guard of an activity edge: text, and whether it was a literal."""
-    attrs, node = element.attrs, book.node(element)
-    written, several = shown(attrs.get("guard")), texts(attrs, "guard_")
-    if several:
-        say(book.part(element, node, tag, "OpaqueExpression"), several[0], several[1])
+def write_guard(context: Context, element: Element) -> None:
+    """Write the guard of an activity edge: a literal, or an opaque expression."""
+    attrs, node, tag = element.attrs, context.find_node(element), "guard"
+    text, bodies = format_value(attrs.get("guard")), read_bodies(attrs, "guard_")
+    if bodies is not None:
+        write_bodies(context.add_part(element, node, tag, "OpaqueExpression"), *bodies)
     elif attrs.get("guard_literal"):
-        literal(book, element, node, tag, _typed(written))
+        add_literal(context, element, node, tag, _parse_literal(text))
     else:
-        opaque(book, element, node, tag, written, shown(attrs.get("guard_language")))
+        language = format_value(attrs.get("guard_language"))
+        add_expression(context, element, node, tag, text, language)
 
 
-def _typed(written: str) -> AttrValue:
-    if written in ("true", "false"):
-        return written == "true"
-    if _INTEGER.fullmatch(written):
-        return int(written)
+def _parse_literal(text: str) -> AttrValue:
+    """Return the value whose lexical form is exactly *text*, else the text itself."""
+    if text in ("true", "false"):
+        return text == "true"
+    if _INTEGER.fullmatch(text):
+        return int(text)
     try:
-        return float(written) if repr(float(written)) == written else written
+        return float(text) if repr(float(text)) == text else text
     except ValueError:
-        return written
+        return text
 
 
-def bounds(book: Book, element: Element) -> None:
-    """Bounds of a multiplicity in UML's notation; a default bound has no value attribute."""
-    written = shown(element.attrs.get("multiplicity"))
-    lower, dots, upper = written.partition("..")
+def write_multiplicity(context: Context, element: Element) -> None:
+    """Write the bounds of a multiplicity in UML's notation (UML 2.5.1 clause 7.5.4)."""
+    lower, dots, upper = format_value(element.attrs.get("multiplicity")).partition("..")
     if not dots:
         lower, upper = ("0", "*") if lower == "*" else (lower, lower)
-    node = book.node(element)
-    text(book, element, node, "lowerValue", lower)
+    node = context.find_node(element)
+    add_text(context, element, node, "lowerValue", lower)
     if upper == "*" or upper.isdecimal():
-        top = book.part(element, node, "upperValue", "LiteralUnlimitedNatural")
-        top.attributes["value"] = upper
+        bound = context.add_part(element, node, "upperValue", "LiteralUnlimitedNatural")
+        bound.attributes["value"] = upper
     else:
-        opaque(book, element, node, "upperValue", upper)
+        add_expression(context, element, node, "upperValue", upper)
 
 
-def timed(book: Book, holder: Element, above: Node, tag: str, metaclass: str, said: str) -> Node:
-    """A time expression or duration around what it says."""
-    made = book.part(holder, above, tag, metaclass)
-    text(book, holder, made, "expr", said)
-    return made
-
-
-def packaged(book: Book, element: Element) -> None:
-    """A value that a package owns: the content of its own node."""
-    node, attrs = book.node(element), element.attrs
-    said, language = attrs.get("value"), shown(attrs.get("value_language"))
-    name = capital(element.subkind)
-    if name.startswith("Literal"):
-        if name != "LiteralNull" and said not in (0, False, "") and said is not None:
-            node.attributes["value"] = shown(said)
-    elif name in ("Duration", "TimeExpression"):
-        if isinstance(said, str):
-            opaque(book, element, node, "expr", said, language)
+def fill_packaged_value(context: Context, element: Element) -> None:
+    """Write the content of a value specification that is an element of a package itself."""
+    node, attrs = context.find_node(element), element.attrs
+    value, language = attrs.get("value"), format_value(attrs.get("value_language"))
+    metaclass = to_class_name(element.subkind)
+    if metaclass.startswith("Literal"):
+        if metaclass != "LiteralNull" and value not in (0, False, "") and value is not None:
+            node.attributes["value"] = format_value(value)
+    elif metaclass in ("Duration", "TimeExpression"):
+        if isinstance(value, str):
+            add_expression(context, element, node, "expr", value, language)
         else:
-            literal(book, element, node, "expr", said)
-    elif name.endswith("Interval"):
-        # MagicDraw keeps the bounds inside; Papyrus keeps them elsewhere, as the graph cannot.
-        least, dots, most = shown(said).partition("..")
-        inner = "TimeExpression" if name == "TimeInterval" else "Duration"
-        for tag, bound in (("min", least), ("max", most if dots else least)):
-            timed(book, element, node, tag, inner, bound)
-    elif name in ("Expression", "StringExpression"):
-        node.attributes["symbol"] = shown(said)
+            add_literal(context, element, node, "expr", value)
+    elif metaclass.endswith("Interval"):
+        # The bounds are parts, as MagicDraw saves them. Papyrus saves references to further
+        # elements, which the graph does not have.
+        lower, dots, upper = format_value(value).partition("..")
+        bound_metaclass = "TimeExpression" if metaclass == "TimeInterval" else "Duration"
+        for tag, bound in (("min", lower), ("max", upper if dots else lower)):
+            add_time(context, element, node, tag, bound_metaclass, bound)
+    elif metaclass in ("Expression", "StringExpression"):
+        node.attributes["symbol"] = format_value(value)
     else:
-        say(node, (shown(said),), (language,))
+        write_bodies(node, (format_value(value),), (language,))

@@ -1,10 +1,68 @@
-"""Tables: the feature of UML that each edge of the graph is written as, by kind of its source."""
+"""Features of UML 2.5.1 that attributes and edges of the graph are written as."""
+
+import re
+from functools import cache
 
 from sysmlc.ir import Edge, Element, Kind
 
+_WORD_START = re.compile(r"[-_](\w)")
+_BOOLEANS = """Abstract Active Assured Behavior CombineDuplicate Composite Conjugated Control
+    ControlType Covering Derived DerivedUnion DestroyDuplicates DestroyLinks DestroyOwnedObjects
+    Determinate Dimension Direct Disjoint Exception External FinalSpecialization ID
+    IndirectlyInstantiated Leaf LocallyReentrant Multicast Multireceive Ordered Orthogonal Query
+    ReadOnly Reentrant Relative RemoveDuplicates ReplaceAll Required Service Simple
+    SingleExecution Static Stream Strict Substitutable Synchronous TestedFirst Unique
+    Unmarshall"""
+# The graph names these without the prefix: isReadOnly is read_only.
+_FLAGS = {
+    re.sub(r"(?<=[a-z0-9])([A-Z])", r"_\1", name).lower(): f"is{name}" for name in _BOOLEANS.split()
+}
+_BY_ATTRIBUTE = _FLAGS | {"readonly": "isReadOnly", "uri": "URI", "u_r_i": "URI"}
+_SAME_NAMES = """
+    activity aggregation alias allowSubstitutable concurrency context decider decisionInput
+    decisionInputFlow decomposedAs definingEnd effect ordering bodyOutput bodyPart
+    changeExpression classifierBehavior condition conveyed deploymentLocation direction end
+    exceptionInput exceptionType executionLocation extendedSignature extension fileName
+    firstEvent fromAction handlerBody implementingClassifier incoming inputElement insertAt
+    inState interruptingEdge interrupts isolated language loopVariable loopVariableInput mapping
+    messageKind mode mustIsolate newClassifier oldClassifier onPort outputElement
+    parameterSet port predecessorClause successorClause protocol qualifiedName regionAsInput
+    regionAsOutput result selection setting setupPart stateInvariant substitutingClassifier test
+    transformation transition unmarshallType URI useCase viewpoint replyToCall
+    returnInformation instance visibility metamodelReference metaclassReference lower upper
+    contract representation symbol priority isSubmachineState selector joinSpec location
+    format content target sort value"""
+_SAME = frozenset(_SAME_NAMES.split())
+"""Features of UML that attributes of the graph are named after, in ``snake_case``."""
+
+
+@cache
+def to_camel_case(name: str) -> str:
+    """Return a ``hyphenated-name`` or ``snake_name`` as ``camelCase``."""
+    return _WORD_START.sub(lambda match: match[1].upper(), name)
+
+
+@cache
+def to_class_name(name: str) -> str:
+    """Return a ``hyphenated-name`` as ``CamelCase``."""
+    camel = to_camel_case(name)
+    return camel[:1].upper() + camel[1:]
+
+
+@cache
+def find_attribute_feature(attribute: str) -> str:
+    """Return the feature for an attribute of the graph, or the empty string."""
+    if attribute in _BY_ATTRIBUTE:
+        return _BY_ATTRIBUTE[attribute]
+    camel = to_camel_case(attribute)
+    return camel if camel in _SAME else ""
+
+
+# -- edges -------------------------------------------------------------------------------------
+
 _BEHAVIOURS = (Kind.ACTIVITY, Kind.STATE_MACHINE, Kind.INTERACTION, Kind.TEST_CASE)
 _FLOWS = (Kind.CONTROL_FLOW, Kind.OBJECT_FLOW, Kind.TRANSITION)
-_CALLS = {
+_BY_ACTION = {
     "call-behavior": "behavior",
     "call-operation": "operation",
     "send": "signal",
@@ -23,7 +81,7 @@ _CALLS = {
     "read-is-classified-object": "classifier",
     "unmarshall": "unmarshallType",
 }
-_CALLED = {
+_BY_CALLED_KIND = {
     Kind.OPERATION: "operation",
     Kind.SIGNAL: "signal",
     Kind.PROPERTY: "structuralFeature",
@@ -106,7 +164,7 @@ _BY_KIND: dict[tuple[Kind, Edge], str] = {
         )
     },
 }
-_SOURCES: dict[Edge, frozenset[Kind]] = {
+_SOURCE_KINDS: dict[Edge, frozenset[Kind]] = {
     Edge.TYPED_BY: frozenset(
         {
             Kind.PROPERTY,
@@ -130,35 +188,36 @@ _SOURCES: dict[Edge, frozenset[Kind]] = {
     Edge.CLIENT: frozenset({Kind.DEPENDENCY}),
     Edge.SUPPLIER: frozenset({Kind.DEPENDENCY}),
 }
-"""Kinds that have the feature, where not all that may have the edge do."""
+"""Kinds of sources that have the feature, for edges whose other sources have none."""
 
 
-def feature(source: Element, edge: Edge, target: Element) -> str:
-    """The feature of the source that leads to the target; empty when UML has none."""
-    if edge in _SOURCES and source.kind not in _SOURCES[edge]:
+def find_edge_feature(source: Element, edge: Edge, target: Element) -> str:
+    """Return the feature of the source that refers to the target, or the empty string."""
+    if edge in _SOURCE_KINDS and source.kind not in _SOURCE_KINDS[edge]:
         return ""
-    known = _BY_KIND.get((source.kind, edge))
-    if known:
-        return known
-    special = _SPECIAL.get(edge)
-    return special(source, target) if special is not None else _BY_EDGE.get(edge, "")
+    feature = _BY_KIND.get((source.kind, edge))
+    if feature:
+        return feature
+    if edge in _FINDERS:
+        return _FINDERS[edge](source, target)
+    return _BY_EDGE.get(edge, "")
 
 
-def _redefined(source: Element, target: Element) -> str:
+def _find_redefining(source: Element, target: Element) -> str:
     if source.kind is Kind.PORT:
         return "redefinedPort" if target.kind is Kind.PORT else "redefinedProperty"
     return ""
 
 
-def _called(source: Element, target: Element) -> str:
+def _find_calling(source: Element, target: Element) -> str:
     if source.kind is Kind.ACTION:
-        return _CALLS.get(source.subkind) or _CALLED.get(target.kind, "classifier")
+        return _BY_ACTION.get(source.subkind) or _BY_CALLED_KIND.get(target.kind, "classifier")
     if source.kind is Kind.EXECUTION:
         return "action" if source.subkind == "action" else "behavior"
     return ""
 
 
-def _referred(source: Element, target: Element) -> str:
+def _find_referring(source: Element, target: Element) -> str:
     if source.kind is Kind.IMPORT:
         names = {"element": "importedElement", "merge": "mergedPackage"}
         return names.get(source.subkind, "importedPackage")
@@ -169,11 +228,11 @@ def _referred(source: Element, target: Element) -> str:
     return ""
 
 
-def _in(_source: Element, target: Element) -> str:
+def _find_grouping(_source: Element, target: Element) -> str:
     return "inPartition" if target.kind is Kind.PARTITION else "inInterruptibleRegion"
 
 
-def _realizing(_source: Element, target: Element) -> str:
+def _find_realizing(_source: Element, target: Element) -> str:
     names = {
         Kind.CONNECTOR: "realizingConnector",
         Kind.CONTROL_FLOW: "realizingActivityEdge",
@@ -183,10 +242,11 @@ def _realizing(_source: Element, target: Element) -> str:
     return names.get(target.kind, "realization")
 
 
-_SPECIAL = {
-    Edge.REDEFINES: _redefined,
-    Edge.CALLS: _called,
-    Edge.REFERENCES: _referred,
-    Edge.IN_PARTITION: _in,
-    Edge.REALIZING: _realizing,
+_FINDERS = {
+    Edge.REDEFINES: _find_redefining,
+    Edge.CALLS: _find_calling,
+    Edge.REFERENCES: _find_referring,
+    Edge.IN_PARTITION: _find_grouping,
+    Edge.REALIZING: _find_realizing,
 }
+"""Functions for edges whose feature depends on the target."""

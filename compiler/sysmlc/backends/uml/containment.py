@@ -1,8 +1,8 @@
-"""The feature of its owner in which an element stands (UML 2.5.1, as UML2 5.0 serialises it)."""
+"""The feature of the owner that contains an element (UML 2.5.1, as UML2 5.0 serialises it)."""
 
 from collections.abc import Callable
 
-from sysmlc.backends.uml.names import camel
+from sysmlc.backends.uml.features import to_camel_case
 from sysmlc.ir import Edge, Element, Graph, Kind
 
 _CLASSIFIERS = frozenset(
@@ -78,71 +78,71 @@ _FEATURES: dict[Kind, str] = {
     Kind.TEMPLATE_BINDING: "templateBinding",
     Kind.TEMPLATE_SUBSTITUTION: "parameterSubstitution",
 }
-"""Features of kinds that stand in one feature only, whatever owns them."""
-_IMPORTS = {"element": "elementImport", "merge": "packageMerge"}
-_CONTAINED = {
+"""Features of kinds that are in the same feature of every owner."""
+_IMPORT_FEATURES = {"element": "elementImport", "merge": "packageMerge"}
+_CONSTRAINT_FEATURES = {
     Kind.EXTEND: "condition",
     Kind.PARAMETER_SET: "condition",
     Kind.OPERAND: "guard",
     Kind.FRAGMENT: "invariant",
 }
-"""Where a constraint stands that is not an owned rule of a namespace."""
-_STATE = {
+"""The feature for a constraint by the owner's kind; other owners have owned rules."""
+_STATE_BEHAVIOURS = {
     Edge.ENTRY: "entry",
     Edge.DO: "doActivity",
     Edge.EXIT: "exit",
     Edge.EFFECT: "effect",
 }
+_NODE_SUBKINDS = ("node", "device", "execution-environment")
 _CLASS_LIKE = frozenset({Kind.CLASS, Kind.COMPONENT, Kind.STEREOTYPE, Kind.REQUIREMENT})
 
 
-def place(graph: Graph, owner: Element, element: Element) -> str:
-    """Feature of ``owner`` that holds the element; empty when UML knows none."""
+def find_containing_feature(graph: Graph, owner: Element, element: Element) -> str:
+    """Return the feature of *owner* that contains *element*; empty if UML has none."""
     if owner.kind is Kind.TEMPLATE_PARAMETER and element.kind is not Kind.COMMENT:
         is_default = owner.attrs.get("default") == element.id
         return "ownedDefault" if is_default else "ownedParameteredElement"
     if owner.kind is Kind.TEMPLATE_SUBSTITUTION and element.kind is not Kind.COMMENT:
         return "ownedActual"
-    known = _FEATURES.get(element.kind)
-    return known or _special(graph, owner, element)
+    return _FEATURES.get(element.kind) or _find_by_owner(graph, owner, element)
 
 
-def _special(graph: Graph, owner: Element, element: Element) -> str:
+def _find_by_owner(graph: Graph, owner: Element, element: Element) -> str:
+    """Return the feature for an element whose feature depends on its owner."""
     kind = element.kind
     if kind in (Kind.PROPERTY, Kind.PORT, Kind.FLOW_PROPERTY):
-        return _property(graph, owner, element)
+        return _find_for_property(graph, owner, element)
     if kind in _BEHAVIOURS:
-        return _behaviour(graph, owner, element)
+        return _find_for_behaviour(graph, owner, element)
     if kind in _PACKAGED:
-        return _packaged(owner, element)
+        return _find_for_packaged_element(owner, element)
     if kind in _CLASSIFIERS:
-        return _classifier(owner, element)
-    return _PARTS.get(kind, _nowhere)(owner, element)
+        return _find_for_classifier(owner, element)
+    return _FINDERS[kind](owner, element) if kind in _FINDERS else ""
 
 
-def _property(graph: Graph, owner: Element, element: Element) -> str:
+def _find_for_property(graph: Graph, owner: Element, element: Element) -> str:
     if element.subkind == "variable":
         return "variable"
     if owner.kind is Kind.ASSOCIATION:
         is_end = element in graph.targets(owner, Edge.END)
-        plain = owner.subkind != "association-class"
-        return "ownedEnd" if is_end or plain else "ownedAttribute"
+        is_plain = owner.subkind != "association-class"
+        return "ownedEnd" if is_end or is_plain else "ownedAttribute"
     if owner.kind in (Kind.PROPERTY, Kind.PORT):
         return "qualifier"
     return "" if owner.kind in _PACKAGES else "ownedAttribute"
 
 
-def _constraint(owner: Element, element: Element) -> str:
+def _find_for_constraint(owner: Element, element: Element) -> str:
     if owner.kind in (Kind.ACTION, Kind.STRUCTURED):
-        return {"precondition": "localPrecondition", "postcondition": "localPostcondition"}.get(
-            element.subkind, "ownedRule"
-        )
+        features = {"precondition": "localPrecondition", "postcondition": "localPostcondition"}
+        return features.get(element.subkind, "ownedRule")
     if owner.kind is Kind.FRAGMENT and owner.subkind != "state-invariant":
         return "ownedRule"
-    return _CONTAINED.get(owner.kind, "ownedRule")
+    return _CONSTRAINT_FEATURES.get(owner.kind, "ownedRule")
 
 
-def _packaged(owner: Element, element: Element) -> str:
+def _find_for_packaged_element(owner: Element, element: Element) -> str:
     subkind = element.subkind
     if subkind == "role-binding":
         return "roleBinding"
@@ -155,73 +155,70 @@ def _packaged(owner: Element, element: Element) -> str:
     return "packagedElement" if owner.kind in (*_PACKAGES, Kind.COMPONENT) else ""
 
 
-def _behaviour(graph: Graph, owner: Element, element: Element) -> str:
+def _find_for_behaviour(graph: Graph, owner: Element, element: Element) -> str:
     if owner.kind in (Kind.STATE, Kind.FINAL_STATE, Kind.TRANSITION):
-        held = (f for edge, f in _STATE.items() if element in graph.targets(owner, edge))
-        return next(held, "")
+        for edge, feature in _STATE_BEHAVIOURS.items():
+            if element in graph.targets(owner, edge):
+                return feature
+        return ""
     if owner.kind in _PACKAGES:
         return "packagedElement"
     if owner.kind is Kind.INTERFACE and element.subkind == "protocol":
         return "protocol"
-    holds = owner.kind in (*_CLASS_LIKE, *_BEHAVIOURS, Kind.USE_CASE, Kind.ACTOR)
-    return "ownedBehavior" if holds or owner.subkind == "association-class" else ""
+    is_behaviored = owner.kind in (*_CLASS_LIKE, *_BEHAVIOURS, Kind.USE_CASE, Kind.ACTOR)
+    return "ownedBehavior" if is_behaviored or owner.subkind == "association-class" else ""
 
 
-def _classifier(owner: Element, element: Element) -> str:
+def _find_for_classifier(owner: Element, element: Element) -> str:
     if owner.kind in (*_PACKAGES, Kind.COMPONENT):
         return "packagedElement"
     if owner.subkind == "artifact" and element.subkind == "artifact":
         return "nestedArtifact"
     if element.kind is Kind.USE_CASE and owner.kind not in _CLASS_LIKE:
         return "ownedUseCase"
-    is_node = element.subkind in ("node", "device", "execution-environment")
-    if is_node and owner.subkind in ("node", "device", "execution-environment"):
+    if element.subkind in _NODE_SUBKINDS and owner.subkind in _NODE_SUBKINDS:
         return "nestedNode"
-    holds = (*_CLASS_LIKE, *_BEHAVIOURS, Kind.INTERFACE)
-    return "nestedClassifier" if owner.kind in holds else ""
+    is_namespace = owner.kind in (*_CLASS_LIKE, *_BEHAVIOURS, Kind.INTERFACE)
+    return "nestedClassifier" if is_namespace else ""
 
 
-def _import(_owner: Element, element: Element) -> str:
-    return _IMPORTS.get(element.subkind, "packageImport")
+def _find_for_import(_owner: Element, element: Element) -> str:
+    return _IMPORT_FEATURES.get(element.subkind, "packageImport")
 
 
-def _partition(owner: Element, _element: Element) -> str:
+def _find_for_partition(owner: Element, _element: Element) -> str:
     return "subpartition" if owner.kind is Kind.PARTITION else "group"
 
 
-def _pseudostate(owner: Element, element: Element) -> str:
+def _find_for_pseudostate(owner: Element, element: Element) -> str:
     if element.subkind == "connection-point":
         return "connection"
     return "subvertex" if owner.kind is Kind.REGION else "connectionPoint"
 
 
-def _trigger(_owner: Element, element: Element) -> str:
+def _find_for_trigger(_owner: Element, element: Element) -> str:
     return "deferrableTrigger" if element.attrs.get("deferred") else "trigger"
 
 
-def _gate(owner: Element, _element: Element) -> str:
+def _find_for_gate(owner: Element, _element: Element) -> str:
     if owner.kind is not Kind.FRAGMENT:
         return "formalGate"
     return "actualGate" if owner.subkind in ("ref", "part-decomposition") else "cfragmentGate"
 
 
-def _nowhere(_owner: Element, _element: Element) -> str:
-    return ""
-
-
-def _pin(owner: Element, element: Element) -> str:
-    """Its own name of the feature, else one by its direction."""
+def _find_for_pin(owner: Element, element: Element) -> str:
+    """Return the feature that the subkind names, else one for the direction of the pin."""
     if element.subkind:
-        return camel(element.subkind)
-    is_out = element.attrs.get("direction") == "out"
+        return to_camel_case(element.subkind)
+    is_output = element.attrs.get("direction") == "out"
     if owner.kind is Kind.STRUCTURED:
-        return "structuredNodeOutput" if is_out else "structuredNodeInput"
+        return "structuredNodeOutput" if is_output else "structuredNodeInput"
     if owner.subkind in ("", "opaque"):
-        return "outputValue" if is_out else "inputValue"
-    return "result" if is_out else "argument"
+        return "outputValue" if is_output else "inputValue"
+    return "result" if is_output else "argument"
 
 
-def _node(owner: Element, element: Element) -> str:
+def _find_for_node(owner: Element, element: Element) -> str:
     if owner.kind is Kind.PIN:
         return "fromAction"
     if owner.kind is Kind.INTERACTION:
@@ -231,13 +228,13 @@ def _node(owner: Element, element: Element) -> str:
     return "executableNode" if owner.subkind == "sequence" else "node"
 
 
-_PARTS: dict[Kind, Callable[[Element, Element], str]] = {
-    Kind.CONSTRAINT: _constraint,
-    Kind.IMPORT: _import,
-    Kind.PIN: _pin,
-    Kind.PARTITION: _partition,
-    Kind.PSEUDOSTATE: _pseudostate,
-    Kind.TRIGGER: _trigger,
-    Kind.GATE: _gate,
-    **dict.fromkeys(_NODES, _node),
+_FINDERS: dict[Kind, Callable[[Element, Element], str]] = {
+    Kind.CONSTRAINT: _find_for_constraint,
+    Kind.IMPORT: _find_for_import,
+    Kind.PIN: _find_for_pin,
+    Kind.PARTITION: _find_for_partition,
+    Kind.PSEUDOSTATE: _find_for_pseudostate,
+    Kind.TRIGGER: _find_for_trigger,
+    Kind.GATE: _find_for_gate,
+    **dict.fromkeys(_NODES, _find_for_node),
 }
