@@ -5,7 +5,7 @@ from uuid import UUID, uuid5
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sysmlc.ir.identity import derived_id
+from sysmlc.ir.element import derived_id
 
 _NAMESPACE = UUID("6f1d7a54-3f0c-5d3a-9a52-0c2f6f2d7b11")
 _TEXTS = st.text(st.characters(exclude_categories=["Cs"]))

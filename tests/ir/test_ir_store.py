@@ -5,12 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from sysmlc.ir import Edge, Element, Graph, Kind
-from sysmlc.ir.neighbours import (
-    add_neighbour,
-    first_neighbour,
-    list_neighbours,
-    remove_neighbour,
-)
+from sysmlc.ir.graph import add_neighbour, first_neighbour, list_neighbours, remove_neighbour
 
 POOL = [Element(f"e{number}", Kind.CLASS) for number in range(40)]
 CHANGES = st.lists(st.tuples(st.booleans(), st.integers(0, 39)), max_size=120)

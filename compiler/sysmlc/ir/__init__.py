@@ -3,9 +3,8 @@
 from importlib import import_module
 from typing import TYPE_CHECKING
 
-from sysmlc.ir.element import AttrValue, Element, Reference
+from sysmlc.ir.element import AttrValue, Element, Reference, derived_id
 from sysmlc.ir.graph import Graph
-from sysmlc.ir.identity import derived_id
 from sysmlc.ir.kinds import Edge, Kind
 from sysmlc.ir.verify import verify
 

@@ -1,4 +1,9 @@
-"""The graph: elements, edges of each kind in both directions, and the only way to change them."""
+"""The graph: elements, edges of each kind in both directions, and the only way to change them.
+
+The neighbours of an element along edges of one kind keep the order of addition. Most elements have
+one neighbour and a few have thousands. A set for each element would need more memory than the
+elements themselves.
+"""
 
 from collections.abc import Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING, TypeVar, cast
@@ -6,16 +11,10 @@ from typing import TYPE_CHECKING, TypeVar, cast
 from sysmlc.diagnostics import Place, Subject
 from sysmlc.ir.element import AttrValue, Element, Reference
 from sysmlc.ir.kinds import Edge, Kind
-from sysmlc.ir.neighbours import (
-    Index,
-    add_neighbour,
-    first_neighbour,
-    list_neighbours,
-    remove_neighbour,
-)
 
 if TYPE_CHECKING:
     from networkx import DiGraph
+
 
 _T = TypeVar("_T")
 
@@ -265,3 +264,72 @@ class Graph:
 
 
 _BARE_EDGES = tuple(edge for edge in Edge if edge is not Edge.OWNS)
+
+
+# -- neighbours --------------------------------------------------------------------------------
+
+Neighbours = Element | list[Element] | dict[Element, None]
+"""A single neighbour itself, several as a list, many as a dict."""
+
+Index = dict[str, Neighbours]
+"""Neighbours by the id of an element. An element without neighbours has no entry."""
+
+_LONGEST_LIST = 16
+"""Longer lists become dicts, because search and removal in a list take linear time."""
+
+
+def add_neighbour(index: Index, id: str, neighbour: Element) -> bool:
+    """Add a neighbour of the element *id*. Return False when the index has it already."""
+    neighbours = index.get(id)
+    if neighbours is None:
+        index[id] = neighbour
+    elif isinstance(neighbours, Element):
+        if neighbours is neighbour:
+            return False
+        index[id] = [neighbours, neighbour]
+    elif neighbour in neighbours:
+        return False
+    elif isinstance(neighbours, dict):
+        neighbours[neighbour] = None
+    elif len(neighbours) < _LONGEST_LIST:
+        neighbours.append(neighbour)
+    else:
+        index[id] = dict.fromkeys((*neighbours, neighbour))
+    return True
+
+
+def remove_neighbour(index: Index, id: str, neighbour: Element) -> bool:
+    """Remove a neighbour of the element *id*. Return False when the index does not have it."""
+    neighbours = index.get(id)
+    if neighbours is None:
+        return False
+    if isinstance(neighbours, Element):
+        if neighbours is not neighbour:
+            return False
+        del index[id]
+        return True
+    if neighbour not in neighbours:
+        return False
+    if isinstance(neighbours, dict):
+        del neighbours[neighbour]
+    else:
+        neighbours.remove(neighbour)
+    if not neighbours:
+        del index[id]
+    return True
+
+
+def list_neighbours(index: Index, id: str) -> list[Element]:
+    """Return all neighbours of the element *id*."""
+    neighbours = index.get(id)
+    if neighbours is None:
+        return []
+    return [neighbours] if isinstance(neighbours, Element) else list(neighbours)
+
+
+def first_neighbour(index: Index, id: str) -> Element | None:
+    """Return the neighbour of the element *id* that was added first, or None."""
+    neighbours = index.get(id)
+    if neighbours is None or isinstance(neighbours, Element):
+        return neighbours
+    return next(iter(neighbours))

@@ -4,7 +4,7 @@ from collections import Counter
 
 from sysmlc.ir import Edge, Kind
 from sysmlc.ir.query import type_of
-from sysmlc.ir.query.units import unit_of
+from sysmlc.ir.query.classifiers import unit_of
 
 CLASSES = (Kind.CLASS, Kind.COMPONENT, Kind.INTERFACE)
 

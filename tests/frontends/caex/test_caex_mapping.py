@@ -4,7 +4,7 @@ import pytest
 from reading_caex import Read, aml, aml_2, classes, interfaces, plant, roles, types
 
 from sysmlc.driver import Request, compile_model
-from sysmlc.ir.query.units import quantity_kind_of, unit_of
+from sysmlc.ir.query.classifiers import quantity_kind_of, unit_of
 from sysmlc.sources import Source
 
 

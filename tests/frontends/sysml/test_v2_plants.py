@@ -12,7 +12,7 @@ from sysmlc.frontends.caex import FRONTEND as CAEX
 from sysmlc.frontends.sysml import FRONTEND
 from sysmlc.ir import Graph, Kind
 from sysmlc.ir.compare import compare
-from sysmlc.ir.query.units import quantity_kind_of, unit_of
+from sysmlc.ir.query.classifiers import quantity_kind_of, unit_of
 from sysmlc.ir.text import parse_text
 from sysmlc.passes import pipeline
 from sysmlc.sources import Source

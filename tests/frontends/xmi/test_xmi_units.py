@@ -5,7 +5,7 @@ from reading_xmi import Read, magicdraw, papyrus
 
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Kind
-from sysmlc.ir.query.units import quantity_kind_of, unit_of
+from sysmlc.ir.query.classifiers import quantity_kind_of, unit_of
 from sysmlc.ir.text import print_text
 from sysmlc.passes import pipeline
 

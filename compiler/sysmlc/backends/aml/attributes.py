@@ -17,7 +17,7 @@ from sysmlc.backends.aml.context import Context, File, find_unresolved
 from sysmlc.backends.aml.header import write_header, write_semantics
 from sysmlc.backends.aml.node import Node, format_value
 from sysmlc.ir import Edge, Element, Kind
-from sysmlc.ir.query.units import unit_of
+from sysmlc.ir.query.classifiers import unit_of
 
 _LISTS = ("ListType", "OrderedListType")
 """Semantics of unordered and ordered lists (AutomationML Part 1)."""

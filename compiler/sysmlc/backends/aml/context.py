@@ -10,7 +10,7 @@ from sysmlc.backends.aml.class_kinds import ClassKind
 from sysmlc.backends.aml.node import Node
 from sysmlc.backends.aml.rules import Losses
 from sysmlc.ir import Edge, Element, Graph, Kind
-from sysmlc.ir.identity import derived_id
+from sysmlc.ir.element import derived_id
 
 _BRACKETED = frozenset("/@[]")
 """A path whose names contain one of these has its names in brackets (IEC 62424, A.2)."""

@@ -15,7 +15,7 @@ from sysmlc.backends.aml.instances import (
 from sysmlc.backends.aml.interfaces import write_interface
 from sysmlc.backends.aml.node import Node
 from sysmlc.ir import Edge, Element, Kind
-from sysmlc.ir.identity import derived_id
+from sysmlc.ir.element import derived_id
 
 _REFERENCE = "RefBaseSystemUnitPath"
 _INTERNAL_ELEMENT = ("InternalElement", _REFERENCE)

@@ -8,7 +8,7 @@ from sysmlc.backends.aml.header import write_header
 from sysmlc.backends.aml.interfaces import find_or_repeat
 from sysmlc.backends.aml.node import Node
 from sysmlc.ir import Edge, Element, Kind
-from sysmlc.ir.identity import derived_id
+from sysmlc.ir.element import derived_id
 
 _SIDES = ("RefPartnerSideA", "RefPartnerSideB")
 _HOLDERS = frozenset({"InternalElement", "SystemUnitClass"})

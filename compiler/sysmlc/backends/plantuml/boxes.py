@@ -7,7 +7,7 @@ from sysmlc.backends.plantuml.aliases import Aliases
 from sysmlc.backends.plantuml.allocations import list_block_allocations
 from sysmlc.backends.plantuml.views import Box, Compartment
 from sysmlc.ir import Edge, Element, Graph, Kind
-from sysmlc.ir.query.units import is_quantity_kind, is_unit, quantity_kind_of, unit_of
+from sysmlc.ir.query.classifiers import is_quantity_kind, is_unit, quantity_kind_of, unit_of
 from sysmlc.support.plantuml_text import escape_line, join_rows, shrink, wrap_lines
 
 _BY_ROLE = {

@@ -20,7 +20,7 @@ from sysmlc.backends.plantuml.layout import find_port_sides, iter_port_guides
 from sysmlc.backends.plantuml.views import Diagram, InternalView, Line, PartView, PortView
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.ir.query import generals, opposite
-from sysmlc.ir.query.units import unit_of
+from sysmlc.ir.query.classifiers import unit_of
 from sysmlc.support.plantuml_text import escape_line, format_label, join_rows, shrink, wrap_lines
 
 FORMS = {"in": "portin", "out": "portout"}

@@ -1,7 +1,7 @@
 """What the standard library of SysML v2 already has: scalar types, quantities, units."""
 
 from sysmlc.ir import Element, Graph, Kind
-from sysmlc.ir.query.units import quantity_kind_of, unit_of
+from sysmlc.ir.query.classifiers import quantity_kind_of, unit_of
 
 SHIPPED = "sysmlc:"
 """What the sources of elements of our own libraries begin with."""

@@ -19,7 +19,7 @@ from sysmlc.backends.sysml.values import value
 from sysmlc.backends.sysml.words import quoted
 from sysmlc.ir import Edge, Element, Kind
 from sysmlc.ir.query import STRUCTURAL_FEATURES, flow_directions, type_of
-from sysmlc.ir.query.units import quantity_kind_of, unit_of
+from sysmlc.ir.query.classifiers import quantity_kind_of, unit_of
 
 
 def package(book: Book, entry: Entry) -> list[Line]:

@@ -7,7 +7,7 @@ from sysmlc.backends.sysml.library import quantity_of, unit_name
 from sysmlc.backends.sysml.words import string
 from sysmlc.ir import AttrValue, Edge, Element, Kind
 from sysmlc.ir.query import generals, type_of
-from sysmlc.ir.query.units import unit_of
+from sysmlc.ir.query.classifiers import unit_of
 
 _NUMBERS = frozenset({"Integer", "Real", "UnlimitedNatural", "Number"})
 

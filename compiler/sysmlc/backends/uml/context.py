@@ -9,7 +9,7 @@ from sysmlc.backends.uml.hrefs import is_external, make_reference
 from sysmlc.backends.uml.node import Node
 from sysmlc.backends.uml.rules import UNSUPPORTED_EDGE, Losses
 from sysmlc.ir import Edge, Element, Graph
-from sysmlc.ir.identity import derived_id
+from sysmlc.ir.element import derived_id
 
 _NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_.-]*")
 """Ids that are names of XML without colon (NCName), as ``xmi:id`` must be."""

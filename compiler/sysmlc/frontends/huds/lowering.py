@@ -8,7 +8,7 @@ from sysmlc.frontends.huds import vocabulary as v
 from sysmlc.frontends.huds.records import Record, read_records
 from sysmlc.frontends.huds.relations import add_relations
 from sysmlc.ir import Edge, Element, Graph, Kind
-from sysmlc.ir.identity import derived_id
+from sysmlc.ir.element import derived_id
 from sysmlc.sources import DEFAULT_LIMITS, Fault, Source, SourceError
 
 _LOSS_RULES = (rules.UNSUPPORTED, rules.OWNERLESS, rules.REPEATED, rules.LOOSE_END)

@@ -6,7 +6,7 @@ from typing import Protocol
 from sysmlc.frontends.huds import vocabulary as v
 from sysmlc.frontends.huds.records import Record
 from sysmlc.ir import Edge, Element, Graph, Kind, Reference
-from sysmlc.ir.identity import derived_id
+from sysmlc.ir.element import derived_id
 
 
 class _File(Protocol):

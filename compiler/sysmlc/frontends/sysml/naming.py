@@ -3,7 +3,7 @@
 from functools import lru_cache
 
 from sysmlc.ir import Element, Kind
-from sysmlc.ir.identity import derived_id
+from sysmlc.ir.element import derived_id
 
 _NOTATION = "sysml"
 """What ids are derived from, with the qualified name."""

@@ -1,7 +1,7 @@
 """What of the standard library the graph refers to: stubs by qualified name."""
 
 from sysmlc.ir import AttrValue, Element, Graph, Kind
-from sysmlc.ir.identity import derived_id
+from sysmlc.ir.element import derived_id
 from sysmlc.language.tree import Node
 
 _PRIMITIVES = "http://www.omg.org/spec/UML/20161101/PrimitiveTypes.xmi#"

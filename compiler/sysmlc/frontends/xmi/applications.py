@@ -14,7 +14,7 @@ from sysmlc.frontends.xmi.rules import LOST_TAG
 from sysmlc.frontends.xmi.unit import LoweredDocument, Target
 from sysmlc.frontends.xmi.values import read_value
 from sysmlc.ir import AttrValue, Edge, Element, Kind
-from sysmlc.ir.identity import derived_id, is_generated
+from sysmlc.ir.element import derived_id, is_generated
 
 _BASE = "base_"
 _NO_TAGS = (_BASE, "__EA")

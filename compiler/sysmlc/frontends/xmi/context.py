@@ -9,7 +9,7 @@ from sysmlc.frontends.xmi import vocabulary as v
 from sysmlc.frontends.xmi.document import WrittenReference
 from sysmlc.frontends.xmi.unit import LoweredDocument, Unit, UnresolvedReference
 from sysmlc.ir import AttrValue, Edge, Element
-from sysmlc.ir.identity import derived_id
+from sysmlc.ir.element import derived_id
 
 RowHandler = Callable[["Context", int], None]
 """Lowers a row and its content."""

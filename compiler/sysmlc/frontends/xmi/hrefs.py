@@ -10,7 +10,7 @@ from sysmlc.frontends.xmi.document import Document
 from sysmlc.frontends.xmi.metaclasses import kind_of
 from sysmlc.frontends.xmi.vocabulary import TARGET_KINDS
 from sysmlc.ir import Kind
-from sysmlc.ir.identity import ROOT, is_globally_unique
+from sysmlc.ir.element import ROOT, is_globally_unique
 
 _MAX_LENGTH = 8192
 """Characters of an href that count: a longer one is cut, and leads nowhere."""

@@ -7,7 +7,7 @@ from sysmlc.frontends.xmi import hrefs
 from sysmlc.frontends.xmi.document import Document, WrittenReference
 from sysmlc.frontends.xmi.namespaces import Profiles
 from sysmlc.ir import Edge, Element, Graph, Kind, Reference
-from sysmlc.ir.identity import is_globally_unique
+from sysmlc.ir.element import is_globally_unique
 
 _OMITTED = (Verdict.IGNORED_NOTATION, Verdict.UNSUPPORTED)
 

@@ -8,8 +8,15 @@ from typing import NamedTuple
 from sysmlc.ir.compare.change import Change, Ref, What
 from sysmlc.ir.compare.content import IMPLIED, IN_ORDER, is_external
 from sysmlc.ir.compare.facts import BETWEEN, Fact
-from sysmlc.ir.compare.likeness import pair_by_likeness, pair_by_move
-from sysmlc.ir.compare.pairs import Pairs, Token, TokenisedFact, pair_by_id, pair_by_name
+from sysmlc.ir.compare.pairs import (
+    Pairs,
+    Token,
+    TokenisedFact,
+    pair_by_id,
+    pair_by_likeness,
+    pair_by_move,
+    pair_by_name,
+)
 from sysmlc.ir.compare.plants import (
     follows_internal_element,
     is_own_class,

@@ -7,6 +7,7 @@ from sysmlc.ir.query.classifiers import (
     FEATURES,
     FLOW_DIRECTIONS,
     STRUCTURAL_FEATURES,
+    applications,
     classifier_behavior,
     conforms,
     direction_of,
@@ -14,11 +15,15 @@ from sysmlc.ir.query.classifiers import (
     features,
     flow_properties,
     generals,
+    has_stereotype,
     is_flow_property,
+    lineage,
     parameters,
     parts,
     ports,
     redefined_features,
+    stereotypes,
+    tag,
     type_of,
 )
 from sysmlc.ir.query.names import (
@@ -43,13 +48,6 @@ from sysmlc.ir.query.relations import (
     outgoing,
     role_of,
     runs_both_ways,
-)
-from sysmlc.ir.query.stereotypes import (
-    applications,
-    has_stereotype,
-    lineage,
-    stereotypes,
-    tag,
 )
 
 __all__ = [

@@ -1,9 +1,10 @@
-"""Classifiers: what they specialise, their features, parameters and behaviour."""
+"""Classifiers: generals, features, parameters, units, stereotypes, behaviour."""
 
-from sysmlc.ir.element import Element
+from collections.abc import Iterator
+
+from sysmlc.ir.element import AttrValue, Element
 from sysmlc.ir.graph import Graph
 from sysmlc.ir.kinds import Edge, Kind
-from sysmlc.ir.query.stereotypes import tag
 
 CLASSIFIERS = (
     Kind.CLASS,
@@ -136,3 +137,85 @@ def domain_of(graph: Graph, classifier: Element) -> str | None:
         if domain in DOMAINS:
             return str(domain)
     return None
+
+
+# -- units and quantity kinds (SysML 1.6 clause 8.3.2) -----------------------------------------
+
+
+def is_unit(element: Element) -> bool:
+    """Return whether *element* is a measurement unit, in SysML v1 or v2."""
+    return element.kind is Kind.UNIT or element.role == "unit"
+
+
+def is_quantity_kind(element: Element) -> bool:
+    """Return whether *element* is a kind of quantity, in SysML v1 or v2."""
+    return element.kind is Kind.QUANTITY_KIND or element.role == "quantity kind"
+
+
+def unit_of(graph: Graph, feature: Element) -> Element | None:
+    """Return the unit of a feature or a value type: its own or the nearest inherited one."""
+    return next(filter(is_unit, _iter_references(graph, feature)), None)
+
+
+def quantity_kind_of(graph: Graph, feature: Element) -> Element | None:
+    """Return the quantity kind of a feature or a value type; else that of its unit."""
+    own = next(filter(is_quantity_kind, _iter_references(graph, feature)), None)
+    unit = None if own else unit_of(graph, feature)
+    references = [] if unit is None else graph.targets(unit, Edge.REFERENCES)
+    return own or next(filter(is_quantity_kind, references), None)
+
+
+def _iter_references(graph: Graph, feature: Element) -> Iterator[Element]:
+    is_feature = feature.kind in (*STRUCTURAL_FEATURES, Kind.PARAMETER)
+    type_ = type_of(graph, feature) if is_feature else feature
+    for classifier in () if type_ is None else (type_, *generals(graph, type_)):
+        yield from graph.targets(classifier, Edge.REFERENCES)
+
+
+# -- stereotypes and their tagged values -------------------------------------------------------
+
+
+def applications(graph: Graph, element: Element) -> list[Element]:
+    """Return the stereotype applications on *element*, in order."""
+    sources = graph.sources(element, Edge.SUBJECT)
+    return [source for source in sources if source.kind is Kind.APPLICATION]
+
+
+def lineage(application: Element) -> tuple[str, ...]:
+    """Return the local names from the applied stereotype to the most general one.
+
+    Before the pass ``classify``, this is the name of the applied stereotype alone.
+    """
+    names = application.attrs.get("lineage")
+    if isinstance(names, tuple):
+        return tuple(str(name) for name in names)
+    return (str(application.attrs.get("stereotype", "")),)
+
+
+def stereotypes(graph: Graph, element: Element) -> tuple[str, ...]:
+    """Return the local names of the stereotypes of *element*, general ones included, each once."""
+    names = (name for item in applications(graph, element) for name in lineage(item))
+    return tuple(dict.fromkeys(names))
+
+
+def has_stereotype(graph: Graph, element: Element, *names: str) -> bool:
+    """Return whether one of the stereotypes, or one that specialises it, applies to *element*."""
+    return not set(names).isdisjoint(stereotypes(graph, element))
+
+
+def tag(graph: Graph, element: Element, name: str) -> AttrValue:
+    """Return the first tagged value of this name on *element*, or None.
+
+    Case is ignored if no tag has exactly this name, because MagicDraw writes ``Text`` and ``Id``
+    where Papyrus writes ``text`` and ``id``. Enterprise Architect can write tags on the element
+    itself, without a stereotype.
+    """
+    items = applications(graph, element)
+    for application in items:
+        if f"tag.{name}" in application.attrs:
+            return application.attrs[f"tag.{name}"]
+    for application in items:
+        for key, value in application.attrs.items():
+            if key.lower() == f"tag.{name.lower()}":
+                return value
+    return element.attrs.get(f"tag.{name}")

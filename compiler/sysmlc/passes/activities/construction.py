@@ -11,7 +11,7 @@ from msgspec.structs import replace
 
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Element, Graph, query
-from sysmlc.ir.identity import derived_id
+from sysmlc.ir.element import derived_id
 from sysmlc.logic.activities.token_graph import Interruptible, TokenGraph
 from sysmlc.passes.activities import rules
 from sysmlc.passes.activities.draft import Draft

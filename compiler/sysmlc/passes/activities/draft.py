@@ -4,7 +4,7 @@ from itertools import pairwise
 
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Element, Graph, Kind, query
-from sysmlc.ir.identity import derived_id
+from sysmlc.ir.element import derived_id
 from sysmlc.logic.activities.token_graph import Guard, NodeKind, TokenEdge, TokenNode
 from sysmlc.logic.names import identifier
 from sysmlc.passes.activities.drawing import Drawing, Flow, flow_label

@@ -6,7 +6,7 @@ the activity catches ends the activity.
 """
 
 from sysmlc.ir import Element, Kind
-from sysmlc.ir.identity import derived_id
+from sysmlc.ir.element import derived_id
 from sysmlc.logic.activities.token_graph import ACTIVITY_REGION, Guard, NodeKind
 from sysmlc.passes.activities import rules
 from sysmlc.passes.activities.draft import Draft

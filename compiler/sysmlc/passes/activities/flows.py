@@ -1,7 +1,7 @@
 """Token edges of flows: where they start and end, and the guards of decisions that they leave."""
 
 from sysmlc.ir import Edge, Element, Kind
-from sysmlc.ir.identity import derived_id
+from sysmlc.ir.element import derived_id
 from sysmlc.logic import formula as f
 from sysmlc.logic.activities.token_graph import Guard, NodeKind
 from sysmlc.passes.activities import rules

@@ -11,7 +11,7 @@ from msgspec import Struct
 from msgspec.structs import replace
 
 from sysmlc.ir import Edge, Element, Graph, Kind, query
-from sysmlc.ir.identity import derived_id
+from sysmlc.ir.element import derived_id
 
 NODES = (
     Kind.ACTION,

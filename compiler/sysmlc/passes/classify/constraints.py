@@ -3,7 +3,7 @@
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.ir.query import features, type_of
-from sysmlc.ir.query.units import unit_of
+from sysmlc.ir.query.classifiers import unit_of
 
 NO_CONSTRAINT_BLOCK = rule(
     "SM217",

@@ -8,9 +8,9 @@ import re
 from collections.abc import Iterator, Mapping
 
 from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind
-from sysmlc.ir.identity import derived_id
+from sysmlc.ir.element import derived_id
 from sysmlc.ir.query import generals
-from sysmlc.ir.query.units import is_quantity_kind, is_unit
+from sysmlc.ir.query.classifiers import is_quantity_kind, is_unit
 from sysmlc.passes.classify.tags import tag_elements, tag_value
 
 _QUANTITY_KIND = re.compile(r"(Simple|Derived|Specialized)?QuantityKind")

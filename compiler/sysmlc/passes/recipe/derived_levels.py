@@ -10,7 +10,7 @@ from msgspec import Struct
 
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Edge, Element, Kind, query
-from sysmlc.ir.query import units as measures
+from sysmlc.ir.query.classifiers import quantity_kind_of
 from sysmlc.passes.recipe.context import Context
 
 DERIVED = rule(
@@ -126,5 +126,5 @@ def _is_duration(context: Context, parameter: Element) -> bool:
     type_ = query.type_of(context.graph, parameter)
     if type_ is not None and type_.attrs.get("qualified_name") == "ISQBase::DurationValue":
         return True
-    kind = measures.quantity_kind_of(context.graph, parameter)
+    kind = quantity_kind_of(context.graph, parameter)
     return kind is not None and kind.name.lower() in _DURATIONS

@@ -14,7 +14,7 @@ from urllib.parse import unquote
 from msgspec import Struct
 
 from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind
-from sysmlc.ir.identity import derived_id
+from sysmlc.ir.element import derived_id
 from sysmlc.passes.resolve.hrefs import split_href
 from sysmlc.support import resources
 

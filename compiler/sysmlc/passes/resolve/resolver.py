@@ -8,7 +8,7 @@ from operator import attrgetter
 from urllib.parse import unquote
 
 from sysmlc.ir import AttrValue, Element, Graph, Kind
-from sysmlc.ir.identity import derived_id, is_globally_unique
+from sysmlc.ir.element import derived_id, is_globally_unique
 from sysmlc.passes.resolve.hrefs import (
     PRIMITIVE_TYPES,
     choose_kind,

@@ -16,7 +16,7 @@ from sysmlc.frontends.xmi.enterprise_architect.profiles import (
 )
 from sysmlc.frontends.xmi.namespaces import mangle_name
 from sysmlc.ir import Edge, Element, Kind
-from sysmlc.ir.identity import derived_id
+from sysmlc.ir.element import derived_id
 
 _STEREOTYPE = re.compile(r"@STEREO;(.*?)@ENDSTEREO", re.DOTALL)
 _PREFIX = "EAID_"

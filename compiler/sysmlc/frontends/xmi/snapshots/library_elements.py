@@ -8,7 +8,7 @@ from sysmlc.frontends.xmi.namespaces import mangle_name
 from sysmlc.frontends.xmi.snapshots.closure import APPLICATION, canonical_href
 from sysmlc.frontends.xmi.snapshots.entries import Entry, Snapshots
 from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind, Reference
-from sysmlc.ir.identity import derived_id
+from sysmlc.ir.element import derived_id
 
 _BASE = "base_"
 _PATH = "partWithPort"
