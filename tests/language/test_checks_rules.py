@@ -4,14 +4,7 @@ import pytest
 from resolving import documents, library
 
 from sysmlc.diagnostics import Sink
-from sysmlc.language.checks import (
-    accessibility,
-    check,
-    memberships,
-    references,
-    single_members,
-    usage_types,
-)
+from sysmlc.language.checks import check, memberships, references, specializations
 from sysmlc.language.names import resolve
 
 
@@ -30,11 +23,11 @@ def codes(text):
 @pytest.mark.parametrize(
     ("rule", "code"),
     [
-        (usage_types.TYPED_BY, "SM221"),
-        (usage_types.ONE_TYPE, "SM222"),
-        (single_members.ONLY_ONE, "SM223"),
-        (single_members.SUBJECT_FIRST, "SM224"),
-        (accessibility.NOT_ACCESSIBLE, "SM225"),
+        (specializations.TYPED_BY, "SM221"),
+        (specializations.ONE_TYPE, "SM222"),
+        (memberships.ONLY_ONE, "SM223"),
+        (memberships.SUBJECT_FIRST, "SM224"),
+        (references.NOT_ACCESSIBLE, "SM225"),
         (references.OTHER_KIND, "SM236"),
         (references.PART_OF_PORT, "SM237"),
         (references.OTHER_DIRECTION, "SM238"),

@@ -8,7 +8,7 @@ from sysmlc.language.checks.findings import Finding, iter_stated, name_of
 from sysmlc.language.metaclasses import is_composite, kinds_of
 from sysmlc.language.names import Model
 from sysmlc.language.names.expression_results import find_named_element
-from sysmlc.language.names.positional_redefinition import find_own_features
+from sysmlc.language.names.implied import find_own_features
 from sysmlc.language.tree import Node
 
 TOO_MANY = rule(

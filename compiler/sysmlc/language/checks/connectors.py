@@ -7,8 +7,7 @@ from sysmlc.language.checks.findings import Finding, iter_stated, name_of
 from sysmlc.language.checks.memberships import TOO_MANY_ENDS
 from sysmlc.language.metaclasses import is_a, is_end, kinds_of
 from sysmlc.language.names import Model
-from sysmlc.language.names.implied import find_owning_type
-from sysmlc.language.names.positional_redefinition import find_own_features
+from sysmlc.language.names.implied import find_own_features, find_owning_type
 from sysmlc.language.tree import Node, Reference, Relation
 
 END_TYPE = rule(

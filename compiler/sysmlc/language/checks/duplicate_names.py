@@ -6,8 +6,8 @@ from sysmlc.diagnostics import Severity, rule
 from sysmlc.language.checks.findings import DECLARED_TYPES, Finding, name_of
 from sysmlc.language.metaclasses import kinds_of
 from sysmlc.language.names import Model
+from sysmlc.language.names.implied import find_role
 from sysmlc.language.names.members import is_in_library
-from sysmlc.language.names.positional_redefinition import find_role
 from sysmlc.language.tree import Node
 
 DUPLICATE = rule(

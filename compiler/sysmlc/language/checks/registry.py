@@ -7,10 +7,8 @@ from typing import TypeVar
 
 from sysmlc.diagnostics import Sink
 from sysmlc.language.checks import (
-    accessibility,
     annotations,
     behaviors,
-    conditions,
     conformance,
     connectors,
     duplicate_names,
@@ -18,9 +16,7 @@ from sysmlc.language.checks import (
     memberships,
     multiplicities,
     references,
-    single_members,
     specializations,
-    usage_types,
 )
 from sysmlc.language.checks.findings import DECLARED_TYPES, Check
 from sysmlc.language.metaclasses import USAGES
@@ -33,20 +29,20 @@ _Entry = TypeVar("_Entry")
 
 # The order within each table is the order of the diagnostics about one node.
 _REPORTERS: tuple[tuple[frozenset[str], Reporter], ...] = (
-    (usage_types.KINDS, usage_types.check_types),
-    (DECLARED_TYPES, single_members.check_own_members),
+    (specializations.TYPED_KINDS, specializations.check_types),
+    (DECLARED_TYPES, memberships.check_own_members),
     (USAGES, memberships.check_member),
     (USAGES, references.check_references),
     (USAGES, references.check_usage),
-    (accessibility.KINDS, accessibility.check_accessibility),
+    (references.REFERRING_KINDS, references.check_accessibility),
 )
 _CHECKS: tuple[tuple[frozenset[str], Check], ...] = (
     *conformance.CHECKS,
     *specializations.CHECKS,
     *multiplicities.CHECKS,
-    *conditions.CHECKS,
+    *expressions.CONDITION_CHECKS,
     *annotations.CHECKS,
-    *single_members.CHECKS,
+    *memberships.SINGLE_MEMBER_CHECKS,
     *connectors.END_CHECKS,
     *memberships.CHECKS,
     *behaviors.STEP_CHECKS,
@@ -80,15 +76,15 @@ BY_RELATION = _group_by_key(_RELATION_CHECKS)
 
 # Most checks cannot find anything in most nodes. These conditions are cheaper than the checks.
 _REQUIRED_MEMBERSHIPS: dict[object, frozenset[str]] = {
-    single_members.check_own_members: single_members.MEMBERSHIPS,
-    conditions.check_condition: conditions.CONDITION_MEMBERSHIPS,
+    memberships.check_own_members: memberships.SINGLE_MEMBERSHIPS,
+    expressions.check_condition: expressions.CONDITION_MEMBERSHIPS,
     duplicate_names.check_inherited: duplicate_names.MEMBERSHIPS,
-    conditions.check_filter: conditions.FILTER_MEMBERSHIPS,
+    expressions.check_filter: expressions.FILTER_MEMBERSHIPS,
     behaviors.check_parameters: behaviors.MEMBERSHIPS,
 }
 """Checks that find nothing in a node without a member of one of these memberships."""
 _REQUIRED_RELATIONS: dict[object, frozenset[str]] = {
-    usage_types.check_types: usage_types.RELATIONS,
+    specializations.check_types: specializations.TYPING_RELATIONS,
     references.check_references: references.RELATIONS,
 }
 """Checks that find nothing in a node without a relation of one of these kinds."""

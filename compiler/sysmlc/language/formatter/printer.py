@@ -6,8 +6,7 @@ The text of a comment excludes the white space at the start of its lines and the
 
 from collections.abc import Iterator, Sequence
 
-from sysmlc.language.formatter.spacing import Piece, Spacing
-from sysmlc.language.formatter.statements import Block, Note, Sort, Statement, Token
+from sysmlc.language.formatter.statements import Block, Note, Piece, Sort, Spacing, Statement, Token
 
 _WHITE_SPACE = " \t\f\v"
 _TAB_WIDTH = 4

@@ -1,5 +1,6 @@
 """Interchange of KerML and SysML v2 models: XMI files and project archives, in and out."""
 
+from sysmlc.language.interchange.element_ids import ExchangeDocument, link
 from sysmlc.language.interchange.projects import (
     Project,
     ProjectUsage,
@@ -8,7 +9,6 @@ from sysmlc.language.interchange.projects import (
     resolve_usages,
 )
 from sysmlc.language.interchange.reader import read
-from sysmlc.language.interchange.references import ExchangeDocument, link
 from sysmlc.language.interchange.writer import InterchangeFiles, interchange_path, write
 
 __all__ = [

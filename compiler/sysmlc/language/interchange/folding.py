@@ -5,13 +5,13 @@ element becomes the membership of that element. Parameters that only carry an ar
 (KerML 8.2.5.8.1).
 """
 
+from sysmlc.language.interchange.element_ids import References
 from sysmlc.language.interchange.frames import Frame, complete_literal
 from sysmlc.language.interchange.metamodel import (
     REFERRING_KINDS,
     RELATION_TARGETS,
     RELATIONSHIP_ENDS,
 )
-from sysmlc.language.interchange.references import References
 from sysmlc.language.metaclasses import USAGES, is_composite, kinds_of
 from sysmlc.language.tree import Node, Relation
 

@@ -3,15 +3,15 @@
 from sysmlc.diagnostics import Place, Rule, Sink, Subject
 from sysmlc.language.interchange import rules
 from sysmlc.language.interchange.effective_names import QualifiedNames, describe_node
-from sysmlc.language.interchange.folding import Folding
-from sysmlc.language.interchange.frames import Frame
-from sysmlc.language.interchange.metamodel import has_feature, is_concrete
-from sysmlc.language.interchange.references import (
+from sysmlc.language.interchange.element_ids import (
     ExchangeDocument,
     References,
     resolve_local,
     set_names,
 )
+from sysmlc.language.interchange.folding import Folding
+from sysmlc.language.interchange.frames import Frame
+from sysmlc.language.interchange.metamodel import has_feature, is_concrete
 from sysmlc.language.tree import Node
 from sysmlc.sources import Fault, Limits, Source, SourceError
 from sysmlc.sources.xml import SEPARATOR, parse, parser, too_deep

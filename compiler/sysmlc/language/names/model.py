@@ -7,7 +7,7 @@ from sysmlc.language.library import Library
 from sysmlc.language.metaclasses import TYPES
 from sysmlc.language.names import implied, metadata
 from sysmlc.language.names.base_types import REDEFINING_MEMBERSHIPS
-from sysmlc.language.names.feature_types import FeatureTypes
+from sysmlc.language.names.generals import FeatureTypes
 from sysmlc.language.names.lookup import Lookup
 from sysmlc.language.names.members import Hits
 from sysmlc.language.names.symbols import find_naming_reference, find_payload

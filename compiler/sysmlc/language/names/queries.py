@@ -1,7 +1,7 @@
 """Queries that the parts of name resolution ask about elements while a name is looked up.
 
-The protocols let ``positional_redefinition``, ``expression_results`` and ``metadata`` call back
-into the lookup that calls them, without an import cycle.
+The protocols let ``implied``, ``expression_results`` and ``metadata`` call back into the
+lookup that calls them, without an import cycle.
 """
 
 from collections.abc import Iterator

@@ -15,14 +15,13 @@ from sysmlc.language.text.builders import (
     operators,
     referring_usages,
     relationships,
-    transitions,
     usages,
 )
 from sysmlc.language.text.lalr import Action
 
 # KerML reuses the builders of SysML where both notations agree.
 _COMMON = (nodes, declarations, namespaces, operators, expressions, connections)
-_SYSML = (definitions, usages, actions, referring_usages, transitions)
+_SYSML = (definitions, usages, actions, referring_usages)
 
 
 def _collect_actions(modules: tuple[ModuleType, ...]) -> Mapping[str, Action]:
