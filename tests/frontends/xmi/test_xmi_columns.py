@@ -3,7 +3,7 @@
 import pytest
 from reading_xmi import MAGICDRAW, magicdraw, read, source
 
-from sysmlc.frontends.xmi.columns import read_document
+from sysmlc.frontends.xmi.document import read_document
 from sysmlc.sources import DEFAULT_LIMITS, SourceError
 
 XMI = "xmlns:xmi='http://schema.omg.org/spec/XMI/2.1'"

@@ -6,10 +6,7 @@ from sysmlc.diagnostics import Subject, Verdict
 from sysmlc.frontends.xmi import metaclasses
 from sysmlc.frontends.xmi.context import Context
 from sysmlc.frontends.xmi.document import WrittenReference
-from sysmlc.frontends.xmi.enterprise_architect.profiles import (
-    find_id_by_guid,
-    read_stereotype_name,
-)
+from sysmlc.frontends.xmi.enterprise_architect import find_id_by_guid, read_stereotype_name
 from sysmlc.frontends.xmi.rules import LOST_TAG
 from sysmlc.frontends.xmi.unit import LoweredDocument, Target
 from sysmlc.frontends.xmi.values import read_value

@@ -15,7 +15,7 @@ from sysmlc.frontends.xmi import (
 from sysmlc.frontends.xmi.attributes import lower_text
 from sysmlc.frontends.xmi.context import Context, RowHandler
 from sysmlc.frontends.xmi.elements import add_element
-from sysmlc.frontends.xmi.references import is_reference, lower_reference
+from sysmlc.frontends.xmi.folded_elements import is_reference, lower_reference
 from sysmlc.frontends.xmi.unit import LoweredDocument, Unit
 from sysmlc.ir import Kind
 

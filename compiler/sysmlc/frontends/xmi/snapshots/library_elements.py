@@ -5,8 +5,7 @@ from collections.abc import Callable, Iterable, Mapping
 from sysmlc.frontends.xmi import vocabulary as v
 from sysmlc.frontends.xmi.metaclasses import OWNERS, kind_of
 from sysmlc.frontends.xmi.namespaces import mangle_name
-from sysmlc.frontends.xmi.snapshots.closure import APPLICATION, canonical_href
-from sysmlc.frontends.xmi.snapshots.entries import Entry, Snapshots
+from sysmlc.frontends.xmi.snapshots.entries import APPLICATION, Entry, Snapshots, canonical_href
 from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind, Reference
 from sysmlc.ir.element import derived_id
 

@@ -1,1 +1,0 @@
-"""Content of the extension elements that Enterprise Architect writes."""
