@@ -19,8 +19,7 @@ from sysmlc.passes.activities import Activities
 from sysmlc.passes.activities import construction as activity_tokens
 from sysmlc.passes.activities import drawing as activity_drawing
 from sysmlc.passes.activities.exception_analysis import find_raising
-from sysmlc.passes.activities.inputs import Inputs
-from sysmlc.passes.activities.scope import Scope
+from sysmlc.passes.activities.inputs import Inputs, Scope
 
 KINDS = ("opaque", "fork", "join", "merge", "decision", "flow-final", "final", "value")
 

@@ -26,11 +26,10 @@ from sysmlc.passes.activities.assignments import (
     report_saturation,
     report_unassignable,
     report_unknown_targets,
+    report_untracked,
 )
 from sysmlc.passes.activities.exception_analysis import Raising, find_raising
-from sysmlc.passes.activities.inputs import Inputs
-from sysmlc.passes.activities.refusals import report_untracked
-from sysmlc.passes.activities.scope import Scope
+from sysmlc.passes.activities.inputs import Inputs, Scope
 from sysmlc.passes.activities.stores import track_stores
 
 

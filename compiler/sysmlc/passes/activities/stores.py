@@ -19,18 +19,18 @@ from sysmlc.logic.machines.symbolic_path import split_by_range
 from sysmlc.logic.simplify import is_satisfiable, remove_redundant, substitute
 from sysmlc.logic.writers import Writers, called
 from sysmlc.logic.written import Assigned
-from sysmlc.passes.activities.assignments import ResolvedAssignment
-from sysmlc.passes.activities.refusals import (
+from sysmlc.passes.activities.assignments import (
     DECIDED,
     ELSEWHERE,
     ENDLESS,
     UNKNOWN,
     WIDE,
     Refusal,
+    ResolvedAssignment,
     UntrackedFeature,
     refuse_shared,
 )
-from sysmlc.passes.activities.scope import Scope
+from sysmlc.passes.activities.inputs import Scope
 
 _Cases = tuple[tuple[Formula, Formula], ...]
 _Way = tuple[Formula, Formula, bool]

@@ -8,9 +8,7 @@ from msgspec import Struct
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind
 from sysmlc.ir.query import CLASSIFIERS, tag
-from sysmlc.passes.classify.allocations import add_allocations
-from sysmlc.passes.classify.bindings import add_bindings
-from sysmlc.passes.classify.constraints import check_constraints
+from sysmlc.passes.classify.constraints import add_bindings, check_constraints
 from sysmlc.passes.classify.lineage import (
     Ancestor,
     Profiles,
@@ -18,11 +16,16 @@ from sysmlc.passes.classify.lineage import (
     find_meanings,
     meanings_of_sysml,
 )
-from sysmlc.passes.classify.literals import check_literals
-from sysmlc.passes.classify.relations import add_relations
+from sysmlc.passes.classify.relations import add_allocations, add_relations
 from sysmlc.passes.classify.requirements import check_requirements, complete_requirement
 from sysmlc.passes.classify.roles import STRUCTURED, role_by_stereotype, role_by_structure
-from sysmlc.passes.classify.tags import HANDLERS, apply_tags, check_tags, find_optional_with_value
+from sysmlc.passes.classify.tags import (
+    HANDLERS,
+    apply_tags,
+    check_literals,
+    check_tags,
+    find_optional_with_value,
+)
 from sysmlc.passes.classify.units import link_units
 from sysmlc.passes.classify.vocabulary import LEVELS, Family, is_known, mangle
 

@@ -1,4 +1,6 @@
-"""Edges that dependencies mean: satisfies, derives, allocated-to and so on."""
+"""Edges that dependencies and «allocate» partitions mean: satisfies, derives, allocated-to ..."""
+
+from collections.abc import Iterator
 
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Edge, Element, Graph, Kind
@@ -44,3 +46,28 @@ def _check_suppliers(graph: Graph, sink: Sink, dependency: Element) -> None:
                 relation=dependency.role,
                 element=graph.qualified_name(supplier),
             )
+
+
+# -- allocate partitions -----------------------------------------------------------------------
+
+_PERFORMED = (Kind.ACTION, Kind.STRUCTURED)
+
+
+def add_allocations(graph: Graph) -> None:
+    """Add ``allocated-to`` from each action to the elements that its allocate partitions represent.
+
+    SysML 1.6 clause 15.3.2.2: the represented elements are the targets of an allocation from the
+    actions in the partition. Actions in subpartitions are in it too (UML 2.5.1 clause 15.6.3).
+    """
+    for partition in graph.of_kind(Kind.PARTITION):
+        if partition.role == "allocate partition":
+            for target in graph.targets(partition, Edge.REPRESENTS):
+                for action in _list_actions(graph, partition):
+                    graph.connect(Edge.ALLOCATED_TO, action, target)
+
+
+def _list_actions(graph: Graph, partition: Element) -> Iterator[Element]:
+    for element in graph.subtree(partition):
+        if element.kind is Kind.PARTITION:
+            nodes = graph.sources(element, Edge.IN_PARTITION)
+            yield from (node for node in nodes if node.kind in _PERFORMED)

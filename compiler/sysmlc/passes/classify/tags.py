@@ -1,14 +1,15 @@
 """Meanings of the tags of SysML's stereotypes: attributes and edges, by a table of handlers.
 
 SysML 1.6 (formal/19-11-01), the stereotype tables of clauses 7 to 11; docs/ir.md has the result.
-Tags that a profile of the unit does not define are reported.
+Tags that a profile of the unit does not define are reported, and so are values that are no literals
+of the enumerations of UML and SysML.
 """
 
 from collections.abc import Callable, Iterator, Mapping
 
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind
-from sysmlc.ir.query import bounds, generals
+from sysmlc.ir.query import FLOW_DIRECTIONS, bounds, generals, tag
 from sysmlc.passes.classify.vocabulary import mangle
 
 _Handler = Callable[[Graph, Element, Element], None]
@@ -245,10 +246,10 @@ def check_tags(graph: Graph, sink: Sink) -> None:
             continue
         if stereotype.id not in defined:
             defined[stereotype.id] = _list_properties(graph, stereotype)
-        for tag in _find_undefined(application, defined[stereotype.id]):
-            undefined.setdefault((stereotype.id, tag), []).append(application)
-    for (_, tag), applications in undefined.items():
-        _report(graph, sink, tag, applications)
+        for tag_name in _find_undefined(application, defined[stereotype.id]):
+            undefined.setdefault((stereotype.id, tag_name), []).append(application)
+    for (_, tag_name), applications in undefined.items():
+        _report(graph, sink, tag_name, applications)
 
 
 def _list_properties(graph: Graph, stereotype: Element) -> frozenset[str] | None:
@@ -283,4 +284,56 @@ def _report(graph: Graph, sink: Sink, tag: str, applications: list[Element]) -> 
         stereotype=first.name,
         element=graph.qualified_name(graph.target(first, Edge.SUBJECT) or first),
         others=f" and {further} more" if further else "",
+    )
+
+
+# -- literals ----------------------------------------------------------------------------------
+
+UNKNOWN_LITERAL = rule(
+    "SM220",
+    "unknown-literal",
+    Severity.WARNING,
+    "the {attribute} of '{element}' is '{value}', which is none of {known}",
+    help="choose one of {known} in the modelling tool",
+)
+
+_DIRECTED = (Kind.PARAMETER, Kind.PORT, Kind.PROPERTY, Kind.FLOW_PROPERTY)
+_LITERALS = {
+    "aggregation": ("none", "shared", "composite"),
+    "direction": ("in", "inout", "out", "return"),
+}
+
+
+def check_literals(graph: Graph, sink: Sink) -> None:
+    """Report and remove directions and aggregations that do not exist."""
+    for element in graph.of_kind(*_DIRECTED):
+        attrs = element.attrs
+        for attribute, literals in _LITERALS.items() if attrs else ():
+            if attribute in attrs and attrs[attribute] not in literals:
+                _report_literal(graph, sink, element, attribute)
+                # SysML 1.6 clause 9.3.2: a flow property without direction has inout.
+                is_flow = element.role == "flow property" and attribute == "direction"
+                graph.set(element, **{attribute: "inout" if is_flow else None})
+    for port in graph.of_kind(Kind.PORT):
+        if port.role == "flow port":
+            _check_flow_port(graph, sink, port)
+
+
+def _check_flow_port(graph: Graph, sink: Sink, port: Element) -> None:
+    """Check the direction of a flow port of SysML 1.1: a tag, which the pass ``ports`` reads."""
+    direction = tag(graph, port, "direction")
+    if isinstance(direction, str) and direction and direction not in FLOW_DIRECTIONS:
+        _report_literal(graph, sink, port, "direction", direction)
+
+
+def _report_literal(
+    graph: Graph, sink: Sink, element: Element, attribute: str, tag_value: str = ""
+) -> None:
+    sink.report(
+        UNKNOWN_LITERAL,
+        graph.subject(element),
+        attribute=attribute,
+        element=graph.qualified_name(element),
+        value=tag_value or element.attrs[attribute],
+        known=", ".join(FLOW_DIRECTIONS if tag_value else _LITERALS[attribute]),
     )

@@ -10,10 +10,9 @@ from sysmlc.ir import Edge, Graph, Kind, derived_id
 from sysmlc.overlay.model import Allocation, PortEntry, Refinement
 from sysmlc.passes.overlay import rules
 from sysmlc.passes.overlay.behaviors import add_behaviors, find_behaviors, resolve_calls
-from sysmlc.passes.overlay.blocks import refine_block
+from sysmlc.passes.overlay.blocks import add_items, check_domains, refine_block
 from sysmlc.passes.overlay.finder import ANYTHING, PORT, TYPE, Finder
 from sysmlc.passes.overlay.flows import add_flows
-from sysmlc.passes.overlay.items import add_items, check_domains
 
 
 class Overlay(Struct, frozen=True):

@@ -7,8 +7,7 @@ from msgspec import Struct
 
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Graph
-from sysmlc.passes.platform.binding import bind_machines
-from sysmlc.passes.platform.context import Context
+from sysmlc.passes.platform.binding import Context, bind_machines
 from sysmlc.passes.platform.offering import find_offers
 from sysmlc.recipe import platform as model
 from sysmlc.recipe.model import Model

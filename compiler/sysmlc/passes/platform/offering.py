@@ -5,8 +5,7 @@ from typing import NamedTuple
 
 from sysmlc.ir import Edge, Element, Graph, Kind, query
 from sysmlc.passes.platform import rules
-from sysmlc.passes.platform.binding import report_misplaced_services
-from sysmlc.passes.platform.context import Context, list_allocations
+from sysmlc.passes.platform.binding import Context, list_allocations, report_misplaced_services
 from sysmlc.recipe.model import Service
 from sysmlc.recipe.plant import PlantElement
 from sysmlc.recipe.platform import Binding, Offer

@@ -7,10 +7,9 @@ from msgspec import Struct, field
 
 from sysmlc.diagnostics import Sink, Subject
 from sysmlc.ir import Edge, Element, Graph, Kind
-from sysmlc.passes.recipe.context import NODES, Context
+from sysmlc.passes.recipe.context import NODES, Context, is_inlined
 from sysmlc.passes.recipe.derived_levels import add_derived_levels, report_derived_levels
 from sysmlc.passes.recipe.model import build_model
-from sysmlc.passes.recipe.regions import is_inlined
 from sysmlc.passes.recipe.reports import check_tags, report_decisions
 from sysmlc.recipe.model import Model
 from sysmlc.recipe.validate import validate

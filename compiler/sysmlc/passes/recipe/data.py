@@ -8,10 +8,16 @@ from msgspec import Struct, field
 
 from sysmlc.ir import Edge, Element, Kind, query
 from sysmlc.logic.expressions.expression import Expression, Literal
-from sysmlc.passes.recipe.context import Context
-from sysmlc.passes.recipe.expressions import read_expression, read_time, resolve_literals
-from sysmlc.passes.recipe.features import build_parameter, find_feature, is_data, is_input
-from sysmlc.passes.recipe.regions import is_inlined
+from sysmlc.passes.recipe.context import Context, is_inlined
+from sysmlc.passes.recipe.expressions import (
+    build_parameter,
+    find_feature,
+    is_data,
+    is_input,
+    read_expression,
+    read_time,
+    resolve_literals,
+)
 from sysmlc.recipe.expression import make_variable, map_operands, variable_name
 from sysmlc.recipe.model import Parameter
 

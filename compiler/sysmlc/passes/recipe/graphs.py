@@ -8,7 +8,16 @@ from msgspec.structs import replace
 
 from sysmlc.ir import Element, Kind, query
 from sysmlc.logic.expressions.expression import Binary, Expression, Literal, Unary
-from sysmlc.passes.recipe.context import Call, Context, Refinement
+from sysmlc.passes.recipe.context import (
+    Call,
+    Context,
+    Refinement,
+    find_entries,
+    find_exits,
+    is_for_each,
+    is_inlined,
+    list_steps,
+)
 from sysmlc.passes.recipe.data import Data
 from sysmlc.passes.recipe.nodes import (
     build_nodes,
@@ -16,13 +25,6 @@ from sysmlc.passes.recipe.nodes import (
     is_by_position,
     list_flows,
     step_kind,
-)
-from sysmlc.passes.recipe.regions import (
-    find_entries,
-    find_exits,
-    is_for_each,
-    is_inlined,
-    list_steps,
 )
 from sysmlc.recipe.flow import find_reachable, sort_nodes
 from sysmlc.recipe.loops import with_loops

@@ -6,8 +6,7 @@ from msgspec import Struct
 
 from sysmlc.ir import Edge, Element, Kind, query
 from sysmlc.passes.recipe.context import Context
-from sysmlc.passes.recipe.expressions import read_optional
-from sysmlc.passes.recipe.features import is_data, literal_default
+from sysmlc.passes.recipe.expressions import is_data, literal_default, read_optional
 from sysmlc.passes.recipe.profile import Tags
 from sysmlc.recipe.model import Machine, Material, Mode, OpcUa, Provider, Range
 from sysmlc.recipe.plant import is_of_plant

@@ -5,10 +5,9 @@ from collections.abc import Callable, Iterator
 from msgspec.structs import replace
 
 from sysmlc.ir import Edge, Element, Kind, query
-from sysmlc.passes.recipe.context import SERVICES, Context
+from sysmlc.passes.recipe.context import SERVICES, Context, is_block, is_for_each
 from sysmlc.passes.recipe.data import Data
 from sysmlc.passes.recipe.expressions import read_assignments, read_optional, read_time
-from sysmlc.passes.recipe.regions import is_block, is_for_each
 from sysmlc.recipe.model import Node
 
 CONTROL_KINDS = {

@@ -6,9 +6,15 @@ from msgspec import Struct
 
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind
-from sysmlc.passes.resolve.references import Use, group_uses, list_held_ids, use_of
 from sysmlc.passes.resolve.reports import SEVERAL_TARGETS, report_libraries, report_unresolved
-from sysmlc.passes.resolve.resolver import Resolver, UnitIndex
+from sysmlc.passes.resolve.resolver import (
+    Resolver,
+    UnitIndex,
+    Use,
+    group_uses,
+    list_held_ids,
+    use_of,
+)
 
 
 class Resolve(Struct, frozen=True):

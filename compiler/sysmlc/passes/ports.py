@@ -1,11 +1,14 @@
-"""Pass ``ports``: type and direction of every port, as far as the model states them."""
+"""Pass ``ports``: type and direction of every port, as far as the model states them.
+
+AutomationML leaves much open, so its ports have one diagnostic for each file.
+"""
 
 from collections.abc import Iterable
 from typing import ClassVar
 
 from msgspec import Struct
 
-from sysmlc.diagnostics import Severity, Sink, rule
+from sysmlc.diagnostics import Rule, Severity, Sink, rule
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.ir.query import (
     FLOW_DIRECTIONS,
@@ -25,7 +28,6 @@ from sysmlc.ir.query import (
     tag,
     type_of,
 )
-from sysmlc.passes.ports import plants as plant_ports
 
 UNDIRECTED_PORTS = rule(
     "SM300",
@@ -88,7 +90,7 @@ class Ports(Struct, frozen=True):
             graph.set(
                 port, direction=port.attrs.get("direction") or _redefined_direction(graph, port)
             )
-        plants = plant_ports.find_plant_files(graph)
+        plants = find_plant_files(graph)
         drawn_ports = [port for port in ports if port.source not in plants]
         for port in drawn_ports:
             if not _is_typed(graph, port):
@@ -239,9 +241,9 @@ def _is_typed(graph: Graph, port: Element) -> bool:
 def _report_plants(graph: Graph, sink: Sink, ports: list[Element]) -> None:
     internal = [port for port in ports if not port.attrs.get("external")]
     untyped = [port for port in internal if not _is_typed(graph, port)]
-    plant_ports.report_by_file(graph, sink, plant_ports.UNTYPED, untyped, internal)
-    undirected = plant_ports.find_undirected(graph, internal)
-    plant_ports.report_by_file(graph, sink, plant_ports.UNDIRECTED, undirected, internal)
+    report_by_file(graph, sink, UNTYPED_PLANT_PORTS, untyped, internal)
+    undirected = find_undirected_plant_ports(graph, internal)
+    report_by_file(graph, sink, UNDIRECTED_PLANT_PORTS, undirected, internal)
 
 
 def _check_multiplicity(graph: Graph, sink: Sink, feature: Element) -> None:
@@ -275,4 +277,70 @@ def _report_undirected(graph: Graph, sink: Sink, ports: list[Element]) -> None:
             block=graph.qualified_name(graph[id]),
             count=len(names),
             ports=", ".join(names[:_LISTED]) + more,
+        )
+
+
+# -- AutomationML ------------------------------------------------------------------------------
+
+
+UNDIRECTED_PLANT_PORTS = rule(
+    "SM121",
+    "undirected-plant-ports",
+    Severity.INFO,
+    "{count} of {all} ports of '{file}' have no direction: {ports}",
+    help="give the interfaces an attribute Direction, or say in an overlay what flows",
+)
+UNTYPED_PLANT_PORTS = rule(
+    "SM122",
+    "untyped-plant-ports",
+    Severity.WARNING,
+    "{count} of {all} ports of '{file}' have no type: {ports}",
+    help="let the interfaces refer to interface classes",
+)
+
+
+def find_plant_files(graph: Graph) -> frozenset[str]:
+    """Return the AutomationML files of the unit."""
+    documents = graph.of_kind(Kind.DOCUMENT)
+    return frozenset(document.source for document in documents if document.subkind == "caex")
+
+
+def find_undirected_plant_ports(graph: Graph, ports: Iterable[Element]) -> list[Element]:
+    """Return the ports without direction in files where other ports have one; in most files none
+    has.
+
+    A port that leads to a document, such as a drawing of the element, has no direction.
+    """
+    flow_ports = [port for port in ports if not _leads_to_document(graph, port)]
+    files_with_directions = {port.source for port in flow_ports if "direction" in port.attrs}
+    return [
+        p for p in flow_ports if p.source in files_with_directions and "direction" not in p.attrs
+    ]
+
+
+def _leads_to_document(graph: Graph, port: Element) -> bool:
+    referring = graph.sources(port, Edge.REFERENCES)
+    return any(element.kind is Kind.DOCUMENT for element in referring)
+
+
+def report_by_file(
+    graph: Graph, sink: Sink, rule: Rule, faulty: Iterable[Element], ports: Iterable[Element]
+) -> None:
+    """Report the *faulty* among all *ports* once for each file, at the first of them."""
+    totals: dict[str, int] = {}
+    for port in ports:
+        totals[port.source] = totals.get(port.source, 0) + 1
+    by_file: dict[str, list[Element]] = {}
+    for port in faulty:
+        by_file.setdefault(port.source, []).append(port)
+    for file, reported in by_file.items():
+        names = [f"'{graph.qualified_name(port)}'" for port in reported[:_LISTED]]
+        more = f" and {len(reported) - _LISTED} more" if len(reported) > _LISTED else ""
+        sink.report(
+            rule,
+            graph.subject(reported[0]),
+            count=len(reported),
+            all=totals[file],
+            file=file,
+            ports=", ".join(names) + more,
         )
