@@ -1,30 +1,48 @@
-"""Diagrams of authors: their selection of elements and lines, our notation."""
+"""Diagrams of authors: their selection of elements and lines, our notation.
 
-from collections.abc import Iterator
+A behaviour is the derived drawing without the elements that the author omitted. Block definition,
+class, package and requirement diagrams consist of boxes and lines.
+"""
+
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
 from msgspec.structs import replace
 
-from sysmlc.backends.plantuml import labels, parametric, sequence, use_case
-from sysmlc.backends.plantuml.author import behaviours as author_behaviours
-from sysmlc.backends.plantuml.author import boxes as author_boxes
+from sysmlc.backends.plantuml import (
+    activity,
+    block_definition,
+    boxes,
+    labels,
+    parametric,
+    requirement,
+    sequence,
+    state_machine,
+    use_case,
+)
+from sysmlc.backends.plantuml.aliases import Aliases
 from sysmlc.backends.plantuml.author import internal_block as author_parts
-from sysmlc.backends.plantuml.author.selection import Selection
+from sysmlc.backends.plantuml.author.selection import FEATURES, LINES, Selection
+from sysmlc.backends.plantuml.layout import arrange_boxes
 from sysmlc.backends.plantuml.parametric import Binding, find_bindings
-from sysmlc.backends.plantuml.relations import Relation
+from sysmlc.backends.plantuml.relations import Relation, iter_use_case_relations, list_relations
 from sysmlc.backends.plantuml.views import (
+    Box,
     BoxView,
     Diagram,
     GraphView,
     InternalView,
+    Line,
+    Node,
+    Note,
     UseCaseView,
     View,
 )
 from sysmlc.diagnostics import Severity, Sink, rule
-from sysmlc.ir import Element, Graph, Kind
-from sysmlc.ir.query import CLASSIFIERS
-from sysmlc.support.plantuml_text import escape_line
+from sysmlc.ir import Edge, Element, Graph, Kind
+from sysmlc.ir.query import CLASSIFIERS, is_requirement
+from sysmlc.support.plantuml_text import escape_line, wrap_lines
 
 NOT_DRAWN = rule(
     "SM702",
@@ -81,7 +99,7 @@ class _Drawer:
 
     @cached_property
     def _relations(self) -> list[Relation]:
-        return author_boxes.list_all_relations(self.graph)
+        return list_all_relations(self.graph)
 
     @cached_property
     def _bindings(self) -> dict[str, list[Binding]]:
@@ -103,20 +121,20 @@ class _Drawer:
 
     def _build_view(self, choice: Selection, kind: str) -> View | None:
         if kind in ("bdd", "class", "pkg", "req"):
-            return author_boxes.build_view(choice, self._relations)
+            return build_box_view(choice, self._relations)
         if kind == "uc":
             return self._build_use_case_view(choice)
         if kind in ("ibd", "par"):
             return self._build_parametric_view(choice) or author_parts.build_view(choice)
         if kind in ("act", "stm"):
             kind = Kind.ACTIVITY if kind == "act" else Kind.STATE_MACHINE
-            return author_behaviours.build_view(choice, kind)
+            return build_behaviour_view(choice, kind)
         return self._find_sequence_view(choice) if kind == "sd" else None
 
     def _build_use_case_view(self, choice: Selection) -> View:
         figures = [element for element in choice.shown if element.kind in use_case.FIGURES]
         ids = {element.id for element in figures}
-        inside = [r for r in self._relations if author_boxes.is_inside(choice, r, ids)]
+        inside = [r for r in self._relations if is_inside(choice, r, ids)]
         cases = [element for element in figures if element.kind is Kind.USE_CASE]
         actors = [element for element in figures if element not in cases]
         view = use_case.build_view(self.graph, cases, actors, inside)
@@ -124,7 +142,7 @@ class _Drawer:
         return replace(view, notes=tuple(notes))
 
     def _find_sequence_view(self, choice: Selection) -> View | None:
-        about = author_behaviours.find_behaviour(choice, Kind.INTERACTION)
+        about = find_behaviour(choice, Kind.INTERACTION)
         diagram = self._sequences.get(about.id) if about is not None else None
         return diagram.view if diagram is not None else None
 
@@ -209,3 +227,156 @@ def _is_shown_otherwise(choice: Selection, element: Element) -> bool:
     """
     is_named = element.id in choice.listed and element.kind in CLASSIFIERS
     return is_named or element is choice.about or element.kind in (Kind.APPLICATION, Kind.REGION)
+
+
+# -- behaviours --------------------------------------------------------------------------------
+
+_WHOLE: dict[Kind, Callable[[Graph, Element], GraphView]] = {
+    Kind.ACTIVITY: activity.draw_whole,
+    Kind.STATE_MACHINE: state_machine.draw_whole,
+}
+
+
+def find_behaviour(choice: Selection, kind: Kind) -> Element | None:
+    """Return the behaviour of the frame, else the behaviour that owns the shown elements."""
+    graph, about = choice.graph, choice.about
+    starts = [*([about] if about else []), *choice.shown]
+    candidates = (element for start in starts for element in (start, *graph.ancestors(start)))
+    return next((element for element in candidates if element.kind is kind), None)
+
+
+def build_behaviour_view(choice: Selection, kind: Kind) -> GraphView:
+    """Return the nodes that the author selected, with their content, and the lines between them."""
+    about = find_behaviour(choice, kind)
+    if about is None:
+        return GraphView((), ())
+    whole = _WHOLE[kind](choice.graph, about)
+    nodes = tuple(_select_nodes(whole.nodes, choice.ids))
+    aliases = set(_iter_aliases(nodes))
+    return GraphView(
+        nodes,
+        tuple(line for line in whole.lines if _is_drawn(line, aliases, choice.ids)),
+        tuple(_select_notes(whole.notes, aliases, choice.ids)),
+    )
+
+
+def _select_nodes(nodes: Iterable[Node], ids: frozenset[str]) -> Iterator[Node]:
+    for node in nodes:
+        children = tuple(_select_nodes(node.children, ids))
+        if children or not ids.isdisjoint(node.shows):
+            yield replace(node, children=children)
+
+
+def _iter_aliases(nodes: Iterable[Node]) -> Iterator[str]:
+    for node in nodes:
+        yield node.alias
+        yield from _iter_aliases(node.children)
+
+
+def _is_drawn(line: Line, aliases: set[str], ids: frozenset[str]) -> bool:
+    return {line.source, line.target} <= aliases and not ids.isdisjoint(line.shows)
+
+
+def _select_notes(notes: Iterable[Note], aliases: set[str], ids: frozenset[str]) -> Iterator[Note]:
+    for note in notes:
+        if not ids.isdisjoint(note.shows):
+            yield replace(
+                note, targets=tuple(target for target in note.targets if target in aliases)
+            )
+
+
+# -- boxes and lines ---------------------------------------------------------------------------
+
+_ARROWS = {"--|>": Edge.SPECIALIZES, "..|>": Edge.REALIZES}
+_TEXT = 44
+
+
+def list_all_relations(graph: Graph) -> list[Relation]:
+    """Return all relations that a diagram of boxes may show as lines."""
+    return [
+        *list_relations(graph),
+        *requirement.list_relations(graph),
+        *iter_use_case_relations(graph),
+        *_iter_comment_anchors(graph),
+    ]
+
+
+def build_box_view(choice: Selection, candidates: Iterable[Relation]) -> BoxView:
+    """Return the boxes that the author selected, and the lines that the diagram shows between
+    them.
+    """
+    boxed = [item for item in choice.shown if _is_boxed(choice, item)]
+    ids = {item.id for item in boxed}
+    inside = [relation for relation in candidates if is_inside(choice, relation, ids)]
+    in_lines = {id for relation in inside for id in relation.shows}
+    aliases = Aliases()
+    boxes = [_make_box(choice, item, aliases, in_lines) for item in boxed]
+    return arrange_boxes(
+        boxes, [block_definition.make_line(relation, aliases) for relation in inside]
+    )
+
+
+def _is_boxed(choice: Selection, item: Element) -> bool:
+    if item.kind in LINES or item.kind is Kind.VIEW:
+        return False
+    if item.kind in FEATURES or item.kind is Kind.CONSTRAINT:
+        return item.owner is None
+    return True
+
+
+def is_inside(choice: Selection, relation: Relation, boxes: set[str]) -> bool:
+    """Whether the author drew the relation, and both its ends have boxes with these ids."""
+    if not {relation.source, relation.target} <= boxes:
+        return False
+    edge = _ARROWS.get(relation.arrow)
+    if edge is not None and not relation.shows:
+        return choice.shows_edge(edge, relation.source, relation.target)
+    return not relation.shows or relation.shows[0] in choice.ids
+
+
+def _iter_comment_anchors(graph: Graph) -> Iterator[Relation]:
+    for comment in graph.of_kind(Kind.COMMENT):
+        for about in graph.targets(comment, Edge.REFERENCES):
+            yield Relation(comment.id, about.id, "..")
+
+
+# -- boxes -------------------------------------------------------------------------------------
+
+
+def _make_box(choice: Selection, item: Element, aliases: Aliases, in_lines: set[str]) -> Box:
+    graph = choice.graph
+    if item.kind is Kind.COMMENT:
+        text = "\\n".join(wrap_lines(str(item.attrs.get("body", "")), _TEXT))
+        alias = aliases.make(item.id, "", "note")
+        return Box(alias, text or labels.name(item), "requirement", shows=(item.id,))
+    if item.attrs.get("external"):
+        return boxes.make_stub(graph, item, aliases)
+    if is_requirement(item):
+        return requirement.make_box(graph, item, aliases)
+    features = _list_features(choice, item)
+    return boxes.make_box(graph, item, aliases, in_lines, {}, features)
+
+
+def _list_features(choice: Selection, item: Element) -> list[Element]:
+    """Return the features in the compartments: own, nested in the drawing, or inherited ones."""
+    graph = choice.graph
+    owned = graph.owned(item)
+    if choice.is_summary:
+        return owned
+    nested = [id for path in choice.nesting for id in _list_below(path, item.id)]
+    inherited = graph.targets(item, Edge.FEATURE) if item.id in choice.ids else []
+    foreign = [
+        feature
+        for feature in inherited
+        if feature.id in choice.ids and feature.owner not in choice.ids
+    ]
+    drawn = [graph[id] for id in nested if graph[id].kind in FEATURES]
+    selected = [feature for feature in owned if feature.id in choice.ids]
+    return list(dict.fromkeys([*selected, *drawn, *foreign]))
+
+
+def _list_below(path: tuple[str, ...], id: str) -> tuple[str, ...]:
+    """Return the ids drawn inside or on the border of the element with *id*, nested ports
+    included.
+    """
+    return path[path.index(id) + 1 :] if id in path else ()
