@@ -15,7 +15,7 @@ from sysmlc.synthesis.controller_synthesis import synthesise_controller
 from sysmlc.synthesis.deadline import find_deadline
 from sysmlc.synthesis.decision import Options, decide
 from sysmlc.synthesis.games.game import make_game
-from sysmlc.synthesis.unrealizable.core import unrealizable_core
+from sysmlc.synthesis.unrealizable import unrealizable_core
 
 LIMIT = 600.0
 """CPU seconds after which something is given up."""

@@ -6,7 +6,7 @@ from sysmlc.driver import registry
 from sysmlc.passes import pipeline
 from sysmlc.synthesis import composition_check as together
 from sysmlc.synthesis import contract_checks as check
-from sysmlc.synthesis.lints import rules
+from sysmlc.synthesis import rules
 
 
 @pytest.fixture

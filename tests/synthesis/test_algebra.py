@@ -14,14 +14,13 @@ from sysmlc.logic.evaluate import evaluate_on_lasso
 from sysmlc.logic.formats import read
 from sysmlc.logic.printing import print_formula
 from sysmlc.synthesis import Manager, OutsideGr1Error
-from sysmlc.synthesis.algebra.fair_systems import DomainError, Universe
+from sysmlc.synthesis.algebra.fair_systems import DomainError, Universe, build_lasso, pick_state
 from sysmlc.synthesis.algebra.refinement import (
     Entailment,
     find_contract_run,
     find_environment_run,
     find_refinement_failures,
 )
-from sysmlc.synthesis.algebra.traces import build_lasso, pick_state
 
 DOOR = """
     env open: bool

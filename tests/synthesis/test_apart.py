@@ -7,10 +7,7 @@ from msgspec.structs import replace
 from sysmlc.logic.printing import print_formula
 from sysmlc.support.disjoint_sets import group_related
 from sysmlc.synthesis import Manager, make_game
-from sysmlc.synthesis.controllers.independent_games import (
-    combine_independent_strategies,
-    split_game,
-)
+from sysmlc.synthesis.controller_synthesis import combine_independent_strategies, split_game
 from sysmlc.synthesis.controllers.table import build_table
 
 LAMP = """

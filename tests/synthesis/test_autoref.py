@@ -10,10 +10,9 @@ from sysmlc.diagnostics import Sink, Subject
 from sysmlc.synthesis import Manager, make_game
 from sysmlc.synthesis.deadline import find_deadline
 from sysmlc.synthesis.decision import Options, decide
-from sysmlc.synthesis.games import search_reductions as reach
-from sysmlc.synthesis.games import single_moves as routes
+from sysmlc.synthesis.games import search_reductions
 from sysmlc.synthesis.games.solver import solve_by_single_moves
-from sysmlc.synthesis.unrealizable.core import unrealizable_core
+from sysmlc.synthesis.unrealizable import unrealizable_core
 
 PURE = Options(engine="autoref")
 LIFTS = "".join(LIFT.replace("0..3", "0..2").format(name) for name in "abc")
@@ -26,14 +25,14 @@ def verdict(text: str) -> bool | None:
 
 @pytest.mark.parametrize("kind", [small_games.contract, small_games.plant, fleet])
 def test_random_games_have_the_verdict_of_listed_states(kind, monkeypatch):
-    monkeypatch.setattr(routes, "MIN_COMPONENTS", 2)
+    monkeypatch.setattr(search_reductions, "MIN_COMPONENTS", 2)
     found = [small_games.encoded_disagreement(kind(seed), "autoref") for seed in range(25)]
     assert [text for text in found if text] == []
 
 
 @pytest.mark.parametrize("kind", [small_games.contract, small_games.plant])
 def test_so_they_have_within_reached_states(kind, monkeypatch):
-    monkeypatch.setattr(reach, "MIN_STATE_BITS", 0)
+    monkeypatch.setattr(search_reductions, "MIN_STATE_BITS", 0)
     found = [small_games.encoded_disagreement(kind(seed), "autoref") for seed in range(25)]
     assert [text for text in found if text] == []
 

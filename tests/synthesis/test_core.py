@@ -11,10 +11,9 @@ from msgspec.structs import replace
 
 from sysmlc.diagnostics import Sink, Subject
 from sysmlc.logic import formats
-from sysmlc.synthesis import Manager, make_game
+from sysmlc.synthesis import Manager, make_game, unrealizable
 from sysmlc.synthesis.decision import Options, decide
-from sysmlc.synthesis.unrealizable import core
-from sysmlc.synthesis.unrealizable.core import unrealizable_core
+from sysmlc.synthesis.unrealizable import unrealizable_core
 
 CORPUS = os.environ.get("SYSMLC_CORPUS")
 LIFT = """
@@ -63,8 +62,8 @@ def test_a_core_of_many_takes_few_games(monkeypatch):
     declared = [f"sys x{at}: bool" for at in range(64)]
     made = contract("\n".join(["env a: bool", *declared, *lines, "promise always a' -> !x40'"]))
     played = []
-    decided = core.is_won
-    monkeypatch.setattr(core, "is_won", lambda game: played.append(game) or decided(game))
+    decided = unrealizable.is_won
+    monkeypatch.setattr(unrealizable, "is_won", lambda game: played.append(game) or decided(game))
     assert [one.text for one in found(made)] == ["a -> x40'", "a' -> !x40'"]
     assert len(played) < 32
 
@@ -96,7 +95,7 @@ def test_every_unrealizable_contract_of_din_8580_has_a_core():
     for path in sorted(Path(CORPUS, "gr1", "din8580").glob("*.json")):
         (made,) = formats.read(path.read_text(encoding="utf-8"), path.name, Sink())
         game = make_game(made, Manager())
-        if not core.is_won(game):
+        if not unrealizable.is_won(game):
             sizes[path.stem] = len(unrealizable_core(game))
     assert len(sizes) == 18
     assert all(0 < size < 12 for size in sizes.values()), sizes

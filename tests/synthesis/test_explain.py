@@ -5,7 +5,7 @@ from itertools import combinations
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sysmlc.synthesis.unrealizable.core import minimal_conflict
+from sysmlc.synthesis.unrealizable import minimal_conflict
 
 CONFLICTS = st.lists(st.frozensets(st.integers(0, 9), min_size=1, max_size=4), min_size=1)
 

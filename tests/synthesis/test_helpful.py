@@ -7,8 +7,7 @@ from small_games import contract as random_contract
 
 from sysmlc.logic.printing import print_formula
 from sysmlc.synthesis import Manager, make_game
-from sysmlc.synthesis.unrealizable.core import is_won
-from sysmlc.synthesis.unrealizable.explanation import explain_unrealizability, helpful_assumptions
+from sysmlc.synthesis.unrealizable import explain_unrealizability, helpful_assumptions, is_won
 
 TURN = """
     env wanted: 0..2

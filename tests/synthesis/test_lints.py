@@ -8,8 +8,8 @@ from contracts_in_lines import contract
 
 from sysmlc.diagnostics import Sink, Subject, catalogue
 from sysmlc.logic.formats import read
-from sysmlc.synthesis import Manager, make_game, solve
-from sysmlc.synthesis.lints import lint, rules
+from sysmlc.synthesis import Manager, make_game, rules, solve
+from sysmlc.synthesis.lints import lint
 
 CODES = ("SM533", "SM534", "SM535", "SM536", "SM537", "SM538", "SM539", "SM540", "SM541", "SM542")
 RULES = [catalogue()[code] for code in CODES]

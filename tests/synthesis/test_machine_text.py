@@ -11,18 +11,18 @@ from contracts_in_lines import contract
 
 from sysmlc.diagnostics import Sink, Subject
 from sysmlc.support import resources
-from sysmlc.synthesis import LimitError
+from sysmlc.synthesis import LimitError, controller_files
 from sysmlc.synthesis import controller_synthesis as synthesise
-from sysmlc.synthesis.controller_files import FORMS, write_controllers
-from sysmlc.synthesis.controller_synthesis import Form, synthesise_controller
-from sysmlc.synthesis.controllers import controller_formats
-from sysmlc.synthesis.controllers.controller_formats import (
+from sysmlc.synthesis.controller_files import (
+    FORMS,
     gr1c_json,
     has_diagram,
     machine_diagram,
     machine_json,
     table_json,
+    write_controllers,
 )
+from sysmlc.synthesis.controller_synthesis import Form, synthesise_controller
 from sysmlc.synthesis.controllers.verification import Fault
 from sysmlc.synthesis.decision import Options
 
@@ -173,7 +173,7 @@ def test_what_is_too_large_for_gr1c_is_said():
 
 
 def test_a_form_that_cannot_say_a_controller_is_told(monkeypatch):
-    monkeypatch.setattr(controller_formats, "gr1c_json", partial(gr1c_json, most=10))
+    monkeypatch.setattr(controller_files, "gr1c_json", partial(gr1c_json, most=10))
     result, _ = made(COUNTER)
     sink = Sink()
     told = write_controllers([result], lambda origin: Subject(), sink, "gr1c")

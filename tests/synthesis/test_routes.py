@@ -17,7 +17,7 @@ from sysmlc.logic.contract import (
     Variable,
 )
 from sysmlc.logic.formula import Var
-from sysmlc.synthesis.games import single_moves as routes
+from sysmlc.synthesis.games import search_reductions
 from sysmlc.synthesis.games.solver import solve_arena, solve_by_single_moves
 
 FLEETS = 150
@@ -44,7 +44,7 @@ def arena(text: str):
 def moving(text: str) -> list[list[str]]:
     """The numbers that change in each of the ways."""
     found = arena(text)
-    ways = routes.find_single_moves(found)
+    ways = search_reductions.find_single_moves(found)
     return (
         [[name for name in "abc" if f"{name}.0" in bits] for bits in ways.moving_bits]
         if ways
@@ -71,7 +71,7 @@ def test_rules_about_two_that_leave_one_free_to_move_tie_nothing(line):
 def test_what_cannot_move_without_another_moves_with_it(monkeypatch):
     tied = f"{LIFTS}\npromise always move_a'=move_b'"
     assert moving(tied) == []
-    monkeypatch.setattr(routes, "MIN_COMPONENTS", 2)
+    monkeypatch.setattr(search_reductions, "MIN_COMPONENTS", 2)
     assert moving(tied) == [["c"], ["a", "b"]]
 
 
@@ -114,16 +114,16 @@ def test_what_no_move_wins_is_lost():
 
 
 def test_random_fleets_are_of_all_kinds(monkeypatch):
-    monkeypatch.setattr(routes, "MIN_COMPONENTS", 2)
+    monkeypatch.setattr(search_reductions, "MIN_COMPONENTS", 2)
     arenas = [small_games.encoded(fleet(seed)) for seed in range(FLEETS)]
-    apart = [one for one in arenas if routes.find_single_moves(one)]
+    apart = [one for one in arenas if search_reductions.find_single_moves(one)]
     won = sum(solve_by_single_moves(one) is not None for one in apart)
     assert [len(apart) > 50, won > 10, won < len(apart) - 10] == [True, True, True]
 
 
 @pytest.mark.parametrize("start", range(0, FLEETS, 50))
 def test_the_verdict_on_random_fleets_is_that_of_listed_states(start, monkeypatch):
-    monkeypatch.setattr(routes, "MIN_COMPONENTS", 2)
+    monkeypatch.setattr(search_reductions, "MIN_COMPONENTS", 2)
     found = [small_games.encoded_disagreement(fleet(seed)) for seed in range(start, start + 50)]
     assert [text for text in found if text] == []
 

@@ -17,9 +17,8 @@ from sysmlc.robots.run_extension import extend_to_all_robots, violated_conjuncts
 from sysmlc.robots.schedule import TravelTimes
 from sysmlc.robots.study import Study
 from sysmlc.robots.system_contract import system_contract
-from sysmlc.synthesis.algebra.fair_systems import Universe
+from sysmlc.synthesis.algebra.fair_systems import Trace, Universe
 from sysmlc.synthesis.algebra.refinement import Entailment, find_refinement_failures
-from sysmlc.synthesis.algebra.traces import Trace
 from sysmlc.synthesis.bdd.limits import LimitError
 from sysmlc.synthesis.bdd.manager import Manager
 from sysmlc.synthesis.decision import Options

@@ -26,9 +26,8 @@ from sysmlc.robots.joint_contracts import (
 from sysmlc.robots.run_extension import extend_to_all_robots, satisfies_contract, violated_conjuncts
 from sysmlc.robots.study import Robot, Study
 from sysmlc.synthesis.algebra.discharge import Recurrence
-from sysmlc.synthesis.algebra.fair_systems import Runs, Universe
+from sysmlc.synthesis.algebra.fair_systems import Runs, Trace, Universe, build_lasso, shortest_path
 from sysmlc.synthesis.algebra.refinement import Entailment
-from sysmlc.synthesis.algebra.traces import Trace, build_lasso, shortest_path
 from sysmlc.synthesis.bdd.manager import Manager
 
 

@@ -14,7 +14,7 @@ from sysmlc.robots import contract_terms as terms
 from sysmlc.robots.joint_contracts import liveness_conjuncts, safety_conjuncts
 from sysmlc.robots.mission_contract import NONE
 from sysmlc.robots.study import STAY, WAYS, Grid, Robot, Study
-from sysmlc.synthesis.algebra.traces import Trace
+from sysmlc.synthesis.algebra.fair_systems import Trace
 
 Values = Mapping[str, Literal]
 

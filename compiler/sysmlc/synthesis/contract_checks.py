@@ -16,7 +16,7 @@ from sysmlc.synthesis.bdd.manager import Manager
 from sysmlc.synthesis.decision import Options, Place, Verdict, decide
 from sysmlc.synthesis.games.game import OutsideGr1Error, make_game
 from sysmlc.synthesis.lints import lint
-from sysmlc.synthesis.unrealizable.core import is_won, unrealizable_core
+from sysmlc.synthesis.unrealizable import is_won, unrealizable_core
 from sysmlc.synthesis.witnesses import (
     Party,
     Witness,

@@ -1,19 +1,33 @@
-"""Files of synthesised controllers, in the format that the caller chooses."""
+"""Files of synthesised controllers: machines, tables and gr1c's strategies as JSON, and diagrams.
 
-from collections.abc import Iterator, Sequence
+The JSON documents conform to metamodels/sysmlc-machine.schema.json, to metamodels/sysmlc-
+controller.schema.json, and to version 1 of gr1c's "strategy in JSON" (its manual). A node of a gr1c
+strategy is a step: the values of all variables, and the nodes to which the next inputs lead.
+Booleans are 0 and 1, integers and literals count from 0. What gr1c notes about its own run
+(version, date) stays empty, so that equal contracts give equal texts.
+"""
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from msgspec import Struct
 from msgspec.structs import replace
 
 from sysmlc.diagnostics import Sink
-from sysmlc.logic.contract import Contract
+from sysmlc.logic import domains
+from sysmlc.logic.contract import BooleanDomain, Class, Conjunct, Contract, Variable
+from sysmlc.logic.evaluate import Evaluation, compile_evaluation
+from sysmlc.logic.formats.document_text import type_of
+from sysmlc.logic.formula import Apply, Const, Formula, Literal, Op, Var
+from sysmlc.logic.printing import print_formula
 from sysmlc.support.file_names import assign_file_names
+from sysmlc.support.json_text import append_members, encode_row
+from sysmlc.support.plantuml_text import escape_line
 from sysmlc.synthesis import rules
 from sysmlc.synthesis.bdd.limits import LimitError
 from sysmlc.synthesis.controller_synthesis import Synthesis
-from sysmlc.synthesis.controllers import controller_formats
 from sysmlc.synthesis.controllers.closed_loop import Controller
-from sysmlc.synthesis.controllers.mealy import Machine
+from sysmlc.synthesis.controllers.mealy import Machine, Move
+from sysmlc.synthesis.controllers.table import Entry, Table
 from sysmlc.synthesis.decision import Place
 
 OWN, TABLE, GR1C = FORMS = ("own", "table", "gr1c")
@@ -56,10 +70,282 @@ def controller_files(
 ) -> Iterator[tuple[str, str]]:
     """Yield the files of one controller. Raises LimitError if it is too large for gr1c's format."""
     if form == GR1C:
-        yield f"{name}.gr1c.json", controller_formats.gr1c_json(controller, contract)
+        yield f"{name}.gr1c.json", gr1c_json(controller, contract)
     elif not isinstance(controller, Machine):
-        yield f"{name}.controller.json", controller_formats.table_json(controller, contract)
+        yield f"{name}.controller.json", table_json(controller, contract)
     else:
-        yield f"{name}.machine.json", controller_formats.machine_json(controller, contract)
-        if controller_formats.has_diagram(controller):
-            yield f"{name}.machine.puml", controller_formats.machine_diagram(controller, contract)
+        yield f"{name}.machine.json", machine_json(controller, contract)
+        if has_diagram(controller):
+            yield f"{name}.machine.puml", machine_diagram(controller, contract)
+
+
+# -- formats -----------------------------------------------------------------------------------
+
+MACHINE_FORMAT = "sysmlc-machine/2"
+MAX_DIAGRAM_STATES = 12
+MAX_DIAGRAM_ARROWS = 40
+"""States and moves up to which a diagram is readable."""
+_MAX_LABEL_LINES = 4
+"""Cases of a condition that an arrow lists one by one."""
+
+
+def machine_json(machine: Machine, contract: Contract) -> str:
+    """Return the machine as a JSON file with one line for each move."""
+    names = register_names(machine)
+    head = {
+        "format": MACHINE_FORMAT,
+        "name": contract.component,
+        "origin": contract.origin,
+        "inputs": [encode_variable(variable) for variable in machine.inputs],
+        "outputs": [encode_variable(variable) for variable in machine.outputs],
+        "registers": [{"name": name, "of": of} for of, name in names.items()],
+    }
+    states = ",\n".join(f"    [{_encode_moves(moves, names)}]" for moves in machine.states)
+    return append_members(head, [f'  "states": [\n{states}\n  ]'])
+
+
+def register_names(machine: Machine) -> dict[str, str]:
+    """Return the names of the registers: ``last_x``, or longer if that name is in use."""
+    names = {variable.name for variable in (*machine.inputs, *machine.outputs)}
+    registers: dict[str, str] = {}
+    for variable in machine.registers:
+        name = f"last_{variable.name}"
+        while name in names:
+            name += "_"
+        registers[variable.name] = name
+    return registers
+
+
+def rename_registers(formula: Formula, registers: Mapping[str, str]) -> Formula:
+    """Return a condition or an output of a move over the names of inputs and registers."""
+    match formula:
+        case Var(name, primed):
+            return Var(name if primed else registers[name])
+        case Apply(op, parts):
+            return Apply(op, tuple(rename_registers(part, registers) for part in parts))
+        case _:
+            return formula
+
+
+def encode_variable(variable: Variable) -> dict[str, object]:
+    """Return a variable as a JSON value."""
+    return {
+        "name": variable.name,
+        "type": type_of(variable.domain),
+        "origin": variable.origin,
+    }
+
+
+def _encode_moves(moves: Sequence[Move], names: Mapping[str, str]) -> str:
+    if not moves:
+        return ""
+    lines = (
+        "      "
+        + encode_row(
+            {
+                "when": _print_with_registers(move.when, names),
+                "output": [_describe_output(output, names) for output in move.output],
+                "next": move.state,
+            }
+        )
+        for move in moves
+    )
+    return "\n" + ",\n".join(lines) + "\n    "
+
+
+def _describe_output(output: Formula, names: Mapping[str, str]) -> object:
+    return (
+        output.value
+        if isinstance(output, Const)
+        else {"value": _print_with_registers(output, names)}
+    )
+
+
+def _print_with_registers(formula: Formula, names: Mapping[str, str]) -> str:
+    return print_formula(rename_registers(formula, names))
+
+
+def has_diagram(machine: Machine) -> bool:
+    """Return whether the machine is small enough for a readable diagram."""
+    return machine.size <= MAX_DIAGRAM_STATES and machine.count <= MAX_DIAGRAM_ARROWS
+
+
+def machine_diagram(machine: Machine, contract: Contract) -> str:
+    """Return the machine as a PlantUML state diagram, with conditions and outputs on the arrows."""
+    names = register_names(machine)
+    lines = ["@startuml", f"title {escape_line(contract.component)}", "hide empty description"]
+    lines += [f"state S{index}" for index in range(machine.size)]
+    lines += ["[*] --> S0"]
+    for state, moves in enumerate(machine.states):
+        lines += (
+            f"S{state} --> S{move.state} : {_arrow_label(move, machine, names)}" for move in moves
+        )
+    return "\n".join((*lines, *_legend(names), "@enduml", ""))
+
+
+def _arrow_label(move: Move, machine: Machine, names: Mapping[str, str]) -> str:
+    when = move.when
+    cases = when.args if isinstance(when, Apply) and when.op is Op.OR else (when,)
+    conditions = [
+        "any" if condition == Const(True) else _print_with_registers(condition, names)
+        for condition in cases
+    ]
+    if len(conditions) > _MAX_LABEL_LINES:
+        conditions[_MAX_LABEL_LINES - 1 :] = ["or more"]
+    return "\\n".join([*conditions, f"/ {_describe_answer(move, machine, names)}"])
+
+
+def _describe_answer(move: Move, machine: Machine, names: Mapping[str, str]) -> str:
+    """Return the outputs, without registers that stay as they were."""
+    pairs = zip(machine.outputs, move.output, strict=True)
+    outputs = [
+        f"{variable.name}={_print_with_registers(value, names)}"
+        for variable, value in pairs
+        if value != Var(variable.name)
+    ]
+    return " ".join(outputs) or "as before"
+
+
+def _legend(names: Mapping[str, str]) -> Iterator[str]:
+    if names:
+        yield "legend"
+        yield from (f"  {name} is what {of} was in the step before" for of, name in names.items())
+        yield "  an output that is not told stays what it was"
+        yield "endlegend"
+
+
+TABLE_FORMAT = "sysmlc-controller/1"
+_NODES_PER_LINE = 8
+"""Nodes on a line."""
+
+
+def table_json(table: Table, contract: Contract) -> str:
+    """Return the table as a JSON file with several nodes on a line."""
+    head = {
+        "format": TABLE_FORMAT,
+        "name": contract.component,
+        "origin": contract.origin,
+        "inputs": [encode_variable(variable) for variable in table.inputs],
+        "outputs": [encode_variable(variable) for variable in table.outputs],
+    }
+    members = (
+        _encode_list("bits", _encode_bits(table)),
+        _encode_list("nodes", _encode_nodes(table)),
+        f'  "first": {_encode_entry(table.first)}',
+        _encode_list("modes", map(_encode_entry, table.modes)),
+    )
+    return append_members(head, members)
+
+
+def _encode_list(name: str, rows: Iterable[str]) -> str:
+    lines = ",\n".join(f"    {row}" for row in rows)
+    return f'  "{name}": [\n{lines}\n  ]' if lines else f'  "{name}": []'
+
+
+def _encode_bits(table: Table) -> Iterator[str]:
+    for bit in table.bits:
+        step = "before" if bit.is_before else "now"
+        yield encode_row({"variable": bit.variable, "bit": bit.place, "step": step})
+
+
+def _encode_nodes(table: Table) -> Iterator[str]:
+    for start in range(0, len(table.nodes), _NODES_PER_LINE):
+        yield ", ".join(map(encode_row, table.nodes[start : start + _NODES_PER_LINE]))
+
+
+def _encode_entry(entry: Entry) -> str:
+    return encode_row({"outputs": entry.outputs, "next": entry.successors})
+
+
+GR1C_VERSION = 1
+MAX_STEPS = 50_000
+"""Steps that are tried at most; each next input of each node is a step."""
+
+Values = Mapping[str, Literal]
+
+
+def gr1c_json(controller: Controller, contract: Contract, most: int = MAX_STEPS) -> str:
+    """Return the controller as gr1c's JSON with a line for each node.
+
+    Raises LimitError if more than *most* steps would have to be tried.
+    """
+    head = {
+        "version": GR1C_VERSION,
+        "gr1c": "",
+        "date": "",
+        "extra": f"sysmlc: {contract.component}",
+        "ENV": [_gr1c_declaration(variable) for variable in controller.inputs],
+        "SYS": [_gr1c_declaration(variable) for variable in controller.outputs],
+    }
+    nodes = ",\n".join(_Unrolling(controller, contract, most).iter_lines())
+    return append_members(head, [f'  "nodes": {{\n{nodes}\n  }}'])
+
+
+def _gr1c_declaration(variable: Variable) -> dict[str, object]:
+    if isinstance(variable.domain, BooleanDomain):
+        return {variable.name: "boolean"}
+    return {variable.name: [0, domains.size(variable.domain) - 1]}
+
+
+class _Unrolling:
+    """The steps of a controller in all environments that satisfy the assumptions."""
+
+    def __init__(self, controller: Controller, contract: Contract, most: int) -> None:
+        self._controller, self._max_steps, self._steps_left = controller, most, most
+        self._first = _compile_conjuncts(contract.assumptions, Class.INIT)
+        self._later = _compile_conjuncts(contract.assumptions, Class.SAFETY)
+        domains_by_name = {variable.name: variable.domain for variable in controller.inputs}
+        if domains.count(domains_by_name) > most:
+            raise LimitError("steps of the strategy", f"{most:,}")
+        self._inputs = list(domains.valuations(domains_by_name))
+        self._places: dict[tuple[tuple[Literal, ...], int], int] = {}
+        self._nodes: list[tuple[dict[str, Literal], int]] = []
+
+    def iter_lines(self) -> Iterator[str]:
+        """Yield the nodes in the order of their discovery."""
+        initial_places = set(self._successors({}, 0, self._first))
+        for place, (values, state) in enumerate(self._nodes):
+            successors = self._successors(values, state, self._later)
+            yield self._encode_node(place, values, state, place in initial_places, list(successors))
+
+    def _successors(self, values: Values, state: int, rules: Sequence[Evaluation]) -> Iterator[int]:
+        """Yield the nodes to which the inputs that are allowed after a step lead."""
+        for inputs in self._inputs:
+            self._steps_left -= 1
+            if self._steps_left < 0:
+                raise LimitError("steps of the strategy", f"{self._max_steps:,}")
+            current, following = (values, inputs) if values else (inputs, None)
+            if all(rule(current, following) for rule in rules):
+                yield self._place_of(values, state, inputs)
+
+    def _place_of(self, values: Values, state: int, inputs: Values) -> int:
+        outputs, next_state = self._controller.step(state, values, inputs)
+        step = dict(inputs) | outputs
+        key = tuple(step.values()), next_state
+        if key not in self._places:
+            self._places[key] = len(self._nodes)
+            self._nodes.append((step, next_state))
+        return self._places[key]
+
+    def _encode_node(
+        self, place: int, values: Values, state: int, is_first: bool, successors: list[int]
+    ) -> str:
+        variables = (*self._controller.inputs, *self._controller.outputs)
+        node = {
+            "state": [_value_code(variable, values[variable.name]) for variable in variables],
+            "mode": state,
+            "rgrad": -1,
+            "initial": is_first,
+            "trans": [str(successor) for successor in successors],
+        }
+        return f'    "{place}": {encode_row(node)}'
+
+
+def _compile_conjuncts(conjuncts: Sequence[Conjunct], class_: Class) -> list[Evaluation]:
+    return [
+        compile_evaluation(conjunct.formula) for conjunct in conjuncts if conjunct.class_ is class_
+    ]
+
+
+def _value_code(variable: Variable, value: Literal) -> int:
+    return domains.values(variable.domain).index(value)

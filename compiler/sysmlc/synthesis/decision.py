@@ -18,7 +18,7 @@ from sysmlc.synthesis.games.command_elimination import eliminate_commands
 from sysmlc.synthesis.games.game import Game, OutsideGr1Error, make_game
 from sysmlc.synthesis.games.solver import Solution, solve_arena
 from sysmlc.synthesis.games.variable_elimination import eliminate_determined_variables
-from sysmlc.synthesis.unrealizable.explanation import explain_unrealizability
+from sysmlc.synthesis.unrealizable import explain_unrealizability
 
 Place = Callable[[str], Subject]
 """Maps the origin of a contract or conjunct to the subject of diagnostics."""

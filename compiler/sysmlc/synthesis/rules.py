@@ -1,4 +1,7 @@
-"""Rules about contracts that are decided (SM530 to SM549, SM575 to SM579; lints have others)."""
+"""Rules about contracts that are decided or suspicious (SM530 to SM549, SM575 to SM579).
+
+The explanations of lints (SM533 to SM542) are contracts in JSON.
+"""
 
 from sysmlc.diagnostics import Severity, rule
 
@@ -46,4 +49,79 @@ NO_DEADLINE = rule(
     Severity.ERROR,
     "'{component}' can promise no bound of {timers}: {most} is too little, too",
     help="give the timer a wider range, or assume more of the environment",
+)
+
+
+# -- lints -------------------------------------------------------------------------------------
+
+NO_ENVIRONMENT = rule(
+    "SM533",
+    "assumptions-unsatisfiable",
+    Severity.ERROR,
+    "no environment keeps the assumptions of '{component}'",
+    help="weaken the assumptions; together they allow no run",
+)
+DEADLOCK = rule(
+    "SM534",
+    "environment-deadlock",
+    Severity.WARNING,
+    "the environment of '{component}' can come to where its assumptions leave it no next step: "
+    "{said}",
+    help="say the assumption of the next step (x' instead of x): the state is never reached then",
+)
+NOT_SEPARATED = rule(
+    "SM535",
+    "not-well-separated",
+    Severity.WARNING,
+    "'{component}' can force its environment to break the assumptions{said}",
+    help="assume only what the environment can keep whatever the component may do",
+)
+NO_FRAME = rule(
+    "SM536",
+    "output-without-frame",
+    Severity.WARNING,
+    "nothing says what becomes of output '{name}' of '{component}' {said}",
+    help="say when it stays as it is ({name}'={name})",
+)
+WRONG_OWNER = rule(
+    "SM537",
+    "decided-by-the-other",
+    Severity.WARNING,
+    "'{component}' {name} '{formula}', which {said} decides alone",
+    help="move it to the other side of the contract, or change who owns the variables",
+)
+NO_FAIRNESS = rule(
+    "SM538",
+    "fairness-missing",
+    Severity.WARNING,
+    "'{component}' could keep its contract if its environment did not wait for ever{said}",
+    help="add a liveness assumption",
+)
+INITIAL_INPUT = rule(
+    "SM539",
+    "initial-guarantee-over-input",
+    Severity.INFO,
+    "the initial guarantee '{formula}' of '{component}' speaks of inputs",
+    help="say what outputs start with, and what inputs start with as an assumption",
+)
+NEXT_IN_LIVENESS = rule(
+    "SM540",
+    "next-inside-liveness",
+    Severity.ERROR,
+    "'{formula}' of '{component}' speaks of the next step in what recurs",
+    help="let a variable remember: m' <-> (what holds now), and ask for m again and again",
+)
+IDLE = rule(
+    "SM541",
+    "vacuous-win",
+    Severity.WARNING,
+    "'{component}' keeps its contract without ever doing anything",
+    help="promise something that only an action brings about",
+)
+NEEDLESS = rule(
+    "SM542",
+    "fairness-not-needed",
+    Severity.WARNING,
+    "'{component}' brings about what it promises although nothing that is assumed recurs",
+    help="tie what is promised to what is assumed, or leave the assumption out",
 )

@@ -13,8 +13,8 @@ from sysmlc.logic.formula import Literal
 from sysmlc.logic.printing import print_formula, print_literal
 from sysmlc.support.file_names import assign_file_names
 from sysmlc.support.plantuml_text import escape_line, format_label
+from sysmlc.synthesis.algebra.fair_systems import Trace
 from sysmlc.synthesis.algebra.refinement import Failure
-from sysmlc.synthesis.algebra.traces import Trace
 from sysmlc.synthesis.bdd.manager import Manager
 from sysmlc.synthesis.decision import Options
 from sysmlc.synthesis.games.game import OutsideGr1Error

@@ -25,8 +25,8 @@ from sysmlc.logic.expressions.elaboration import (
     elaborate_condition,
     elaborate_value,
 )
-from sysmlc.logic.expressions.features import Feature
 from sysmlc.logic.expressions.expression import Expression, ExpressionError
+from sysmlc.logic.expressions.features import Feature
 from sysmlc.logic.expressions.parsing import parse_expression
 from sysmlc.logic.formula import Formula, const, var, variables
 from sysmlc.logic.machines.actions import check_assignable

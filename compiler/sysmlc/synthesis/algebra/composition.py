@@ -16,7 +16,7 @@ from sysmlc.synthesis.algebra.discharge import OpenAssumption, discharge, output
 from sysmlc.synthesis.algebra.fair_systems import Universe, observe_histories
 from sysmlc.synthesis.algebra.refinement import Entailment, Failure
 from sysmlc.synthesis.bdd.manager import Manager
-from sysmlc.synthesis.unrealizable.core import minimal_conflict
+from sysmlc.synthesis.unrealizable import minimal_conflict
 
 
 class Composition(Struct, frozen=True):

@@ -15,13 +15,12 @@ from msgspec.structs import replace
 
 from sysmlc.logic.contract import Class, Composite, Conjunct, Owner, Part
 from sysmlc.logic.evaluate import has_primes
-from sysmlc.synthesis.algebra.fair_systems import Runs, Universe
+from sysmlc.synthesis.algebra.fair_systems import Runs, Trace, Universe, build_lasso, shortest_path
 from sysmlc.synthesis.algebra.instantaneous_dependencies import (
     DependencyGraph,
     build_dependency_graph,
 )
 from sysmlc.synthesis.algebra.refinement import Entailment
-from sysmlc.synthesis.algebra.traces import Trace, build_lasso, shortest_path
 from sysmlc.synthesis.bdd.manager import Node
 
 MOST_CASES = 256

@@ -11,8 +11,16 @@ from collections.abc import Iterator, Sequence
 from msgspec import Struct
 
 from sysmlc.logic.contract import Class, Conjunct, Contract
-from sysmlc.synthesis.algebra.fair_systems import FairSystem, Runs, Universe, observe_histories
-from sysmlc.synthesis.algebra.traces import Trace, build_lasso, pick_state, shortest_path
+from sysmlc.synthesis.algebra.fair_systems import (
+    FairSystem,
+    Runs,
+    Trace,
+    Universe,
+    build_lasso,
+    observe_histories,
+    pick_state,
+    shortest_path,
+)
 from sysmlc.synthesis.bdd.manager import Manager, Node
 
 

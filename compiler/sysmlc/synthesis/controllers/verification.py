@@ -14,8 +14,14 @@ from sysmlc.logic import domains
 from sysmlc.logic.contract import Class, Conjunct, Contract, Owner
 from sysmlc.logic.formula import Literal
 from sysmlc.support.disjoint_sets import group_related
-from sysmlc.synthesis.algebra.fair_systems import FairSystem, Runs, Universe
-from sysmlc.synthesis.algebra.traces import build_lasso, pick_state, shortest_path
+from sysmlc.synthesis.algebra.fair_systems import (
+    FairSystem,
+    Runs,
+    Universe,
+    build_lasso,
+    pick_state,
+    shortest_path,
+)
 from sysmlc.synthesis.bdd.manager import Manager, Node
 from sysmlc.synthesis.controllers.closed_loop import (
     ClosedLoop,

@@ -9,7 +9,7 @@ from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.logic.contract import Conjunct, Contract, Owner, Variable
 from sysmlc.logic.formula import Literal
 from sysmlc.logic.reduction.contract_reduction import reduce_contract
-from sysmlc.synthesis.algebra.traces import Trace
+from sysmlc.synthesis.algebra.fair_systems import Trace
 from sysmlc.synthesis.bdd.limits import LimitError
 from sysmlc.synthesis.bdd.manager import Manager
 from sysmlc.synthesis.counterstrategy.environment_strategy import (
@@ -19,8 +19,7 @@ from sysmlc.synthesis.counterstrategy.environment_strategy import (
 )
 from sysmlc.synthesis.decision import Options, Place
 from sysmlc.synthesis.games.game import Game, make_game
-from sysmlc.synthesis.unrealizable.core import is_won, minimal_conflict
-from sysmlc.synthesis.unrealizable.explanation import original_conjuncts
+from sysmlc.synthesis.unrealizable import is_won, minimal_conflict, original_conjuncts
 
 Row = tuple[Literal, ...]
 """Values of variables, in their order."""

@@ -10,7 +10,7 @@ from sysmlc.logic.formula import Literal
 from sysmlc.logic.printing import print_formula, print_literal
 from sysmlc.logic.reduction.formula_reduction import has_past
 from sysmlc.synthesis.counterstrategy.environment_strategy import Bits, EnvironmentStrategy
-from sysmlc.synthesis.unrealizable.explanation import original_conjuncts
+from sysmlc.synthesis.unrealizable import original_conjuncts
 
 MAX_ANSWERS = 2_000
 """Answers that are examined in one step."""

@@ -109,7 +109,7 @@ class PredecessorOperator:
     def confine_to(self, winning: Node) -> None:
         """Allow wrong results outside of *winning* from now on.
 
-        This operator makes no use of it; ``single_moves`` does.
+        This operator makes no use of it; ``SingleMoveOperator`` does.
         """
 
     def environment_predecessors(self, target: Node) -> Node:

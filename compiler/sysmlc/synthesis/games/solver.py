@@ -17,14 +17,15 @@ from sysmlc.synthesis.bdd.manager import Node
 from sysmlc.synthesis.games.arena import Arena, PredecessorOperator, build_plain_arena
 from sysmlc.synthesis.games.game import Game
 from sysmlc.synthesis.games.search_reductions import (
+    SingleMoveOperator,
     Swap,
     drop_irrelevant_ranges,
     find_reachable_states,
+    find_single_moves,
     group_symmetric_goals,
     state_invariant,
     swap_variables,
 )
-from sysmlc.synthesis.games.single_moves import SingleMoveOperator, find_single_moves
 
 
 class Layer(Struct, frozen=True):

@@ -1,5 +1,56 @@
-"""What is suspicious in a contract: promises that nobody can keep, and those that cost nothing."""
+"""Lints of one contract: promises that nobody can keep, and promises that cost nothing.
 
-from sysmlc.synthesis.lints.lint import lint
+The lints of the text come first, then those that need runs and games.
+"""
+
+from collections.abc import Callable, Iterator
+
+from sysmlc.diagnostics import Sink, Subject
+from sysmlc.logic.contract import Contract
+from sysmlc.logic.printing import print_formula
+from sysmlc.synthesis import rules
+from sysmlc.synthesis.algebra.refinement import find_environment_run
+from sysmlc.synthesis.lints.checks import (
+    LintFinding,
+    ManagerFactory,
+    check_games,
+    check_ownership,
+    check_runs,
+    state_assumptions_of_next_step,
+)
+
+Place = Callable[[str], Subject]
+"""Maps the origin of a contract or conjunct to the subject of diagnostics."""
+
+
+def lint(contract: Contract, place: Place, sink: Sink, create_manager: ManagerFactory) -> None:
+    """Report suspicious properties of a contract; *new* creates a manager for each question.
+
+    Raises OutsideGr1Error for a contract that GR(1) cannot express, LimitError.
+    """
+    for finding in _find_all(contract, create_manager):
+        origin = contract.origin if finding.conjunct is None else finding.conjunct.origin
+        formula = "" if finding.conjunct is None else print_formula(finding.conjunct.formula)
+        sink.report(
+            finding.rule,
+            place(origin),
+            component=contract.component,
+            formula=formula,
+            name=finding.name,
+            said=finding.said,
+        )
+
+
+def _find_all(contract: Contract, create_manager: ManagerFactory) -> Iterator[LintFinding]:
+    findings = list(check_ownership(contract))
+    yield from findings
+    if any(finding.rule is rules.NEXT_IN_LIVENESS for finding in findings):
+        return
+    if find_environment_run(contract, create_manager()) is None:
+        yield LintFinding(rules.NO_ENVIRONMENT)
+        return
+    yield from check_runs(state_assumptions_of_next_step(contract), create_manager())
+    yield from check_games(contract, create_manager)
+
 
 __all__ = ["lint"]
