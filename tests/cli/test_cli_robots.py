@@ -104,10 +104,10 @@ def test_help_has_examples(option):
 
 def test_new_targets_take_the_robots_of_the_run_before(tmp_path, tmp_path_factory, monkeypatch):
     """Through the cache folder, as the compiler uses it; without it all is made anew."""
-    from sysmlc.driver import cache_key
+    from sysmlc.driver import outcome_cache
     from sysmlc.robots import outcome
 
-    monkeypatch.setattr(cache_key, "compute_tool_digest", lambda: "this version")
+    monkeypatch.setattr(outcome_cache, "compute_tool_digest", lambda: "this version")
     monkeypatch.setenv("SYSMLC_CACHE", str(tmp_path_factory.mktemp("user") / "cache"))
     assert run(tmp_path, HALL).exit_code == 0
 

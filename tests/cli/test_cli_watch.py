@@ -16,7 +16,7 @@ from functools import partial
 
 import pytest
 
-from sysmlc.cli import session, settling
+from sysmlc.cli import session, watching
 from sysmlc.cli.session import Settings
 from sysmlc.cli.watching import Watch
 
@@ -278,13 +278,13 @@ def test_the_configuration_is_watched_too(watch):
 def test_findings_that_were_told_before_are_not_waited_for(tmp_path, monkeypatch):
     """A model with known errors is compiled as soon as any other."""
     waited = []
-    real = settling.wait_until_stable
+    real = watching.wait_until_stable
 
     def rested(paths, seconds):
         waited.append(seconds)
         return real(paths, 0)
 
-    monkeypatch.setattr(settling, "wait_until_stable", rested)
+    monkeypatch.setattr(watching, "wait_until_stable", rested)
     path = tmp_path / "plant.uml"
     path.write_bytes(model("Old")[:-20])
     watched = Watch((path,), tmp_path / "out", Settings(has_cache=False), 0.05)
@@ -395,8 +395,8 @@ def test_rest_begins_anew_with_each_save(tmp_path, monkeypatch):
     path = tmp_path / "a"
     path.write_bytes(b"")
     clock = Clock(path, [0.2, 0.4, 0.6, 2.0])
-    monkeypatch.setattr(settling, "time", clock)
-    seen = settling.wait_until_stable([path], 0.3)
+    monkeypatch.setattr(watching, "time", clock)
+    seen = watching.wait_until_stable([path], 0.3)
     assert seen[path][0] == 3
     assert 0.9 <= clock.now < 1.1
 
@@ -405,8 +405,8 @@ def test_files_that_never_rest_are_taken_as_they_are(tmp_path, monkeypatch):
     path = tmp_path / "a"
     path.write_bytes(b"")
     clock = Clock(path, [n / 10 for n in range(1000)])
-    monkeypatch.setattr(settling, "time", clock)
-    settling.wait_until_stable([path], 0.3)
+    monkeypatch.setattr(watching, "time", clock)
+    watching.wait_until_stable([path], 0.3)
     assert 30 <= clock.now < 31
 
 
@@ -414,17 +414,17 @@ def test_rest_is_told_by_size_and_time(tmp_path):
     path, missing = tmp_path / "a", tmp_path / "b"
     path.write_bytes(b"x")
     os.utime(path, (0, 0))
-    seen = settling.wait_until_stable([path, missing, tmp_path], 0)
+    seen = watching.wait_until_stable([path, missing, tmp_path], 0)
     assert seen == {path: (1, 0), missing: None, tmp_path: (0, 0)}
-    assert not settling.is_fresh({path: (1, 0)}, 1)
-    assert settling.is_fresh({missing: None}, 1)
+    assert not watching.is_fresh({path: (1, 0)}, 1)
+    assert watching.is_fresh({missing: None}, 1)
     path.write_bytes(b"xy")
-    assert settling.read_stamps([path]) != {path: (1, 0)}
-    assert settling.find_empty_files(seen) == {missing}
+    assert watching.read_stamps([path]) != {path: (1, 0)}
+    assert watching.find_empty_files(seen) == {missing}
     path.write_bytes(b"")
-    assert settling.find_empty_files(settling.read_stamps([path, missing, tmp_path])) == {
+    assert watching.find_empty_files(watching.read_stamps([path, missing, tmp_path])) == {
         path,
         missing,
     }
     path.write_bytes(b"xy")
-    assert settling.is_fresh(settling.read_stamps([path]), 3600)
+    assert watching.is_fresh(watching.read_stamps([path]), 3600)

@@ -9,7 +9,7 @@ from click.testing import CliRunner
 from driver_fakes import FAULTY, PLANT
 
 from sysmlc.cli import group
-from sysmlc.driver import cache_key, compilation
+from sysmlc.driver import compilation, outcome_cache
 from sysmlc.support import cache
 from sysmlc.support.cache import Cache
 
@@ -26,8 +26,8 @@ def runs(monkeypatch, tmp_path, cache_folder):
     monkeypatch.setenv(cache.VARIABLE, str(cache_folder))
     monkeypatch.chdir(tmp_path)
     happened = []
-    monkeypatch.setattr(cache_key, "_PACKAGE", tmp_path / "tool")
-    cache_key.compute_tool_digest.cache_clear()
+    monkeypatch.setattr(outcome_cache, "_PACKAGE", tmp_path / "tool")
+    outcome_cache.compute_tool_digest.cache_clear()
     real = compilation._CompilationRun.compile
 
     def counted(run):
@@ -36,7 +36,7 @@ def runs(monkeypatch, tmp_path, cache_folder):
 
     monkeypatch.setattr(compilation._CompilationRun, "compile", counted)
     yield happened
-    cache_key.compute_tool_digest.cache_clear()
+    outcome_cache.compute_tool_digest.cache_clear()
 
 
 def sysmlc(*arguments):
@@ -72,26 +72,26 @@ def test_another_tool_compiles_again(runs):
     Path("tool/pass.py").write_text("first")
     sysmlc("plant.ir")
     Path("tool/pass.py").write_text("a correction")
-    cache_key.compute_tool_digest.cache_clear()  # as another process does
+    outcome_cache.compute_tool_digest.cache_clear()  # as another process does
     sysmlc("plant.ir")
     assert len(runs) == 2
 
 
 def test_the_digest_of_an_installed_tool_is_that_of_its_record(tmp_path, monkeypatch):
     """Times of files differ between installations of the same wheel, as in CI."""
-    monkeypatch.setattr(cache_key, "_PACKAGE", tmp_path / "sysmlc")
+    monkeypatch.setattr(outcome_cache, "_PACKAGE", tmp_path / "sysmlc")
     record = tmp_path / "sysmlc-1.0.dist-info" / "RECORD"
     record.parent.mkdir()
     record.write_text("sysmlc/graph.py,sha256=one,1")
-    first = list(cache_key._digest_own_files())
+    first = list(outcome_cache._digest_own_files())
     os.utime(record, (1, 1))
-    assert list(cache_key._digest_own_files()) == first
+    assert list(outcome_cache._digest_own_files()) == first
     record.write_text("sysmlc/graph.py,sha256=two,1")
-    assert list(cache_key._digest_own_files()) != first
+    assert list(outcome_cache._digest_own_files()) != first
 
 
 def test_the_digest_of_a_checkout_covers_all_files():
-    digested = " ".join(cache_key._digest_own_files())
+    digested = " ".join(outcome_cache._digest_own_files())
     for name in ("graph.py", "ir.ecore", "expression.lark", "act.puml.j2"):
         assert f"{name} " in digested
 

@@ -85,7 +85,7 @@ def _check(
     output: Path | None,
 ) -> int:
     from sysmlc.cli.contract_files import select_contracts, show_results
-    from sysmlc.cli.result_files import write_files
+    from sysmlc.cli.reports import write_files
     from sysmlc.diagnostics import Severity
     from sysmlc.synthesis.composition_check import check_compositions
     from sysmlc.synthesis.contract_checks import check_contracts

@@ -9,9 +9,8 @@ import click
 
 from sysmlc import __version__
 from sysmlc.cli import terminal
-from sysmlc.cli.limit_reports import report_memory_limit
 from sysmlc.cli.limits import LIMITS, add_limit_options
-from sysmlc.cli.supervisor import OUT_OF_MEMORY
+from sysmlc.cli.supervisor import OUT_OF_MEMORY, report_memory_limit
 
 COMMANDS = (
     "build",

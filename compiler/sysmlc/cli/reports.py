@@ -1,4 +1,4 @@
-"""Reports: print the findings of compilations, and compute exit codes."""
+"""Reports: print the findings of compilations, compute exit codes, and write result files."""
 
 import os
 import sys
@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from sysmlc.config import Config
     from sysmlc.diagnostics.render import Finding
     from sysmlc.driver import Compilation, Outcome, Publication
+
 
 _DEFAULT_LIMIT = 1_000
 """Findings that a reader is shown unless all are asked for: nobody reads more at once."""
@@ -118,3 +119,26 @@ def has_color(stream: object) -> bool:
     """Whether a stream is a terminal that shows colours."""
     is_terminal = getattr(stream, "isatty", lambda: False)()
     return bool(is_terminal) and not os.environ.get("NO_COLOR") and os.environ.get("TERM") != "dumb"
+
+
+# -- result files ------------------------------------------------------------------------------
+
+
+def write_files(files: Iterable[tuple[str, str]], folder: Path) -> None:
+    """Write files, each a path in *folder* and a text. Exits with code 2 if one cannot be
+    written.
+    """
+    from sysmlc.cli.session import fail
+    from sysmlc.support.atomic_files import write_if_changed
+    from sysmlc.support.output import OutputPathError, find_obstacle
+
+    try:
+        for path, text in files:
+            obstacle = find_obstacle(folder, path)
+            if obstacle is not None:
+                fail(f"cannot write to '{folder}': '{obstacle}' is a link or in the way; remove it")
+            write_if_changed(folder / path, text)
+    except OutputPathError as problem:
+        fail(str(problem))
+    except OSError as problem:
+        fail(f"cannot write to '{folder}': {problem.strerror or problem}")

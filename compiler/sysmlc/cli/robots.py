@@ -87,7 +87,7 @@ def _study(
     keeper: "CrewCache | None",
 ) -> int:
     from sysmlc.cli import reports, session
-    from sysmlc.cli.result_files import write_files
+    from sysmlc.cli.reports import write_files
     from sysmlc.diagnostics import Severity, Sink, Subject
     from sysmlc.diagnostics.render import make_report
     from sysmlc.robots.outcome import run_study
@@ -117,7 +117,7 @@ def _study(
 def _open_keeper(models: "Sequence[Path]", config: "Config") -> "CrewCache | None":
     """Return the store of controllers and travel times in the user's cache, if there is a cache."""
     from sysmlc.cli import session
-    from sysmlc.driver.cache_key import compute_tool_digest
+    from sysmlc.driver.outcome_cache import compute_tool_digest
     from sysmlc.robots.crew_cache import CrewCache
 
     cache = session.open_cache(models, config)

@@ -178,8 +178,7 @@ def open_cache(inputs: Iterable[Path], config: "Config") -> "Cache | None":
 
 
 def _reuse_outcome(cache: "Cache", unit: "Unit", settings: Settings, has_files: bool) -> "Outcome":
-    from sysmlc.driver.cache_key import compute_outcome_key
-    from sysmlc.driver.outcome_cache import load_outcome, store_outcome
+    from sysmlc.driver.outcome_cache import compute_outcome_key, load_outcome, store_outcome
 
     key = compute_outcome_key(unit.opened, unit.request, unit.emit, has_files)
     outcome = load_outcome(cache, key, unit.opened.root)

@@ -47,7 +47,7 @@ def command(
     Exit code 0 when they agree, 1 when they do not, 2 when the scenario cannot be run.
     """
     from sysmlc.cli import reports, session
-    from sysmlc.cli.result_files import write_files
+    from sysmlc.cli.reports import write_files
     from sysmlc.diagnostics import Sink
     from sysmlc.diagnostics.render import make_report
     from sysmlc.simulation import run_scenarios

@@ -13,7 +13,11 @@ from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
 from mmap import mmap
 from types import FrameType
-from typing import Any, NoReturn
+from typing import TYPE_CHECKING, Any, NoReturn
+
+if TYPE_CHECKING:
+    from sysmlc.diagnostics import Rule
+
 
 _SENT_BY_USERS = [
     getattr(signal, name)
@@ -176,9 +180,48 @@ def _end_as(code: int) -> NoReturn:
 
 def _report_end(code: int, shared: SharedState) -> None:
     """Report why a child has ended early, unless it has done so itself."""
-    from sysmlc.cli.limit_reports import report_crash, report_time_limit
 
     if -code == signal.SIGALRM:
         report_time_limit(shared.time_limit)
     elif code < 0:
         report_crash(-code)
+
+
+# -- reports -----------------------------------------------------------------------------------
+
+
+def report_time_limit(seconds: float) -> None:
+    """Report that the command reached its time limit."""
+    from sysmlc.driver import faults
+
+    _report(faults.TIME_LIMIT, seconds=f"{seconds:g}")
+
+
+def report_memory_limit(gibibytes: float) -> None:
+    """Report that the command ran out of memory; *gibibytes* is its limit, 0 if it has none."""
+    from sysmlc.driver import faults
+
+    limit = f"{gibibytes:g} GiB of memory are" if gibibytes else "the memory of this machine is"
+    _report(faults.MEMORY_LIMIT, limit=limit)
+
+
+def report_crash(number: int) -> None:
+    """Report that a signal has ended the command."""
+    from sysmlc.driver import faults
+
+    name = signal.Signals(number).name if number in signal.valid_signals() else str(number)
+    _report(faults.CRASH, signal=name)
+
+
+def _report(rule: "Rule", **facts: str) -> None:
+    """Print a diagnostic as text on standard error; standard output may belong to a report."""
+    from sysmlc.diagnostics import Sink, Subject
+    from sysmlc.diagnostics.render import make_report, render
+
+    sink = Sink()
+    sink.report(rule, Subject(), notes=(), help="", **facts)
+    # The bar of a command that was ended may still stand in the last line of the terminal.
+    line_start = "\r\x1b[K" if sys.stderr.isatty() else ""
+    with suppress(OSError):
+        sys.stderr.write(line_start + render(make_report(sink, ()), "text"))
+        sys.stderr.flush()

@@ -162,7 +162,7 @@ def _synthesize(
     form: str,
 ) -> int:
     from sysmlc.cli.contract_files import select_contracts
-    from sysmlc.cli.result_files import write_files
+    from sysmlc.cli.reports import write_files
     from sysmlc.synthesis.controller_files import TABLE, write_controllers
     from sysmlc.synthesis.controller_synthesis import Form, synthesise_controller
 

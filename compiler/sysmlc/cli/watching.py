@@ -1,7 +1,12 @@
-"""The builds of ``sysmlc watch``: compile when the inputs have changed and are completely saved."""
+"""The builds of ``sysmlc watch``: compile when the inputs have changed and are completely saved.
+
+Tools save in pieces, so size and time of a file show whether it is still being saved.
+"""
 
 import gc
-from collections.abc import Iterable, Iterator, Sequence
+import stat
+import time
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -14,10 +19,69 @@ from sysmlc.cli.limits import LIMITS
 
 if TYPE_CHECKING:
     from sysmlc.cli.session import Settings
-    from sysmlc.cli.settling import Stamps
     from sysmlc.cli.units import Unit
     from sysmlc.config import Config
     from sysmlc.driver import Outcome, Target
+
+
+_STEP = 0.05
+"""Seconds after which files are looked at again, if they are to rest for longer."""
+_LONGEST = 30.0
+"""Seconds after which files that never rest are compiled as they are."""
+
+_FOLDER = (0, 0)
+"""A folder looks the same whatever is in it: our own outputs may be."""
+
+Stamps = Mapping[Path, tuple[int, int] | None]
+"""Size and time of change of each file; None for one that is not there."""
+
+
+def read_stamps(paths: Iterable[Path]) -> Stamps:
+    """Return size and time of each file."""
+    return {path: _read_stamp(path) for path in paths}
+
+
+def wait_until_stable(paths: Iterable[Path], seconds: float) -> Stamps:
+    """Wait until no file has changed for so many seconds; return size and time of each."""
+    paths = list(paths)
+    start = since = time.monotonic()
+    last = read_stamps(paths)
+    while time.monotonic() - since < seconds and time.monotonic() - start < _LONGEST:
+        time.sleep(min(_STEP, seconds))
+        current = read_stamps(paths)
+        if current != last:
+            last, since = current, time.monotonic()
+    return last
+
+
+def is_fresh(seen: Stamps, seconds: float) -> bool:
+    """Whether a file is missing or was changed in the last seconds, so that it may be half
+    saved.
+    """
+    current_time = time.time()
+    return any(
+        stamp is None or abs(current_time - stamp[1] / 1e9) < seconds for stamp in seen.values()
+    )
+
+
+def find_empty_files(seen: Stamps) -> frozenset[Path]:
+    """Return the files that are empty or missing."""
+    return frozenset(
+        path
+        for path, stamp in seen.items()
+        if stamp is None or (stamp[0] == 0 and stamp != _FOLDER)
+    )
+
+
+def _read_stamp(path: Path) -> tuple[int, int] | None:
+    try:
+        status = path.stat()
+    except OSError:
+        return None
+    return _FOLDER if stat.S_ISDIR(status.st_mode) else (status.st_size, status.st_mtime_ns)
+
+
+# -- builds ------------------------------------------------------------------------------------
 
 _PATIENCE = 1.5
 """Seconds without a save before what looks half saved is believed, if files must rest at all."""
@@ -77,8 +141,6 @@ class Watch:
 
     def build_if_changed(self, saved: Iterable[Path]) -> None:
         """Compile if the inputs, or the files saved meanwhile, differ from the last build."""
-        from sysmlc.cli.settling import read_stamps
-
         self._paths |= dict.fromkeys(saved)
         state, (early, self._early) = read_stamps(self._paths), (self._early, ())
         with suppress(SystemExit):
@@ -92,8 +154,6 @@ class Watch:
         """Compile, unless a limit has just ended a build of this state; then wait for the next
         save.
         """
-        from sysmlc.cli.settling import read_stamps
-
         if LIMITS.has_ended_build(self._digest_inputs()):
             self._built = read_stamps(self._paths)
         else:
@@ -101,8 +161,6 @@ class Watch:
 
     def _digest_inputs(self) -> int:
         """Return a digest of size and time of the named inputs."""
-        from sysmlc.cli.settling import read_stamps
-
         return crc32(
             repr(sorted(read_stamps(self._named).items())).encode("utf-8", "surrogatepass")
         )
@@ -138,26 +196,24 @@ class Watch:
 
     def _compile_stable_inputs(self) -> "list[CompiledUnit]":
         """Return the units compiled from completely saved inputs."""
-        from sysmlc.cli import settling
-
         for _ in range(_ROUNDS):
-            before = settling.wait_until_stable(self._paths, self._find_delay())
+            before = wait_until_stable(self._paths, self._find_delay())
             with LIMITS.limit_build(self._digest_inputs()):
                 units = compile_all(self._models, self._output, self._settings)
-            if settling.read_stamps(before) != before:
+            if read_stamps(before) != before:
                 continue
             new = dict.fromkeys(path for unit in units for path in _list_inputs(unit.outcome))
             self._paths |= new
-            self._built = {**settling.read_stamps(new), **before}
+            self._built = {**read_stamps(new), **before}
             if not new.keys() <= before.keys() and not self._is_current(units):
                 continue
-            is_reported, blank = _list_messages(units), settling.find_empty_files(before)
+            is_reported, blank = _list_messages(units), find_empty_files(before)
             is_known = is_reported <= self._told and blank <= self._blank
-            if is_known or not settling.is_fresh(before, self._patience):
+            if is_known or not is_fresh(before, self._patience):
                 break
-            if settling.wait_until_stable(before, self._patience) == before:
+            if wait_until_stable(before, self._patience) == before:
                 break
-        self._told, self._blank = _list_messages(units), settling.find_empty_files(before)
+        self._told, self._blank = _list_messages(units), find_empty_files(before)
         return units
 
     def _is_current(self, units: "Sequence[CompiledUnit]") -> bool:
@@ -175,11 +231,10 @@ class Watch:
 
     def _find_delay(self) -> float:
         """Return how long files must be unchanged; configuration errors are reported at once."""
-        from sysmlc.cli import settling
         from sysmlc.config import FILE_NAME
 
         named = [path for path in self._paths if path.name in (FILE_NAME, "pyproject.toml")]
-        is_new = bool(named) and settling.is_fresh(settling.read_stamps(named), self._patience)
+        is_new = bool(named) and is_fresh(read_stamps(named), self._patience)
         return self._patience if is_new else self._settle
 
 
@@ -237,8 +292,9 @@ def _list_inputs(compilation: "Outcome") -> Iterator[Path]:
 def _unit_files(
     models: tuple[Path, ...], settings: "Settings"
 ) -> "tuple[Config, tuple[Path, ...]]":
-    from sysmlc.cli import selection, session
+    from sysmlc.cli import session
+    from sysmlc.cli.units import select
 
     config = session.load_config(models, settings)
-    selections = selection.select(models, config, None, ())
+    selections = select(models, config, None, ())
     return config, tuple(file for selection in selections for file in selection.files)

@@ -8,8 +8,7 @@ from sysmlc.driver.compilation import (
     compile_model,
     open_unit,
 )
-from sysmlc.driver.manifest import format_manifest
-from sysmlc.driver.outcome import Outcome, summarize
+from sysmlc.driver.outcome import Outcome, format_manifest, format_trace, summarize
 from sysmlc.driver.publishing import Publication, Target, compare, publish
 from sysmlc.driver.registry import (
     BackendError,
@@ -18,7 +17,6 @@ from sysmlc.driver.registry import (
     load_full_catalogue,
     select_backends,
 )
-from sysmlc.driver.tracing import format_trace
 from sysmlc.driver.units import open_units
 
 __all__ = [

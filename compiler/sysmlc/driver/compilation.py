@@ -12,11 +12,9 @@ from sysmlc.config import Config
 from sysmlc.diagnostics import Coverage, Diagnostic, Place, Sink, Subject
 from sysmlc.diagnostics.suppress import suppress
 from sysmlc.driver import faults, registry
-from sysmlc.driver.companions import load_companions
 from sysmlc.driver.inputs import find_unit_root
 from sysmlc.driver.locations import Locator
-from sysmlc.driver.overlays import store_refinements
-from sysmlc.driver.reading import Reading, read_unit
+from sysmlc.driver.reading import Reading, load_companions, read_unit, store_refinements
 from sysmlc.driver.validation import validate
 from sysmlc.driver.withholding import find_withheld_artefacts
 from sysmlc.frontends.base import DiagramReader, Frontend

@@ -1,4 +1,4 @@
-"""Rules of the driver about inputs, configuration and internal faults, and exit codes."""
+"""Rules of the driver about inputs, configuration, limits and internal faults, and exit codes."""
 
 from collections.abc import Iterable
 
@@ -171,3 +171,37 @@ def report_unreadable(problem: SourceError, sink: Sink) -> None:
     """Report a file that cannot be read, at the byte where reading failed."""
     subject = Subject(place=Place(problem.file, offset=problem.offset))
     sink.report(_BY_FAULT[problem.fault], subject, path=problem.file, reason=problem.message)
+
+
+# -- limits and crashes of the process ---------------------------------------------------------
+
+TIME_LIMIT = rule(
+    "SM904",
+    "time-limit",
+    Severity.ERROR,
+    "the command did not end within {seconds} s",
+    help=(
+        "give more time (--time-limit, 0 for no limit), or fewer or smaller models; "
+        "'time-limit' in sysmlc.toml can only shorten the time"
+    ),
+)
+MEMORY_LIMIT = rule(
+    "SM905",
+    "memory-limit",
+    Severity.ERROR,
+    "{limit} not enough for this command",
+    help=(
+        "give more memory (--memory-limit, 0 for no limit), or fewer or smaller models; "
+        "'memory-limit' in sysmlc.toml can only lower the limit"
+    ),
+)
+CRASH = rule(
+    "SM906",
+    "crash",
+    Severity.ERROR,
+    "the command was ended by {signal}",
+    help=(
+        "try a lower --memory-limit after SIGKILL and a higher one after other signals; if that "
+        "does not help, please report it with the command and the model"
+    ),
+)

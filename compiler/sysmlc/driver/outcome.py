@@ -1,17 +1,78 @@
-"""The outcome of a compilation: located findings, files and exit code, without the graph."""
+"""The outcome of a compilation: located findings, files and exit code, without the graph.
+
+Three files of every output folder describe it: ``coverage.json`` has the verdicts on the inputs,
+``trace.json`` the sources of the outputs, ``manifest.json`` what a run read and wrote, what it
+withheld and why.
+"""
 
 import hashlib
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
+from itertools import chain
 from pathlib import Path
 
 from msgspec import Struct
 
+from sysmlc import __version__
 from sysmlc.backends.base import InputFile
-from sysmlc.diagnostics import Diagnostic
+from sysmlc.diagnostics import Diagnostic, Place
+from sysmlc.diagnostics.locate import positions
 from sysmlc.diagnostics.render import Finding, make_report
 from sysmlc.driver import faults
 from sysmlc.driver.compilation import Compilation
-from sysmlc.driver.tracing import COVERAGE, TRACE, format_coverage, format_trace
+from sysmlc.driver.ownership import FORMAT
+from sysmlc.ir import Element
+from sysmlc.support.json_text import encode_json
+
+COVERAGE = "coverage.json"
+TRACE = "trace.json"
+
+
+def format_coverage(compilation: Compilation) -> str:
+    """Return the verdict on every element of the inputs."""
+    return encode_json({"format": "sysmlc-coverage/2", **compilation.coverage.as_json()})
+
+
+def format_trace(compilation: Compilation) -> str:
+    """Return the elements that each file comes from, and where each stands in the inputs."""
+    artefacts = compilation.list_published()
+    ids = dict.fromkeys(chain.from_iterable(artefact.trace for artefact in artefacts))
+    elements = filter(None, map(compilation.graph.get, ids))
+    content = {
+        "format": "sysmlc-trace/2",
+        "outputs": [{"path": artefact.path, "elements": artefact.trace} for artefact in artefacts],
+        "elements": _describe_elements(compilation, elements),
+    }
+    return encode_json(content)
+
+
+def _describe_elements(
+    compilation: Compilation, elements: Iterable[Element]
+) -> list[dict[str, object]]:
+    """Return id, name and source of each element, sorted by name and id."""
+    subjects = sorted(map(compilation.graph.subject, elements), key=lambda s: (s.name, s.id))
+    places = [subject.place or Place("") for subject in subjects]
+    ordinals: dict[str, list[int]] = {}
+    for place in places:
+        ordinals.setdefault(place.file, []).append(place.ordinal)
+    located = positions(compilation.sources, ordinals)
+    return [
+        {
+            "id": subject.id,
+            "qualified_name": subject.name,
+            "source": _describe_source(place, located) if place.file else None,
+        }
+        for subject, place in zip(subjects, places, strict=True)
+    ]
+
+
+def _describe_source(
+    place: Place, located: dict[str, dict[int, tuple[int, int]]]
+) -> dict[str, object]:
+    line, column = located.get(place.file, {}).get(place.ordinal, (0, 0))
+    return {"file": place.file, "line": line or None, "column": column or None}
+
+
+# -- outcome -----------------------------------------------------------------------------------
 
 
 class OutputFile(Struct, frozen=True):
@@ -78,3 +139,43 @@ def _collect_texts(compilation: Compilation) -> dict[str, str]:
 def compute_text_digest(text: str) -> str:
     """Return the SHA-256, in hex, of a text as a file contains it."""
     return hashlib.sha256(text.encode("utf-8")).hexdigest()
+
+
+# -- manifest ----------------------------------------------------------------------------------
+
+
+def format_manifest(outcome: Outcome, kept: Mapping[str, str]) -> str:
+    """Return the manifest: inputs and files with their digests, withheld files and the reasons.
+
+    *kept* are paths and digests of files of an earlier run, whose inputs could not be read now.
+    """
+    return encode_json(
+        {
+            "format": FORMAT,
+            "sysmlc": __version__,
+            "inputs": [
+                {"path": file.path, "sha256": file.sha256, "language": file.language}
+                for file in outcome.inputs
+            ],
+            "files": [_describe_file(file) for file in outcome.files],
+            "withheld": [_describe_withheld(file) for file in outcome.withheld],
+            "kept": [{"path": path, "sha256": digest} for path, digest in kept.items()],
+        }
+    )
+
+
+def _describe_file(file: OutputFile) -> dict[str, object]:
+    return {"path": file.path, "backend": file.backend, "sha256": file.sha256}
+
+
+def _describe_withheld(file: Withheld) -> dict[str, object]:
+    return {"path": file.path, "because": [_describe_reason(error) for error in file.because]}
+
+
+def _describe_reason(error: Diagnostic) -> dict[str, str]:
+    return {
+        "code": error.rule.code,
+        "name": error.rule.name,
+        "message": error.message,
+        "element": error.subject.name,
+    }

@@ -1,20 +1,157 @@
-"""Outcomes of earlier runs over unchanged inputs, as JSON entries of the cache.
+"""Outcomes of earlier runs over unchanged inputs, as JSON entries of the cache, and their keys.
 
-A key covers everything that an outcome depends on (``cache_key``), so that an entry is either
-exactly right or not found. An entry that does not decode into an outcome is a miss.
+A key is a digest of everything that an outcome depends on, so that an entry is either exactly right
+or not found. An entry that does not decode into an outcome is a miss.
 """
 
-from collections.abc import Mapping
+import os
+import sys
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
+from functools import cache
+from hashlib import sha256
+from importlib.util import find_spec
 from pathlib import Path, PureWindowsPath
+from typing import TYPE_CHECKING
 
 import msgspec
 
+from sysmlc import __version__
 from sysmlc.backends.base import InputFile
+from sysmlc.diagnostics import rule_page
 from sysmlc.diagnostics.render import Finding
+from sysmlc.driver import registry
+from sysmlc.driver.compilation import OpenedUnit, Request
 from sysmlc.driver.faults import FAILED
 from sysmlc.driver.outcome import Outcome, OutputFile, Withheld
+from sysmlc.language.library import find_library_path
+from sysmlc.sources import DEFAULT_LIMITS, SourceError
+from sysmlc.sources.whole import read_whole
+from sysmlc.support import resources
 from sysmlc.support.cache import Cache
+
+if TYPE_CHECKING:
+    from importlib.metadata import EntryPoint
+
+
+_PACKAGE = Path(__file__).parents[1]
+_RESOURCES = ("grammars", "metamodels", "templates")
+
+
+def compute_outcome_key(
+    opened: OpenedUnit, request: Request, emit: Sequence[str], has_files: bool
+) -> str:
+    """Return the key of the outcome of a request.
+
+    *emit* is the text of ``--emit``, which is known before a back end is loaded. Without
+    *has_files* the outcome holds diagnostics only.
+    """
+    return _hash_texts(_list_dependencies(opened, request, emit, has_files))
+
+
+@cache
+def compute_tool_digest() -> str:
+    """Return the digest of the running tool: versions, sysmlc's own files and those of plug-ins.
+
+    It is computed once per process, because a process does not run files that change later.
+    """
+    versions = f"{__version__} {sys.version} {sys.platform}"
+    return _hash_texts([versions, *_digest_own_files(), *_digest_plug_ins()])
+
+
+def _list_dependencies(
+    opened: OpenedUnit, request: Request, emit: Sequence[str], has_files: bool
+) -> Iterator[str]:
+    config, reading = request.config, opened.reading
+    yield compute_tool_digest()
+    yield repr((has_files, tuple(emit), request.strict_input, request.diagrams, request.library))
+    yield repr((sorted(config.rules.items()), config.suppress, _sort_items(config.passes)))
+    yield repr(reading.is_complete)
+    for recognised in reading.recognised:
+        source = recognised.source
+        yield repr((source.name, source.sha256, recognised.frontend.name))
+    for overlay in reading.overlays:
+        yield repr((overlay.source.name, overlay.source.sha256))
+    for drawing in opened.drawings:
+        yield repr((drawing.name, drawing.sha256))
+    for diagnostic in opened.sink:
+        yield repr((diagnostic.rule.code, diagnostic.message, diagnostic.subject, opened.root))
+    if any(recognised.frontend.name == "sysml" for recognised in reading.recognised):
+        yield from _digest_library(request.library)
+    yield from _digest_folder(request.templates)
+
+
+def _sort_items(value: object) -> object:
+    """Replace mappings by sorted lists of pairs: the order of a configuration does not matter."""
+    if isinstance(value, dict):
+        return sorted((key, _sort_items(inner)) for key, inner in value.items())
+    return value
+
+
+def _digest_library(path: str) -> Iterator[str]:
+
+    folder = find_library_path(path or None)
+    yield str(folder)
+    if folder is not None:
+        yield from _digest_folder(folder) if folder.is_dir() else [_digest_file(str(folder))]
+
+
+def _digest_own_files() -> Iterator[str]:
+    """Yield digests of the package: the RECORD that pip wrote, else every file (a checkout)."""
+    records = sorted(_PACKAGE.parent.glob("sysmlc-*.dist-info/RECORD"))
+    if records:
+        yield from map(_digest_file, map(str, records))
+        return
+    # The pages of rules are no part of an outcome; 440 more files would be read in each run.
+    yield from _digest_folder(_PACKAGE, rule_page.FOLDER)
+    for name in _RESOURCES:
+        yield from _digest_folder(resources.path(name))
+
+
+def _digest_plug_ins() -> Iterator[str]:
+    for group in (registry.BACKEND_GROUP, registry.PASS_GROUP):
+        for entry_point in registry.find_plug_ins(group).values():
+            yield from _digest_package(entry_point)
+
+
+def _digest_package(entry_point: "EntryPoint") -> Iterator[str]:
+    """Yield digests of the top-level package or module that an entry point names."""
+    spec = find_spec(entry_point.module.partition(".")[0])
+    if spec is not None and spec.origin:
+        is_package = spec.submodule_search_locations is not None
+        yield from (
+            _digest_folder(Path(spec.origin).parent) if is_package else [_digest_file(spec.origin)]
+        )
+
+
+def _digest_folder(folder: Path | None, omitted: Path | None = None) -> list[str]:
+    """Return the digests of all files below *folder* but not in *omitted*, sorted by path."""
+    return [_digest_file(path) for path in sorted(_iter_files(folder, omitted))] if folder else []
+
+
+def _iter_files(folder: Path, omitted: Path | None) -> Iterator[str]:
+    for path, folders, names in os.walk(folder):
+        if omitted is not None and path == str(omitted):
+            continue
+        folders[:] = [name for name in folders if name != "__pycache__"]
+        yield from (os.path.join(path, name) for name in names)  # noqa: PTH118 - thousands of files
+
+
+def _digest_file(path: str) -> str:
+    try:
+        content = read_whole(Path(path), path, DEFAULT_LIMITS)
+    except SourceError:
+        return f"{path} unreadable"
+    return f"{path} {sha256(content).hexdigest()}"
+
+
+def _hash_texts(texts: Iterable[str]) -> str:
+    """Return the digest of a list of texts; the lengths keep neighbours apart."""
+    joined = "".join([f"{len(text)}:{text}" for text in texts])
+    return sha256(joined.encode("utf-8", "surrogatepass")).hexdigest()
+
+
+# -- entries -----------------------------------------------------------------------------------
 
 
 class _Entry(msgspec.Struct):

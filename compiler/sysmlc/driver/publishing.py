@@ -12,21 +12,22 @@ these states, and what it does leads to the same folder as a build without an in
 4. ``manifest.pending.json`` is renamed to ``manifest.json``, and the build is complete.
 
 When a build replaces the pending manifest of another one, it first removes the files of which
-only the old pending manifest has the digest, else nobody would own them in steps 2 and 3.
+only the old pending manifest has the digest, else nobody would own them in steps 2 and 3. Of two
+builds at once, one waits for the other.
 """
 
 import errno
 import os
-from collections.abc import Collection, Iterable, Mapping
+import time
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
 from pathlib import Path
 
 from msgspec import Struct
 
 from sysmlc.diagnostics import Diagnostic, Place, Severity, Sink, Subject, rule
-from sysmlc.driver.folder_lock import lock_folder
-from sysmlc.driver.manifest import format_manifest
-from sysmlc.driver.outcome import Outcome
+from sysmlc.driver.outcome import Outcome, format_manifest
 from sysmlc.driver.ownership import (
     MANIFEST,
     OTHER,
@@ -317,3 +318,41 @@ def _remove(folder: Path, path: str) -> bool:
                 raise
             break
     return existed
+
+
+# -- lock --------------------------------------------------------------------------------------
+
+_PATIENCE = 10.0
+"""Seconds to wait for another process that writes to the same folder."""
+_PAUSE = 0.05
+
+
+@contextmanager
+def lock_folder(folder: Path) -> Iterator[None]:
+    """Exclude other processes that publish to *folder*, where the system can lock folders.
+
+    Raises OSError if another process does not end.
+    """
+    try:
+        import fcntl
+    except ImportError:
+        yield
+        return
+    handle = os.open(folder, os.O_RDONLY)
+    try:
+        end = time.monotonic() + _PATIENCE
+        while True:
+            try:
+                fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            except BlockingIOError:
+                if time.monotonic() > end:
+                    reason = "another sysmlc is writing to the folder"
+                    raise OSError(errno.EBUSY, reason, str(folder)) from None
+                time.sleep(_PAUSE)
+            except OSError:
+                break  # a file system without locks
+            else:
+                break
+        yield
+    finally:
+        os.close(handle)

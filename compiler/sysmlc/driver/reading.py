@@ -1,7 +1,12 @@
-"""Read the input files of a unit and the files that they refer to."""
+"""Read the input files of a unit, the files that they refer to, and the files beside them.
+
+Beside a model there may be its overlay, and companion files with the diagrams of its authors.
+Overlays may also be named by the user.
+"""
 
 import os
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from fnmatch import fnmatchcase
 from pathlib import Path
 
 from msgspec import Struct
@@ -9,9 +14,65 @@ from msgspec import Struct
 from sysmlc.diagnostics import Place, Rule, Sink, Subject
 from sysmlc.driver import faults
 from sysmlc.driver.inputs import Recognised, collect_files, find_allowed_roots, name_of, recognise
-from sysmlc.driver.overlays import LoadedOverlay, find_overlay, list_models, load_overlay
-from sysmlc.frontends.base import AttachmentFrontend, Frontend
-from sysmlc.sources import Roots, Source, SourceError, load
+from sysmlc.frontends.base import AttachmentFrontend, DiagramReader, Frontend
+from sysmlc.ir import Graph
+from sysmlc.overlay import SUFFIX, Refinement, list_files, read_overlay
+from sysmlc.sources import Roots, Source, SourceError, entries, load
+from sysmlc.sources.limits import DEFAULT_LIMITS, DOCUMENT_LIMITS
+from sysmlc.sources.whole import read_whole
+
+
+class LoadedOverlay(Struct, frozen=True):
+    """The file of an overlay and its content; no content if the overlay has errors."""
+
+    path: Path
+    source: Source
+    refinement: Refinement | None
+
+
+def find_overlay(model: Path) -> Path | None:
+    """Return the overlay beside a model, ``gate.overlay.yaml`` for ``gate.aml``, if it exists."""
+    path = model.with_name(model.stem + SUFFIX)
+    return path if os.path.lexists(path) else None
+
+
+def load_overlay(
+    path: Path, root: Path, roots: Roots, sink: Sink, *, is_named: bool
+) -> LoadedOverlay | None:
+    """Read an overlay; report it if it cannot be read or lies outside the allowed roots.
+
+    An overlay that the user names may lie anywhere.
+    """
+    name = name_of(path, root)
+    if is_named and not path.exists():
+        sink.report(faults.MISSING_FILE, faults.about_file(name), path=name)
+        return None
+    if not is_named and not roots.allows(path):
+        sink.report(faults.LEADS_OUT, faults.about_file(name), path=name)
+        return None
+    try:
+        source = Source(name, read_whole(path, name, DOCUMENT_LIMITS))
+    except SourceError as problem:
+        faults.report_unreadable(problem, sink)
+        return None
+    return LoadedOverlay(path, source, read_overlay(source, sink))
+
+
+def store_refinements(overlays: Iterable[LoadedOverlay], graph: Graph) -> None:
+    """Store the content of the overlays in the graph, for the pass ``overlay``."""
+    refinements = [o.refinement for o in overlays if o.refinement is not None]
+    if refinements:
+        graph.store(Refinement, refinements)
+
+
+def list_models(overlay: LoadedOverlay) -> list[str]:
+    """Return the files that the entries of an overlay name, each once, as written there."""
+    if overlay.refinement is None:
+        return []
+    return list_files(overlay.refinement)
+
+
+# -- models ------------------------------------------------------------------------------------
 
 
 class ReadFile(Struct, frozen=True):
@@ -185,3 +246,44 @@ def _load_sources(path: Path, root: Path, sink: Sink) -> list[Source]:
     except SourceError as problem:
         faults.report_unreadable(problem, sink)
         return []
+
+
+# -- companion files ---------------------------------------------------------------------------
+
+
+def load_companions(reading: Reading, root: Path, sink: Sink) -> tuple[Source, ...]:
+    """Load the existing companion files of all sources, sorted by name.
+
+    Files that cannot be read are reported.
+    """
+    names = dict.fromkeys(
+        name
+        for item in reading.recognised
+        if isinstance(item.frontend, DiagramReader)
+        for name in item.frontend.list_companions(item.source.name)
+    )
+    sources = {
+        source.name: source for name in names for source in _load(name, root, reading.roots, sink)
+    }
+    return tuple(sources[name] for name in sorted(sources))
+
+
+def _load(name: str, root: Path, roots: Roots, sink: Sink) -> Iterator[Source]:
+    """Yield the source of a file, or the matching entries of an archive (``file!pattern``).
+
+    A file outside the allowed roots is skipped. An archive is an input, and therefore allowed.
+    """
+    file, is_archive, pattern = name.partition("!")
+    if not (root / file).is_file() or not (is_archive or roots.allows(root / file)):
+        return
+    try:
+        source = Source(file, read_whole(root / file, file, DEFAULT_LIMITS))
+        yield from (
+            entries(source, lambda entry: _matches(entry, pattern)) if is_archive else [source]
+        )
+    except SourceError as problem:
+        faults.report_unreadable(problem, sink)
+
+
+def _matches(entry: str, pattern: str) -> bool:
+    return fnmatchcase(entry.rpartition("/")[2], pattern)
