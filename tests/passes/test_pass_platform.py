@@ -8,7 +8,7 @@ from sysmlc.ir.text import print_text
 from sysmlc.passes.platform import Platform
 from sysmlc.passes.platform import rules as _rules
 from sysmlc.passes.recipe import Recipe
-from sysmlc.recipe.platform import Platform as Found
+from sysmlc.recipe.plant import Platform as Found
 
 RULES = [rule for rule in catalogue().values() if "SM623" <= rule.code <= "SM630"]
 assert _rules

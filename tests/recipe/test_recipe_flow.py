@@ -5,8 +5,7 @@ from random import Random
 import pytest
 
 from sysmlc.recipe.expression import make_variable
-from sysmlc.recipe.flow import compute_duration, find_cycles, forward_edges, sort_nodes
-from sysmlc.recipe.loops import with_loops
+from sysmlc.recipe.flow import compute_duration, find_cycles, forward_edges, sort_nodes, with_loops
 from sysmlc.recipe.model import FlowEdge, FlowGraph, Node, Range
 
 TIMES = {"a": (10, 20), "b": (5, 5), "c": (1, 100), "d": (7, 9)}

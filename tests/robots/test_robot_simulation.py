@@ -12,8 +12,13 @@ from small_floors import floor
 from sysmlc.robots import validation as validating
 from sysmlc.robots.merging import StateSet
 from sysmlc.robots.run_sets import digit_patterns, starts_without_collision
-from sysmlc.robots.starts import iter_start_chunks, symbolic_starts
-from sysmlc.robots.validation import Simulation, validate_allocation, validate_symbolically
+from sysmlc.robots.validation import (
+    Simulation,
+    iter_start_chunks,
+    symbolic_starts,
+    validate_allocation,
+    validate_symbolically,
+)
 from sysmlc.robots.world import World
 
 STEPS = 60

@@ -11,8 +11,8 @@ from msgspec import Struct
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Graph, Kind
 from sysmlc.logic.contract import Contract
-from sysmlc.robots.contracts import study_contracts
 from sysmlc.robots.floor_reader import read_studies
+from sysmlc.robots.joint_contracts import study_contracts
 from sysmlc.robots.study import Study
 
 

@@ -1,4 +1,8 @@
-"""The InternalElements of a plant, by the elements of the graph (docs/automationml.md)."""
+"""The InternalElements of a plant, and the mapping of recipes to them (thesis 3.2).
+
+docs/automationml.md has the elements of the graph that represent an InternalElement. The JSON form
+of the mapping, the platform, is described by metamodels/sysmlc-platform.schema.json.
+"""
 
 from collections.abc import Iterator
 from functools import cached_property
@@ -163,3 +167,68 @@ class Plant:
 def _normalise_id(id: str) -> str:
     # Some AutomationML editors write ids in braces and in capitals, others do not.
     return id.strip("{} ").casefold()
+
+
+# -- mapping of machines and services ----------------------------------------------------------
+
+
+class Binding(Struct, frozen=True):
+    """A machine of a recipe is an element of the plant.
+
+    ``how`` is ``itself``, ``id``, ``tag``, ``allocation`` or ``overlay``; ``by`` is the id of the
+    element of the graph that states it.
+    """
+
+    machine: str
+    plant: str
+    how: str
+    by: str
+
+
+class Offer(Struct, frozen=True):
+    """An element of the plant offers a service by an operation.
+
+    ``machine`` is empty when the service needs none. ``how`` is ``name``, ``method``, ``call``,
+    ``allocation`` or ``overlay``; ``by`` is the id of the element that states it.
+    """
+
+    service: str
+    machine: str
+    plant: str
+    operation: str
+    how: str
+    by: str
+
+
+class Used(Struct, frozen=True):
+    """An element of the plant that recipes use; ``element`` is its id in the graph."""
+
+    id: str
+    name: str
+    type: str
+    element: str
+
+
+class Unused(Struct, frozen=True):
+    """An element of the plant that no recipe uses; ``contents`` counts the elements below it."""
+
+    id: str
+    name: str
+    type: str
+    element: str
+    contents: int
+
+
+class Platform(Struct, frozen=True):
+    """The recipes of a unit on its plant; all tuples are sorted.
+
+    ``machines`` and ``services`` are ids (qualified names) with the recipes that use them and
+    their elements in the graph: (name, recipes, element).
+    """
+
+    used: tuple[Used, ...]
+    bindings: tuple[Binding, ...]
+    offers: tuple[Offer, ...]
+    unused: tuple[Unused, ...]
+    machines: tuple[tuple[str, tuple[str, ...], str], ...]
+    services: tuple[tuple[str, tuple[str, ...], str], ...]

@@ -1,7 +1,7 @@
 """Validation of recipe models beyond their schema: REC001 to REC012 (SM601 to SM612) and more."""
 
 from sysmlc.diagnostics import Sink
-from sysmlc.recipe import check_bindings, check_data, check_graphs, check_tasks, check_times
+from sysmlc.recipe import check_data, check_graphs, check_tasks, check_times
 from sysmlc.recipe.checks import Check, Locate, report_findings
 from sysmlc.recipe.derive import Tables
 from sysmlc.recipe.model import Model
@@ -19,8 +19,8 @@ CHECKS: tuple[Check, ...] = (
     check_times.check_groups,
     check_times.check_releases,
     check_times.check_bounds,
-    check_bindings.check_materials,
-    check_bindings.check_opc_ua_calls,
+    check_tasks.check_materials,
+    check_tasks.check_opc_ua_calls,
 )
 
 

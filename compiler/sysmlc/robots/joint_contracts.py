@@ -1,5 +1,4 @@
-"""The joint contracts of a floor: guarantees of robots and environment, and the assignment of
-targets.
+"""All contracts of a floor, and their conjunction with the assignment of targets (thesis, 4.3).
 
 The mission gives a robot a goal; the robot takes the goal as its target when it is in its previous
 target. So targets stay until they are reached, whatever the mission does.
@@ -13,8 +12,9 @@ from sysmlc.logic.contract import Class, Conjunct, Contract, EnumerationDomain, 
 from sysmlc.logic.formula import Formula
 from sysmlc.robots import contract_terms as terms
 from sysmlc.robots.environment_contract import environment_contract
-from sysmlc.robots.mission_contract import NONE
+from sysmlc.robots.mission_contract import NONE, mission_contract
 from sysmlc.robots.robot_contract import robot_contract
+from sysmlc.robots.schedule import TravelTimes, shortest_travel_times
 from sysmlc.robots.study import WAYS, Robot, Study
 from sysmlc.robots.system_contract import count_timers, system_contract
 
@@ -154,3 +154,20 @@ def _keep_goal(robot: Robot, cell: int) -> Conjunct:
     return terms.safety_conjunct(
         f.implies(is_under_way, f.primed(is_sent_to(robot, cell))), robot.origin, text
     )
+
+
+# -- contracts as files ------------------------------------------------------------------------
+
+
+def study_contracts(study: Study, travel: TravelTimes | None = None) -> Iterator[Contract]:
+    """Yield C_S, C_E, C_R of each robot (alone, and among others), and C_M if there are targets.
+
+    Without measured travel times, the mission assumes those of shortest paths.
+    """
+    yield system_contract(study)
+    yield environment_contract(study)
+    for robot in study.robots:
+        yield robot_contract(study, robot)
+        yield robot_contract(study, robot, is_alone=False)
+    if study.targets:
+        yield mission_contract(study, travel or shortest_travel_times(study))

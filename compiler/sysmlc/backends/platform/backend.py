@@ -8,12 +8,12 @@ from sysmlc.backends.base import EmitOptions
 from sysmlc.backends.platform.document import document, places
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Graph
-from sysmlc.recipe.platform import Platform
+from sysmlc.recipe.plant import Platform
 from sysmlc.support.json_text import encode_json
 from sysmlc.support.output import Output
 
 PATH = "platform.json"
-_PLATFORMS = "sysmlc.recipe.platform"
+_PLATFORMS = "sysmlc.recipe.plant"
 """The module of platforms: most models have none, and need nothing of this imported."""
 
 

@@ -7,7 +7,7 @@ from msgspec import Struct
 
 from sysmlc.diagnostics import Place
 from sysmlc.ir import Element, Graph
-from sysmlc.recipe.platform import Offer, Platform, Used
+from sysmlc.recipe.plant import Offer, Platform, Used
 
 Json = dict[str, object]
 Places = Mapping[Place, Place]

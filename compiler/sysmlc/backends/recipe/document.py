@@ -5,7 +5,7 @@ from typing import TypeVar
 
 from sysmlc.backends.base import InputFile
 from sysmlc.backends.recipe.graphs import expression, flow_graph, parameters, trace, value_type
-from sysmlc.recipe.check_bindings import is_complete
+from sysmlc.recipe.check_tasks import is_complete
 from sysmlc.recipe.model import (
     Derived,
     Function,

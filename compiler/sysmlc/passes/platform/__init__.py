@@ -9,17 +9,16 @@ from sysmlc.diagnostics import Sink
 from sysmlc.ir import Graph
 from sysmlc.passes.platform.binding import Context, bind_machines
 from sysmlc.passes.platform.offering import find_offers
-from sysmlc.recipe import platform as model
+from sysmlc.recipe import plant as mapping
 from sysmlc.recipe.model import Model
-from sysmlc.recipe.plant import PlantElement
-from sysmlc.recipe.platform import Binding, Offer, Unused, Used
+from sysmlc.recipe.plant import Binding, Offer, PlantElement, Unused, Used
 
 
 class Platform(Struct, frozen=True):
     """Find the plant element of each machine, and the services that plant elements offer.
 
     Assumes the models of the pass ``recipe``. Afterwards
-    ``graph.derived(recipe.platform.Platform)`` holds one platform if there are recipes and a plant,
+    ``graph.derived(recipe.plant.Platform)`` holds one platform if there are recipes and a plant,
     else none. The graph stays unchanged.
     """
 
@@ -33,15 +32,15 @@ class Platform(Struct, frozen=True):
         if models and context.has_plant():
             bindings = bind_machines(context)
             offers = find_offers(context, bindings)
-            graph.store(model.Platform, [_describe_platform(context, bindings, offers)])
+            graph.store(mapping.Platform, [_describe_platform(context, bindings, offers)])
 
 
 def _describe_platform(
     context: Context, bindings: Sequence[Binding], offers: Sequence[Offer]
-) -> model.Platform:
+) -> mapping.Platform:
     ids = sorted({*(entry.plant for entry in bindings), *(entry.plant for entry in offers)})
     used = [context.found[id] for id in ids]
-    return model.Platform(
+    return mapping.Platform(
         used=tuple(
             sorted((_describe_used(context, entry) for entry in used), key=lambda entry: entry.name)
         ),

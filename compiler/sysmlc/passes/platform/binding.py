@@ -12,8 +12,7 @@ from sysmlc.diagnostics import Sink
 from sysmlc.ir import Edge, Element, Graph, Kind, query
 from sysmlc.passes.platform import rules
 from sysmlc.recipe.model import Machine, Model, Service
-from sysmlc.recipe.plant import Plant, PlantElement, is_of_plant
-from sysmlc.recipe.platform import Binding
+from sysmlc.recipe.plant import Binding, Plant, PlantElement, is_of_plant
 from sysmlc.support.suggestions import did_you_mean
 
 _OVERLAY = ".overlay.yaml"

@@ -7,8 +7,7 @@ from sysmlc.ir import Edge, Element, Graph, Kind, query
 from sysmlc.passes.platform import rules
 from sysmlc.passes.platform.binding import Context, list_allocations, report_misplaced_services
 from sysmlc.recipe.model import Service
-from sysmlc.recipe.plant import PlantElement
-from sysmlc.recipe.platform import Binding, Offer
+from sysmlc.recipe.plant import Binding, Offer, PlantElement
 from sysmlc.support.suggestions import did_you_mean
 
 

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from sysmlc.ir import Element, Kind, query
 from sysmlc.logic.expressions import expression as source
 from sysmlc.logic.expressions.parsing import parse_effect, parse_expression
-from sysmlc.logic.machines.triggers import parse_milliseconds
+from sysmlc.logic.machines.transitions import parse_milliseconds
 from sysmlc.passes.recipe.context import Context
 from sysmlc.recipe.expression import (
     make_opaque,

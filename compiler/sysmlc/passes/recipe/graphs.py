@@ -26,8 +26,7 @@ from sysmlc.passes.recipe.nodes import (
     list_flows,
     step_kind,
 )
-from sysmlc.recipe.flow import find_reachable, sort_nodes
-from sysmlc.recipe.loops import with_loops
+from sysmlc.recipe.flow import find_reachable, sort_nodes, with_loops
 from sysmlc.recipe.model import FlowEdge, FlowGraph, Node
 
 _CALLED_LEVELS = {"service": "service", "function": "machine function"}
