@@ -35,8 +35,8 @@ def test_rule_reports_its_wrong_contract_and_says_nothing_of_its_right_one(rule)
 
 
 def test_every_rule_is_there():
-    ours = {value.code for name, value in vars(rules).items() if name.isupper() and name[0] != "_"}
-    assert {one.code for one in RULES} == ours
+    codes = {value.code for name, value in vars(rules).items() if name.isupper() and name[0] != "_"}
+    assert {code for code in codes if CODES[0] <= code <= CODES[-1]} == set(CODES)
 
 
 @pytest.mark.parametrize("code", ["SM537", "SM539", "SM540"])
