@@ -81,24 +81,24 @@ class Read:
         total = self.coverage.as_json()["total"]
         return {k: n for k, n in total.items() if n and k != "elements"}
 
-    def all(self, name, kind=None):
+    def find_all(self, name, kind=None):
         return [
             element
             for element in self.graph
             if self.graph.qualified_name(element) == name and kind in (None, element.kind.value)
         ]
 
-    def one(self, name, kind=None):
-        (element,) = self.all(name, kind)
+    def find(self, name, kind=None):
+        (element,) = self.find_all(name, kind)
         return element
 
-    def to(self, name, edge, kind=None):
+    def targets(self, name, edge, kind=None):
         """Return the qualified names of the targets of an element's edges."""
-        targets = self.graph.targets(self.one(name, kind), Edge(edge))
+        targets = self.graph.targets(self.find(name, kind), Edge(edge))
         return [self.graph.qualified_name(target) for target in targets]
 
-    def owned(self, name, kind=None):
-        owned = self.graph.owned(self.one(name, kind))
+    def list_owned(self, name, kind=None):
+        owned = self.graph.owned(self.find(name, kind))
         return [f"{element.kind.value} {element.name}".strip() for element in owned]
 
     def links(self):

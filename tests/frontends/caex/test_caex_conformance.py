@@ -8,18 +8,18 @@ from sysmlc.frontends.caex import conformance
 ELEMENT = '<InternalElement Name="i" ID="1">%s</InternalElement>'
 
 
-def inside(body):
+def element_with(body):
     return plant(ELEMENT % body)
 
 
 UNKNOWN = [
     (
-        inside("").replace('ID="1"', 'ID="1" RefBaseClassPath="Lib/C"'),
+        element_with("").replace('ID="1"', 'ID="1" RefBaseClassPath="Lib/C"'),
         "'Plant::i' has an attribute 'RefBaseClassPath', which CAEX does not have at "
         "'InternalElement'; did you mean 'RefBaseSystemUnitPath'?",
     ),
     (
-        inside('<Attribute Name="a" Value="5"/><Attribute Name="b" Value="5"/>'),
+        element_with('<Attribute Name="a" Value="5"/><Attribute Name="b" Value="5"/>'),
         "'Plant::i::a' has an attribute 'Value', which CAEX does not have at 'Attribute' "
         "(2 elements); known: AttributeDataType, ChangeMode, ID, Name, RefAttributeType, Unit",
     ),
@@ -38,7 +38,7 @@ def test_an_unknown_attribute_is_reported_once(body, message):
 
 
 def test_an_element_with_an_unknown_attribute_is_approximated():
-    assert Read(inside('<Attribute Name="a" Value="5"/>')).totals == {
+    assert Read(element_with('<Attribute Name="a" Value="5"/>')).totals == {
         "mapped": 3,
         "approximated": 1,
     }
@@ -46,14 +46,14 @@ def test_an_element_with_an_unknown_attribute_is_approximated():
 
 def test_attributes_of_other_namespaces_and_of_caex_are_not_reported():
     xsi = 'xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance" xsi:type="T"'
-    assert Read(inside("").replace('ID="1"', f'ID="1" {xsi}')).findings == []
+    assert Read(element_with("").replace('ID="1"', f'ID="1" {xsi}')).findings == []
     assert Read(classes('<SystemUnitClass Name="C" ID="1" ChangeMode="state"/>')).findings == []
     any_xml = '<AdditionalInformation Tool="t"><Attribute Key="k"/></AdditionalInformation>'
-    assert Read(inside(any_xml)).findings == []
+    assert Read(element_with(any_xml)).findings == []
 
 
 def test_an_unknown_attribute_after_a_namespace_declaration_is_reported():
-    body = inside("").replace('ID="1"', 'ID="1" xmlns="" colour="red"')
+    body = element_with("").replace('ID="1"', 'ID="1" xmlns="" colour="red"')
     reading = Read(body)
     assert [finding[:5] for finding in reading.findings] == ["SM633"]
 
@@ -81,7 +81,7 @@ TEXTS = [
 
 @pytest.mark.parametrize(("body", "message"), TEXTS)
 def test_text_in_an_element_without_text_is_reported(body, message):
-    reading = Read(inside(body))
+    reading = Read(element_with(body))
     assert reading.findings == [f"SM634: {message}"]
 
 
@@ -95,7 +95,7 @@ def test_text_in_an_element_without_text_is_reported(body, message):
     ],
 )
 def test_text_that_caex_allows_is_not_reported(body):
-    reading = Read(inside(body))
+    reading = Read(element_with(body))
     assert reading.findings == []
 
 
@@ -103,9 +103,9 @@ def test_text_below_elements_that_hold_any_xml_needs_no_second_parse(monkeypatch
     parsed = []
     monkeypatch.setattr(conformance, "parse", lambda source, _: parsed.append(source.name))
     header = "<WriterHeader><WriterName>us</WriterName><Constraint>c</Constraint></WriterHeader>"
-    reading = Read(inside(f"<AdditionalInformation>{header}</AdditionalInformation>"))
+    reading = Read(element_with(f"<AdditionalInformation>{header}</AdditionalInformation>"))
     assert (reading.findings, parsed) == ([], [])
-    Read(inside("oops"))
+    Read(element_with("oops"))
     assert parsed == ["plant.aml"]
 
 

@@ -1,4 +1,4 @@
-"""Inheritance, instances, mirrors and links (rules 7 to 14)."""
+"""Inheritance, instances, mirrors and links."""
 
 import pytest
 from reading_caex import Read, aml_2, classes, interfaces, plant, roles, types
@@ -6,7 +6,7 @@ from reading_caex import Read, aml_2, classes, interfaces, plant, roles, types
 PORTS = interfaces('<InterfaceClass Name="P"/>')
 
 
-# -- rules 7, 8 and 11: inheritance ------------------------------------------------------------
+# -- inheritance -----------------------------------------------------------------------------------
 
 
 def test_a_class_inherits_members_of_its_base_without_copies():
@@ -17,8 +17,8 @@ def test_a_class_inherits_members_of_its_base_without_copies():
             '<SystemUnitClass Name="Derived" RefBaseClassPath="Lib/Base"/>'
         )
     )
-    assert reading.to("Lib::Derived", "specializes") == ["Lib::Base"]
-    assert reading.owned("Lib::Derived") == []
+    assert reading.targets("Lib::Derived", "specializes") == ["Lib::Base"]
+    assert reading.list_owned("Lib::Derived") == []
 
 
 def test_overriding_is_by_name_and_replaces_the_whole_attribute():
@@ -31,9 +31,9 @@ def test_overriding_is_by_name_and_replaces_the_whole_attribute():
             f'<Attribute Name="b">{inner.format("n2")}</Attribute></SystemUnitClass>'
         )
     )
-    assert reading.to("Lib::Derived::b", "redefines", "Property") == ["Lib::Base::b"]
-    assert reading.owned("Lib::Derived::b", "DataType") == ["Property n2"]
-    assert reading.to("Lib::Derived::b", "specializes", "DataType") == []
+    assert reading.targets("Lib::Derived::b", "redefines", "Property") == ["Lib::Base::b"]
+    assert reading.list_owned("Lib::Derived::b", "DataType") == ["Property n2"]
+    assert reading.targets("Lib::Derived::b", "specializes", "DataType") == []
 
 
 def test_an_attribute_of_another_name_overrides_nothing():
@@ -44,7 +44,7 @@ def test_an_attribute_of_another_name_overrides_nothing():
             '<Attribute Name="B"/></SystemUnitClass>'
         )
     )
-    assert reading.to("Lib::Derived::B", "redefines") == []
+    assert reading.targets("Lib::Derived::B", "redefines") == []
 
 
 @pytest.mark.parametrize(
@@ -63,8 +63,8 @@ def test_a_cycle_of_base_classes_is_cut_and_reported(a, b, findings):
         )
     )
     assert reading.findings == findings
-    assert reading.to("Roles::A", "specializes") == []
-    assert reading.to("Roles::B", "specializes") == ["Roles::A"]
+    assert reading.targets("Roles::A", "specializes") == []
+    assert reading.targets("Roles::B", "specializes") == ["Roles::A"]
 
 
 def test_a_class_that_specialises_a_cycle_is_no_part_of_it():
@@ -76,7 +76,7 @@ def test_a_class_that_specialises_a_cycle_is_no_part_of_it():
         )
     )
     assert reading.findings == ["SM134: the class 'A' specialises itself: A -> B -> A"]
-    assert reading.to("Roles::X", "specializes") == ["Roles::A"]
+    assert reading.targets("Roles::X", "specializes") == ["Roles::A"]
 
 
 def test_interface_classes_and_attribute_types_inherit_in_the_same_way():
@@ -89,8 +89,8 @@ def test_interface_classes_and_attribute_types_inherit_in_the_same_way():
             '<AttributeType Name="Width" RefAttributeType="Types/Length"/>'
         )
     )
-    assert reading.to("Interfaces::B", "specializes") == ["Interfaces::A"]
-    assert reading.to("Types::Width", "specializes") == ["Types::Length"]
+    assert reading.targets("Interfaces::B", "specializes") == ["Interfaces::A"]
+    assert reading.targets("Types::Width", "specializes") == ["Types::Length"]
 
 
 def test_an_attribute_type_types_nested_attributes_too():
@@ -101,10 +101,10 @@ def test_an_attribute_type_types_nested_attributes_too():
             '<Attribute Name="w" RefAttributeType="Types/Length"/></Attribute></SystemUnitClass>'
         )
     )
-    assert reading.to("Lib::Box::size::w", "typed-by") == ["Types::Length"]
+    assert reading.targets("Lib::Box::size::w", "typed-by") == ["Types::Length"]
 
 
-# -- rules 9 and 10: instances -----------------------------------------------------------------
+# -- instances -------------------------------------------------------------------------------------
 
 SWITCH = classes(
     '<SystemUnitClass Name="Motor"><Attribute Name="power" AttributeDataType="xs:double"/>'
@@ -117,7 +117,7 @@ SWITCH = classes(
 )
 
 
-def switch(inside, path="Lib/Switch"):
+def plant_with_switch(inside, path="Lib/Switch"):
     return SWITCH + plant(
         f'<InternalElement Name="sw" ID="sw" RefBaseSystemUnitPath="{path}">{inside}'
         "</InternalElement>"
@@ -126,71 +126,73 @@ def switch(inside, path="Lib/Switch"):
 
 def test_an_instance_that_repeats_its_class_adds_no_members():
     reading = Read(
-        switch(
+        plant_with_switch(
             '<Attribute Name="length" AttributeDataType="xs:double"><Value>1.0</Value></Attribute>'
             '<ExternalInterface Name="p" ID="i-p"/>'
             '<InternalElement Name="m" ID="i-m" RefBaseSystemUnitPath="Lib/Motor"/>'
         )
     )
-    assert reading.to("Plant::sw", "instance-of") == ["Lib::Switch"]
-    assert reading.owned("Plant::sw") == ["Instance m"]
-    assert reading.to("Plant::sw::m", "represents") == ["Lib::Switch::m"]
-    assert reading.one("Plant::sw").attrs["interface_ids"] == (("c-p", "i-p"),)
+    assert reading.targets("Plant::sw", "instance-of") == ["Lib::Switch"]
+    assert reading.list_owned("Plant::sw") == ["Instance m"]
+    assert reading.targets("Plant::sw::m", "represents") == ["Lib::Switch::m"]
+    assert reading.find("Plant::sw").attrs["interface_ids"] == (("c-p", "i-p"),)
     assert reading.findings == reading.infos == []
 
 
 def test_a_value_of_an_instance_is_a_slot_and_no_default_of_the_class():
     reading = Read(
-        switch(
+        plant_with_switch(
             '<Attribute Name="length" AttributeDataType="xs:double"><Value>1.2</Value></Attribute>'
             '<InternalElement Name="m" ID="i-m"><Attribute Name="power" '
             'AttributeDataType="xs:double"><Value>5</Value></Attribute></InternalElement>'
         )
     )
-    assert reading.one("Plant::sw::length").attrs["value"] == 1.2
-    assert reading.to("Plant::sw::length", "instance-of") == ["Lib::Switch::length"]
-    assert reading.one("Plant::sw::m::power").attrs["value"] == 5.0
-    assert reading.to("Plant::sw::m::power", "instance-of") == ["Lib::Motor::power"]
-    assert reading.one("Lib::Switch::length").attrs["default"] == 1.0
+    assert reading.find("Plant::sw::length").attrs["value"] == 1.2
+    assert reading.targets("Plant::sw::length", "instance-of") == ["Lib::Switch::length"]
+    assert reading.find("Plant::sw::m::power").attrs["value"] == 5.0
+    assert reading.targets("Plant::sw::m::power", "instance-of") == ["Lib::Motor::power"]
+    assert reading.find("Lib::Switch::length").attrs["default"] == 1.0
 
 
 def test_added_members_make_a_specialised_block():
-    reading = Read(switch('<Attribute Name="colour"/><ExternalInterface Name="q" ID="i-q"/>'))
-    assert reading.to("Plant::sw", "instance-of", "Instance") == ["Plant::sw"]
-    assert reading.to("Plant::sw", "specializes", "Class") == ["Lib::Switch"]
-    assert reading.owned("Plant::sw", "Class") == ["Property colour", "Port q"]
+    reading = Read(
+        plant_with_switch('<Attribute Name="colour"/><ExternalInterface Name="q" ID="i-q"/>')
+    )
+    assert reading.targets("Plant::sw", "instance-of", "Instance") == ["Plant::sw"]
+    assert reading.targets("Plant::sw", "specializes", "Class") == ["Lib::Switch"]
+    assert reading.list_owned("Plant::sw", "Class") == ["Property colour", "Port q"]
 
 
 def test_members_that_an_instance_omits_are_not_reported():
-    reading = Read(switch(""))
-    assert reading.owned("Plant::sw") == []
-    assert reading.to("Plant::sw", "instance-of") == ["Lib::Switch"]
+    reading = Read(plant_with_switch(""))
+    assert reading.list_owned("Plant::sw") == []
+    assert reading.targets("Plant::sw", "instance-of") == ["Lib::Switch"]
     assert reading.findings == []
 
 
 def test_an_element_without_class_has_a_block_of_its_own():
-    reading = Read(switch('<Attribute Name="colour"/>', path=""))
-    assert reading.to("Plant::sw", "instance-of", "Instance") == ["Plant::sw"]
-    block = reading.one("Plant::sw", "Class")
+    reading = Read(plant_with_switch('<Attribute Name="colour"/>', path=""))
+    assert reading.targets("Plant::sw", "instance-of", "Instance") == ["Plant::sw"]
+    block = reading.find("Plant::sw", "Class")
     assert (block.role, block.attrs["subkind"]) == ("block", "internal-element")
-    assert reading.owned("Plant::sw", "Class") == ["Property colour"]
+    assert reading.list_owned("Plant::sw", "Class") == ["Property colour"]
 
 
 def test_an_attribute_that_extends_that_of_its_class_redefines_it():
     reading = Read(
-        switch(
+        plant_with_switch(
             '<Attribute Name="length" AttributeDataType="xs:double" Unit="m"><Value>1.0</Value>'
             '<Constraint Name="c"><OrdinalScaledType><RequiredMaxValue>2</RequiredMaxValue>'
             "</OrdinalScaledType></Constraint></Attribute>"
         )
     )
-    assert reading.owned("Plant::sw", "Class") == ["Property length", "Constraint c"]
-    assert reading.to("Plant::sw::length", "redefines") == ["Lib::Switch::length"]
-    assert reading.one("Plant::sw::c").attrs["body"] == "length <= 2.0"
+    assert reading.list_owned("Plant::sw", "Class") == ["Property length", "Constraint c"]
+    assert reading.targets("Plant::sw::length", "redefines") == ["Lib::Switch::length"]
+    assert reading.find("Plant::sw::c").attrs["body"] == "length <= 2.0"
     assert reading.totals == {"mapped": 16}
 
 
-# -- rule 12: mirrors --------------------------------------------------------------------------
+# -- mirrors ---------------------------------------------------------------------------------------
 
 
 def test_a_mirror_is_a_reference_to_its_master():
@@ -203,11 +205,11 @@ def test_a_mirror_is_a_reference_to_its_master():
         )
     )
     for name in ("m", "n"):
-        mirror = reading.one(f"Plant::cell::{name}", "Property")
+        mirror = reading.find(f"Plant::cell::{name}", "Property")
         assert (mirror.role, mirror.attrs.get("aggregation")) == ("reference", None)
-        assert reading.to(f"Plant::cell::{name}", "mirrors", "Property") == ["Plant::cell::a"]
+        assert reading.targets(f"Plant::cell::{name}", "mirrors", "Property") == ["Plant::cell::a"]
         (type_,) = reading.graph.targets(mirror, "typed-by")
-        assert type_ is reading.one("Plant::cell::a", "Class")
+        assert type_ is reading.find("Plant::cell::a", "Class")
     assert reading.findings == []
 
 
@@ -224,14 +226,14 @@ def test_interfaces_and_attributes_are_mirrored_by_the_id_of_an_interface_or_own
             "</InternalElement>"
         )
     )
-    assert reading.to("Plant::cell::b::y", "mirrors") == ["Plant::cell::a::x"]
-    assert reading.to("Plant::cell::b::q", "mirrors") == ["Plant::cell::a::p"]
-    assert reading.to("Plant::cell::b::q", "typed-by") == ["Interfaces::P"]
+    assert reading.targets("Plant::cell::b::y", "mirrors") == ["Plant::cell::a::x"]
+    assert reading.targets("Plant::cell::b::q", "mirrors") == ["Plant::cell::a::p"]
+    assert reading.targets("Plant::cell::b::q", "typed-by") == ["Interfaces::P"]
     assert reading.findings == []
 
 
 def test_a_mirror_of_caex_2_may_have_content_which_is_its_own():
-    """CAEX 3.0 forbids it; files of 2.15 have it (rule 12)."""
+    """CAEX 3.0 forbids it; files of 2.15 have it."""
     reading = Read(
         aml_2(
             plant(
@@ -242,9 +244,9 @@ def test_a_mirror_of_caex_2_may_have_content_which_is_its_own():
             )
         )
     )
-    assert reading.to("Plant::cell::m", "mirrors", "Property") == ["Plant::cell::a"]
-    assert reading.owned("Plant::cell::m", "Class") == ["Property y"]
-    assert reading.to("Plant::cell::m", "specializes", "Class") == ["Plant::cell::a"]
+    assert reading.targets("Plant::cell::m", "mirrors", "Property") == ["Plant::cell::a"]
+    assert reading.list_owned("Plant::cell::m", "Class") == ["Property y"]
+    assert reading.targets("Plant::cell::m", "specializes", "Class") == ["Plant::cell::a"]
     assert reading.findings == []
 
 
@@ -303,13 +305,13 @@ def test_a_mirror_names_an_attribute_behind_a_slash(reference, findings):
         )
     )
     assert reading.findings == findings
-    assert len(reading.to("Plant::cell::m", "mirrors")) == (not findings)
+    assert len(reading.targets("Plant::cell::m", "mirrors")) == (not findings)
 
 
-# -- rules 13 and 14: links --------------------------------------------------------------------
+# -- links -----------------------------------------------------------------------------------------
 
 
-def cell(side_a, side_b, more=""):
+def cell_with_link(side_a, side_b, more=""):
     return PORTS + plant(
         '<InternalElement Name="cell" ID="0"><ExternalInterface Name="f" ID="9"/>'
         '<InternalElement Name="a" ID="1"><ExternalInterface Name="out" ID="10">'
@@ -335,7 +337,7 @@ def cell(side_a, side_b, more=""):
     ],
 )
 def test_every_style_of_link_sides_leads_to_the_port(side, end):
-    reading = Read(aml_2(cell(side, "20")))
+    reading = Read(aml_2(cell_with_link(side, "20")))
     assert reading.links() == {"l": (end, "b.Ch. 1^In:x")}
     assert reading.findings == []
 
@@ -346,7 +348,7 @@ def test_a_side_may_name_an_interface_that_only_the_class_holds(side):
         '<SystemUnitClass Name="C"><ExternalInterface Name="io" ID="io"/></SystemUnitClass>'
     )
     instance = '<InternalElement Name="c/1" ID="c" RefBaseSystemUnitPath="Lib/C"/>'
-    reading = Read(aml_2(cell(side, "20", instance) + held))
+    reading = Read(aml_2(cell_with_link(side, "20", instance) + held))
     assert reading.links() == {"l": ("c/1.io", "b.Ch. 1^In:x")}
 
 
@@ -360,20 +362,20 @@ def test_a_side_may_name_an_interface_that_only_the_class_holds(side):
     ],
 )
 def test_an_unresolved_side_is_reported_and_the_link_becomes_a_dependency(side, problem):
-    reading = Read(aml_2(cell(side, "20")))
+    reading = Read(aml_2(cell_with_link(side, "20")))
     assert reading.links() == {}
     assert reading.findings == [f"SM135: link 'l': its side A says '{side}', and {problem}"]
-    link = reading.one("Plant::cell::l", "Dependency")
+    link = reading.find("Plant::cell::l", "Dependency")
     assert link.attrs["subkind"] == "internal-link"
     ends = [*reading.graph.targets(link, "client"), *reading.graph.targets(link, "supplier")]
     assert "20" in [element.id for element in ends]
 
 
 def test_an_open_side_is_an_info():
-    reading = Read(cell("10", ""))
+    reading = Read(cell_with_link("10", ""))
     assert reading.findings == []
     assert reading.infos == ["SM136: link 'l' has no side B"]
-    assert reading.to("Plant::cell::l", "client") == ["Plant::cell::a::out"]
+    assert reading.targets("Plant::cell::l", "client") == ["Plant::cell::a::out"]
 
 
 @pytest.mark.parametrize("is_class_first", [True, False])
@@ -413,8 +415,8 @@ def test_two_instances_of_a_class_are_wired_differently():
     )
     reading = Read(classes(f'<SystemUnitClass Name="C">{parts}</SystemUnitClass>') + plant(tops))
     assert reading.links() == {"lx": ("a.p", "b.p"), "ly": ("a.p", "c.p")}
-    assert reading.owned("Plant::x", "Instance")[-1] == "Connector lx"
-    assert reading.owned("Plant::y", "Instance")[-1] == "Connector ly"
+    assert reading.list_owned("Plant::x", "Instance")[-1] == "Connector lx"
+    assert reading.list_owned("Plant::y", "Instance")[-1] == "Connector ly"
 
 
 def test_a_group_at_the_top_of_a_hierarchy_is_owned_by_it():
@@ -424,8 +426,8 @@ def test_a_group_at_the_top_of_a_hierarchy_is_owned_by_it():
         'AutomationMLBaseRoleClassLib/AutomationMLBaseRole/Group"/></InternalElement>'
     )
     reading = Read(plant(f'<InternalElement Name="a" ID="a"/>{group}'))
-    assert reading.owned("Plant") == ["Instance a", "Class a", "Group g"]
-    assert reading.to("Plant::g", "references") == ["Plant::a"]
+    assert reading.list_owned("Plant") == ["Instance a", "Class a", "Group g"]
+    assert reading.targets("Plant::g", "references") == ["Plant::a"]
 
 
 def test_an_element_in_a_class_that_only_repeats_a_part_keeps_its_id_and_description():
@@ -443,6 +445,6 @@ def test_an_element_in_a_class_that_only_repeats_a_part_keeps_its_id_and_descrip
     again = reading.graph["again"]
     assert (again.kind, again.attrs["version"]) == ("Instance", "2")
     assert reading.graph["again/Description"].attrs["body"] == "the left one"
-    assert reading.to("Lib::B::a::m", "represents") == ["Lib::A::m"]
-    assert reading.to("Lib::B::x", "mirrors") == ["Lib::B::a::m"]
+    assert reading.targets("Lib::B::a::m", "represents") == ["Lib::A::m"]
+    assert reading.targets("Lib::B::x", "mirrors") == ["Lib::B::a::m"]
     assert reading.findings == []

@@ -13,7 +13,7 @@ def value(name, text, data_type="xs:string"):
     return f"{start}<Value>{text}</Value></Attribute>"
 
 
-# -- files and libraries -----------------------------------------------------------------------
+# -- files and libraries ---------------------------------------------------------------------------
 
 
 def test_a_file_is_a_document_with_the_values_of_its_header():
@@ -25,20 +25,20 @@ def test_a_file_is_a_document_with_the_values_of_its_header():
             "<Copyright>us</Copyright>"
         )
     )
-    document = reading.one("plant.aml")
+    document = reading.find("plant.aml")
     assert (document.kind.value, document.subkind) == ("Document", "caex")
     assert document.attrs["version"] == "3.0"
     assert document.attrs["description"] == "a gate"
     assert document.attrs["superior_standard"] == "AutomationML 2.10"
     assert document.attrs["copyright"] == "us"
-    origin = reading.one("plant.aml::SourceDocumentInformation")
+    origin = reading.find("plant.aml::SourceDocumentInformation")
     assert origin.attrs["origin_name"] == "editor"
     assert reading.totals == {"mapped": 5}
 
 
 def test_an_external_reference_is_an_import_named_as_its_alias():
     reading = Read('<ExternalReference Path="libs/a.aml" Alias="A"/>')
-    alias = reading.one("A")
+    alias = reading.find("A")
     assert (alias.kind.value, alias.subkind, alias.attrs["path"]) == (
         "Import",
         "alias",
@@ -68,7 +68,7 @@ def test_classes_are_blocks_interface_blocks_and_value_types():
     kinds = {
         name: (element.kind.value, element.role, element.attrs.get("abstract"))
         for name in ("Lib::C", "Lib::C::N", "Roles::C", "Interfaces::C", "Types::C")
-        for element in [reading.one(name)]
+        for element in [reading.find(name)]
     }
     assert kinds == {
         "Lib::C": ("Class", "block", None),
@@ -82,7 +82,7 @@ def test_classes_are_blocks_interface_blocks_and_value_types():
 def test_standard_libraries_that_a_file_omits_are_added_as_external():
     path = "AutomationMLBaseRoleClassLib/AutomationMLBaseRole/Resource"
     reading = Read(roles(f'<RoleClass Name="R" RefBaseClassPath="{path}"/>'))
-    (general,) = reading.graph.targets(reading.one("Roles::R"), "specializes")
+    (general,) = reading.graph.targets(reading.find("Roles::R"), "specializes")
     assert reading.graph.qualified_name(general) == path.replace("/", "::")
     assert general.attrs["external"] is general.attrs["library"] is True
     assert reading.findings == []
@@ -107,7 +107,7 @@ def test_a_standard_library_in_the_file_is_used_and_external():
             'RefBaseClassPath="AutomationMLBaseRoleClassLib/AutomationMLBaseRole"/>'
         )
     )
-    (general,) = reading.graph.targets(reading.one("Roles::R"), "specializes")
+    (general,) = reading.graph.targets(reading.find("Roles::R"), "specializes")
     assert (general.source, general.attrs["external"]) == ("plant.aml", True)
 
 
@@ -143,7 +143,7 @@ def test_a_fault_in_a_library_of_the_plant_is_an_error():
     assert [finding[:5] for finding in reading.findings] == ["SM133"]
 
 
-# -- internal elements -------------------------------------------------------------------------
+# -- internal elements -----------------------------------------------------------------------------
 
 
 def test_an_internal_element_is_a_part_of_its_class_or_of_a_block_of_its_own():
@@ -157,13 +157,13 @@ def test_an_internal_element_is_a_part_of_its_class_or_of_a_block_of_its_own():
         )
     )
     for name in "abc":
-        part = reading.one(f"Lib::C::{name}", "Property")
+        part = reading.find(f"Lib::C::{name}", "Property")
         assert (part.role, part.attrs["aggregation"]) == ("part", "composite")
-    assert reading.to("Lib::C::a", "typed-by") == ["Lib::M"]
-    assert reading.to("Lib::C::b", "typed-by", "Property") == ["Lib::C::b"]
-    assert reading.one("Lib::C::b", "Class").subkind == "internal-element"
-    assert reading.to("Lib::C::c", "specializes", "Class") == ["Lib::M"]
-    assert reading.owned("Lib::C::c", "Class") == ["Property x"]
+    assert reading.targets("Lib::C::a", "typed-by") == ["Lib::M"]
+    assert reading.targets("Lib::C::b", "typed-by", "Property") == ["Lib::C::b"]
+    assert reading.find("Lib::C::b", "Class").subkind == "internal-element"
+    assert reading.targets("Lib::C::c", "specializes", "Class") == ["Lib::M"]
+    assert reading.list_owned("Lib::C::c", "Class") == ["Property x"]
 
 
 def test_a_part_that_an_instance_extends_is_redefined():
@@ -178,14 +178,14 @@ def test_a_part_that_an_instance_extends_is_redefined():
             '<InternalElement Name="new" ID="4"/></InternalElement></InternalElement>'
         )
     )
-    assert reading.to("Plant::top::m", "redefines", "Property") == ["Lib::C::m"]
-    (type_,) = reading.graph.targets(reading.one("Plant::top::m", "Property"), "typed-by")
-    assert type_ is reading.one("Plant::top::m", "Class")
-    assert reading.to("Plant::top::m", "specializes", "Class") == ["Lib::M"]
+    assert reading.targets("Plant::top::m", "redefines", "Property") == ["Lib::C::m"]
+    (type_,) = reading.graph.targets(reading.find("Plant::top::m", "Property"), "typed-by")
+    assert type_ is reading.find("Plant::top::m", "Class")
+    assert reading.targets("Plant::top::m", "specializes", "Class") == ["Lib::M"]
 
 
 def test_a_part_to_which_an_instance_gives_another_class_is_redefined():
-    def read_part_of_class(by):
+    def read_part(by):
         return Read(
             classes(
                 '<SystemUnitClass Name="M"/><SystemUnitClass Name="N"/>'
@@ -199,13 +199,13 @@ def test_a_part_to_which_an_instance_gives_another_class_is_redefined():
             )
         )
 
-    assert read_part_of_class("N").to("Plant::top::m", "redefines", "Property") == ["Lib::C::m"]
-    assert read_part_of_class("N").to("Plant::top::m", "typed-by", "Property") == ["Lib::N"]
-    assert read_part_of_class("Fine").to("Plant::top", "instance-of") == ["Lib::C"]
-    assert read_part_of_class("Fine").to("Plant::top::m", "instance-of") == ["Lib::Fine"]
+    assert read_part("N").targets("Plant::top::m", "redefines", "Property") == ["Lib::C::m"]
+    assert read_part("N").targets("Plant::top::m", "typed-by", "Property") == ["Lib::N"]
+    assert read_part("Fine").targets("Plant::top", "instance-of") == ["Lib::C"]
+    assert read_part("Fine").targets("Plant::top::m", "instance-of") == ["Lib::Fine"]
 
 
-# -- attributes --------------------------------------------------------------------------------
+# -- attributes ------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(
@@ -223,7 +223,7 @@ def test_an_attribute_is_a_value_property_with_default_and_type(data_type, text,
     reading = Read(
         classes(f'<SystemUnitClass Name="C">{value("v", text, data_type)}</SystemUnitClass>')
     )
-    value_property = reading.one("Lib::C::v")
+    value_property = reading.find("Lib::C::v")
     assert (value_property.role, value_property.attrs["default"]) == ("value", read)
     assert [r.name for r in reading.graph.pending if r.source == value_property.id] == [primitive]
 
@@ -236,7 +236,7 @@ def test_value_and_default_are_both_stored_if_they_differ():
             "</Attribute></SystemUnitClass>"
         )
     )
-    v, w = reading.one("Lib::C::v").attrs, reading.one("Lib::C::w").attrs
+    v, w = reading.find("Lib::C::v").attrs, reading.find("Lib::C::w").attrs
     assert (v["default"], v["default_value"]) == ("b", "a")
     assert (w["default"], w.get("default_value")) == ("a", "a")
 
@@ -248,8 +248,8 @@ def test_an_attribute_with_attributes_has_a_data_type_of_its_own():
             "</SystemUnitClass>"
         )
     )
-    assert reading.to("Lib::C::s", "typed-by", "Property") == ["Lib::C::s"]
-    assert reading.owned("Lib::C::s", "DataType") == ["Property x"]
+    assert reading.targets("Lib::C::s", "typed-by", "Property") == ["Lib::C::s"]
+    assert reading.list_owned("Lib::C::s", "DataType") == ["Property x"]
 
 
 @pytest.mark.parametrize(
@@ -263,7 +263,7 @@ def test_lists_have_any_number_of_values(list_type, ordered):
             "</SystemUnitClass>"
         )
     )
-    attrs = reading.one("Lib::C::v").attrs
+    attrs = reading.find("Lib::C::v").attrs
     assert attrs.get("multiplicity") == (None if list_type == "Direction" else "*")
     assert attrs.get("ordered") is ordered
 
@@ -278,7 +278,7 @@ def test_a_list_of_caex_2_is_recognised_by_its_semantics():
             )
         )
     )
-    attrs = reading.one("Lib::C::v").attrs
+    attrs = reading.find("Lib::C::v").attrs
     assert (attrs["multiplicity"], attrs["ordered"]) == ("*", True)
     assert attrs["semantics"] == ("OrderedListType",)
 
@@ -292,11 +292,11 @@ def test_semantics_of_classes_and_attributes_are_stored():
             "</SystemUnitClass>"
         )
     )
-    assert reading.one("Types::T").attrs["semantics"] == ("ECLASS:0173-1#02-AAB",)
-    assert len(reading.one("Lib::C::v").attrs["semantics"]) == 2
+    assert reading.find("Types::T").attrs["semantics"] == ("ECLASS:0173-1#02-AAB",)
+    assert len(reading.find("Lib::C::v").attrs["semantics"]) == 2
 
 
-# -- units -------------------------------------------------------------------------------------
+# -- units -----------------------------------------------------------------------------------------
 
 
 def read_with_unit(unit, more="", of_type=""):
@@ -324,7 +324,7 @@ def read_with_unit(unit, more="", of_type=""):
 )
 def test_a_unit_is_recognised_by_symbol_spelling_and_code(unit, symbol, quantity):
     reading = read_with_unit(unit)
-    value_property = reading.one("Lib::C::v")
+    value_property = reading.find("Lib::C::v")
     assert value_property.attrs["unit"] == unit
     assert unit_of(reading.graph, value_property).attrs["symbol"] == symbol
     assert quantity_kind_of(reading.graph, value_property).name == quantity
@@ -334,11 +334,11 @@ def test_a_unit_is_recognised_by_symbol_spelling_and_code(unit, symbol, quantity
 @pytest.mark.parametrize("of_type", [' Unit="m"', ""])
 def test_an_attribute_has_the_unit_of_its_type_or_its_own(of_type):
     reading = read_with_unit("mm", ' RefAttributeType="Types/Length"', of_type)
-    value_property = reading.one("Lib::C::v")
+    value_property = reading.find("Lib::C::v")
     assert unit_of(reading.graph, value_property).attrs["symbol"] == "mm"
     plain = read_with_unit("m", ' RefAttributeType="Types/Length"', ' Unit="m"')
-    assert plain.to("Lib::C::v", "typed-by") == ["Types::Length"]
-    assert unit_of(plain.graph, plain.one("Lib::C::v")).attrs["symbol"] == "m"
+    assert plain.targets("Lib::C::v", "typed-by") == ["Types::Length"]
+    assert unit_of(plain.graph, plain.find("Lib::C::v")).attrs["symbol"] == "m"
 
 
 def test_value_types_of_one_unit_have_a_name_for_each_primitive():
@@ -350,7 +350,7 @@ def test_value_types_of_one_unit_have_a_name_for_each_primitive():
             '<Attribute Name="s" Unit="m"/><Attribute Name="f" Unit="furlong"/></SystemUnitClass>'
         )
     )
-    assert {name: reading.to(f"Lib::C::{name}", "typed-by") for name in "risf"} == {
+    assert {name: reading.targets(f"Lib::C::{name}", "typed-by") for name in "risf"} == {
         "r": ["Values::length[m]"],
         "i": ["Values::Integer length[m]"],
         "s": ["Values::String length[m]"],
@@ -361,7 +361,7 @@ def test_value_types_of_one_unit_have_a_name_for_each_primitive():
 def test_an_unknown_unit_is_reported_once_a_file_and_stored_as_written():
     reading = read_with_unit("furlong")
     assert reading.findings == ["SM147: the unit 'furlong' of 'v' is not known"]
-    value_property = reading.one("Lib::C::v")
+    value_property = reading.find("Lib::C::v")
     assert unit_of(reading.graph, value_property).attrs["symbol"] == "furlong"
     assert quantity_kind_of(reading.graph, value_property) is None
 
@@ -370,16 +370,16 @@ def test_an_unknown_unit_is_reported_once_a_file_and_stored_as_written():
 def test_the_name_of_a_type_in_place_of_a_unit_is_dropped(text):
     reading = read_with_unit(text)
     assert reading.findings == [f"SM147: the unit '{text}' of 'v' is the name of a type"]
-    assert unit_of(reading.graph, reading.one("Lib::C::v")) is None
+    assert unit_of(reading.graph, reading.find("Lib::C::v")) is None
 
 
 def test_an_attribute_without_unit_is_not_reported():
     reading = read_with_unit("")
     assert reading.findings == []
-    assert unit_of(reading.graph, reading.one("Lib::C::v")) is None
+    assert unit_of(reading.graph, reading.find("Lib::C::v")) is None
 
 
-# -- constraints -------------------------------------------------------------------------------
+# -- constraints -----------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(
@@ -409,12 +409,12 @@ def test_a_constraint_is_an_expression_or_a_text(scale, data_type, body, languag
             f'<Constraint Name="c">{scale}</Constraint></Attribute></SystemUnitClass>'
         )
     )
-    constraint = reading.one("Lib::C::c")
+    constraint = reading.find("Lib::C::c")
     assert (constraint.attrs["body"], constraint.attrs.get("language", "")) == (body, language)
-    assert reading.to("Lib::C::c", "references") == ["Lib::C::v"]
+    assert reading.targets("Lib::C::c", "references") == ["Lib::C::v"]
 
 
-# -- interfaces (rule 15) ----------------------------------------------------------------------
+# -- interfaces ------------------------------------------------------------------------------------
 
 STANDARD = "AutomationMLInterfaceClassLib/AutomationMLBaseInterface"
 
@@ -429,10 +429,10 @@ def test_an_interface_is_a_port_with_direction_cardinality_and_category():
             "</ExternalInterface></SystemUnitClass>"
         )
     )
-    attrs = reading.one("Lib::C::p").attrs
+    attrs = reading.find("Lib::C::p").attrs
     assert (attrs["direction"], attrs["multiplicity"]) == ("inout", "1..4")
     assert (attrs["category"], attrs["value.voltage"]) == ("energy", "24")
-    assert reading.to("Lib::C::p", "typed-by") == [f"{STANDARD}/Port".replace("/", "::")]
+    assert reading.targets("Lib::C::p", "typed-by") == [f"{STANDARD}/Port".replace("/", "::")]
 
 
 def test_a_value_that_an_instance_gives_to_an_interface_is_a_slot():
@@ -444,8 +444,8 @@ def test_a_value_that_an_instance_gives_to_an_interface_is_a_slot():
             "</InternalElement>"
         )
     )
-    assert reading.one("Plant::i::p").attrs["value.tag"] == "A1"
-    assert reading.to("Plant::i::p", "instance-of") == ["Lib::C::p"]
+    assert reading.find("Plant::i::p").attrs["value.tag"] == "A1"
+    assert reading.targets("Plant::i::p", "instance-of") == ["Lib::C::p"]
 
 
 CONSTRAINED = (
@@ -498,7 +498,7 @@ def test_an_interface_whose_attributes_define_more_than_values_has_a_class_of_it
     attribute, kinds
 ):
     reading = Read(port_of_class(attribute))
-    (block,) = reading.graph.targets(reading.one("Lib::C::p", "Port"), "typed-by")
+    (block,) = reading.graph.targets(reading.find("Lib::C::p", "Port"), "typed-by")
     assert (block.role, block.subkind) == ("interface block", "external-interface")
     assert [g.name for g in reading.graph.targets(block, "specializes")] == ["P"]
     assert {e.kind.value for e in reading.graph.owned(block)} >= set(kinds)
@@ -518,7 +518,7 @@ def test_an_interface_whose_attributes_define_more_than_values_has_a_class_of_it
 )
 def test_an_interface_with_values_only_has_the_class_that_it_names(attribute):
     reading = Read(port_of_class(attribute))
-    assert reading.to("Lib::C::p", "typed-by", "Port") == ["Interfaces::P"]
+    assert reading.targets("Lib::C::p", "typed-by", "Port") == ["Interfaces::P"]
     assert reading.findings == []
 
 
@@ -533,8 +533,8 @@ def test_an_interface_that_an_instance_extends_is_redefined(inside):
             f'<ExternalInterface Name="p" ID="2">{inside}</ExternalInterface></InternalElement>'
         )
     )
-    assert reading.to("Plant::c::p", "redefines", "Port") == ["Lib::C::p"]
-    (block,) = reading.graph.targets(reading.one("Plant::c::p", "Port"), "typed-by")
+    assert reading.targets("Plant::c::p", "redefines", "Port") == ["Lib::C::p"]
+    (block,) = reading.graph.targets(reading.find("Plant::c::p", "Port"), "typed-by")
     assert [g.name for g in reading.graph.targets(block, "specializes")] == ["P"]
     assert [e.name for e in reading.graph.owned(block)] == ["speed" if "speed" in inside else "r"]
     assert "unsupported" not in reading.totals
@@ -552,7 +552,7 @@ def test_a_description_that_an_instance_gives_to_an_interface_is_a_comment(of_cl
     )
     comments = {e.attrs["body"]: e.owner for e in reading.graph if e.kind.value == "Comment"}
     assert comments == {"here": "c", **({"in the class": "1"} if of_class else {})}
-    sources = reading.graph.sources(reading.one("Lib::C::p", "Port"), "references")
+    sources = reading.graph.sources(reading.find("Lib::C::p", "Port"), "references")
     assert "c" in [e.owner for e in sources]
 
 
@@ -563,11 +563,11 @@ def test_nested_interfaces_are_ports_of_a_class_of_their_own():
             '<ExternalInterface Name="pin" ID="2"/></ExternalInterface></SystemUnitClass>'
         )
     )
-    assert reading.to("Lib::C::p", "typed-by", "Port") == ["Lib::C::p"]
-    assert reading.owned("Lib::C::p", "Class") == ["Port pin"]
+    assert reading.targets("Lib::C::p", "typed-by", "Port") == ["Lib::C::p"]
+    assert reading.list_owned("Lib::C::p", "Class") == ["Port pin"]
 
 
-# -- roles (rule 6, Table 3.1) -----------------------------------------------------------------
+# -- roles -----------------------------------------------------------------------------------------
 
 
 def test_members_that_a_role_requires_and_an_element_lacks_are_added():
@@ -580,13 +580,13 @@ def test_members_that_a_role_requires_and_an_element_lacks_are_added():
             '<ExternalInterface Name="grip" ID="2"/></RoleRequirements></InternalElement>'
         )
     )
-    assert reading.owned("Plant::i", "Class") == [
+    assert reading.list_owned("Plant::i", "Class") == [
         "Property mass",
         "Property load",
         "Metadata RoleRequirements",
         "Port grip",
     ]
-    assert reading.one("Plant::i::RoleRequirements").attrs["required"] == "3"
+    assert reading.find("Plant::i::RoleRequirements").attrs["required"] == "3"
     assert reading.totals == {"mapped": 14}
 
 
@@ -600,8 +600,8 @@ def test_instances_do_not_repeat_the_realizations_of_their_class():
             '<SupportedRoleClass RefRoleClassPath="Roles/B"/></InternalElement>'
         )
     )
-    assert reading.to("Lib::C", "realizes") == ["Roles::A"]
-    assert reading.to("Plant::i", "realizes") == ["Roles::B"]
+    assert reading.targets("Lib::C", "realizes") == ["Roles::A"]
+    assert reading.targets("Plant::i", "realizes") == ["Roles::B"]
 
 
 def read_mapping(attribute, interface="p"):
@@ -625,8 +625,8 @@ def read_mapping(attribute, interface="p"):
 
 def test_a_mapping_object_redefines_a_feature_of_the_role():
     reading = read_mapping("len")
-    assert reading.to("Plant::i::len", "redefines") == ["Roles::R::length"]
-    assert reading.to("Plant::i::p", "redefines") == ["Roles::R::plug"]
+    assert reading.targets("Plant::i::len", "redefines") == ["Roles::R::length"]
+    assert reading.targets("Plant::i::p", "redefines") == ["Roles::R::plug"]
     assert reading.findings == []
 
 
@@ -654,7 +654,7 @@ def test_a_mapping_leads_to_inner_attributes():
     assert reading.findings == []
 
 
-def requiring(inside):
+def read_requirements(inside):
     return Read(
         roles('<RoleClass Name="R"><Attribute Name="a"/></RoleClass>')
         + plant(
@@ -667,24 +667,26 @@ def requiring(inside):
 
 
 def test_an_interface_that_the_role_requires_is_not_added_a_second_time():
-    reading = requiring('<ExternalInterface Name="i" ID="i2"/>')
+    reading = read_requirements('<ExternalInterface Name="i" ID="i2"/>')
     assert [e.id for e in reading.graph if e.kind.value == "Port"] == ["i"]
     assert reading.findings == []
 
 
 def test_a_required_value_is_stored_with_its_unit_and_other_requirements_are_reported():
-    reading = requiring(f'<Attribute Name="a" Unit="km"><Value>5</Value>{CONSTRAINED}</Attribute>')
+    reading = read_requirements(
+        f'<Attribute Name="a" Unit="km"><Value>5</Value>{CONSTRAINED}</Attribute>'
+    )
     (metadata,) = (e for e in reading.graph if e.name == "RoleRequirements")
     assert (metadata.attrs["required"], metadata.attrs["unit"]) == ("5", "km")
     assert "SM139: 1 element 'Constraint' not read" in reading.findings
 
 
-# -- facets and groups (rule 16) ---------------------------------------------------------------
+# -- facets and groups -----------------------------------------------------------------------------
 
 BASE_ROLE = "AutomationMLBaseRoleClassLib/AutomationMLBaseRole"
 
 
-def playing(role):
+def role_use(role):
     return f'<RoleRequirements RefBaseRoleClassPath="{role}"/>'
 
 
@@ -694,22 +696,22 @@ def test_a_facet_shows_features_of_its_element_and_a_group_the_masters_of_its_mi
         + plant(
             '<InternalElement Name="cell" ID="0"><InternalElement Name="a" ID="1">'
             '<Attribute Name="x"/><Attribute Name="y"/>'
-            f'<InternalElement Name="plc" ID="2"><Attribute Name="x"/>{playing("Roles/MyFacet")}'
+            f'<InternalElement Name="plc" ID="2"><Attribute Name="x"/>{role_use("Roles/MyFacet")}'
             '</InternalElement></InternalElement><InternalElement Name="g" ID="3">'
             f"{value('AssociatedFacet', 'plc')}"
             '<InternalElement Name="m" ID="4" RefBaseSystemUnitPath="1"/>'
-            f"{playing(BASE_ROLE + '/Group')}</InternalElement></InternalElement>"
+            f"{role_use(BASE_ROLE + '/Group')}</InternalElement></InternalElement>"
         )
     )
-    assert reading.to("Plant::cell::a::plc", "references", "Facet") == ["Plant::cell::a::x"]
-    assert reading.to("Plant::cell::g", "references", "Group") == ["Plant::cell::a"]
-    assert reading.one("Plant::cell::g").attrs["associated_facet"] == "plc"
+    assert reading.targets("Plant::cell::a::plc", "references", "Facet") == ["Plant::cell::a::x"]
+    assert reading.targets("Plant::cell::g", "references", "Group") == ["Plant::cell::a"]
+    assert reading.find("Plant::cell::g").attrs["associated_facet"] == "plc"
     assert reading.findings == []
 
 
 def test_a_facet_or_group_realizes_the_role_that_specialises_the_standard():
     body = "".join(
-        f'<InternalElement Name="{name}" ID="{name}">{playing(role)}</InternalElement>'
+        f'<InternalElement Name="{name}" ID="{name}">{role_use(role)}</InternalElement>'
         for name, role in {"v": "Roles/View", "s": "Roles/Set", "g": f"{BASE_ROLE}/Group"}.items()
     )
     reading = Read(
@@ -719,26 +721,26 @@ def test_a_facet_or_group_realizes_the_role_that_specialises_the_standard():
         )
         + plant(f'<InternalElement Name="cell" ID="0">{body}</InternalElement>')
     )
-    realized = [reading.to(f"Plant::cell::{name}", "realizes") for name in "vsg"]
+    realized = [reading.targets(f"Plant::cell::{name}", "realizes") for name in "vsg"]
     assert realized == [["Roles::View"], ["Roles::Set"], []]
 
 
 def test_each_role_of_a_facet_or_group_is_read():
-    view, base = playing("Roles/View"), playing(f"{BASE_ROLE}/Facet")
+    view, base = role_use("Roles/View"), role_use(f"{BASE_ROLE}/Facet")
     reading = Read(
         roles(f'<RoleClass Name="View" RefBaseClassPath="{BASE_ROLE}/Facet"/>')
         + plant(f'<InternalElement Name="v" ID="v">{base}{view}</InternalElement>')
     )
-    assert reading.to("Plant::v", "realizes") == ["Roles::View"]
+    assert reading.targets("Plant::v", "realizes") == ["Roles::View"]
     assert reading.findings == []
 
 
-def showing(role, inside, beside=""):
+def read_group(role, inside, siblings=""):
     return Read(
         plant(
             '<InternalElement Name="cell" ID="0"><Attribute Name="x"><Value>1</Value></Attribute>'
-            f'<ExternalInterface Name="i" ID="i"/>{beside}'
-            f'<InternalElement Name="s" ID="s">{inside}{playing(f"{BASE_ROLE}/{role}")}'
+            f'<ExternalInterface Name="i" ID="i"/>{siblings}'
+            f'<InternalElement Name="s" ID="s">{inside}{role_use(f"{BASE_ROLE}/{role}")}'
             "</InternalElement></InternalElement>"
         )
     )
@@ -748,13 +750,13 @@ def test_a_group_may_contain_groups():
     inner = (
         f'<InternalElement Name="g" ID="g">{value("AssociatedFacet", "f")}'
         '<InternalElement Name="m" ID="m" RefBaseSystemUnitPath="a"/>'
-        f"{playing(BASE_ROLE + '/Group')}</InternalElement>"
+        f"{role_use(BASE_ROLE + '/Group')}</InternalElement>"
     )
-    facet = f'<InternalElement Name="f" ID="f">{playing(BASE_ROLE + "/Facet")}</InternalElement>'
-    reading = showing("Group", inner, f'<InternalElement Name="a" ID="a"/>{facet}')
-    assert reading.owned("Plant::cell::s") == ["Group g"]
-    assert reading.to("Plant::cell::s::g", "references") == ["Plant::cell::a"]
-    assert reading.one("Plant::cell::s::g").attrs["associated_facet"] == "f"
+    facet = f'<InternalElement Name="f" ID="f">{role_use(BASE_ROLE + "/Facet")}</InternalElement>'
+    reading = read_group("Group", inner, f'<InternalElement Name="a" ID="a"/>{facet}')
+    assert reading.list_owned("Plant::cell::s") == ["Group g"]
+    assert reading.targets("Plant::cell::s::g", "references") == ["Plant::cell::a"]
+    assert reading.find("Plant::cell::s::g").attrs["associated_facet"] == "f"
     assert reading.findings == []
 
 
@@ -773,8 +775,9 @@ def test_a_group_may_contain_groups():
     ],
 )
 def test_a_group_for_an_unknown_facet_is_reported(facet, findings):
-    beside = f'<InternalElement Name="plc" ID="f">{playing(BASE_ROLE + "/Facet")}</InternalElement>'
-    reading = showing("Group", value("AssociatedFacet", facet), beside)
+    role = role_use(f"{BASE_ROLE}/Facet")
+    sibling = f'<InternalElement Name="plc" ID="f">{role}</InternalElement>'
+    reading = read_group("Group", value("AssociatedFacet", facet), sibling)
     assert reading.findings == findings
 
 
@@ -789,9 +792,9 @@ def test_a_group_for_an_unknown_facet_is_reported(facet, findings):
     ],
 )
 def test_a_facet_shows_mirrors_and_copies(feature):
-    reading = showing("Facet", feature)
+    reading = read_group("Facet", feature)
     shown = "i" if feature.startswith("<E") else "x"
-    assert reading.to("Plant::cell::s", "references", "Facet") == [f"Plant::cell::{shown}"]
+    assert reading.targets("Plant::cell::s", "references", "Facet") == [f"Plant::cell::{shown}"]
     assert reading.findings == []
 
 
@@ -808,14 +811,14 @@ MIRROR = '<InternalElement Name="%s" ID="m" RefBaseSystemUnitPath="a">%s</Intern
     ],
 )
 def test_names_and_ids_of_mirrors_in_facets_and_groups_are_stored(role, inside, stored):
-    reading = showing(role, inside, '<InternalElement Name="a" ID="a"/>')
-    assert reading.one("Plant::cell::s").attrs["mirrors"] == (stored,)
+    reading = read_group(role, inside, '<InternalElement Name="a" ID="a"/>')
+    assert reading.find("Plant::cell::s").attrs["mirrors"] == (stored,)
     assert reading.findings == []
 
 
 def test_a_mirror_without_id_that_has_the_name_of_its_master_is_not_stored():
-    reading = showing("Facet", '<Attribute Name="x"/>')
-    assert "mirrors" not in reading.one("Plant::cell::s").attrs
+    reading = read_group("Facet", '<Attribute Name="x"/>')
+    assert "mirrors" not in reading.find("Plant::cell::s").attrs
 
 
 @pytest.mark.parametrize(
@@ -834,7 +837,7 @@ def test_a_mirror_without_id_that_has_the_name_of_its_master_is_not_stored():
 def test_a_description_of_a_mirror_alone_is_reported(text, findings):
     description = "<Description>%s</Description>"
     master = f'<InternalElement Name="a" ID="a">{description % "a robot"}</InternalElement>'
-    reading = showing("Group", MIRROR % ("left", description % text), master)
+    reading = read_group("Group", MIRROR % ("left", description % text), master)
     assert reading.findings == findings
     assert reading.totals.get("approximated", 0) == 2 * len(findings)
 
@@ -845,7 +848,7 @@ def test_a_description_of_a_mirror_alone_is_reported(text, findings):
         ("Group", '<Attribute Name="size" Unit="m"/>', "Attribute"),
         ("Group", '<InternalElement Name="own" ID="own"/>', "InternalElement"),
         ("Group", '<ExternalInterface Name="p" ID="p"/>', "ExternalInterface"),
-        ("Group", playing(f"{BASE_ROLE}/Resource"), "RoleRequirements"),
+        ("Group", role_use(f"{BASE_ROLE}/Resource"), "RoleRequirements"),
         ("Facet", '<Attribute Name="new"/>', "Attribute"),
         ("Facet", '<Attribute Name="x"><Value>2</Value></Attribute>', "Attribute"),
         ("Facet", '<Attribute Name="x" Unit="m"/>', "Attribute"),
@@ -854,7 +857,7 @@ def test_a_description_of_a_mirror_alone_is_reported(text, findings):
     ],
 )
 def test_other_content_of_a_facet_or_group_is_reported(role, inside, tag):
-    reading = showing(role, inside)
+    reading = read_group(role, inside)
     assert reading.findings == [f"SM139: 1 element '{tag}' not read"]
     assert reading.totals["unsupported"] == 1 + inside.count("<Value>")
 
@@ -862,20 +865,20 @@ def test_other_content_of_a_facet_or_group_is_reported(role, inside, tag):
 def test_a_role_is_no_facet_by_its_name_alone():
     reading = Read(
         roles('<RoleClass Name="Facet"/>')
-        + plant(f'<InternalElement Name="a" ID="1">{playing("Roles/Facet")}</InternalElement>')
+        + plant(f'<InternalElement Name="a" ID="1">{role_use("Roles/Facet")}</InternalElement>')
     )
-    assert [e.kind.value for e in reading.all("Plant::a")] == ["Instance", "Class"]
+    assert [e.kind.value for e in reading.find_all("Plant::a")] == ["Instance", "Class"]
 
 
-# -- products, processes, resources, orders (rule 17) ------------------------------------------
+# -- products, processes, resources, orders --------------------------------------------------------
 
 
-def line(interface, *elements, direction=""):
+def read_linked_roles(interface, *elements, direction=""):
     ids = [f"{number}p" for number in range(len(elements))]
     inside = "".join(
         f'<InternalElement Name="{role}{n}" ID="{n}"><ExternalInterface Name="c" ID="{n}p" '
         f'RefBaseClassPath="{STANDARD}/{interface}">{value("Direction", way) if way else ""}'
-        f"</ExternalInterface>{playing(f'{BASE_ROLE}/{role}')}</InternalElement>"
+        f"</ExternalInterface>{role_use(f'{BASE_ROLE}/{role}')}</InternalElement>"
         for n, (role, way) in enumerate(elements)
     )
     link = f'<InternalLink Name="l" RefPartnerSideA="{ids[0]}" RefPartnerSideB="{ids[1]}"/>'
@@ -885,32 +888,32 @@ def line(interface, *elements, direction=""):
 @pytest.mark.parametrize("first", ["Process", "Resource"])
 def test_a_process_is_allocated_to_its_resource(first):
     second = {"Process": "Resource", "Resource": "Process"}[first]
-    reading = line("PPRConnector", (first, ""), (second, ""))
-    link = reading.one("Plant::line::l")
+    reading = read_linked_roles("PPRConnector", (first, ""), (second, ""))
+    link = reading.find("Plant::line::l")
     assert (link.kind.value, link.role, link.subkind) == ("Dependency", "allocate", "ppr")
     (client,) = reading.graph.targets(link, "client")
     assert client.name.startswith("Process")
-    assert reading.one(f"Plant::line::{first}0", "Class").attrs["ppr"] == first.lower()
+    assert reading.find(f"Plant::line::{first}0", "Class").attrs["ppr"] == first.lower()
     assert reading.links() == {}
 
 
 def test_process_and_resource_depend_on_their_product():
-    reading = line("PPRConnector", ("Product", ""), ("Process", ""))
-    link = reading.one("Plant::line::l")
+    reading = read_linked_roles("PPRConnector", ("Product", ""), ("Process", ""))
+    link = reading.find("Plant::line::l")
     assert (link.kind.value, link.role) == ("Dependency", "")
     assert [e.name for e in reading.graph.targets(link, "supplier")] == ["Product0"]
 
 
 @pytest.mark.parametrize(("ways", "later"), [(("Out", "In"), 1), (("In", "Out"), 0)])
 def test_an_order_is_a_succession_from_direction_out_to_direction_in(ways, later):
-    reading = line("Order", ("Process", ways[0]), ("Process", ways[1]))
-    link = reading.one("Plant::line::l")
+    reading = read_linked_roles("Order", ("Process", ways[0]), ("Process", ways[1]))
+    link = reading.find("Plant::line::l")
     assert (link.kind.value, link.subkind) == ("Dependency", "succession")
     assert [e.name for e in reading.graph.targets(link, "client")] == [f"Process{later}"]
 
 
 def test_other_interfaces_of_processes_are_connected():
-    assert list(line("Port", ("Process", ""), ("Resource", "")).links()) == ["l"]
+    assert list(read_linked_roles("Port", ("Process", ""), ("Resource", "")).links()) == ["l"]
 
 
 def test_a_port_object_of_caex_2_is_a_part_with_the_properties_of_a_port():
@@ -919,17 +922,17 @@ def test_a_port_object_of_caex_2_is_a_part_with_the_properties_of_a_port():
         roles('<RoleClass Name="Port"/>')
         + plant(
             '<InternalElement Name="cell" ID="0">'
-            f'<InternalElement Name="p" ID="1">{inside}{playing(BASE_ROLE + "/Port")}'
-            f'</InternalElement><InternalElement Name="q" ID="2">{inside}{playing("Roles/Port")}'
+            f'<InternalElement Name="p" ID="1">{inside}{role_use(BASE_ROLE + "/Port")}'
+            f'</InternalElement><InternalElement Name="q" ID="2">{inside}{role_use("Roles/Port")}'
             "</InternalElement></InternalElement>"
         )
     )
-    p, q = (reading.one(f"Plant::cell::{name}", "Property") for name in "pq")
+    p, q = (reading.find(f"Plant::cell::{name}", "Property") for name in "pq")
     assert (p.subkind, p.attrs["direction"], p.attrs["category"]) == ("port-object", "in", "energy")
     assert (q.subkind, q.attrs.get("direction")) == ("", None)
 
 
-# -- external data (rule 18) -------------------------------------------------------------------
+# -- external data ---------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(
@@ -949,13 +952,13 @@ def test_external_data_is_a_document_that_is_not_loaded(interface, subkind):
             f"{value('MIMEType', 'model/x')}</ExternalInterface></InternalElement>"
         )
     )
-    document = reading.one("Plant::i::d", "Document")
+    document = reading.find("Plant::i::d", "Document")
     assert (document.subkind, document.attrs["href"]) == (subkind, "file:///g/a.dae#n")
     assert document.attrs["media_type"] == "model/x"
-    assert reading.to("Plant::i::d", "references", "Document") == ["Plant::i::d"]
+    assert reading.targets("Plant::i::d", "references", "Document") == ["Plant::i::d"]
 
 
-# -- descriptions and other metadata -----------------------------------------------------------
+# -- descriptions and other metadata ---------------------------------------------------------------
 
 
 def test_descriptions_revisions_and_additional_information_are_stored():
@@ -968,22 +971,22 @@ def test_descriptions_revisions_and_additional_information_are_stored():
             "</SystemUnitClass>"
         )
     )
-    block = reading.one("Lib::C")
+    block = reading.find("Lib::C")
     assert (block.attrs["change_mode"], block.attrs["copyright"]) == ("create", "us")
     assert block.attrs["version"] == "1.1"
-    assert reading.owned("Lib::C") == [
+    assert reading.list_owned("Lib::C") == [
         "Comment",
         "Metadata Revision",
         "Metadata AdditionalInformation",
     ]
-    assert reading.one("Lib::C::Revision").attrs["author_name"] == "ada"
+    assert reading.find("Lib::C::Revision").attrs["author_name"] == "ada"
     assert reading.totals == {"mapped": 11}
 
 
 @pytest.mark.parametrize(("mode", "stored"), [("delete", "delete"), ("state", None)])
 def test_a_change_mode_is_stored_without_other_metadata(mode, stored):
     reading = Read(classes(f'<SystemUnitClass Name="C" ChangeMode="{mode}"/>'))
-    assert reading.one("Lib::C").attrs.get("change_mode") == stored
+    assert reading.find("Lib::C").attrs.get("change_mode") == stored
 
 
 def test_a_document_without_file_name_has_the_name_of_its_source():
@@ -993,10 +996,10 @@ def test_a_document_without_file_name_has_the_name_of_its_source():
 
 def test_ids_of_automationml_are_ids_of_the_graph():
     reading = Read(plant('<InternalElement Name="i" ID="{AB}"/>'))
-    assert reading.one("Plant::i", "Instance").id == "{AB}"
+    assert reading.find("Plant::i", "Instance").id == "{AB}"
 
 
-# -- rules about files -------------------------------------------------------------------------
+# -- rules about files -----------------------------------------------------------------------------
 
 
 def test_elements_that_caex_does_not_have_are_reported_and_counted():

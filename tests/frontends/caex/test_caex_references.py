@@ -1,4 +1,4 @@
-"""Class paths, aliases and ids: how a reference finds what it means (rules 1 to 6)."""
+"""Class paths, aliases and ids: how a reference finds what it means."""
 
 import pytest
 from reading_caex import Read, aml, aml_2, classes, interfaces, plant, roles, types
@@ -9,7 +9,7 @@ BRACKETS = classes(
 )
 
 
-# -- rule 1: separators and brackets -----------------------------------------------------------
+# -- separators and brackets -----------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(
@@ -24,7 +24,7 @@ BRACKETS = classes(
 )
 def test_one_name_or_all_names_of_a_path_may_be_in_brackets(path, resolved):
     reading = Read(BRACKETS + plant(f'<InternalElement Name="x" RefBaseSystemUnitPath="{path}"/>'))
-    assert reading.to("Plant::x", "instance-of") == [resolved]
+    assert reading.targets("Plant::x", "instance-of") == [resolved]
     assert reading.findings == []
 
 
@@ -35,7 +35,7 @@ def test_without_brackets_a_separator_separates():
     ]
 
 
-# -- rule 2: one kind at a time ----------------------------------------------------------------
+# -- families of classes ---------------------------------------------------------------------------
 
 
 def test_a_path_resolves_to_a_class_of_its_family_among_several_of_that_path():
@@ -51,10 +51,10 @@ def test_a_path_resolves_to_a_class_of_its_family_among_several_of_that_path():
             '<RoleRequirements RefBaseRoleClassPath="Lib/Unit"/></InternalElement>'
         )
     )
-    (general,) = reading.graph.targets(reading.one("Plant::v"), "instance-of")
+    (general,) = reading.graph.targets(reading.find("Plant::v"), "instance-of")
     assert reading.graph.qualified_name(general) == "Lib::Unit::Valve"
     assert "subkind" not in general.attrs
-    (role,) = reading.graph.targets(reading.one("Plant::v"), "realizes")
+    (role,) = reading.graph.targets(reading.find("Plant::v"), "realizes")
     assert role.attrs["subkind"] == "role-class"
     assert reading.findings == []
 
@@ -73,21 +73,21 @@ def test_a_role_path_does_not_resolve_to_a_system_unit_class():
     ]
 
 
-# -- rule 3: nesting is no inheritance ---------------------------------------------------------
+# -- nesting is no inheritance ---------------------------------------------------------------------
 
 
 def test_a_nested_class_does_not_inherit_from_the_enclosing_class():
     reading = Read(
         roles('<RoleClass Name="A"><Attribute Name="x"/><RoleClass Name="B"/></RoleClass>')
     )
-    assert reading.to("Roles::A::B", "specializes") == []
+    assert reading.targets("Roles::A::B", "specializes") == []
 
 
 def test_the_bare_name_of_the_enclosing_class_means_that_class():
     reading = Read(
         roles('<RoleClass Name="A"><RoleClass Name="B" RefBaseClassPath="A"/></RoleClass>')
     )
-    assert reading.to("Roles::A::B", "specializes") == ["Roles::A"]
+    assert reading.targets("Roles::A::B", "specializes") == ["Roles::A"]
     assert reading.findings == []
 
 
@@ -95,18 +95,18 @@ def test_another_bare_name_means_a_library():
     reading = Read(
         roles('<RoleClass Name="A"><RoleClass Name="B" RefBaseClassPath="C"/></RoleClass>')
     )
-    assert reading.to("Roles::A::B", "specializes") == []
+    assert reading.targets("Roles::A::B", "specializes") == []
     assert reading.findings == [
         "SM131: the library 'C' is not in the file; 1 element refers to classes of it"
     ]
 
 
-# -- rule 4: aliases ---------------------------------------------------------------------------
+# -- aliases ---------------------------------------------------------------------------------------
 
 BASE = aml(roles('<RoleClass Name="Base"/>', "Shared"), "libs/base.aml")
 
 
-def uses(path, alias="Al", more=""):
+def file_with_alias(path, alias="Al", more=""):
     return aml(
         f'<ExternalReference Path="{path}" Alias="{alias}"/>'
         + roles('<RoleClass Name="Gate" RefBaseClassPath="Al@Shared/Base"/>' + more),
@@ -116,15 +116,15 @@ def uses(path, alias="Al", more=""):
 
 @pytest.mark.parametrize("path", ["../libs/base.aml", "..%2Flibs/base.aml", "./../libs/./base.aml"])
 def test_an_alias_leads_into_another_file_of_the_unit(path):
-    reading = Read(uses(path), BASE)
-    assert reading.to("Roles::Gate", "specializes") == ["Shared::Base"]
-    assert reading.to("Al", "references") == ["plant.aml"]
+    reading = Read(file_with_alias(path), BASE)
+    assert reading.targets("Roles::Gate", "specializes") == ["Shared::Base"]
+    assert reading.targets("Al", "references") == ["plant.aml"]
     assert reading.findings == []
 
 
 def test_a_missing_file_is_reported_once_with_all_references_to_it():
     door = '<RoleClass Name="Door" RefBaseClassPath="Al@Shared/Base"/>'
-    reading = Read(uses("../libs/gone.aml", more=door), BASE)
+    reading = Read(file_with_alias("../libs/gone.aml", more=door), BASE)
     assert reading.findings == [
         "SM132: the file 'libs/gone.aml' is not part of the compile unit; "
         "2 elements refer to classes of it"
@@ -141,18 +141,18 @@ def test_a_missing_file_is_reported_once_with_all_references_to_it():
 
 
 def test_an_alias_without_declaration_is_a_located_error():
-    reading = Read(uses("../libs/base.aml", alias="Other"), BASE)
+    reading = Read(file_with_alias("../libs/base.aml", alias="Other"), BASE)
     assert reading.findings == [
         "SM133: 'Roles::Gate' uses the alias 'Al', which no ExternalReference declares"
     ]
 
 
 def test_unresolved_references_are_stored_in_the_graph():
-    reading = Read(uses("../libs/base.aml", alias="Other"), BASE)
-    assert reading.one("Roles::Gate").attrs["unresolved"] == ("specializes",)
+    reading = Read(file_with_alias("../libs/base.aml", alias="Other"), BASE)
+    assert reading.find("Roles::Gate").attrs["unresolved"] == ("specializes",)
 
 
-# -- rule 5: ids -------------------------------------------------------------------------------
+# -- ids -------------------------------------------------------------------------------------------
 
 
 def two_linked_elements(side_a, side_b):
@@ -200,7 +200,7 @@ def test_an_id_may_follow_an_alias():
         ),
         other,
     )
-    assert reading.to("Plant::cell::mirror", "mirrors", "Property") == ["Other::master"]
+    assert reading.targets("Plant::cell::mirror", "mirrors", "Property") == ["Other::master"]
     assert reading.findings == []
 
 
@@ -218,14 +218,17 @@ def test_a_file_refers_to_its_own_elements_if_another_file_has_the_same_ids():
 
 
 def test_the_order_of_the_files_changes_nothing():
-    assert Read(uses("../libs/base.aml"), BASE).text == Read(BASE, uses("../libs/base.aml")).text
+    assert (
+        Read(file_with_alias("../libs/base.aml"), BASE).text
+        == Read(BASE, file_with_alias("../libs/base.aml")).text
+    )
 
 
 def test_a_repeated_id_is_reported_and_means_the_first_element():
     reading = Read(plant('<InternalElement Name="a" ID="1"/><InternalElement Name="b" ID="1"/>'))
     assert reading.findings == ["SM137: the ID '1' of 'b' is used by another element too"]
     assert (
-        len({reading.one("Plant::a", "Instance").id, reading.one("Plant::b", "Instance").id}) == 2
+        len({reading.find("Plant::a", "Instance").id, reading.find("Plant::b", "Instance").id}) == 2
     )
 
 
@@ -237,7 +240,7 @@ def test_elements_without_id_are_reported_once_a_file():
     assert reading.infos == ["SM146: 'Plant::a' has no ID, nor have 1 more elements of the file"]
 
 
-# -- rule 6: role requirements -----------------------------------------------------------------
+# -- role requirements -----------------------------------------------------------------------------
 
 THREE_ROLES = roles('<RoleClass Name="A"/><RoleClass Name="B"/><RoleClass Name="C"/>')
 
@@ -261,7 +264,7 @@ THREE_ROLES = roles('<RoleClass Name="A"/><RoleClass Name="B"/><RoleClass Name="
 def test_an_element_realizes_each_of_its_roles_once(form, inside):
     body = THREE_ROLES + plant(f'<InternalElement Name="x" ID="1">{inside}</InternalElement>')
     reading = Read(form(body))
-    assert reading.to("Plant::x", "realizes", "Class") == ["Roles::A", "Roles::B"]
+    assert reading.targets("Plant::x", "realizes", "Class") == ["Roles::A", "Roles::B"]
     assert reading.findings == []
 
 
@@ -270,11 +273,11 @@ def test_role_requirements_without_a_path_are_no_role():
         '<InternalElement Name="x" ID="1"><RoleRequirements/></InternalElement>'
     )
     reading = Read(aml_2(body))
-    assert reading.to("Plant::x", "realizes", "Class") == []
+    assert reading.targets("Plant::x", "realizes", "Class") == []
     assert reading.findings == []
 
 
-# -- what instances repeat ---------------------------------------------------------------------
+# -- classes that instances name -------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(
@@ -304,8 +307,8 @@ def test_a_missing_class_that_only_an_instance_names_is_reported_at_the_instance
         )
     )
     assert reading.findings == [f"SM130: {text}, which does not exist" for text in findings]
-    assert "unresolved" not in reading.one("Lib::C::p").attrs
-    assert reading.to("Plant::x", "instance-of", "Instance") == ["Lib::C"]
+    assert "unresolved" not in reading.find("Lib::C::p").attrs
+    assert reading.targets("Plant::x", "instance-of", "Instance") == ["Lib::C"]
 
 
 def test_of_two_declarations_of_an_alias_the_first_counts():
@@ -318,8 +321,8 @@ def test_of_two_declarations_of_an_alias_the_first_counts():
         ),
         BASE,
     )
-    assert reading.to("Roles::Gate", "specializes") == ["Shared::Base"]
-    assert len(reading.all("Al", "Import")) == 2
+    assert reading.targets("Roles::Gate", "specializes") == ["Shared::Base"]
+    assert len(reading.find_all("Al", "Import")) == 2
     assert reading.findings == [
         "SM636: the alias 'Al' stands for '../libs/other.aml' here, and for "
         "'../libs/base.aml' before"

@@ -8,11 +8,11 @@ TWO = '<Attribute Name="a"><Value>2</Value></Attribute>'
 THREE = '<Attribute Name="a"><Value>3</Value></Attribute>'
 
 
-def of_class(body, name="C"):
+def class_with(body, name="C"):
     return f'<SystemUnitClass Name="{name}">{body}</SystemUnitClass>'
 
 
-def of_instance(body, path="Lib/C"):
+def instance_with(body, path="Lib/C"):
     return plant(
         f'<InternalElement Name="i" ID="1" RefBaseSystemUnitPath="{path}">{body}</InternalElement>'
     )
@@ -20,11 +20,11 @@ def of_instance(body, path="Lib/C"):
 
 PORT = f'<ExternalInterface Name="p" ID="2">{ONE}{TWO}</ExternalInterface>'
 REPEATS = [
-    (classes(of_class("") * 2), "'Lib' has two of 'SystemUnitClass' named 'C'"),
+    (classes(class_with("") * 2), "'Lib' has two of 'SystemUnitClass' named 'C'"),
     (classes("") * 2, "'plant.aml' has two of 'SystemUnitClassLib' named 'Lib'"),
-    (classes(of_class(ONE + TWO)), "'Lib::C' has two of 'Attribute' named 'a'"),
+    (classes(class_with(ONE + TWO)), "'Lib::C' has two of 'Attribute' named 'a'"),
     (
-        classes(of_class(f'<Attribute Name="b">{ONE}{TWO}</Attribute>')),
+        classes(class_with(f'<Attribute Name="b">{ONE}{TWO}</Attribute>')),
         "'Lib::C::b' has two of 'Attribute' named 'a'",
     ),
     (
@@ -32,23 +32,23 @@ REPEATS = [
         "'Types::T' has two of 'Attribute' named 'a'",
     ),
     (
-        classes(of_class(ONE)) + of_instance(TWO + THREE),
+        classes(class_with(ONE)) + instance_with(TWO + THREE),
         "'Plant::i' has two of 'Attribute' named 'a'",
     ),
     (
-        classes(of_class(ONE)) + of_instance(ONE + ONE),
+        classes(class_with(ONE)) + instance_with(ONE + ONE),
         "'Plant::i' has two of 'Attribute' named 'a'",
     ),
     (
-        classes(of_class(ONE.replace(">", ' ID="3">', 1) + TWO)),
+        classes(class_with(ONE.replace(">", ' ID="3">', 1) + TWO)),
         "'Lib::C' has two of 'Attribute' named 'a'",
     ),
     (
-        classes(of_class("", "C") + of_class("", 'C" ID="3')),
+        classes(class_with("", "C") + class_with("", 'C" ID="3')),
         "'Lib' has two of 'SystemUnitClass' named 'C'",
     ),
-    (of_instance(ONE + TWO, ""), "'Plant::i' has two of 'Attribute' named 'a'"),
-    (of_instance(PORT, ""), "'Plant::i::p' has two of 'Attribute' named 'a'"),
+    (instance_with(ONE + TWO, ""), "'Plant::i' has two of 'Attribute' named 'a'"),
+    (instance_with(PORT, ""), "'Plant::i::p' has two of 'Attribute' named 'a'"),
 ]
 
 
@@ -58,13 +58,13 @@ def test_a_repeated_name_is_reported(body, message):
 
 
 ALONE = [
-    classes(of_class(of_class("", "D")) + of_class("", "D")),
-    classes(of_class(ONE) + of_class(ONE, "D")) + of_instance(TWO),
-    classes(of_class("<Attribute Name='a'><Attribute Name='a'/></Attribute>")),
+    classes(class_with(class_with("", "D")) + class_with("", "D")),
+    classes(class_with(ONE) + class_with(ONE, "D")) + instance_with(TWO),
+    classes(class_with("<Attribute Name='a'><Attribute Name='a'/></Attribute>")),
     plant('<InternalElement Name="i" ID="1"/><InternalElement Name="i" ID="2"/>'),
     classes("") + interfaces("", "Lib"),
-    classes(of_class(ONE + of_class("", "a"))),
-    of_instance(f"<AdditionalInformation><X>{ONE}{TWO}</X></AdditionalInformation>", ""),
+    classes(class_with(ONE + class_with("", "a"))),
+    instance_with(f"<AdditionalInformation><X>{ONE}{TWO}</X></AdditionalInformation>", ""),
 ]
 
 
@@ -73,7 +73,7 @@ def test_a_name_in_two_scopes_is_not_reported(body):
     assert Read(body).findings == []
 
 
-# -- interfaces of another class than that of the class -----------------------------------------
+# -- interfaces of another class than that of the class --------------------------------------------
 
 CLASSES = interfaces(
     '<InterfaceClass Name="Plug"/><InterfaceClass Name="Socket"/>'
@@ -89,30 +89,30 @@ def interface(path, id, inside=""):
 @pytest.mark.parametrize("path", ["Socket", "Safe plug"])
 @pytest.mark.parametrize("inside", ["", ONE], ids=["plain", "with values"])
 def test_an_interface_of_another_class_is_a_port_of_its_own(path, inside):
-    body = classes(of_class(interface("Plug", "c"))) + of_instance(interface(path, "i", inside))
+    body = classes(class_with(interface("Plug", "c"))) + instance_with(interface(path, "i", inside))
     reading = Read(CLASSES + body)
     assert reading.findings == []
-    assert reading.one("Plant::i::p").id == "i"
-    assert reading.to("Plant::i::p", "typed-by") == [f"Interfaces::{path}"]
-    assert reading.to("Plant::i::p", "redefines") == ["Lib::C::p"]
+    assert reading.find("Plant::i::p").id == "i"
+    assert reading.targets("Plant::i::p", "typed-by") == [f"Interfaces::{path}"]
+    assert reading.targets("Plant::i::p", "redefines") == ["Lib::C::p"]
 
 
 @pytest.mark.parametrize("path", ["Plug", "Safe plug", ""])
 def test_an_interface_with_the_inherited_class_or_a_more_general_one_is_inherited(path):
-    body = classes(of_class(interface("Safe plug", "c"))) + of_instance(interface(path, "i"))
+    body = classes(class_with(interface("Safe plug", "c"))) + instance_with(interface(path, "i"))
     reading = Read(CLASSES + body)
     assert reading.findings == []
-    assert reading.all("Plant::i::p") == []
-    assert reading.one("Plant::i").attrs["interface_ids"] == (("c", "i"),)
+    assert reading.find_all("Plant::i::p") == []
+    assert reading.find("Plant::i").attrs["interface_ids"] == (("c", "i"),)
 
 
 def test_a_link_to_an_interface_of_another_class_leads_to_its_own_port():
     link = '<InternalLink Name="l" RefPartnerSideA="i" RefPartnerSideB="j"/>'
     other = interface("Plug", "j").replace('"p"', '"q"')
-    body = classes(of_class(interface("Plug", "c")))
-    reading = Read(CLASSES + body + of_instance(interface("Socket", "i") + other + link))
+    body = classes(class_with(interface("Plug", "c")))
+    reading = Read(CLASSES + body + instance_with(interface("Socket", "i") + other + link))
     assert reading.links() == {"l": ("p", "q")}
-    assert [port.id for port in reading.all("Plant::i::p")] == ["i"]
+    assert [port.id for port in reading.find_all("Plant::i::p")] == ["i"]
 
 
 def mirror(id, master):
@@ -139,4 +139,4 @@ def test_each_mirror_of_a_chain_without_end_is_reported_with_the_missing_master(
     assert reading.findings == [
         f"SM138: '{id}' is a mirror of '{gone}', which does not exist" for id in unresolved
     ]
-    assert reading.to("Plant::d", "mirrors") == ["Plant::e"]
+    assert reading.targets("Plant::d", "mirrors") == ["Plant::e"]

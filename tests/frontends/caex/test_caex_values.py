@@ -69,13 +69,13 @@ def attribute(data_type, text, more="", tag="Value"):
     return f'<Attribute Name="a"{stated}{more}><{tag}>{text}</{tag}></Attribute>'
 
 
-def of_class(body):
+def class_with(body):
     return classes(f'<SystemUnitClass Name="C">{body}</SystemUnitClass>')
 
 
-def of_instance(body):
+def instance_with(body):
     element = f'<InternalElement Name="i" ID="1" RefBaseSystemUnitPath="Lib/C">{body}'
-    return of_class(attribute("xs:double", "1")) + plant(f"{element}</InternalElement>")
+    return class_with(attribute("xs:double", "1")) + plant(f"{element}</InternalElement>")
 
 
 INVALID_DOUBLE = ["SM631: the value 'two' of 'a' is no xs:double"]
@@ -85,12 +85,12 @@ LENGTH = types('<AttributeType Name="L" AttributeDataType="xs:double"/>')
 @pytest.mark.parametrize(
     "body",
     [
-        of_class(attribute("xs:double", "two")),
-        of_class(attribute("xs:double", "two", tag="DefaultValue")),
-        of_class(f'<Attribute Name="b">{attribute("xs:double", "two")}</Attribute>'),
-        of_instance(attribute("xs:double", "two")),
-        of_instance(attribute("", "two")),
-        LENGTH + of_class(attribute("", "two", ' RefAttributeType="Types/L"')),
+        class_with(attribute("xs:double", "two")),
+        class_with(attribute("xs:double", "two", tag="DefaultValue")),
+        class_with(f'<Attribute Name="b">{attribute("xs:double", "two")}</Attribute>'),
+        instance_with(attribute("xs:double", "two")),
+        instance_with(attribute("", "two")),
+        LENGTH + class_with(attribute("", "two", ' RefAttributeType="Types/L"')),
     ],
     ids=["class", "default", "inner", "instance", "type-of-class", "type-of-attribute-type"],
 )
@@ -100,7 +100,7 @@ def test_an_invalid_value_is_reported(body):
 
 
 def test_an_invalid_value_is_reported_at_its_attribute():
-    body = of_instance(attribute("", "two"))
+    body = instance_with(attribute("", "two"))
     (diagnostic,) = (finding for finding in Read(body).sink if finding.rule.code == "SM631")
     assert diagnostic.subject.place.ordinal == 7
     assert diagnostic.subject.name == "Plant::i::a"
@@ -108,7 +108,7 @@ def test_an_invalid_value_is_reported_at_its_attribute():
 
 def test_an_invalid_value_is_reported_once_a_file():
     reading = Read(
-        of_class(attribute("xs:double", "two"))
+        class_with(attribute("xs:double", "two"))
         + plant(
             "".join(
                 f'<InternalElement Name="i{n}" ID="{n}">{attribute("xs:double", "two")}'
@@ -118,26 +118,26 @@ def test_an_invalid_value_is_reported_once_a_file():
         )
     )
     assert reading.findings == ["SM631: the value 'two' of 'a' and 3 more is no xs:double"]
-    assert reading.one("Lib::C::a").attrs["default"] == "two"
+    assert reading.find("Lib::C::a").attrs["default"] == "two"
 
 
 def test_values_of_attribute_types_are_checked():
     values = "<DefaultValue>1</DefaultValue><Value>two</Value>"
     reading = Read(LENGTH.replace("/>", f">{values}</AttributeType>"))
     assert reading.findings == ["SM631: the value 'two' of 'L' is no xs:double"]
-    attrs = reading.one("Types::L").attrs
+    attrs = reading.find("Types::L").attrs
     assert (attrs["default"], attrs["default_value"]) == ("two", "1")
     reading = Read(LENGTH.replace("/>", "><DefaultValue>1</DefaultValue></AttributeType>"))
-    assert reading.one("Types::L").attrs["default"] == 1.0
+    assert reading.find("Types::L").attrs["default"] == 1.0
 
 
 def test_an_empty_value_is_not_reported():
-    assert Read(of_class(attribute("xs:double", ""))).findings == []
+    assert Read(class_with(attribute("xs:double", ""))).findings == []
 
 
 def test_values_of_interfaces_and_bounds_are_checked():
     port = f'<InterfaceClass Name="P">{attribute("xs:int", "two")}</InterfaceClass>'
-    used = of_class(
+    used = class_with(
         '<ExternalInterface Name="p" RefBaseClassPath="Interfaces/P">'
         f"{attribute('xs:int', '2.5')}</ExternalInterface>"
     )
@@ -150,7 +150,7 @@ def test_values_of_interfaces_and_bounds_are_checked():
         "<OrdinalScaledType><RequiredMaxValue>many</RequiredMaxValue></OrdinalScaledType>"
         "</Constraint></Attribute>"
     )
-    assert Read(of_class(bound)).findings == ["SM631: the value 'many' of 'few' is no xs:int"]
+    assert Read(class_with(bound)).findings == ["SM631: the value 'many' of 'few' is no xs:int"]
 
 
 @pytest.mark.parametrize(
@@ -162,12 +162,12 @@ def test_values_of_interfaces_and_bounds_are_checked():
     ],
 )
 def test_an_unknown_data_type_is_reported(data_type, hint):
-    assert Read(of_class(attribute(data_type, "x"))).findings == [
+    assert Read(class_with(attribute(data_type, "x"))).findings == [
         f"SM632: the data type '{data_type}' of 'a' is none of XML Schema; {hint}"
     ]
 
 
 @pytest.mark.parametrize("data_type", ["xs:dateTime", "xsd:string", "anyURI", "xs:IDREF"])
 def test_a_data_type_of_xml_schema_is_known_with_any_prefix(data_type):
-    body = of_class(attribute(data_type, "2026-11-21T13:00:00"))
+    body = class_with(attribute(data_type, "2026-11-21T13:00:00"))
     assert Read(body).findings == []
