@@ -22,7 +22,7 @@ def test_an_unknown_timer_is_an_error_and_exit_code_2(here):
     made = here.sysmlc("synth", "lamp.gr1.json", "--deadline", "due")
     assert [made.exit_code, made.stdout] == [2, "lamp: due: not decided\n"]
     assert "error[SM575 deadline-of-no-number]" in made.stderr
-    assert "help: name one of its numbers: late" in made.stderr
+    assert "help: name one of its numeric variables: late" in made.stderr
 
 
 def test_nothing_is_written_with_a_deadline(here):

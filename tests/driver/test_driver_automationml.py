@@ -74,7 +74,7 @@ DATA = (
 
 def test_external_data_that_is_not_there_is_told_at_its_place(tmp_path):
     made = build(write(tmp_path, "main.aml", DATA.format("file:///geo/gate.dae#n1")))
-    assert told(made) == ["SM148: the model refers to what is not there: 'geo/gate.dae'"]
+    assert told(made) == ["SM148: the model refers to a file that does not exist: 'geo/gate.dae'"]
     (found,) = made.diagnostics
     data = made.sources[0].data
     assert data[found.subject.place.offset :].startswith(b'<Attribute Name="refURI"')

@@ -103,7 +103,7 @@ def test_a_suppressed_finding_is_gone_and_an_unused_suppression_is_reported(faul
     made = compiled(faulty, config=Config(suppress=accepted))
     assert codes(made) == ["SM902", "SM941"]
     assert made.diagnostics[0].message == (
-        "no finding 'SM941' about 'Plant::Gone::*' is left to suppress"
+        "the suppression of 'SM941' for 'Plant::Gone::*' matches no finding"
     )
 
 
@@ -149,7 +149,7 @@ def test_a_folder_without_a_model_is_an_error(tmp_path):
     made = compiled(tmp_path)
     assert (codes(made), made.exit_code()) == (["SM173"], 1)
     (found,) = made.diagnostics
-    assert found.message == f"'{tmp_path.name}' holds no model"
+    assert found.message == f"'{tmp_path.name}' contains no model"
     named = set(re.findall(r"\.\w+", faults.NOTHING_TO_COMPILE.read_page().why))
     assert named == set(inputs.SUFFIXES)
 
@@ -200,7 +200,7 @@ def test_a_fault_in_a_pass_is_a_finding_and_stops_the_outputs(plant):
     made = compiled(plant, passes=(Broken(),))
     assert (codes(made), made.exit_code(), made.artefacts) == (["SM900"], 2, ())
     assert made.diagnostics[0].message == (
-        "fault of sysmlc in pass ports: TypeError: no such thing"
+        "internal error of sysmlc in pass ports: TypeError: no such thing"
     )
 
 

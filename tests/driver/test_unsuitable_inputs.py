@@ -122,7 +122,7 @@ def test_files_in_a_folder_are_skipped_with_the_reason(run, tmp_path):
     (tmp_path / "models" / "pom.xml").write_text("<project/>")
     code, report = run("check", "models")
     assert code == 0
-    assert "'pom.xml' is named like a model but is none: it is XML with the root" in report
+    assert "'pom.xml' is named like a model but is not one: it is XML with the root" in report
 
 
 def test_a_folder_without_models_is_an_error(run, tmp_path):
@@ -131,7 +131,7 @@ def test_a_folder_without_models_is_an_error(run, tmp_path):
     code, report = run("check", "docs")
     assert (code, report.splitlines()[0]) == (
         1,
-        "docs: error[SM173 nothing-to-compile]: 'docs' holds no model",
+        "docs: error[SM173 nothing-to-compile]: 'docs' contains no model",
     )
 
 

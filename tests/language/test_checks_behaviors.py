@@ -57,7 +57,7 @@ def test_a_step_repeats_what_it_likes_of_its_definition(usage):
 )
 def test_a_parameter_that_the_definition_has_not_is_told(usage, name):
     called = usage.split()[0]
-    assert found(FEED % usage) == [f"SM249 '{name}' of 'feed' is no parameter of '{called}'"]
+    assert found(FEED % usage) == [f"SM249 '{name}' of 'feed' is not a parameter of '{called}'"]
 
 
 def test_an_inout_may_be_given_in_or_out():
@@ -67,7 +67,7 @@ def test_an_inout_may_be_given_in_or_out():
 
 def test_a_performed_action_is_judged_as_any_other():
     text = "action def W { in a; }\npart b { perform action w : W { in a = 1; in z = 2; } }\n"
-    assert found(text) == ["SM249 'z' of 'w' is no parameter of 'W'"]
+    assert found(text) == ["SM249 'z' of 'w' is not a parameter of 'W'"]
 
 
 def test_arguments_are_counted_with_what_is_inherited_and_with_the_subject():
@@ -83,6 +83,6 @@ def test_arguments_are_counted_with_what_is_inherited_and_with_the_subject():
         }
     """
     assert found(text) == [
-        "SM248 'Mean' takes 2 values, and 3 values are given",
-        "SM248 'Light' takes 2 values, and 3 values are given",
+        "SM248 'Mean' takes 2 values, but 3 values are given",
+        "SM248 'Light' takes 2 values, but 3 values are given",
     ]

@@ -56,8 +56,8 @@ def test_metadata_is_for_what_its_definition_says():
         part fence;
         metadata Safe about fence;
     """) == [
-        "metadata 'Tested' is not for a part",
-        "metadata 'Safe' is not for a part",
+        "metadata 'Tested' cannot annotate a part",
+        "metadata 'Safe' cannot annotate a part",
     ]
 
 
@@ -71,7 +71,7 @@ def test_a_conjugate_turns_directions_around():
     text = "class C {{ in z; }} class T conjugates C; class D specializes T {{ {} :>> z; }}"
     assert found(text.format("out"), "kerml") == []
     assert found(text.format("in"), "kerml") == [
-        "'z' has another direction where it is defined, in 'C'"
+        "the direction of 'z' differs from that of its definition in 'C'"
     ]
 
 
@@ -100,12 +100,12 @@ def test_features_of_metadata_are_named_at_every_depth():
     assert found("""
         metadata def Limits { attribute speed { attribute max; } }
         part gate { @Limits { speed { max = 3; least = 1; } } }
-    """) == ["'least' is no feature of the metadata 'speed'"]
+    """) == ["'least' is not a feature of the metadata 'speed'"]
 
 
 def test_a_feature_that_is_said_to_be_featured_may_be_redefined_where_no_type_owns_it():
     free = "class Car { member feature driver; member feature owner redefines Car::driver; }"
-    told = ["'driver' is a member of no type, so 'owner' cannot redefine it"]
+    told = ["'driver' is not a feature of a type, so 'owner' cannot redefine it"]
     assert found(free, "kerml") == told
     assert found(free.replace("driver;", "driver featured by Car;", 1), "kerml") == []
     assert found(f"{free} featuring of Car::driver by Car;", "kerml") == []
@@ -119,10 +119,10 @@ def test_flows_need_a_dot_unless_a_usage_holds_what_flows():
     assert found(text.format("part def", "flow from a.x to b.z;")) == []
     assert found(text.format("part", "flow from a.x to y;")) == []
     assert found(text.format("part def", "flow from a.x to y;")) == [
-        "'y' does not say what of the flow's end it belongs to"
+        "'y' does not name the element whose feature the flow connects"
     ]
     assert found(text.format("part def", "flow from A::x to b.z;")) == [
-        "'A::x' does not say what of the flow's end it belongs to"
+        "'A::x' does not name the element whose feature the flow connects"
     ]
 
 
@@ -139,6 +139,6 @@ def test_a_member_with_the_name_of_an_inherited_one_redefines_it_or_hides_it():
         action def Print { attribute start; }
         part def Plate { attribute shape; }
     """) == [
-        "'motor' of 'Big' is not the 'motor' that it inherits from 'Gate', and hides it",
-        "'leaf' of 'big' is not the 'leaf' that it inherits from 'Big', and hides it",
+        "'motor' of 'Big' hides the 'motor' that it inherits from 'Gate'",
+        "'leaf' of 'big' hides the 'leaf' that it inherits from 'Big'",
     ]

@@ -60,10 +60,10 @@ def test_a_usage_is_no_type_and_a_subset_brings_its_types():
         ref c : gate;
         part d :> gate;
     """) == [
-        "part 'a' must be typed by occurrence, item or part definitions, and 'gate' is a part",
-        "part 'b' must be typed by occurrence, item or part definitions, and 'DataValue' is "
+        "part 'a' must be typed by occurrence, item or part definitions, but 'gate' is a part",
+        "part 'b' must be typed by occurrence, item or part definitions, but 'DataValue' is "
         "a data type",
-        "reference 'c' must be typed by definitions, and 'gate' is a part",
+        "reference 'c' must be typed by definitions, but 'gate' is a part",
     ]
 
 
@@ -74,7 +74,7 @@ def test_a_more_special_type_beside_a_general_one_is_one_type():
         requirement one : Safe, Safer;
         requirement def Other;
         requirement two : Safe, Other;
-    """) == ["requirement 'two' must be typed by one definition, and has 'Safe' and 'Other'"]
+    """) == ["requirement 'two' must be typed by one definition, but has 'Safe' and 'Other'"]
 
 
 def test_each_role_of_a_state_and_a_case_is_there_once():
@@ -82,10 +82,10 @@ def test_each_role_of_a_state_and_a_case_is_there_once():
         state def Running { entry action a; do action b; exit action c; exit action d; }
         case def Study { subject a; subject b; objective c; objective d; return x; return y; }
     """) == [
-        "'Running' may have one exit action only",
-        "'Study' may have one subject only",
-        "'Study' may have one objective only",
-        "'Study' may have one result only",
+        "'Running' may have only one exit action",
+        "'Study' may have only one subject",
+        "'Study' may have only one objective",
+        "'Study' may have only one result",
     ]
 
 
@@ -113,5 +113,6 @@ def test_a_condition_of_a_filter_is_about_what_is_filtered():
     """
     assert found(text.format("filter @Rated and Rated::isMandatory;")) == []
     assert found(text.format("attribute is = Rated::isMandatory;")) == [
-        "'Rated::isMandatory' is a feature of 'Rated', and nothing around here is one"
+        "'Rated::isMandatory' is a feature of 'Rated', which is not the type of any enclosing "
+        "element"
     ]

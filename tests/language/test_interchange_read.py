@@ -298,19 +298,21 @@ def test_a_name_of_a_redefined_feature_counts_where_there_is_no_own_one():
 WRONG = [
     (
         owning("PartDef", 'declaredName="P"'),
-        "SM163 'PartDef' is no metaclass of SysML 2.0: it is left out with all that it owns",
+        "SM163 'PartDef' is not a metaclass of SysML 2.0: the element is omitted with "
+        "everything that it owns",
     ),
     (
         owning("Usage", 'declaredName="u"') + owning("ControlNode"),
-        "SM163 'ControlNode' is no metaclass of SysML 2.0: it is left out with all that it owns",
+        "SM163 'ControlNode' is not a metaclass of SysML 2.0: the element is omitted with "
+        "everything that it owns",
     ),
     (
         owning("PartDefinition", 'declaredName="P" isAbstrct="true"'),
-        "SM164 'isAbstrct' of 'P' is no feature of a PartDefinition: nothing is read from it",
+        "SM164 'isAbstrct' of 'P' is not a feature of PartDefinition: it is ignored",
     ),
     (
         owning("PartDefinition", 'declaredName="P"', "<operater>x</operater>"),
-        "SM164 'operater' of 'P' is no feature of a PartDefinition: nothing is read from it",
+        "SM164 'operater' of 'P' is not a feature of PartDefinition: it is ignored",
     ),
     (
         owning(
@@ -327,11 +329,11 @@ WRONG = [
     ),
     (
         owning("PartDefinition", 'declaredName="P" isAbstract="yes"'),
-        "SM756 'isAbstract' of 'P' is 'yes', which is no truth value",
+        "SM756 'isAbstract' of 'P' is 'yes', which is not a valid truth value",
     ),
     (
         value('<ownedRelatedElement xsi:type="sysml:LiteralInteger" value="1.5"/>'),
-        "SM756 'value' of 'LiteralInteger' is '1.5', which is no number",
+        "SM756 'value' of 'LiteralInteger' is '1.5', which is not a valid number",
     ),
 ]
 
@@ -350,7 +352,10 @@ def test_findings_are_located():
 @pytest.mark.parametrize(
     ("file", "message"),
     [
-        ("<catalogue/>", "SM757 'm.sysmlx' holds no model of SysML 2.0: its root is 'catalogue'"),
+        (
+            "<catalogue/>",
+            "SM757 'm.sysmlx' contains no model of SysML 2.0: its root is 'catalogue'",
+        ),
         ("<a><b></a>", "SM750 'm.sysmlx' cannot be read: not well-formed XML: mismatched tag"),
         (
             '<!DOCTYPE a [<!ENTITY b "c">]><a/>',

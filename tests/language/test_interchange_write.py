@@ -210,7 +210,7 @@ def test_a_reference_that_leads_nowhere_is_reported_and_left_out():
     text, messages = written(document(robot))
     assert "Subclassification" not in text
     assert messages == [
-        "SM758 'Gone' of 'Robot' is not in the interchange file, because it leads nowhere"
+        "SM758 'Gone' of 'Robot' is not in the interchange file, because the name is not resolved"
     ]
 
 

@@ -27,7 +27,7 @@ def test_what_is_redefined_is_hidden_by_a_feature_of_another_name():
         part def Gate { part motor; }
         part def Big :> Gate { part drive :>> motor; }
         part a :> Big::motor;
-    """) == ["4: 'Big::motor' is not known here: known: drive"]
+    """) == ["4: unknown name 'Big::motor': known: drive"]
 
 
 def test_a_feature_without_a_name_has_that_of_what_it_redefines_or_references():
@@ -135,7 +135,7 @@ def test_arguments_are_named_by_the_parameters_of_what_is_called():
     assert told("""
         calc def Time { in distance; return : ScalarValues::Real; }
         attribute t = Time(distanc = 4);
-    """) == ["3: 'distanc' is not known here: did you mean 'distance'?"]
+    """) == ["3: unknown name 'distanc': did you mean 'distance'?"]
 
 
 def test_functions_bodies_and_casts_give_results_with_members():
@@ -159,8 +159,8 @@ def test_elements_that_specialise_themselves_are_told_and_nothing_hangs():
         part def Gate :> Door { part a; }
         part def Door :> Gate { part b :> a; }
         part c : Door { part :>> b; part :>> a; }
-    """) == ["2: 'Gate' specialises itself through 'Door': remove one specialisation of the circle"]
-    itself = "'Gate' specialises itself: remove one specialisation of the circle"
+    """) == ["2: 'Gate' specialises itself through 'Door': remove one specialisation of the cycle"]
+    itself = "'Gate' specialises itself: remove one specialisation of the cycle"
     assert told("part def Gate :> Gate; part gate : Gate;") == [f"1: {itself}"]
     assert told("part gate : Gate; part def Gate :> Gate;") == [f"1: {itself}"]
     assert (

@@ -62,12 +62,11 @@ def test_what_is_in_the_library_is_said_with_the_package_to_import():
             part x : A;
         }
     """) == [
-        "4: 'km' is not known here: 'km' is in 'SI', which is not imported here",
-        "5: 'MassValue' is not known here: 'MassValue' is in 'ISQ', which is not imported here",
-        "6: 'Real' is not known here: 'Real' is in 'ScalarValues': import ScalarValues::*, "
-        "not it alone",
-        "7: 'b' is not known here: known: Plant, a, count, mass, way, x",
-        "8: 'A' is not known here: did you mean 'a'?",
+        "4: unknown name 'km': 'km' is in 'SI', which is not imported here",
+        "5: unknown name 'MassValue': 'MassValue' is in 'ISQ', which is not imported here",
+        "6: unknown name 'Real': 'Real' is in 'ScalarValues': import ScalarValues::*, not it alone",
+        "7: unknown name 'b': known: Plant, a, count, mass, way, x",
+        "8: unknown name 'A': did you mean 'a'?",
     ]
 
 

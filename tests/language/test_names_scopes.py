@@ -59,7 +59,7 @@ def test_what_a_package_imports_is_known_in_it_and_only_public_imports_beyond():
         package Doors { part def Gate; }
         package Hidden { private import Doors::*; }
         package Plant { part a : Hidden::Gate; }
-    """) == ["4: 'Hidden::Gate' is not known here: 'Gate' is there by a private import only"]
+    """) == ["4: unknown name 'Hidden::Gate': 'Gate' is there by a private import only"]
 
 
 def test_an_import_of_a_member_brings_one_name_a_recursive_one_all_below():
@@ -77,7 +77,7 @@ def test_import_all_brings_private_members_too():
     model = resolved(doors, "package Plant { private import all Doors::*; part a : Gate; }")
     assert leads(model, "Plant::a") == "Doors::Gate"
     assert told(doors, "package Plant { private import Doors::*; part a : Gate; }") == [
-        "1: 'Gate' is not known here: known: Plant, a"
+        "1: unknown name 'Gate': known: Plant, a"
     ]
 
 
@@ -95,7 +95,7 @@ def test_a_filter_keeps_out_what_has_not_the_metadata():
     """
     assert leads(resolved(plant % "Gate"), "Checked::a") == "Plant::Gate"
     assert told(plant % "Table") == [
-        "9: 'Table' is not known here: 'Table' is in 'Plant', which is not imported here"
+        "9: unknown name 'Table': 'Table' is in 'Plant', which is not imported here"
     ]
 
 
@@ -161,8 +161,8 @@ def test_private_members_are_not_seen_from_outside_and_protected_ones_by_heirs()
         part def Big :> Gate { part :>> seal; }
         part def Other { part a :> Gate::motor; }
     """) == [
-        "3: 'seal' is not known here: 'seal' is private in 'Gate'",
-        "4: 'Gate::motor' is not known here: 'motor' is protected in 'Gate'",
+        "3: unknown name 'seal': 'seal' is private in 'Gate'",
+        "4: unknown name 'Gate::motor': 'motor' is protected in 'Gate'",
     ]
 
 
@@ -182,7 +182,7 @@ def test_what_is_advised_is_neither_the_use_itself_nor_a_unit():
         package Tools { action grip; }
         """
     ) == [
-        "2: 'grip' is not known here: 'grip' is in 'Tools', which is not imported here",
-        "4: 'a' is not known here: known: Cell, Plant, Tools, Use, grip",
-        "4: 'N' is not known here: known: Cell, Plant, Tools, Use, grip",
+        "2: unknown name 'grip': 'grip' is in 'Tools', which is not imported here",
+        "4: unknown name 'a': known: Cell, Plant, Tools, Use, grip",
+        "4: unknown name 'N': known: Cell, Plant, Tools, Use, grip",
     ]

@@ -28,8 +28,8 @@ def test_the_wrong_text_has_it_and_the_right_one_nothing(rule):
 def test_sm190_says_what_was_found_and_what_was_expected():
     tree, messages = parsed("part a : ; part b = 1 +; part c;")
     assert messages == [
-        "1:10 SM190 ';' stands where a name is expected",
-        "1:24 SM190 ';' stands where an expression is expected",
+        "1:10 SM190 unexpected ';'; expected a name",
+        "1:24 SM190 unexpected ';'; expected an expression",
     ]
     assert tree == [
         "OwningMembership PartUsage a",
@@ -42,8 +42,8 @@ def test_sm190_says_what_was_found_and_what_was_expected():
 def test_a_head_that_is_not_understood_keeps_its_body():
     tree, messages = parsed("part a : : B { part c; part d : ; } part e;")
     assert messages == [
-        "1:10 SM190 ':' stands where a name is expected",
-        "1:33 SM190 ';' stands where a name is expected",
+        "1:10 SM190 unexpected ':'; expected a name",
+        "1:33 SM190 unexpected ';'; expected a name",
     ]
     assert tree == [
         "OwningMembership PartUsage a",
@@ -71,8 +71,8 @@ def test_sm191_a_missing_bracket_is_put_in():
 def test_sm192_a_keyword_is_taken_as_the_name_that_it_was_meant_for():
     tree, messages = parsed("part def Cell { port in : Input; attribute end = 3; }")
     assert messages == [
-        "1:22 SM192 'in' is a keyword of SysML and stands where a name is expected",
-        "1:44 SM192 'end' is a keyword of SysML and stands where a name is expected",
+        "1:22 SM192 'in' is a keyword of SysML; expected a name",
+        "1:44 SM192 'end' is a keyword of SysML; expected a name",
     ]
     assert "  FeatureMembership PortUsage in FeatureTyping->Input" in tree
     assert understood("port 'in' : Input;") == [
@@ -83,7 +83,7 @@ def test_sm192_a_keyword_is_taken_as_the_name_that_it_was_meant_for():
 
 def test_a_binding_where_an_assignment_is_meant():
     text = "action a { assign x = 1; } attribute y := 2;"
-    assert said(text) == ["1:21 SM190 '=' stands where ':=' is expected"]
+    assert said(text) == ["1:21 SM190 unexpected '='; expected ':='"]
     assert "':='" in advised(text)[0]
 
 
@@ -117,7 +117,7 @@ def test_sm194_a_number_that_no_computer_holds():
 
 def test_a_comment_between_words_should_be_a_note():
     tree, messages = parsed("part a /* b */ : C;")
-    assert messages == ["1:8 SM190 a comment /* */ stands where something else is expected"]
+    assert messages == ["1:8 SM190 unexpected a comment /* */; expected something else"]
     assert tree == ["OwningMembership PartUsage a FeatureTyping->C"]
     assert "//* ... */" in advised("part a /* b */ : C;")[0]
 
@@ -125,7 +125,7 @@ def test_a_comment_between_words_should_be_a_note():
 def test_a_symbol_too_much_is_told_and_left_out():
     tree, messages = parsed("part a;; } part b;")
     assert messages == [
-        "1:8 SM190 ';' stands where a declaration or '}' is expected",
+        "1:8 SM190 unexpected ';'; expected a declaration or '}'",
     ]
     assert len(tree) == 2
 
@@ -174,7 +174,7 @@ def test_common_slips_get_the_words_that_are_right(text, advice):
 
 def test_a_comparison_where_a_value_is_meant_is_read_as_a_binding():
     tree, messages = parsed("attribute a == 3;")
-    assert messages == ["1:13 SM190 '==' stands where '=' is expected"]
+    assert messages == ["1:13 SM190 unexpected '=='; expected '='"]
     assert tree[1] == "  FeatureValue (=) LiteralInteger value=3"
 
 
@@ -200,13 +200,13 @@ def test_words_that_are_right_elsewhere_are_no_slips():
 
 def test_sm195_members_stand_only_where_they_mean_something():
     assert said("part p { entry; return x; x + 1 }") == [
-        "1:10 SM195 an 'entry', 'do' or 'exit' action stands in 'p', where none may stand",
-        "1:17 SM195 'return' stands in 'p', where none may stand",
-        "1:27 SM195 an expression stands in 'p', where none may stand",
+        "1:10 SM195 an 'entry', 'do' or 'exit' action is not allowed in 'p'",
+        "1:17 SM195 'return' is not allowed in 'p'",
+        "1:27 SM195 an expression is not allowed in 'p'",
     ]
     assert said("state s { entry; } calc c { return x; x + 1 }") == []
     assert said("enum def E { a; part b; }") == [
-        "1:17 SM195 what is no enumerated value stands in 'E', where none may stand"
+        "1:17 SM195 a member that is not an enumerated value is not allowed in 'E'"
     ]
 
 
@@ -222,8 +222,8 @@ def test_sm196_prefixes_have_an_order_and_a_meaning():
 
 def test_sm197_every_import_says_for_whom():
     assert said("import A::*; public import B; package P { import C::**; }") == [
-        "1:1 SM197 the import does not say who sees what it imports",
-        "1:43 SM197 the import does not say who sees what it imports",
+        "1:1 SM197 the import has no visibility",
+        "1:43 SM197 the import has no visibility",
     ]
 
 

@@ -82,15 +82,22 @@ def test_bad_yaml_is_told_with_its_place(data, line, column, problem):
         ),
         (
             RIGHT.replace("items", "itmes"),
-            [("SM322", 2, 1, "in the overlay at the top: there is no 'itmes'")],
+            [("SM322", 2, 1, "in the overlay at the top: unknown key 'itmes'")],
         ),
         (
             RIGHT + "  MiniPallet: {}\n",
-            [("SM323", 4, 3, "in the overlay at 'items': 'MiniPallet' stands there twice")],
+            [("SM323", 4, 3, "in the overlay at 'items': the key 'MiniPallet' occurs twice")],
         ),
         (
             "overlay: 1\nblocks:\n  A:\n    operations: {go: , go: }\n",
-            [("SM323", 4, 24, "in the overlay at 'blocks/A/operations': 'go' stands there twice")],
+            [
+                (
+                    "SM323",
+                    4,
+                    24,
+                    "in the overlay at 'blocks/A/operations': the key 'go' occurs twice",
+                )
+            ],
         ),
         (
             "overlay: 1\nconnectors: {l: {flows: [{item: X}]}}\n",

@@ -45,7 +45,8 @@ def told(body):
 
 def test_a_misspelt_name_is_told_with_the_one_that_was_meant():
     assert told("ful := true") == [
-        "action 'fill' assigns to 'ful', which is no feature that 'work' or what it is in has; "
+        "action 'fill' assigns to 'ful', but neither 'work' nor an element that contains it "
+        "has such a feature; "
         "did you mean 'full'?"
     ]
 

@@ -349,9 +349,9 @@ def test_a_key_whose_id_is_gone_falls_back_to_its_path_and_says_so():
     text = "overlay: 1\nports:\n  old-id: {path: Plant/Switch/p_swIn, direction: in}\n"
     _, sink = laid_over(text)
     assert lines(sink) == [
-        "SM325 info: nothing has the id 'old-id' any more; 'Plant/Switch/p_swIn' is taken instead"
+        "SM325 info: no element has the id 'old-id' any more; 'Plant/Switch/p_swIn' is used instead"
     ]
-    assert next(iter(sink)).help == "if it is the right one, write 'w-in' as the key"
+    assert next(iter(sink)).help == "if that is the intended element, write 'w-in' as the key"
 
 
 def test_the_id_counts_when_the_path_leads_elsewhere():

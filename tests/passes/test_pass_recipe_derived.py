@@ -25,7 +25,7 @@ def model(text: str) -> Model:
 def test_a_block_that_owns_a_machine_function_is_a_machine_and_it_is_told():
     assert [one.id for one in model(samples.OWNED_FUNCTION).machines] == ["Plant::Robot"]
     assert run(samples.OWNED_FUNCTION)[1] == [
-        "SM483: 'Plant::Robot' is taken for a machine: it owns the machine function 'Close'"
+        "SM483: 'Plant::Robot' is treated as a machine: it owns the machine function 'Close'"
     ]
 
 

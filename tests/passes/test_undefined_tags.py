@@ -33,7 +33,7 @@ def told(tags: str, external: str = "") -> list[str]:
 
 def test_a_tag_is_told_once():
     assert told(' tag.numbr="3"') == [
-        "tag 'numbr' of stereotype 'Cell' on 'A' and 1 more is none that its profile defines"
+        "tag 'numbr' of stereotype 'Cell' on 'A' and 1 more is not defined by its profile"
     ]
 
 

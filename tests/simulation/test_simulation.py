@@ -203,7 +203,7 @@ def test_one_of_the_runs_that_a_choice_allows_is_enough(last, passes):
         (
             "component: Gate.pass\nsteps:\n - expect:\n     angle: 190\n",
             "SM554",
-            "190 is no value of 'angle', which takes 0..180",
+            "190 is not a value of 'angle', which takes 0..180",
             4,
         ),
         (

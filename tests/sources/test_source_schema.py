@@ -38,7 +38,13 @@ def problems(loaded, body):
         ("<Item/>", [(1, "Item", "'Item' has no attribute 'Name'")]),
         (
             '<Item Name="a"><Item Name="b" Count="x"/></Item>',
-            [(2, "a::b", "the attribute 'Count' of 'Item' is 'x', which is no xs:integer")],
+            [
+                (
+                    2,
+                    "a::b",
+                    "the attribute 'Count' of 'Item' is 'x', which is not a valid xs:integer",
+                )
+            ],
         ),
         (
             '<Item Name="a"><Size>big</Size></Item>',

@@ -39,7 +39,7 @@ def test_a_behaviour_keeps_its_requirements_or_a_run_shows_where_not():
     assert results["Plant::Gate.requirements"].is_implemented is None
     (broken,) = [one for one in found if one.rule is BREAKS]
     assert broken.message == (
-        "the behaviour of 'Plant::Gate' does not keep 'state=B -> state'=B' ('Stays on' demands it)"
+        "the behaviour of 'Plant::Gate' violates 'state=B -> state'=B' ('Stays on' demands it)"
     )
     assert broken.subject.name == "Plant::Stays on::<Constraint>"
     assert broken.notes[0] == "step 1: event=start, state=A"
@@ -55,6 +55,5 @@ def test_questions_that_take_too_long_are_told(monkeypatch):
     results, found = checked(BREAKS.read_page().right)
     assert results["Plant::Gate"].verdict.is_realizable
     assert next(one.message for one in found if one.rule.code == "SM563") == (
-        "not everything that may be suspicious in 'Plant::Gate' was looked for: "
-        "the limit of 1 s of CPU time was reached"
+        "the checks of 'Plant::Gate' are incomplete: the limit of 1 s of CPU time was reached"
     )

@@ -72,7 +72,7 @@ def test_where_the_environment_can_always_delay_there_is_none():
     made, told = found(cart(3, 1, "env wind: bool\npromise always wind -> cart'=cart"), "timer")
     assert [made.bound, made.exit_code] == [None, 1]
     assert [(one.rule.code, one.message) for one in told] == [
-        ("SM576", "'c' can promise no bound of timer: 8 is too little, too")
+        ("SM576", "'c' can guarantee no bound for timer: even 8 is too small")
     ]
 
 
@@ -81,7 +81,7 @@ def test_what_is_no_number_of_the_contract_is_told(name):
     made, told = found(cart(3, 1, "sys far: bool"), name)
     assert [made.bound, made.exit_code] == [None, 2]
     assert [one.rule.code for one in told] == ["SM575"]
-    assert told[0].help == "name one of its numbers: target, timer, cart"
+    assert told[0].help == "name one of its numeric variables: target, timer, cart"
 
 
 def test_what_is_not_decided_is_told_once():

@@ -103,7 +103,7 @@ def test_missing_fairness_names_what_would_help():
     assert found(made) == [
         (
             "SM538",
-            "'c' could keep its contract if its environment did not wait for ever, for instance "
+            "'c' could satisfy its contract if its environment did not wait forever, for instance "
             "if 'go' recurred",
         )
     ]

@@ -255,7 +255,7 @@ def test_a_machine_that_fails_the_check_is_none(monkeypatch):
     result, (told,) = made(LAMP)
     assert [result.machine, result.exit_code, told.rule.code] == [None, 2, "SM543"]
     assert told.message == (
-        "the contract of 'Plant::Lamp' can be kept, but no machine is written: "
+        "the contract of 'Plant::Lamp' is realizable, but no controller is written: "
         "the one that was made does not keep 'lamp=off'"
     )
 

@@ -19,9 +19,10 @@ NOT_EXPRESSIBLE = rule(
     "SM590",
     "contract-not-expressible",
     Severity.WARNING,
-    "the contract of '{component}' is not written for {form}: it has no words for "
-    "{what}, since {reason}",
-    help="take a form for general LTL (contracts, spot, tlsf), or demand it as a property pattern",
+    "the contract of '{component}' is not written for {form}: the format cannot "
+    "express {what}, because {reason}",
+    help="emit a format for general LTL (contracts, spot, tlsf), or state the "
+    "requirement as a property pattern",
 )
 
 Split = Callable[[str], dict[str, str]]

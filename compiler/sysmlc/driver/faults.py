@@ -10,20 +10,20 @@ MISSING_FILE = rule(
     "missing-file",
     Severity.ERROR,
     "there is no file or folder '{path}'",
-    help="look at the spelling; file names are relative to the working folder",
+    help="check the spelling; file names are relative to the working folder",
 )
 NOT_THERE = rule(
     "SM148",
     "external-data-not-there",
     Severity.INFO,
-    "the model refers to what is not there: '{file}'{more}",
+    "the model refers to a file that does not exist: '{file}'{more}",
 )
 UNOPENED = rule(
     "SM179",
     "unopened-file",
     Severity.ERROR,
     "'{path}' {reason}",
-    help="look at its permissions",
+    help="check its permissions",
 )
 UNRECOGNISED = rule(
     "SM171",
@@ -54,14 +54,14 @@ TOO_LARGE = rule(
     "too-large",
     Severity.ERROR,
     "'{path}' exceeds a limit: {reason}",
-    help="split the model, or look whether the file is what you think",
+    help="split the model, or check that this is the right file",
 )
 NOTHING_TO_COMPILE = rule(
     "SM173",
     "nothing-to-compile",
     Severity.ERROR,
-    "'{path}' holds no model",
-    help="name a file, or a folder with files of such names",
+    "'{path}' contains no model",
+    help="name a model file, or a folder that contains model files",
 )
 UNSUPPORTED = rule(
     "SM174",
@@ -74,8 +74,8 @@ SKIPPED = rule(
     "SM175",
     "skipped-file",
     Severity.WARNING,
-    "'{path}' is named like a model but is none: {reason}",
-    help="name the files instead of the folder if this one is not meant",
+    "'{path}' is named like a model but is not one: {reason}",
+    help="to skip this file, name the other files instead of the folder",
 )
 EMPTY = rule(
     "SM157",
@@ -109,21 +109,21 @@ INTERNAL_FAULT = rule(
     "SM900",
     "internal-fault",
     Severity.ERROR,
-    "fault of sysmlc in {where}: {problem}",
+    "internal error of sysmlc in {where}: {problem}",
     help="please report it with the command and the model; -v shows where it happened",
 )
 INVALID_GRAPH = rule(
     "SM901",
     "invalid-graph",
     Severity.ERROR,
-    "fault of sysmlc: after {where} the graph is not valid: {problem}",
+    "internal error of sysmlc: the graph is invalid after {where}: {problem}",
     help="please report it with the model",
 )
 UNUSED_SUPPRESSION = rule(
     "SM902",
     "unused-suppression",
     Severity.WARNING,
-    "no finding '{name}' about '{element}' is left to suppress",
+    "the suppression of '{name}' for '{element}' matches no finding",
     help="remove the [[suppress]] entry",
 )
 UNKNOWN_LEVEL_ELEMENT = rule(

@@ -17,21 +17,21 @@ VIOLATION = rule(
     "SM186",
     "schema-violation",
     Severity.WARNING,
-    "'{element}' is not as {schema} wants it: {problem}",
+    "'{element}' does not conform to {schema}: {problem}",
     help="write the file again with a tool that follows the schema",
 )
 NO_SCHEMA = rule(
     "SM187",
     "no-schema-for-file",
     Severity.WARNING,
-    "'{file}' was not validated: no schema in '{folder}' is for {what}",
-    help="put the schema of that language into the folder, or leave --schema out",
+    "'{file}' was not validated: '{folder}' has no schema for {what}",
+    help="add the schema of that language to the folder, or omit --schema",
 )
 MORE = rule(
     "SM188",
     "more-schema-violations",
     Severity.WARNING,
-    "'{file}' is not as {schema} wants it in {count} more places",
+    "'{file}' does not conform to {schema} in {count} more places",
 )
 
 

@@ -16,8 +16,8 @@ IR_SYNTAX = rule(
     "SM176",
     "ir-syntax",
     Severity.ERROR,
-    "'{path}' is no graph in text form: {reason}",
-    help="docs/ir.md shows the form; --emit ir writes it",
+    "'{path}' is not a graph in text form: {reason}",
+    help="docs/ir.md describes the form; --emit ir writes it",
 )
 _FIRST_WORD = re.compile(rb"\s*(?://[^\n]*\n\s*)*(\w+) \S")
 _KINDS = frozenset(kind.value.encode() for kind in Kind)

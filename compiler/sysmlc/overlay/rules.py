@@ -20,13 +20,13 @@ UNKNOWN_KEY = rule(
     "SM322",
     "overlay-unknown-key",
     Severity.ERROR,
-    "in the overlay {where}: there is no '{key}'",
+    "in the overlay {where}: unknown key '{key}'",
     help="{advice}",
 )
 KEY_TWICE = rule(
     "SM323",
     "overlay-key-twice",
     Severity.ERROR,
-    "in the overlay {where}: '{key}' stands there twice",
-    help="put both entries together, or name one of them otherwise",
+    "in the overlay {where}: the key '{key}' occurs twice",
+    help="merge the two entries, or rename one of them",
 )

@@ -34,7 +34,7 @@ NO_BEHAVIOR = rule(
     "SM402",
     "no-behavior",
     Severity.WARNING,
-    "the {relation} of '{element}' leads to '{target}', which is no behaviour",
+    "the {relation} of '{element}' leads to '{target}', which is not a behaviour",
     help="let it lead to an activity, state machine or interaction",
 )
 METHOD_BY_NAME = rule(

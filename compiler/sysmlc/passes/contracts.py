@@ -168,7 +168,8 @@ NO_CONTRACT = rule(
     "formula-without-contract",
     Severity.WARNING,
     "'{constraint}' is a formula about '{component}', which has no behaviour with a contract",
-    help="give '{component}' a classifier behaviour, or move the formula to what has one",
+    help="give '{component}' a classifier behaviour, or move the formula to a component "
+    "that has one",
 )
 OUTSIDE_GR1 = rule(
     "SM503",

@@ -15,7 +15,7 @@ GENERALIZATION_CYCLE = rule(
     "generalization-cycle",
     Severity.ERROR,
     "'{element}' specialises itself: {cycle}",
-    help="remove one generalization of the circle",
+    help="remove one generalization of the cycle",
 )
 GENERALIZATION_KIND = rule(
     "SM201",
@@ -35,7 +35,7 @@ TYPE_NOT_NARROWER = rule(
     "SM203",
     "type-not-narrower",
     Severity.WARNING,
-    "'{element}' {relation} '{other}' but its type '{type}' is no kind of '{other_type}'",
+    "'{element}' {relation} '{other}' but its type '{type}' is not a kind of '{other_type}'",
     help="let '{type}' specialise '{other_type}'",
 )
 MULTIPLICITY_WIDER = rule(

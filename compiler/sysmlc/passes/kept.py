@@ -14,7 +14,7 @@ UNREADABLE = rule(
     "SM189",
     "kept-comment",
     Severity.WARNING,
-    "the comment that keeps what UML cannot say was changed: it is not used",
+    "the comment that preserves facts which UML cannot express was changed: it is ignored",
     help="restore the comment, or remove it and save the plant again",
 )
 

@@ -51,7 +51,7 @@ UNREADABLE = rule(
     "SM616",
     "recipe-expression-unreadable",
     Severity.WARNING,
-    "'{text}' at '{element}' is no expression that an executor can evaluate",
+    "'{text}' at '{element}' is not an expression that an executor can evaluate",
     help=(
         "write it in the expression grammar: names, literals, and, or, not, comparisons, arithmetic"
     ),

@@ -13,7 +13,7 @@ BROKEN_REFERENCE = rule(
     "SM601",
     "recipe-broken-reference",
     Severity.ERROR,
-    "'{user}' needs '{missing}', which is no {level}",
+    "'{user}' needs '{missing}', which is not a {level}",
     help="apply the stereotype for a {level} to '{missing}', or relate '{user}' to another element",
 )
 CYCLIC_TASKS = rule(

@@ -34,7 +34,8 @@ STALE_GROUPS = rule(
     "same-machine-differs",
     Severity.ERROR,
     "task '{task}': {problem}",
-    help="let one machine offer all services of the group, or correct who takes the resource",
+    help="let one machine offer all services of the group, or correct which service "
+    "takes the resource",
 )
 UNRELEASED = rule(
     "SM618",
@@ -49,7 +50,7 @@ UNBOUNDED = rule(
     "SM620",
     "loop-without-bound",
     Severity.INFO,
-    "nothing bounds the loop at '{loop}'",
+    "the loop at '{loop}' has no bound",
     help="apply «Loop» with maxIterations to the decision",
 )
 

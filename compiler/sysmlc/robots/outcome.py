@@ -40,8 +40,9 @@ SHARED_CELL = rule(
     "SM570",
     "environment-shares-cells",
     Severity.INFO,
-    "no environment can keep C_E of '{floor}' as the thesis has it: '{one}' and '{other}' are both "
-    "told that a cell is free, and go there; it is offered to one of them",
+    "no environment satisfies C_E of '{floor}' as the thesis defines it: '{one}' "
+    "and '{other}' may both be informed that a cell is free and enter it; the cell "
+    "is offered to one of them",
 )
 NOT_VALIDATED = rule(
     "SM571",
@@ -49,15 +50,15 @@ NOT_VALIDATED = rule(
     Severity.ERROR,
     "the mission of '{floor}' fails: {reason}",
     help=(
-        "give more time, move obstacles or starts, or order fewer targets; the run shows one that "
-        "fails, of the last allocation that was tried"
+        "give more time, move obstacles or starts, or order fewer targets; the run "
+        "shows a failure of the last allocation that was tried"
     ),
 )
 NO_ALLOCATION = rule(
     "SM572",
     "no-allocation",
     Severity.ERROR,
-    "no allocation of the targets of '{floor}' keeps the deadlines: {reason}",
+    "no allocation of the targets of '{floor}' meets the deadlines: {reason}",
     help="give more time, another robot, or fewer targets",
 )
 NO_RELATION = rule(

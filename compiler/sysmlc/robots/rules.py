@@ -34,7 +34,7 @@ CARRIED_TWICE = rule(
     "SM568",
     "carried-twice",
     Severity.ERROR,
-    "a robot would have to go on {way} '{name}' {there} both '{one}' and '{other}'",
+    "'Carry' connections send a robot {way} '{name}' {there} both '{one}' and '{other}'",
     help="use 'Before' for one of them",
 )
 OUT_OF_REACH = rule(

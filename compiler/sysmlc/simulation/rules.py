@@ -7,7 +7,7 @@ SYNTAX = rule(
     "scenario-not-yaml",
     Severity.ERROR,
     "the scenario is not YAML: {problem}",
-    help="mind the indentation, and put texts with special characters in quotes",
+    help="check the indentation, and put texts with special characters in quotes",
 )
 SHAPE = rule(
     "SM551",
@@ -22,8 +22,8 @@ COMPONENT = rule(
     Severity.ERROR,
     "there is no component '{name}' that can be simulated; known are: {known}",
     help=(
-        "use one of the known names, or read the diagnostics of the model: they say why an "
-        "activity or a state machine can't be played"
+        "use one of the known names, or read the diagnostics of the model: they explain "
+        "why an activity or a state machine cannot be simulated"
     ),
 )
 VARIABLE = rule(
@@ -37,7 +37,7 @@ VALUE = rule(
     "SM554",
     "value-outside-domain",
     Severity.ERROR,
-    "{value} is no value of '{name}', which takes {domain}",
+    "{value} is not a value of '{name}', which takes {domain}",
     help="use a value of the domain",
 )
 NOT_INPUT = rule(

@@ -35,46 +35,48 @@ OPEN = rule(
     "SM595",
     "part-assumption-open",
     Severity.ERROR,
-    "part '{part}' of '{component}' assumes '{formula}', which nothing around it promises{said}",
+    "part '{part}' of '{component}' assumes '{formula}', which neither the other parts nor "
+    "the block's assumptions guarantee{said}",
     help=(
-        "let another part promise it, let the block assume it, or let the part do without it; the "
-        "run shows what happens"
+        "let another part guarantee it, let the block assume it, or remove the assumption; the "
+        "run shows a counterexample"
     ),
 )
 CIRCLE = rule(
     "SM596",
     "parts-wait-for-one-another",
     Severity.WARNING,
-    "part '{part}' of '{component}' assumes '{formula}', kept by others only after it{said}",
-    help="let one of the parts begin: promise it without that assumption",
+    "part '{part}' of '{component}' assumes '{formula}', which other parts guarantee "
+    "only in response to it{said}",
+    help="let one of the parts guarantee its side without that assumption",
 )
 BREAK = rule(
     "SM597",
     "parts-break-whole",
     Severity.ERROR,
-    "the parts of '{component}' together do not keep '{formula}'{said}",
-    help="let a part promise more, or the block less; the run shows what happens",
+    "the parts of '{component}' together do not guarantee '{formula}'{said}",
+    help="let a part guarantee more, or the block less; the run shows a counterexample",
 )
 CONTRADICT = rule(
     "SM548",
     "parts-contradict",
     Severity.ERROR,
-    "there is no run in which all parts of '{component}' keep what they promise",
-    help="change one of the promises, or what joins the parts",
+    "no run satisfies the guarantees of all parts of '{component}'",
+    help="change one of the guarantees, or the connections of the parts",
 )
 LOST = rule(
     "SM506",
     "sent-in-one-step",
     Severity.WARNING,
-    "in '{component}' two things are sent in one step, and one of them is lost{said}",
-    help="let one wait until the other was taken; the run shows how it comes about",
+    "in '{component}' two messages are sent in one step, and one of them is lost{said}",
+    help="send the second message only after the first was accepted; the run shows an example",
 )
 NOT_COMPOSED = rule(
     "SM598",
     "parts-not-composed",
     Severity.WARNING,
-    "the parts of '{component}' are not put together: {reason}",
-    help="give more time (--question-limit), or say it in the patterns that are known",
+    "the composition of the parts of '{component}' is not checked: {reason}",
+    help="give more time (--question-limit), or use known property patterns",
 )
 
 

@@ -33,15 +33,15 @@ BREAKS = rule(
     "SM560",
     "behaviour-breaks-requirement",
     Severity.ERROR,
-    "the behaviour of '{component}' does not keep '{formula}'{said}",
-    help="change the behaviour, or the requirement; the run shows what happens",
+    "the behaviour of '{component}' violates '{formula}'{said}",
+    help="correct the behaviour or the requirement; the run shows a counterexample",
 )
 ASSUMES = rule(
     "SM561",
     "behaviour-assumes-more",
     Severity.ERROR,
     "the behaviour of '{component}' assumes '{formula}', which its requirements do not{said}",
-    help="add it to the assumptions of the requirement, or let the behaviour do without it",
+    help="add it to the assumptions of the requirement, or let the behaviour work without it",
 )
 NOT_COMPARED = rule(
     "SM562",
@@ -55,7 +55,7 @@ GIVEN_UP = rule(
     "SM563",
     "check-given-up",
     Severity.INFO,
-    "not everything that may be suspicious in '{component}' was looked for: {reached}",
+    "the checks of '{component}' are incomplete: {reached}",
     help="give more time (--question-limit), or check the contracts of parts",
 )
 
@@ -146,9 +146,9 @@ LEANS = rule(
     "SM599",
     "requirements-lean-on-one-another",
     Severity.WARNING,
-    "the requirements of '{component}' can be kept together only where all that any of them "
-    "assumes holds",
-    help="let each requirement assume what it needs itself",
+    "the requirements of '{component}' can be satisfied together only if the assumptions "
+    "of all of them hold",
+    help="let each requirement state the assumptions that it needs",
 )
 
 

@@ -26,7 +26,7 @@ def test_a_loss_is_counted_and_told_once():
     machines = "".join(f'    StateMachine m{n} "M{n}"\n' for n in range(3))
     gate = 'Package p "Plant"\n  Class gate "Gate" role="block"\n'
     assert saved(refined(gate + machines))[1] == [
-        "SM740 AutomationML has no place for StateMachine (3 left out of the saved plant)"
+        "SM740 AutomationML cannot express StateMachine (3 omitted from the saved plant)"
     ]
 
 

@@ -107,15 +107,15 @@ def test_what_is_no_drawing_is_reported():
     assert [(found.rule.code, found.message) for found in sink] == [
         (
             "SM702",
-            "diagram 'Goals as a table' of its author is not drawn: "
+            "diagram 'Goals as a table' of the model's author is not drawn: "
             "a Requirement Table is no drawing",
         ),
         (
             "SM702",
-            "diagram 'Nothing' of its author is not drawn: "
+            "diagram 'Nothing' of the model's author is not drawn: "
             "it shows nothing of the model that its notation has a place for",
         ),
-        ("SM702", "diagram 'Ideas' of its author is not drawn: a Mind Map is no drawing"),
+        ("SM702", "diagram 'Ideas' of the model's author is not drawn: a Mind Map is no drawing"),
     ]
 
 

@@ -28,7 +28,7 @@ def test_a_rule_reports_its_wrong_model_and_not_its_right_one(rule):
 def test_a_loss_is_counted_and_told_once():
     facets = "".join(f'  Facet f{number} "F{number}"\n' for number in range(3))
     assert saved(refined('Package p "Plant"\n' + facets))[1] == [
-        "SM720 UML has no place for Facet (3 left out of the saved model)"
+        "SM720 UML cannot express Facet (3 omitted from the saved model)"
     ]
 
 
@@ -150,7 +150,7 @@ def test_connectors_of_an_instance_are_saved_with_its_class():
     graph = refined(PLANT)
     _, told = saved(graph)
     assert (
-        "SM723 UML lets no Instance own Connector: saved with the nearest owner that may (1)"
+        "SM723 UML lets no Instance own Connector: saved with the nearest possible owner (1)"
         in told
     )
     _, back, _ = round_trip(graph)

@@ -25,7 +25,7 @@ UNKNOWN = [
     ),
     (
         classes('<SystemUnitClass Name="C" colour="red"/>'),
-        "'Lib::C' has an attribute 'colour', which CAEX does not have at 'SystemUnitClass'; "
+        "'Lib::C' has an attribute 'colour', which CAEX does not define for 'SystemUnitClass'; "
         "known: ChangeMode, ID, Name, RefBaseClassPath",
     ),
 ]
@@ -59,22 +59,23 @@ def test_an_unknown_attribute_after_a_namespace_declaration_is_reported():
 
 
 TEXTS = [
-    ("oops", "'Plant::i' holds the text 'oops'; CAEX has none at 'InternalElement'"),
+    ("oops", "'Plant::i' contains the text 'oops'; CAEX allows no text in 'InternalElement'"),
     (
         '<Attribute Name="a">2.5</Attribute>',
-        "'Plant::i::a' holds the text '2.5'; CAEX has none at 'Attribute'",
+        "'Plant::i::a' contains the text '2.5'; CAEX allows no text in 'Attribute'",
     ),
     (
         '<Attribute Name="a"/> and  more\n<Attribute Name="b"/>',
-        "'Plant::i' holds the text 'and more'; CAEX has none at 'InternalElement'",
+        "'Plant::i' contains the text 'and more'; CAEX allows no text in 'InternalElement'",
     ),
     (
         '<Attribute Name="a"><Constraint Name="c">x<UnknownType/></Constraint></Attribute>',
-        "'Plant::i::a::c' holds the text 'x'; CAEX has none at 'Constraint'",
+        "'Plant::i::a::c' contains the text 'x'; CAEX allows no text in 'Constraint'",
     ),
     (
         '<Attribute Name="a">1</Attribute><Attribute Name="b">2</Attribute>',
-        "'Plant::i::a' holds the text '1' and 1 more like it; CAEX has none at 'Attribute'",
+        "'Plant::i::a' contains the text '1' and 1 more like it; CAEX allows no text in "
+        "'Attribute'",
     ),
 ]
 
@@ -112,5 +113,5 @@ def test_text_below_elements_that_hold_any_xml_needs_no_second_parse(monkeypatch
 def test_text_in_the_root_element_is_reported_at_the_file():
     reading = Read(aml("text" + types(""), form=CAEX_2))
     assert reading.findings == [
-        "SM634: 'plant.aml' holds the text 'text'; CAEX has none at 'CAEXFile'"
+        "SM634: 'plant.aml' contains the text 'text'; CAEX allows no text in 'CAEXFile'"
     ]

@@ -768,7 +768,8 @@ def test_a_group_may_contain_groups():
         (
             "plcs",
             [
-                "SM639: the group 'Plant::cell::s' is for facets called 'plcs', and none is; "
+                "SM639: the group 'Plant::cell::s' refers to facets named 'plcs', but no "
+                "facet has that name; "
                 "did you mean 'plc'?"
             ],
         ),
@@ -1036,7 +1037,7 @@ def test_elements_in_another_order_than_in_the_schema_are_reported_once(inside, 
 
 @pytest.mark.parametrize(
     ("body", "findings"),
-    [("", ["SM141: 'plant.aml' holds no library and no hierarchy"]), (plant(""), [])],
+    [("", ["SM141: 'plant.aml' contains no library and no hierarchy"]), (plant(""), [])],
 )
 def test_a_file_without_content_is_reported(body, findings):
     assert Read(body).findings == findings

@@ -175,8 +175,8 @@ def test_ids_that_differ_in_braces_and_case_are_found_with_an_info():
     reading = Read(aml_2(two_linked_elements("ab-1:out", "{AB-2}:in")))
     assert reading.links() == {"l": ("a.out", "b.in")}
     assert reading.infos == [
-        "SM145: 'l' says 'ab-1', the ID is '{AB-1}'",
-        "SM145: 'l' says '{AB-2}', the ID is 'ab-2'",
+        "SM145: 'l' refers to 'ab-1', but the ID is written '{AB-1}'",
+        "SM145: 'l' refers to '{AB-2}', but the ID is written 'ab-2'",
     ]
 
 
@@ -184,7 +184,7 @@ def test_an_id_that_differs_otherwise_is_not_found():
     reading = Read(aml_2(two_linked_elements("ab-3:out", "ab-2:in")))
     assert reading.links() == {}
     assert reading.findings == [
-        "SM135: link 'l': its side A says 'ab-3:out', and it names no interface"
+        "SM135: link 'l': its side A refers to 'ab-3:out', and it names no interface"
     ]
 
 

@@ -151,7 +151,7 @@ def test_only_what_can_leave_its_range_is_told():
 def test_what_cannot_be_followed_is_told_with_the_reason(old, new, reason):
     graph, sink = v2(V2.replace(old, new))
     assert next(one.message for one in sink if one.rule.code == "SM544") == (
-        "the contract of 'work' leaves 'n' to the environment, although action 'count' writes it: "
+        f"the contract of 'work' treats 'n' as an input although action 'count' assigns it: "
         f"{reason}"
     )
     owners = {one.name: one.owner for one in contract(graph).variables}

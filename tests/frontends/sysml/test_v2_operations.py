@@ -195,7 +195,8 @@ def test_what_nobody_asks_the_coordinator_for_is_told():
         ),
         (
             "SM596",
-            "part 'turn' of 'Cells::Machine' assumes 'command=turn', kept by others only after it "
+            "part 'turn' of 'Cells::Machine' assumes 'command=turn', which other parts "
+            "guarantee only in response to it "
             "('commanded again' of 'TurnContract' assumes it)",
         ),
     ]

@@ -38,7 +38,8 @@ def test_what_nothing_promises_is_told_with_a_run():
     assert result.text() == "Line::Cell: its 2 parts together break its contract"
     assert [one.rule.code for one in found] == ["SM595", "SM597"]
     assert found[0].message == (
-        "part 'picker' of 'Line::Cell' assumes 'feeder.ready', which nothing around it promises "
+        "part 'picker' of 'Line::Cell' assumes 'feeder.ready', which neither the other parts "
+        "nor the block's assumptions guarantee "
         "('Takes' assumes it)"
     )
     assert found[0].notes[0].startswith("step 1: feeder.ready=false")
@@ -68,7 +69,8 @@ def test_what_takes_too_long_is_not_decided():
     (result,), (told,) = checked(together_rules.BREAK.read_page().right, Limits(nodes=1))
     assert result.text() == "Line::Cell: its parts are not put together"
     assert told.message == (
-        "the parts of 'Line::Cell' are not put together: the limit of 1 nodes was reached"
+        "the composition of the parts of 'Line::Cell' is not checked: the limit of 1 nodes "
+        "was reached"
     )
 
 
@@ -112,7 +114,7 @@ def test_what_no_part_speaks_of_is_not_kept():
     (result,), found = checked(nobody)
     assert result.text() == "Line::Cell: its 2 parts together break its contract"
     assert [one.message for one in found] == [
-        "the parts of 'Line::Cell' together do not keep 'taken' ('Works' demands it)"
+        "the parts of 'Line::Cell' together do not guarantee 'taken' ('Works' demands it)"
     ]
 
 
@@ -120,7 +122,7 @@ def test_two_that_send_the_same_lose_one_of_it():
     wrong = together_rules.LOST.read_page().wrong.replace("do send off()", "do send on()")
     _, found = checked(wrong)
     assert [one.message for one in found] == [
-        "in 'Room::Room' two things are sent in one step, and one of them is lost ('on' by 'one' "
+        "in 'Room::Room' two messages are sent in one step, and one of them is lost ('on' by 'one' "
         "and 'on' by 'other' are sent to 'lamp')"
     ]
     assert found[0].notes[-1] == "then again from step 4"

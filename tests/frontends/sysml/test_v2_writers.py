@@ -149,4 +149,4 @@ def test_what_an_activity_inherits_is_known():
 def test_help_fits_the_reason():
     _, sink = plant(beside=clear("full"))
     helps = {one.help for one in sink if one.rule.code == "SM544"}
-    assert helps == {"let one behaviour alone write it, or say what becomes of it in a requirement"}
+    assert helps == {"let one behaviour alone write it, or specify its value in a requirement"}

@@ -18,7 +18,7 @@ def test_an_unknown_name_is_reported_once_at_its_first_element():
     classes = [CLASS.format(x, x.upper(), 'isAbstrct="true"') for x in "abc"]
     reading = read(papyrus("".join(classes)))
     assert list_findings(reading) == [
-        "attribute 'isAbstrct' of 'M::A' and 2 more is known neither to UML nor to XMI"
+        "attribute 'isAbstrct' of 'M::A' and 2 more is defined neither by UML nor by XMI"
     ]
     (finding,) = reading.sink
     assert finding.help == "did you mean 'isAbstract'?"
@@ -100,7 +100,7 @@ def test_a_model_without_envelope_is_checked():
         ' xmlns:uml="http://www.eclipse.org/uml2/3.0.0/UML" xmi:id="m" name="M"/>'
     )
     assert list_findings(read(source(bare))) == [
-        "attribute 'colour' of 'M' is known neither to UML nor to XMI"
+        "attribute 'colour' of 'M' is defined neither by UML nor by XMI"
     ]
 
 

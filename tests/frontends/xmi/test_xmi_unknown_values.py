@@ -13,7 +13,7 @@ NODE = (
 def test_an_unknown_value_is_reported_once_and_omitted():
     reading = read(papyrus("".join(CLASS.format(x, 'isAbstract="yes"') for x in "bc")))
     assert reading.findings == [
-        "unknown-value: 'isAbstract' of 'M::b' and 1 more is 'yes', which is none of true, false"
+        "unknown-value: 'isAbstract' of 'M::b' and 1 more is 'yes', which is not one of true, false"
     ]
     assert [finding.subject.id for finding in reading.sink] == ["b"]
     assert "abstract" not in reading.graph["b"].attrs

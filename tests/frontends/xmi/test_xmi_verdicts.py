@@ -154,7 +154,7 @@ def test_a_text_that_is_no_feature_of_uml_is_stored_and_reported_at_its_location
     model = f'<packagedElement xmi:type="uml:Class" xmi:id="c" name="C">{owned}</packagedElement>'
     reading = read(papyrus(model.format("<unit>mm/s</unit>")))
     assert reading.findings == [
-        "stray-text: 'M::C::speed' has a text 'unit', which is no feature of UML"
+        "stray-text: 'M::C::speed' has a text 'unit', which is not a feature of UML"
     ]
     assert [(f.subject.id, f.subject.place.ordinal) for f in reading.sink] == [("p", 4)]
     assert reading.graph["p"].attrs["unit"] == "mm/s"

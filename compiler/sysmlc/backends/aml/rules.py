@@ -9,28 +9,29 @@ UNSUPPORTED_KIND = rule(
     "SM740",
     "caex-without-kind",
     Severity.WARNING,
-    "AutomationML has no place for {kind} ({count} left out of the saved plant)",
+    "AutomationML cannot express {kind} ({count} omitted from the saved plant)",
     help="--emit +uml, +sysml, +ir or +ecore saves them",
 )
 UNSUPPORTED_EDGE = rule(
     "SM741",
     "caex-without-relation",
     Severity.WARNING,
-    "AutomationML has no '{edge}' from {kind} to {target} ({count} left out of the saved plant)",
+    "AutomationML cannot express '{edge}' from {kind} to {target} ({count} omitted "
+    "from the saved plant)",
     help="--emit +uml, +sysml, +ir or +ecore saves them",
 )
 UNSUPPORTED_ATTRIBUTE = rule(
     "SM742",
     "caex-without-attribute",
     Severity.WARNING,
-    "AutomationML has no '{attribute}' of {kind} ({count} left out of the saved plant)",
+    "AutomationML cannot express '{attribute}' of {kind} ({count} omitted from the saved plant)",
     help="--emit +uml, +sysml, +ir or +ecore saves them",
 )
 MOVED = rule(
     "SM743",
     "caex-moved",
     Severity.INFO,
-    "{kind} in {owner} is saved in a library of its own sort ({count})",
+    "{kind} in {owner} is saved in a library for its kind ({count})",
 )
 APPROXIMATED = rule(
     "SM744",
@@ -42,13 +43,13 @@ ILLEGAL_CHARACTERS = rule(
     "SM745",
     "caex-illegal-character",
     Severity.WARNING,
-    "{count} characters that XML cannot hold were replaced in the saved plant",
+    "{count} characters that XML does not allow were replaced in the saved plant",
 )
 ADDED = rule(
     "SM746",
     "caex-required",
     Severity.INFO,
-    "'{element}' has no {what}, which the schema of CAEX 3.0 wants: '{value}' is written",
+    "'{element}' has no {what}, which the schema of CAEX 3.0 requires: '{value}' is written",
 )
 
 _Key = tuple[str, tuple[tuple[str, str], ...]]

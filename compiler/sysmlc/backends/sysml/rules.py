@@ -9,25 +9,25 @@ UNSAID_KIND = rule(
     "SM730",
     "sysml-unsaid-kind",
     Severity.WARNING,
-    "SysML v2 text has no place for {kind} ({count} left out of the text)",
+    "SysML v2 text cannot express {kind} ({count} omitted)",
 )
 UNSAID_EDGE = rule(
     "SM731",
     "sysml-unsaid-relation",
     Severity.WARNING,
-    "SysML v2 text does not say '{edge}' from {kind} to {target} ({count} left out)",
+    "SysML v2 text cannot express '{edge}' from {kind} to {target} ({count} omitted)",
 )
 UNSAID_ATTRIBUTE = rule(
     "SM732",
     "sysml-unsaid-attribute",
     Severity.WARNING,
-    "SysML v2 text does not say '{attribute}' of {kind} ({count} left out)",
+    "SysML v2 text cannot express '{attribute}' of {kind} ({count} omitted)",
 )
 RENAMED = rule(
     "SM733",
     "sysml-renamed",
     Severity.INFO,
-    "the name '{name}' is taken in its namespace; it is written '{written}'",
+    "the name '{name}' is already used in its namespace; it is written '{written}'",
 )
 APPROXIMATED = rule(
     "SM734",
@@ -39,19 +39,19 @@ TEXT_AS_NAME = rule(
     "SM735",
     "sysml-text-as-name",
     Severity.INFO,
-    "'{text}' is no expression over the model; it is written as a feature of that name",
+    "'{text}' is not an expression over the model; it is written as a feature of that name",
 )
 UNREACHABLE = rule(
     "SM736",
     "sysml-unreachable",
     Severity.WARNING,
-    "'{edge}' of {kind} leads to what the text does not name ({count} left out)",
+    "'{edge}' of {kind} leads to an element without a name in the text ({count} omitted)",
 )
 NAME_LEFT_OUT = rule(
     "SM737",
     "sysml-name-left-out",
     Severity.INFO,
-    "{said} has no name in SysML v2 ({count} names left out)",
+    "{said} has no name in SysML v2 ({count} names omitted)",
 )
 
 

@@ -16,28 +16,28 @@ UNSUPPORTED_KIND = rule(
     "SM720",
     "uml-without-kind",
     Severity.WARNING,
-    "UML has no place for {kind} ({count} left out of the saved model)",
+    "UML cannot express {kind} ({count} omitted from the saved model)",
     help="--emit +ir or +ecore saves the whole graph",
 )
 UNSUPPORTED_EDGE = rule(
     "SM721",
     "uml-without-relation",
     Severity.WARNING,
-    "UML has no '{edge}' from {kind} to {target} ({count} left out of the saved model)",
+    "UML cannot express '{edge}' from {kind} to {target} ({count} omitted from the saved model)",
     help="--emit +ir or +ecore saves the whole graph",
 )
 UNSUPPORTED_ATTRIBUTE = rule(
     "SM722",
     "uml-without-attribute",
     Severity.WARNING,
-    "UML has no '{attribute}' of {kind} ({count} left out of the saved model)",
+    "UML cannot express '{attribute}' of {kind} ({count} omitted from the saved model)",
     help="--emit +ir or +ecore saves the whole graph",
 )
 MOVED = rule(
     "SM723",
     "uml-moved",
     Severity.INFO,
-    "UML lets no {owner} own {kind}: saved with the nearest owner that may ({count})",
+    "UML lets no {owner} own {kind}: saved with the nearest possible owner ({count})",
 )
 APPROXIMATED = rule(
     "SM724",
@@ -49,22 +49,24 @@ ILLEGAL_CHARACTERS = rule(
     "SM725",
     "uml-illegal-character",
     Severity.WARNING,
-    "{count} characters that XML cannot hold were replaced in the saved model",
+    "{count} characters that XML does not allow were replaced in the saved model",
 )
 STORED_FACTS = rule(
     "SM726",
     "uml-kept",
     Severity.INFO,
-    "UML has no words for {count} facts of the plant: a comment keeps them for the way back",
+    "UML cannot express {count} facts of the plant: a comment preserves them for the "
+    "conversion back",
 )
 RESPELT_ID = rule(
     "SM747",
     "uml-value-names-respelt-id",
     Severity.WARNING,
-    "{count} values name elements by IDs that are no names of XML: the saved elements have others",
+    "{count} values refer to elements by IDs that are not valid XML names: the saved "
+    "elements have other ids",
     help=(
-        "let the plant's tool give IDs that start with a letter, or follow these values in the "
-        "plant and not in the saved model"
+        "let the plant's tool assign IDs that start with a letter, or follow these "
+        "values in the plant and not in the saved model"
     ),
 )
 _UNSUPPORTED = frozenset({UNSUPPORTED_KIND, UNSUPPORTED_EDGE, UNSUPPORTED_ATTRIBUTE})

@@ -32,7 +32,7 @@ def summary_line(report: Report) -> str:
     return f"{', '.join(parts)}{files}" if parts else "no findings"
 
 
-_NOUNS = {Severity.ERROR: "error", Severity.WARNING: "warning", Severity.INFO: "remark"}
+_NOUNS = {Severity.ERROR: "error", Severity.WARNING: "warning", Severity.INFO: "info"}
 
 
 def _format_count(number: int, noun: str) -> str:

@@ -17,7 +17,7 @@ DESCRIBED_MIRROR = rule(
     "SM638",
     "described-mirror",
     Severity.WARNING,
-    "the description of '{element}' is left out: in '{holder}' it only shows another element",
+    "the description of '{element}' is omitted: in '{holder}' it is a mirror of another element",
     help="describe the element that it shows, or the facet or group",
 )
 
@@ -25,7 +25,7 @@ UNKNOWN_FACET = rule(
     "SM639",
     "group-of-unknown-facet",
     Severity.WARNING,
-    "the group '{element}' is for facets called '{facet}', and none is; {hint}",
+    "the group '{element}' refers to facets named '{facet}', but no facet has that name; {hint}",
 )
 
 _KINDS = {"Facet": Kind.FACET, "Group": Kind.GROUP}

@@ -14,7 +14,7 @@ MISSING_CLASS_LIBRARY = rule(
     "missing-class-library",
     Severity.WARNING,
     "the library '{library}' is not in the file; {count} to classes of it",
-    help="give the file that holds it as a further input, or declare it as ExternalReference",
+    help="give the file that contains it as a further input, or declare it as ExternalReference",
 )
 MISSING_FILE = rule(
     "SM132",
@@ -38,7 +38,7 @@ LIBRARY_FAULT = rule(
     "fault-in-standard-library",
     Severity.WARNING,
     "{element} of the standard library '{library}' refers to '{path}', {problem}",
-    help="take the library anew from its publisher, with the references that it declares",
+    help="download the library again from its publisher, with the libraries that it references",
 )
 CLASS_CYCLE = rule(
     "SM134",
@@ -51,7 +51,7 @@ DANGLING_LINK = rule(
     "SM135",
     "dangling-link",
     Severity.ERROR,
-    "link '{element}': its side {side} says '{reference}', and {problem}",
+    "link '{element}': its side {side} refers to '{reference}', and {problem}",
     help="connect it again in the modelling tool",
 )
 OPEN_LINK = rule(
@@ -78,7 +78,7 @@ MIRROR_CYCLE = rule(
     "SM143",
     "mirror-cycle",
     Severity.ERROR,
-    "'{element}' is a mirror of itself, by way of '{reference}'",
+    "'{element}' is a mirror of itself, through '{reference}'",
     help="let one of them refer to a system unit class, or to nothing",
 )
 UNSUPPORTED = rule(
@@ -91,20 +91,20 @@ ELEMENT_ORDER = rule(
     "SM140",
     "element-order",
     Severity.WARNING,
-    "'{tag}' of '{element}' stands after '{before}', against the schema of CAEX ({count})",
+    "'{tag}' of '{element}' comes after '{before}', against the schema of CAEX ({count})",
     help="write the file again with a tool that follows the schema",
 )
 NO_MODEL = rule(
     "SM141",
     "empty-caex-file",
     Severity.WARNING,
-    "'{file}' holds no library and no hierarchy",
+    "'{file}' contains no library and no hierarchy",
 )
 ONLY_LIBRARIES = rule(
     "SM158",
     "only-caex-libraries",
     Severity.INFO,
-    "'{file}' holds only libraries; without an instance hierarchy there is no plant to compile",
+    "'{file}' contains only libraries; without an instance hierarchy there is no plant to compile",
     help="name the file with the plant, too",
 )
 MALFORMED = rule(
@@ -125,7 +125,7 @@ INEXACT_ID = rule(
     "SM145",
     "inexact-id",
     Severity.INFO,
-    "'{element}' says '{id}', the ID is '{meant}'",
+    "'{element}' refers to '{id}', but the ID is written '{meant}'",
     help="write the ID in the same way in both places",
 )
 MISSING_ID = rule(
@@ -140,5 +140,6 @@ UNKNOWN_UNIT = rule(
     "unknown-unit",
     Severity.WARNING,
     "the unit '{unit}' of '{element}'{more} {problem}",
-    help="write its symbol or UN/ECE code; symbols are those of ISO 80000, as 'm/s' or 'm^3/h'",
+    help="write its symbol or UN/ECE code; symbols are those of ISO 80000, such as "
+    "'m/s' or 'm^3/h'",
 )

@@ -7,7 +7,7 @@ UNSUPPORTED = rule(
     "v2-unsupported",
     Severity.WARNING,
     "{type} is not read ({count} in the unit, with all that they own)",
-    help="the outputs are made without it; 'sysmlc coverage' lists each one",
+    help="the outputs do not contain it; 'sysmlc coverage' lists each element",
 )
 APPROXIMATED = rule(
     "SM481",
@@ -19,7 +19,7 @@ NOT_IN_GRAPH = rule(
     "SM482",
     "v2-refers-to-unread",
     Severity.WARNING,
-    "'{edge}' leads to '{name}', a {type} that has no place in the graph",
+    "'{edge}' leads to '{name}', a {type} that is not part of the graph",
 )
 NO_LIBRARY = rule(
     "SM484",

@@ -13,7 +13,7 @@ NO_MODEL = rule(
     "SM110",
     "no-known-content",
     Severity.ERROR,
-    "'{file}' looks like UML in XMI, but nothing in it is known to sysmlc",
+    "'{file}' looks like UML in XMI, but sysmlc recognises none of its content",
     help="check with which tool and version it was exported; UML 2 in XMI 2.1 and later is read",
 )
 UNSUPPORTED = rule(
@@ -40,81 +40,77 @@ LONG_LIST = rule(
     "SM128",
     "long-list",
     Severity.ERROR,
-    "'{feature}' lists {count} ids; those after the first {most} are left out",
-    help="look whether the file is what you think",
+    "'{feature}' lists {count} ids; those after the first {most} are ignored",
+    help="check that this is the right file",
 )
 MANY_ATTRIBUTES = rule(
     "SM129",
     "many-attributes",
     Severity.ERROR,
-    "'{element}' has {count} attributes; those after the first {most} are left out",
-    help="look whether the file is what you think",
+    "'{element}' has {count} attributes; those after the first {most} are ignored",
+    help="check that this is the right file",
 )
 BAD_BOUND = rule(
     "SM117",
     "bad-bound",
     Severity.ERROR,
-    "multiplicity {multiplicity} of '{element}' has a bound that is no natural number",
+    "multiplicity {multiplicity} of '{element}' has a bound that is not a natural number",
     help="write a number, or * as upper bound",
 )
 STRAY_TEXT = rule(
     "SM123",
     "stray-text",
     Severity.WARNING,
-    "'{element}' has a text '{feature}', which is no feature of UML",
-    help="look whether the name is spelt as UML does; else remove it",
+    "'{element}' has a text '{feature}', which is not a feature of UML",
+    help="correct the spelling of the name, or remove the text",
 )
 UNKNOWN_ATTRIBUTE = rule(
     "SM124",
     "unknown-attribute",
     Severity.WARNING,
-    "attribute '{attribute}' of '{element}'{others} is known neither to UML nor to XMI",
-    help="look whether the name is spelt as UML does; else remove it",
+    "attribute '{attribute}' of '{element}'{others} is defined neither by UML nor by XMI",
+    help="correct the spelling of the name, or remove the attribute",
 )
 MISPLACED_ATTRIBUTE = rule(
     "SM154",
     "misplaced-attribute",
     Severity.WARNING,
-    "attribute '{attribute}' of '{element}'{others} belongs to other elements of UML than "
-    "{metaclass}",
-    help="look whether the type of the element is meant, and remove the attribute if it is",
+    "attribute '{attribute}' of '{element}'{others} is not an attribute of {metaclass} in UML",
+    help="correct the type of the element, or remove the attribute",
 )
 UNKNOWN_VALUE = rule(
     "SM126",
     "unknown-value",
     Severity.WARNING,
-    "'{attribute}' of '{element}'{others} is '{value}', which is none of {known}",
+    "'{attribute}' of '{element}'{others} is '{value}', which is not one of {known}",
     help="choose the value again in the modelling tool",
 )
 UNKNOWN_TAG = rule(
     "SM125",
     "unknown-tag",
     Severity.WARNING,
-    "tag '{tag}' of stereotype '{stereotype}' on '{element}'{others} is none of SysML",
-    help=(
-        "look whether the name is spelt as SysML does; else keep the value in a stereotype of "
-        "your own"
-    ),
+    "tag '{tag}' of stereotype '{stereotype}' on '{element}'{others} is not defined by SysML",
+    help=("correct the spelling of the name, or store the value in a stereotype of your own"),
 )
 DANGLING_OPPOSITE = rule(
     "SM116",
     "dangling-opposite",
     Severity.WARNING,
     "'{feature}' of '{element}' names '{target}'{others} not exist",
-    help="look whether something is missing; else save the model again in the modelling tool",
+    help="add the missing element or file, or save the model again in the modelling tool",
 )
 DANGLING_FEATURE = rule(
     "SM120",
     "dangling-feature",
     Severity.ERROR,
     "'{feature}' of '{element}' names '{target}'{others} not exist",
-    help="restore what it names in the modelling tool, or remove the reference",
+    help="restore the missing element in the modelling tool, or remove the reference",
 )
 BASELESS = rule(
     "SM113",
     "stereotype-without-element",
     Severity.WARNING,
-    "stereotype '{stereotype}' is applied {times} to nothing that is in the model",
+    "stereotype '{stereotype}' is applied {times} to elements that are not in the model",
     help="remove the application, or apply the stereotype again",
 )
 APPROXIMATED = rule(
@@ -142,7 +138,7 @@ UNKNOWN_IN_LIBRARY = rule(
     "SM155",
     "unknown-library-attribute",
     Severity.WARNING,
-    "attribute '{attribute}' of '{element}'{others}, taken from '{library}', is known neither to "
-    "UML nor to MagicDraw",
+    "attribute '{attribute}' of '{element}'{others}, taken from '{library}', "
+    "is defined neither by UML nor by MagicDraw",
     help="open the project in the modelling tool with its used projects at hand, and save it",
 )

@@ -13,14 +13,14 @@ OTHER_ELEMENT = rule(
     "SM263",
     "metadata-of-other-element",
     Severity.ERROR,
-    "metadata '{name}' is not for {found}",
+    "metadata '{name}' cannot annotate {found}",
     help="annotate {wanted}",
 )
 OTHER_FEATURE = rule(
     "SM264",
     "metadata-body",
     Severity.ERROR,
-    "'{name}' is no feature of the metadata '{owner}'",
+    "'{name}' is not a feature of the metadata '{owner}'",
     help="name a feature of the definition of '{owner}', or add one there",
 )
 

@@ -15,15 +15,15 @@ TOO_MANY = rule(
     "SM248",
     "extra-argument",
     Severity.WARNING,
-    "'{called}' takes {takes}, and {given} values are given",
-    help="leave the argument out, or give the definition another parameter",
+    "'{called}' takes {takes}, but {given} values are given",
+    help="remove the argument, or give the definition another parameter",
 )
 NO_PARAMETER = rule(
     "SM249",
     "extra-parameter",
     Severity.WARNING,
-    "'{name}' of '{step}' is no parameter of '{called}'",
-    help="give it the name of the parameter that is meant, or declare it in the definition",
+    "'{name}' of '{step}' is not a parameter of '{called}'",
+    help="use the name of a parameter, or declare the parameter in the definition",
 )
 
 _TYPES = frozenset({"FeatureTyping", "ReferenceSubsetting", "Subsetting", "Redefinition"})
@@ -103,14 +103,14 @@ NO_STATE = rule(
     "SM276",
     "accepts-outside-state",
     Severity.ERROR,
-    "'{name}' is no state, so nothing waits in it to accept",
-    help="let the transition begin in a state",
+    "'{name}' is not a state, so a transition from it cannot accept an event",
+    help="let the transition start in a state",
 )
 UNCHANGING = rule(
     "SM277",
     "assigns-unchanging",
     Severity.ERROR,
-    "'{name}' is part of what happens, and nothing can be assigned to it",
+    "'{name}' cannot change over time, so nothing can be assigned to it",
     help="assign to an attribute, item or reference",
 )
 

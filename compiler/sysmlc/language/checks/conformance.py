@@ -15,36 +15,36 @@ NONUNIQUE = rule(
     "SM250",
     "nonunique-subset",
     Severity.ERROR,
-    "'{name}' may have a value twice, and '{general}' may not",
-    help="leave 'nonunique' out, or write it for '{general}' too",
+    "'{name}' is nonunique, but '{general}' is unique",
+    help="remove 'nonunique', or add it to '{general}' too",
 )
 NOT_CONSTANT = rule(
     "SM251",
     "variable-subset",
     Severity.ERROR,
-    "'{name}' may change, and '{general}' is constant",
-    help="write 'const' for 'var'",
+    "'{name}' is variable, but '{general}' is constant",
+    help="write 'const' instead of 'var'",
 )
 NO_END = rule(
     "SM252",
     "redefined-end",
     Severity.ERROR,
-    "'{name}' is no end, and '{general}', which it redefines, is one",
+    "'{name}' is not an end, but '{general}', which it redefines, is an end",
     help="write 'end' before it",
 )
 OF_PACKAGE = rule(
     "SM278",
     "redefines-package-feature",
     Severity.ERROR,
-    "'{general}' is a member of no type, so '{name}' cannot redefine it",
-    help="subset it: ':>' for ':>>'",
+    "'{general}' is not a feature of a type, so '{name}' cannot redefine it",
+    help="subset it: write ':>' instead of ':>>'",
 )
 OF_SAME_OWNER = rule(
     "SM279",
     "redefines-own-feature",
     Severity.ERROR,
     "'{name}' redefines '{general}' of the same owner",
-    help="subset it: ':>' for ':>>'",
+    help="subset it: write ':>' instead of ':>>'",
 )
 
 _REDEFINITION = frozenset({"Redefinition"})

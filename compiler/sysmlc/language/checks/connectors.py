@@ -14,22 +14,22 @@ END_TYPE = rule(
     "SM269",
     "end-types",
     Severity.ERROR,
-    "the end '{name}' of '{owner}' has {count} types and needs one",
-    help="keep one type, or let it specialise the inherited one",
+    "the end '{name}' of '{owner}' has {count} types, but must have exactly one",
+    help="keep one type, or let it specialise the inherited type",
 )
 TOO_FEW = rule(
     "SM270",
     "connects-too-few",
     Severity.ERROR,
-    "'{name}' connects {count} element{s}",
-    help="name what it connects at two ends at least",
+    "'{name}' connects {count} element{s}, but must connect at least two",
+    help="name a connected element at each of two or more ends",
 )
 NO_FLOW_END = rule(
     "SM271",
     "flow-end-without-dot",
     Severity.ERROR,
-    "'{name}' does not say what of the flow's end it belongs to",
-    help="name the element, a dot, and its feature",
+    "'{name}' does not name the element whose feature the flow connects",
+    help="write the element, a dot, and its feature",
 )
 
 _ASSOCIATIONS = kinds_of("Association")
@@ -109,7 +109,7 @@ BOUND_UNLIKE = rule(
     "SM283",
     "bound-unlike",
     Severity.WARNING,
-    "'{one}' is bound to '{other}', and no value can be both: {types}",
+    "'{one}' is bound to '{other}', but no value can have both types: {types}",
     help="bind features of types that conform",
 )
 
@@ -152,14 +152,14 @@ NOT_OPPOSITE = rule(
     "crosses-own-end",
     Severity.ERROR,
     "'{name}' does not lead through the opposite end of '{owner}'",
-    help="name the other end, a dot, and its feature",
+    help="start with the name of the other end, then a dot and its feature",
 )
 OTHER_TYPE = rule(
     "SM286",
     "crosses-other-type",
     Severity.ERROR,
-    "'{name}' has another type than the end that crosses it",
-    help="let the end and the feature have one type",
+    "'{name}' does not have the type of the end that crosses it",
+    help="let the end and the feature have the same type",
 )
 NOT_SPECIAL = rule(
     "SM287",
@@ -172,8 +172,8 @@ OTHER_OWN = rule(
     "SM288",
     "crosses-past-own",
     Severity.ERROR,
-    "'{owner}' has the cross feature '{name}' and crosses another one",
-    help="cross '{name}', or leave it out",
+    "'{owner}' has the cross feature '{name}' but crosses another feature",
+    help="cross '{name}', or remove it",
 )
 
 _CROSSES = frozenset({"CrossSubsetting"})

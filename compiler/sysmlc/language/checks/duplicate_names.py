@@ -15,14 +15,14 @@ DUPLICATE = rule(
     "same-name",
     Severity.WARNING,
     "'{owner}' has {count} members with the name '{name}'",
-    help="give them different names, or leave one out",
+    help="give them different names, or remove all but one",
 )
 HIDING = rule(
     "SM284",
     "hides-inherited",
     Severity.WARNING,
-    "'{name}' of '{owner}' is not the '{name}' that it inherits from '{general}', and hides it",
-    help="redefine it (':>> {name}') if it is meant, else give the new one another name",
+    "'{name}' of '{owner}' hides the '{name}' that it inherits from '{general}'",
+    help="redefine the inherited feature (':>> {name}'), or give the new feature another name",
 )
 
 

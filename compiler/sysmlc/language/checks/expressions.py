@@ -142,14 +142,14 @@ NO_FEATURE = rule(
     "value-no-feature",
     Severity.ERROR,
     "'{name}' is {found} and has no value",
-    help="name a feature; 'all {name}' gives everything of a type",
+    help="name a feature; 'all {name}' stands for all instances of a type",
 )
 OTHER_OWNER = rule(
     "SM273",
     "chained-elsewhere",
     Severity.ERROR,
-    "'{name}' is a feature of '{owner}', not of what stands before the dot",
-    help="write a dot for every step",
+    "'{name}' is a feature of '{owner}', not of the element before the dot",
+    help="write the whole path, with a dot for each step",
 )
 
 _MEMBERSHIP = frozenset({"Membership"})

@@ -16,14 +16,14 @@ VARIANT_ELSEWHERE = rule(
     "SM226",
     "variant-elsewhere",
     Severity.ERROR,
-    "'{name}' is a variant, and '{owner}' is no variation",
-    help="write 'variation' before '{owner}', or leave 'variant' out",
+    "'{name}' is a variant, but '{owner}' is not a variation",
+    help="write 'variation' before '{owner}', or remove 'variant'",
 )
 NO_VARIANT = rule(
     "SM227",
     "variation-member",
     Severity.ERROR,
-    "'{name}' is a member of the variation '{owner}' and no variant",
+    "'{name}' is a member of the variation '{owner}' but not a variant",
     help="write 'variant' before '{name}'",
 )
 VARIATION_OF_VARIATION = rule(
@@ -31,7 +31,7 @@ VARIATION_OF_VARIATION = rule(
     "variation-of-variation",
     Severity.ERROR,
     "the variation '{name}' specialises another variation",
-    help="specialise what is no variation",
+    help="specialise a type that is not a variation",
 )
 VERIFY_ELSEWHERE = rule(
     "SM229",
@@ -51,14 +51,14 @@ PORTION_ELSEWHERE = rule(
     "SM231",
     "portion-elsewhere",
     Severity.ERROR,
-    "'{name}' is a portion of no occurrence",
+    "'{name}' is a portion, but its owner is not an occurrence",
     help="move it into an occurrence, item or part",
 )
 END_NO_PORT = rule(
     "SM232",
     "interface-end-no-port",
     Severity.ERROR,
-    "'{name}' is an end of the interface '{owner}' and no port",
+    "'{name}' is an end of the interface '{owner}' but not a port",
     help="make it a port, or use a connection",
 )
 TOO_MANY_ENDS = rule(
@@ -79,7 +79,7 @@ ENUMERATION_AND_MORE = rule(
     "SM235",
     "enumeration-and-more",
     Severity.ERROR,
-    "attribute '{name}' has an enumeration and another type",
+    "attribute '{name}' is typed by an enumeration and by another type",
     help="keep one type",
 )
 
@@ -175,21 +175,21 @@ VARIABLE_PORTION = rule(
     "SM266",
     "variable-portion",
     Severity.ERROR,
-    "'{name}' is a portion and cannot change",
-    help="leave 'var' or 'portion' out",
+    "'{name}' is a portion, so it cannot be variable",
+    help="remove 'var' or 'portion'",
 )
 VARIABLE_ELSEWHERE = rule(
     "SM267",
     "variable-elsewhere",
     Severity.ERROR,
-    "'{name}' may change, and '{owner}' has no time in which it could",
-    help="leave 'var' out",
+    "'{name}' is variable, but '{owner}' is not an occurrence",
+    help="remove 'var'",
 )
 ROOT_IMPORT = rule(
     "SM268",
     "public-root-import",
     Severity.ERROR,
-    "the import of '{name}' stands in no package and is not private",
+    "the import of '{name}' is outside of all packages and not private",
     help="write 'private' before 'import'",
 )
 

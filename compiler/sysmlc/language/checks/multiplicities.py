@@ -67,14 +67,15 @@ MORE = rule(
     "SM281",
     "more-than-general",
     Severity.WARNING,
-    "'{name}' may have {own} values, and '{general}' has at most {most}",
+    "'{name}' may have {own} values, but '{general}' has at most {most}",
     help="lower the bound, or raise that of '{general}'",
 )
 FEWER = rule(
     "SM282",
     "fewer-than-redefined",
     Severity.WARNING,
-    "'{name}' may have {own} values only, and '{general}', which it redefines, at least {least}",
+    "'{name}' may have only {own} values, but '{general}', which it redefines, requires "
+    "at least {least}",
     help="raise the bound, or lower that of '{general}'",
 )
 

@@ -16,7 +16,7 @@ OTHER_KIND = rule(
     "SM236",
     "references-other-kind",
     Severity.ERROR,
-    "'{name}' is {found}, and {wanted} is needed here",
+    "'{name}' is {found}, but {wanted} is required here",
     help="reference {wanted}",
 )
 PART_OF_PORT = rule(
@@ -30,14 +30,14 @@ OTHER_DIRECTION = rule(
     "SM238",
     "other-direction",
     Severity.ERROR,
-    "'{name}' has another direction where it is defined, in '{owner}'",
+    "the direction of '{name}' differs from that of its definition in '{owner}'",
     help="use the same direction, or none",
 )
 INDIVIDUAL = rule(
     "SM239",
     "individual-types",
     Severity.ERROR,
-    "the individual '{name}' has {count} individual definitions and must have one",
+    "the individual '{name}' has {count} individual definitions, but must have exactly one",
     help="type it by one 'individual def'",
 )
 

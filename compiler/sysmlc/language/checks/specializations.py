@@ -86,7 +86,7 @@ SECOND_REFERENCE = rule(
     "SM256",
     "several-references",
     Severity.ERROR,
-    "'{name}' references '{general}' too",
+    "'{name}' already references another feature, so it cannot reference '{general}'",
     help="keep one 'references', and write 'subsets' for the others",
 )
 SECOND_MULTIPLICITY = rule(
@@ -100,8 +100,8 @@ CONJUGATED = rule(
     "SM258",
     "conjugate-specialises",
     Severity.ERROR,
-    "'{name}' is the conjugate of another type, and specialises '{general}' too",
-    help="let a type that specialises both have what is needed",
+    "'{name}' is the conjugate of another type but specialises '{general}' too",
+    help="define another type that specialises both",
 )
 
 _COMPOSITIONS = {

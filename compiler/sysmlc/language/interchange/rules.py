@@ -6,21 +6,21 @@ UNKNOWN_METACLASS = rule(
     "SM163",
     "unknown-metaclass",
     Severity.WARNING,
-    "'{kind}' is no metaclass of SysML 2.0: it is left out with all that it owns",
+    "'{kind}' is not a metaclass of SysML 2.0: the element is omitted with everything that it owns",
     help="export the model again for SysML 2.0 (https://www.omg.org/spec/SysML/20250201)",
 )
 UNKNOWN_FEATURE = rule(
     "SM164",
     "unknown-feature",
     Severity.WARNING,
-    "'{feature}' of '{element}' is no feature of a {kind}: nothing is read from it",
-    help="look whether the name is spelt as the metamodel does",
+    "'{feature}' of '{element}' is not a feature of {kind}: it is ignored",
+    help="correct the spelling of the name by the metamodel",
 )
 DANGLING = rule(
     "SM165",
     "dangling-interchange-reference",
     Severity.ERROR,
-    "'{feature}' of '{element}' leads to the id '{id}', which {file} does not have",
+    "'{feature}' of '{element}' refers to the id '{id}', which does not exist in {file}",
     help="export all files of the model again, together",
 )
 MALFORMED = rule(
@@ -41,23 +41,23 @@ BAD_VALUE = rule(
     "SM756",
     "bad-interchange-value",
     Severity.ERROR,
-    "'{feature}' of '{element}' is '{value}', which is no {type}",
-    help="write a value of the type that the metamodel says",
+    "'{feature}' of '{element}' is '{value}', which is not a valid {type}",
+    help="write a value of the type that the metamodel specifies",
 )
 NO_MODEL = rule(
     "SM757",
     "no-interchange-model",
     Severity.ERROR,
-    "'{file}' holds no model of SysML 2.0: its root is '{root}'",
-    help="look whether the file is what its name says",
+    "'{file}' contains no model of SysML 2.0: its root is '{root}'",
+    help="check that this is the right file",
 )
 CHECKSUM = rule(
     "SM168",
     "wrong-checksum",
     Severity.ERROR,
-    "'{file}' is not the file that project '{project}' was made with: its {algorithm} is {found},"
-    " the project says {expected}",
-    help="get the archive again from where it came from, or pack it anew with its tool",
+    "'{file}' differs from the file that was packed into project '{project}': its "
+    "{algorithm} is {found}, expected {expected}",
+    help="get the archive again from its source, or pack it again with its tool",
 )
 UNRESOLVED_USAGE = rule(
     "SM169",
@@ -71,7 +71,7 @@ BAD_PROJECT = rule(
     "bad-project-information",
     Severity.ERROR,
     "'{file}' does not describe a project: {problem}",
-    help="pack the archive anew with its tool",
+    help="pack the archive again with its tool",
 )
 MISSING_FILE = rule(
     "SM753",
@@ -85,26 +85,26 @@ UNLISTED_FILE = rule(
     "unlisted-project-file",
     Severity.WARNING,
     "project '{project}' has no checksum for '{file}'",
-    help="pack the archive anew with its tool",
+    help="pack the archive again with its tool",
 )
 UNKNOWN_ALGORITHM = rule(
     "SM755",
     "unknown-checksum-algorithm",
     Severity.WARNING,
-    "the checksum of '{file}' is not examined: {algorithm} is not known here",
+    "the checksum of '{file}' is not checked: the algorithm {algorithm} is not supported",
     help="pack the archive with SHA256",
 )
 UNWRITTEN_REFERENCE = rule(
     "SM758",
     "unwritten-reference",
     Severity.WARNING,
-    "'{name}' of '{element}' is not in the interchange file, because it leads nowhere",
-    help="resolve the name: the message about it says what was looked for",
+    "'{name}' of '{element}' is not in the interchange file, because the name is not resolved",
+    help="correct the name: another message reports it",
 )
 UNWRITABLE_TEXT = rule(
     "SM759",
     "unwritable-text",
     Severity.WARNING,
-    "the '{feature}' of '{element}' has characters that XML cannot have: they are replaced",
-    help="leave the control characters out",
+    "the '{feature}' of '{element}' contains characters that XML does not allow: they are replaced",
+    help="remove the control characters",
 )

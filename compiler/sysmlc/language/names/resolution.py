@@ -15,7 +15,7 @@ CYCLE = rule(
     "specialization-cycle",
     Severity.WARNING,
     "'{name}' specialises itself{through}",
-    help="remove one specialisation of the circle",
+    help="remove one specialisation of the cycle",
 )
 NO_STANDARD_LIBRARY = rule(
     "SM207",
@@ -31,8 +31,8 @@ TOO_DEEP = rule(
     "SM208",
     "names-too-deep",
     Severity.ERROR,
-    "what '{name}' leads to is behind too many other names",
-    help="refer to the element itself",
+    "'{name}' is resolved through too many other names",
+    help="refer to the element directly",
 )
 
 _RECURSION_LIMIT = 20_000

@@ -16,15 +16,15 @@ UNRESOLVED = rule(
     "SM205",
     "unresolved-name",
     Severity.ERROR,
-    "'{name}' is not known here{inside}",
+    "unknown name '{name}'{inside}",
     help="{advice}",
 )
 TOO_CIRCULAR = rule(
     "SM240",
     "names-too-circular",
     Severity.ERROR,
-    "'{name}' was looked for in 2,000 circles of names, and is given up",
-    help="give the namesakes names of their own, or qualify what they specialise",
+    "the search for '{name}' was abandoned after 2,000 cycles of names",
+    help="rename the elements that share this name, or qualify the names of their general types",
 )
 
 _EXPECTED_WORDS = {

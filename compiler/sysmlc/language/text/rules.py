@@ -6,7 +6,7 @@ SYNTAX = rule(
     "SM190",
     "v2-syntax",
     Severity.ERROR,
-    "{found} stands where {expected} is expected",
+    "unexpected {found}; expected {expected}",
     help="{advice}",
 )
 MISSING = rule(
@@ -20,8 +20,8 @@ KEYWORD = rule(
     "SM192",
     "v2-keyword-as-name",
     Severity.ERROR,
-    "'{word}' is a keyword of {language} and stands where a name is expected",
-    help="written '{word}' in single quotes it is a name, here and wherever it is used",
+    "'{word}' is a keyword of {language}; expected a name",
+    help="to use it as a name, write '{word}' in single quotes, here and wherever it is used",
 )
 UNCLOSED = rule(
     "SM193",
@@ -41,8 +41,8 @@ PLACE = rule(
     "SM195",
     "v2-not-here",
     Severity.ERROR,
-    "{what} stands {here}, where none may stand",
-    help="it belongs into the bodies of {where}",
+    "{what} is not allowed {here}",
+    help="it belongs in the bodies of {where}",
 )
 PREFIX = rule(
     "SM196",
@@ -55,8 +55,9 @@ VISIBILITY = rule(
     "SM197",
     "v2-import-visibility",
     Severity.ERROR,
-    "the import does not say who sees what it imports",
-    help="write private import, for this namespace alone, or public import, to pass the names on",
+    "the import has no visibility",
+    help="write private import to use the names in this namespace only, or public import "
+    "to pass them on",
 )
 DEEP = rule(
     "SM198",

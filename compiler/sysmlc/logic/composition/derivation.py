@@ -39,16 +39,16 @@ OTHER_VALUES = rule(
     "SM525",
     "joined-values-differ",
     Severity.ERROR,
-    "'{first}' and '{second}' of '{block}' are joined, and have values of different kinds: "
-    "{domains}",
-    help="give both ends one type",
+    "'{first}' and '{second}' of '{block}' are connected, but have values of "
+    "different types: {domains}",
+    help="give both ends the same type",
 )
 UNCLEAR_FLOW = rule(
     "SM526",
     "flow-between-unclear-parts",
     Severity.WARNING,
-    "the flow from '{source}' to '{target}' joins no parts of '{block}': {count} of them have "
-    "'{feature}'",
+    "the flow from '{source}' to '{target}' connects no parts of '{block}': "
+    "{count} of them have '{feature}'",
     help="draw a connector between the parts, and let the flow be realised by it",
 )
 
@@ -232,11 +232,11 @@ OPEN_STEP = rule(
     "SM508",
     "nested-operation-without-end",
     Severity.INFO,
-    "nothing in '{block}' says when step '{step}' of '{operation}' is over; whoever is around "
-    "the block decides it",
+    "no behaviour of '{block}' determines when step '{step}' of '{operation}' ends; "
+    "the environment of the block decides it",
     help=(
-        "give '{called}' an output 'executed' that says when its steps are done, or put its steps "
-        "into '{operation}'"
+        "give '{called}' an output 'executed' that is true when its steps are done, or "
+        "model its steps in '{operation}'"
     ),
 )
 

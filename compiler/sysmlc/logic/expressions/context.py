@@ -45,7 +45,7 @@ DEFAULT_OUTSIDE = rule(
     "SM433",
     "default-out-of-range",
     Severity.ERROR,
-    "default value '{default}' of property '{name}' is none of {domain}",
+    "default value '{default}' of property '{name}' is not in {domain}",
     help="correct the default value or the range",
 )
 

@@ -6,8 +6,8 @@ UNKNOWN_FORM = rule(
     "SM580",
     "contract-form-unknown",
     Severity.ERROR,
-    "'{file}' is in none of the forms of contracts that are known: {forms}",
-    help="give the file the ending of its form",
+    "the format of '{file}' is unknown; known contract formats: {forms}",
+    help="give the file the extension of its format",
 )
 NOT_UNDERSTOOD = rule(
     "SM581",
@@ -37,7 +37,7 @@ OUTSIDE = rule(
     "SM585",
     "contract-part-outside",
     Severity.ERROR,
-    "{what} is outside what is read of {form}",
+    "{what} is not in the supported part of {form}",
 )
 WRONG_CLASS = rule(
     "SM586",
@@ -49,7 +49,7 @@ OWNER_NOT_SAID = rule(
     "SM587",
     "contract-owner-not-said",
     Severity.WARNING,
-    "it is not said who decides {names}; all are taken as outputs",
+    "the file declares {names} neither as input nor as output; all are treated as outputs",
     help="add lines '.inputs a b' and '.outputs c d' below the formula",
 )
 NOT_STRICT = rule(

@@ -41,9 +41,9 @@ SHARED = rule(
     "SM546",
     "others-write-it-too",
     Severity.INFO,
-    "the contract of '{machine}' leaves '{name}' to the environment and shows '{text}' as output "
-    "'{variable}': '{writer}' writes it too",
-    help="let one behaviour alone write it, or say in a requirement what becomes of it",
+    "'{name}' is also assigned by '{writer}', so the contract of '{machine}' treats it "
+    "as an input and shows '{text}' as output '{variable}'",
+    help="let only one behaviour assign it, or specify it in a requirement",
 )
 
 
@@ -64,14 +64,14 @@ NOT_UNDERSTOOD = rule(
     "SM411",
     "opaque-condition",
     Severity.WARNING,
-    "{what} '{text}' is not understood: {reason}; the environment decides it as '{variable}'",
+    "{what} '{text}' is not understood: {reason}; the contract treats it as the input '{variable}'",
     help="write an expression over the properties of the owner",
 )
 UNKNOWN_NAME = rule(
     "SM412",
     "unknown-name",
     Severity.ERROR,
-    "{what} '{text}' names '{name}', which is no property of {context}",
+    "{what} '{text}' names '{name}', which is not a property of {context}",
     help="correct the name or add the property",
 )
 TYPE_MISMATCH = rule(
@@ -91,14 +91,15 @@ NOT_ASSIGNABLE = rule(
     "SM415",
     "not-assignable",
     Severity.ERROR,
-    "'{text}' assigns to '{name}', which is no changeable property with finite values of {context}",
+    "'{text}' assigns to '{name}', which is not a changeable property of "
+    "{context} with finitely many values",
     help="correct the name, give the property a finite type, or make it changeable",
 )
 OPAQUE_EFFECT = rule(
     "SM416",
     "opaque-effect",
     Severity.INFO,
-    "'{text}' is no assignment, call or send; the contract shows it as output '{variable}'",
+    "'{text}' is not an assignment, call or send; the contract shows it as output '{variable}'",
 )
 RULE_OF_FAULT = {
     Fault.UNKNOWN: UNKNOWN_NAME,

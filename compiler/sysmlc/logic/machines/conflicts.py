@@ -294,12 +294,11 @@ OVERRIDDEN = rule(
     "SM434",
     "event-can-be-lost",
     Severity.WARNING,
-    "the event of transition {transition} is lost when it comes in the step in which {inner} "
-    "is taken",
+    "the event of transition {transition} is lost when it occurs in the step that takes {inner}",
     help=(
-        "if the event must never be lost, let it be repeated until it is answered (a change that "
-        "lasts as a guard, a time-out as a transition of the inner states), or trigger the inner "
-        "transition by an event as well"
+        "if the event must never be lost, repeat it until it is answered (write a "
+        "lasting change as a guard, and a time-out as a transition of the inner states), "
+        "or trigger the inner transition by an event as well"
     ),
 )
 

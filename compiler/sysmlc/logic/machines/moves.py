@@ -42,7 +42,8 @@ SATURATES = rule(
     "assignment-leaves-range",
     Severity.WARNING,
     "{transition} {can} take '{variable}' out of its range; it stops at the bound",
-    help="let a guard on the way there leave room, or give the property a wider range",
+    help="guard the transition so that the value stays in range, or give the property a "
+    "wider range",
 )
 BLOCKED = rule(
     "SM429",
@@ -56,8 +57,8 @@ TOO_LARGE = rule(
     "SM430",
     "too-many-paths",
     Severity.WARNING,
-    "{transition} has more than {limit} ways through choices and inner states; the component "
-    "gets no contract",
+    "{transition} has more than {limit} paths through choices and inner states; the "
+    "component gets no contract",
     help="split the machine",
 )
 

@@ -116,8 +116,8 @@ UNKNOWN_TARGET = rule(
     "SM545",
     "assigns-to-nobody",
     Severity.INFO,
-    "action '{action}' assigns to '{name}', which is no feature that '{activity}' or what it is in "
-    "has; {suggestion}",
+    "action '{action}' assigns to '{name}', but neither '{activity}' nor an "
+    "element that contains it has such a feature; {suggestion}",
     help="correct the name, or give the block or the activity a property of that name",
 )
 

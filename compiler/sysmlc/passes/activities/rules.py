@@ -162,7 +162,7 @@ NO_HANDLER_BODY = rule(
     "SM474",
     "exception-handler-without-body",
     Severity.WARNING,
-    "{node} has an exception handler without a body in the activity; the handler is left out",
+    "{node} has an exception handler without a body in the activity; the handler is ignored",
     help="draw the body beside the protected node, and connect it to the handler",
 )
 UNCAUGHT = rule(

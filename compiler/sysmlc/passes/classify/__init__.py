@@ -33,7 +33,7 @@ LOOK_ALIKE = rule(
     "SM210",
     "stereotype-by-name",
     Severity.INFO,
-    "stereotype {stereotype} is taken for SysML's {known} because of its name (applied: {count})",
+    "stereotype {stereotype} is treated as SysML's {known} because of its name (applied: {count})",
     help="give the profile as a further input, and let the stereotype specialise SysML's {known}",
 )
 UNKNOWN_STEREOTYPE = rule(

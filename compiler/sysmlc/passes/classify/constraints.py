@@ -12,14 +12,14 @@ NO_CONSTRAINT_BLOCK = rule(
     "SM217",
     "constraint-without-block",
     Severity.WARNING,
-    "constraint property '{property}' is typed by no constraint block",
+    "constraint property '{property}' is not typed by a constraint block",
     help="type '{property}' by a constraint block",
 )
 UNBOUND_PARAMETER = rule(
     "SM218",
     "unbound-parameter",
     Severity.INFO,
-    "nothing is bound to parameters of constraint '{property}': {parameters}",
+    "parameters of constraint '{property}' are not bound: {parameters}",
     help="bind a value property or another parameter to each",
 )
 UNITS_DIFFER = rule(

@@ -10,8 +10,8 @@ NO_REQUIREMENT = rule(
     "SM212",
     "no-requirement",
     Severity.WARNING,
-    "a «{relation}» relation leads to '{element}', which is no requirement",
-    help="turn the arrow round, or apply «Requirement» to '{element}'",
+    "a «{relation}» relation leads to '{element}', which is not a requirement",
+    help="reverse the arrow, or apply «Requirement» to '{element}'",
 )
 
 _EDGES = dict(DEPENDENCY_ROLES.values())

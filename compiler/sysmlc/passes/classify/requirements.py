@@ -36,7 +36,7 @@ COPY_DIFFERS = rule(
     "copy-with-other-text",
     Severity.WARNING,
     "requirement '{copy}' is a copy of '{master}' and has another text",
-    help="take over the text of '{master}', or replace «copy» by «deriveReqt»",
+    help="copy the text of '{master}', or replace «copy» by «deriveReqt»",
 )
 
 

@@ -228,8 +228,7 @@ UNDEFINED_TAG = rule(
     "SM156",
     "undefined-tag",
     Severity.WARNING,
-    "tag '{tag}' of stereotype '{stereotype}' on '{element}'{others} is none that its profile "
-    "defines",
+    "tag '{tag}' of stereotype '{stereotype}' on '{element}'{others} is not defined by its profile",
     help="apply the profile again in the modelling tool, or correct the name of the tag",
 )
 

@@ -29,7 +29,7 @@ FLOW_AGAINST_PORT = rule(
     "flow-against-port",
     Severity.WARNING,
     "item flow '{flow}' {way} port '{port}', whose direction is {direction}",
-    help="turn the item flow round, or conjugate the port",
+    help="reverse the item flow, or conjugate the port",
 )
 FLOW_ITEM = rule(
     "SM311",

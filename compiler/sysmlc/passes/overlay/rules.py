@@ -18,8 +18,8 @@ BY_PATH = rule(
     "SM325",
     "overlay-by-path",
     Severity.INFO,
-    "nothing has the id '{id}' any more; '{path}' is taken instead",
-    help="if it is the right one, write '{new}' as the key",
+    "no element has the id '{id}' any more; '{path}' is used instead",
+    help="if that is the intended element, write '{new}' as the key",
 )
 AMBIGUOUS = rule(
     "SM326",
@@ -32,8 +32,8 @@ WRONG_SORT = rule(
     "SM327",
     "overlay-wrong-kind",
     Severity.ERROR,
-    "'{word}' is a {kind}, no {sort}",
-    help="name a {sort}, or put the entry where it belongs",
+    "'{word}' is a {kind} and not a {sort}",
+    help="name a {sort}, or move the entry to where it belongs",
 )
 ONTO_NOTHING = rule(
     "SM328",
@@ -47,7 +47,7 @@ END_OF_BOTH = rule(
     "flow-end-unclear",
     Severity.ERROR,
     "'{end}' may be either end of the connector: {listed}",
-    help="write part and port: 'st/p_sOut'",
+    help="write part and port, such as 'st/p_sOut'",
 )
 NO_TWO_ENDS = rule(
     "SM330",
@@ -67,28 +67,28 @@ NAMESAKE = rule(
     "SM332",
     "item-namesake",
     Severity.INFO,
-    "'{item}' becomes a new item type, though the model has '{other}'",
-    help="if it is the same, write '{other}' as the key and where the item flows",
+    "'{item}' is added as a new item type, although the model has '{other}'",
+    help="if it is the same, write '{other}' as the key and wherever the item flows",
 )
 OPERATION_TWICE = rule(
     "SM333",
     "operation-twice",
     Severity.ERROR,
     "block '{block}' has an operation '{operation}' with other parameters already",
-    help="name the new operation otherwise, or give it the parameters that the block's has",
+    help="rename the new operation, or give it the parameters of the existing one",
 )
 FEATURE_TWICE = rule(
     "SM334",
     "value-twice",
     Severity.ERROR,
     "block '{block}' has '{feature}' already{where}",
-    help="name the value otherwise, or leave it to the model",
+    help="rename the value, or remove it from the overlay",
 )
 UNFIT_VALUE = rule(
     "SM637",
     "overlay-value-not-of-type",
     Severity.ERROR,
-    "the default {value} of '{feature}' is no {type}",
+    "the default {value} of '{feature}' is not a valid {type}",
     help=(
         "write true or false for a Boolean, digits for a number, a literal of the enumeration, "
         "and quotes around a text that looks like a number"
@@ -98,7 +98,7 @@ BEHAVIOR_TAKEN = rule(
     "SM335",
     "behavior-taken",
     Severity.ERROR,
-    "'{behavior}' is the behaviour of '{holder}' already",
+    "'{behavior}' is already the behaviour of '{holder}'",
     help="let each operation and block have a behaviour of its own",
 )
 CALL_OF_NONE = rule(
@@ -113,7 +113,7 @@ CALL_OF_SEVERAL = rule(
     "call-of-several-operations",
     Severity.ERROR,
     "action '{action}' may call {listed}",
-    help="say under 'calls' of the block which one is meant",
+    help="name the intended operation under 'calls' of the block",
 )
 NO_ACTION = rule(
     "SM338",
@@ -133,6 +133,6 @@ OTHER_PATH = rule(
     "SM340",
     "overlay-id-and-path-differ",
     Severity.WARNING,
-    "the id '{id}' is that of '{meant}' now, not of '{path}'",
-    help="correct the id or the path: whichever is out of date",
+    "the id '{id}' now belongs to '{meant}', not to '{path}'",
+    help="correct the id or the path, whichever is out of date",
 )

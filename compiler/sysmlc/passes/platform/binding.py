@@ -268,7 +268,7 @@ def _report_several(context: Context, machine: Machine, elements: list[PlantElem
 def _report_missing(context: Context, machine: Machine) -> None:
     element = context.graph[machine.element]
     suggestion = context.suggest_similar(element.name)
-    advice = suggestion or "say which one: amlId of «Machine», an allocation, or the overlay"
+    advice = suggestion or "name the element: by amlId of «Machine», an allocation, or the overlay"
     subject = context.graph.subject(element)
     context.sink.report(
         rules.NOT_IN_PLANT, subject, help="{advice}", machine=machine.id, advice=advice

@@ -14,14 +14,14 @@ NOT_IN_PLANT = rule(
     "machine-not-in-plant",
     Severity.WARNING,
     "machine '{machine}' is bound to no element of the plant",
-    help="say which one: amlId of «Machine», an allocation, or the overlay",
+    help="name the element: by amlId of «Machine», an allocation, or the overlay",
 )
 SEVERAL_ELEMENTS = rule(
     "SM625",
     "machine-is-several-elements",
     Severity.ERROR,
     "machine '{machine}' is bound to {number} elements of the plant: {elements}",
-    help="leave one, or make a machine of each",
+    help="bind it to one of them, or model a machine for each",
 )
 NO_PLANT_ELEMENT = rule(
     "SM626",
@@ -49,7 +49,7 @@ SHARED = rule(
     "machines-share-element",
     Severity.WARNING,
     "the machines {machines} are one element of the plant: '{element}'",
-    help="make one machine of them, or allocate them to different elements",
+    help="merge these machines, or allocate them to different elements",
 )
 OPERATION_ASTRAY = rule(
     "SM630",

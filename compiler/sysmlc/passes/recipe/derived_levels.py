@@ -17,8 +17,8 @@ DERIVED = rule(
     "SM483",
     "recipe-level-derived",
     Severity.INFO,
-    "'{element}' is taken for {level}: {because}",
-    help="say the level in [recipe.levels], or by a stereotype, when something else is meant",
+    "'{element}' is treated as {level}: {because}",
+    help="to choose another level, set it in [recipe.levels] or apply a stereotype",
 )
 
 _NODE_ID = re.compile(

@@ -14,7 +14,7 @@ UNREADABLE_TAG = rule(
     "SM622",
     "recipe-tag-unreadable",
     Severity.WARNING,
-    "'{tag}' of «{stereotype}» on '{element}' is '{value}', but must be {expected}; it is left out",
+    "'{tag}' of «{stereotype}» on '{element}' is '{value}', but must be {expected}; it is ignored",
     help="correct the tagged value",
 )
 
@@ -63,14 +63,14 @@ BY_POSITION = rule(
     "SM614",
     "recipe-level-by-position",
     Severity.INFO,
-    "'{element}' is taken for a {level} because '{caller}' calls it",
-    help="apply the stereotype, so that the model says what is meant",
+    "'{element}' is treated as a {level} because '{caller}' calls it",
+    help="apply the stereotype, so that the model states it",
 )
 STRUCTURED = rule(
     "SM615",
     "recipe-structured-node",
     Severity.WARNING,
-    "the content of '{element}' does not go into the recipe",
+    "the content of '{element}' is omitted from the recipe",
     help="draw loops and choices with decision and merge nodes",
 )
 CHOICE_OF_TASKS = rule(
@@ -85,7 +85,7 @@ SAME_NAME = rule(
     "recipe-same-name",
     Severity.INFO,
     "'{element}' is not refined, and the activity '{other}' has the same name",
-    help="call the activity from the node, or type the node by it, if it is what is meant",
+    help="to refine it, call the activity from the node, or type the node by it",
 )
 
 

@@ -31,23 +31,22 @@ SEVERAL_TARGETS = rule(
     "SM167",
     "several-targets",
     Severity.ERROR,
-    "'{relation}' of '{element}' leads to {count} elements, but a flow has only one; "
-    "the first counts",
+    "'{relation}' of '{element}' leads to {count} elements, but a flow has only "
+    "one; the first is used",
     help="draw one flow for each, with a fork or a decision before them",
 )
 MISSING_LIBRARY = rule(
     "SM152",
     "missing-library",
     Severity.WARNING,
-    "'{library}' is not part of the compile unit; what it holds ({count}) is known by name only",
+    "'{library}' is not part of the compile unit; its elements ({count}) are known by name only",
     help="give the file '{library}' as a further input",
 )
 UNKNOWN_IN_LIBRARY = rule(
     "SM153",
     "unknown-in-library",
     Severity.WARNING,
-    "'{library}' is known to sysmlc without reading it, but {count} of what the model takes from "
-    "it is not",
+    "the built-in description of '{library}' lacks {count} of the elements that the model uses",
     help="choose the type again in the modelling tool, or give the file as a further input",
 )
 

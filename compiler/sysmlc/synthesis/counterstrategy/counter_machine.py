@@ -180,8 +180,8 @@ NO_COUNTER = rule(
     "SM549",
     "counter-strategy-not-written",
     Severity.WARNING,
-    "what defeats the contract of '{component}' is not written: {reached}",
-    help="give more (--time-limit, --memory-limit, --nodes), or play against it (--play)",
+    "the counter-strategy for '{component}' is not written: {reached}",
+    help="raise a limit (--time-limit, --memory-limit, --nodes), or play against it (--play)",
 )
 
 

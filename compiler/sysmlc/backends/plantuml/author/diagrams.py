@@ -48,7 +48,7 @@ NOT_DRAWN = rule(
     "SM702",
     "author-diagram-not-drawn",
     Severity.INFO,
-    "diagram '{name}' of its author is not drawn: {reason}",
+    "diagram '{name}' of the model's author is not drawn: {reason}",
     help="requirements as tables: --emit +reqtable",
 )
 LEFT_OUT = rule(
