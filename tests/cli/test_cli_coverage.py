@@ -50,7 +50,7 @@ uml:Nonsense: 2 unsupported, not read [SM111 unsupported-element]
   plant.uml:10:5  Plant::settling, 2 with all that it contains
   plant.uml:13:5  Plant::opening
 
-Block: 1 unsupported, applied to nothing that is in the model [SM113 stereotype-without-element]
+Block: 1 unsupported, applied to a missing element [SM113 stereotype-without-element]
   plant.uml:15:3  plant.uml
 
 uml:Class: 1 external, stands for what is in no file of the unit [SM160 external-element]

@@ -14,7 +14,8 @@ def test_that_there_is_none_is_an_error_and_exit_code_1(here):
     made = here.sysmlc("synth", "lamp.gr1.json", "--deadline", "late")
     assert made.exit_code == 1
     assert made.stdout == "lamp: late: no bound below the end of the range can be promised\n"
-    assert "error[SM576 no-deadline]: 'lamp' can promise no bound of late: 2 is" in made.stderr
+    expected = "error[SM576 no-deadline]: 'lamp' can guarantee no bound for late: even 2 is"
+    assert expected in made.stderr
 
 
 def test_an_unknown_timer_is_an_error_and_exit_code_2(here):

@@ -31,7 +31,7 @@ def test_unrealizable_is_an_error_and_exit_code_1(here):
     here.write("lamp.gr1.json", rules.UNREALIZABLE.read_page().wrong)
     made = here.sysmlc("synth", "lamp.gr1.json", "--realizable")
     assert made.exit_code == 1
-    assert "error[SM532 contract-unrealizable]: no system can keep the contract" in made.stderr
+    assert "error[SM532 contract-unrealizable]: no system can satisfy the contract" in made.stderr
     assert made.stdout.startswith("lamp: unrealizable (")
 
 
@@ -84,9 +84,7 @@ def test_a_limit_says_what_was_reached(here):
     here.write("wide.gr1.json", json.dumps(WIDE))
     made = here.sysmlc("synth", "wide.gr1.json", "--realizable", "--nodes", "10")
     assert [made.exit_code, made.stdout] == [2, "wide: not decided\n"]
-    assert (
-        "error[SM531 synthesis-limit]: 'wide' is not decided: the limit of 10 nodes" in made.stderr
-    )
+    assert "error[SM531 synthesis-limit]: 'wide' is undecided: the limit of 10 nodes" in made.stderr
 
 
 def test_contracts_of_a_model_are_decided_by_component(here, monkeypatch):
@@ -236,7 +234,7 @@ def test_a_limit_in_the_making_of_a_machine_leaves_no_file(here, monkeypatch):
             here.write("counter.gr1.json", json.dumps(COUNTER))
             made = here.sysmlc("synth", "counter.gr1.json", "-o", "out", "--time-limit", "1")
         assert made.exit_code == 2
-        assert "no machine is written: the limit of 1 s of CPU time was reached" in made.stderr
+        assert "no controller is written: the limit of 1 s of CPU time was reached" in made.stderr
         assert here.files() == []
 
 

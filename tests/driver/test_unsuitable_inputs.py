@@ -138,7 +138,7 @@ def test_a_folder_without_models_is_an_error(run, tmp_path):
 def test_libraries_without_a_plant_are_an_info(run, tmp_path):
     (tmp_path / "lib.aml").write_text(PLANT.format("RoleClassLib"))
     (tmp_path / "plant.aml").write_text(PLANT.format("InstanceHierarchy"))
-    assert "info[SM158 only-caex-libraries]: 'lib.aml' holds only" in run("check", "lib.aml")[1]
+    assert "info[SM158 only-caex-libraries]: 'lib.aml' contains only" in run("check", "lib.aml")[1]
     assert run("check", "lib.aml", "plant.aml") == (0, "")
 
 

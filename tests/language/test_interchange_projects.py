@@ -81,8 +81,8 @@ def test_a_wrong_checksum_is_an_error_where_it_is_stated():
     sink = Sink()
     open_archive(archive(said=meta("00")), sink)
     assert messages(sink) == [
-        "SM168 'Robots.kpar!Robots.sysml' is not the file that project 'Robots' was made with:"
-        f" its SHA256 is {SUM}, the project says 00"
+        "SM168 'Robots.kpar!Robots.sysml' differs from the file that was packed into project "
+        f"'Robots': its SHA256 is {SUM}, expected 00"
     ]
     (found,) = sink
     stated = json.dumps(meta("00"))
@@ -103,8 +103,8 @@ def test_a_wrong_checksum_is_an_error_where_it_is_stated():
         ),
         (
             {"said": meta(algorithm="MD6")},
-            "SM755 the checksum of 'Robots.kpar!Robots.sysml' is not examined: MD6 is not known"
-            " here",
+            "SM755 the checksum of 'Robots.kpar!Robots.sysml' is not checked: the algorithm "
+            "MD6 is not supported",
         ),
         (
             {"about": b"{"},

@@ -276,8 +276,8 @@ def test_references_into_other_files_stay_as_hrefs():
 def test_an_id_that_the_other_file_lacks_is_reported_where_it_stands():
     files = [("a/Use.kermlx", USE), ("Core Library/Base.kermlx", BASE.replace('"k"', '"z"'))]
     assert linked(*files)[1] == [
-        "SM165 'superclassifier' of 'Subclassification' leads to the id 'k', which"
-        " 'Core Library/Base.kermlx' does not have"
+        "SM165 'superclassifier' of 'Subclassification' refers to the id 'k', which does not "
+        "exist in 'Core Library/Base.kermlx'"
     ]
 
 
@@ -320,8 +320,8 @@ WRONG = [
             'declaredName="P"',
             relating("Subclassification", 'superclassifier="q"'),
         ),
-        "SM165 'superclassifier' of 'Subclassification' leads to the id 'q', which 'm.sysmlx' does"
-        " not have",
+        "SM165 'superclassifier' of 'Subclassification' refers to the id 'q', which does not "
+        "exist in 'm.sysmlx'",
     ),
     (
         owning("Package", 'xmi:id="p"') + owning("Package", 'xmi:id="p"'),

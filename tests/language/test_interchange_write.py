@@ -218,8 +218,8 @@ def test_characters_that_xml_cannot_have_are_reported_and_replaced():
     text, messages = written(document(made("Package", "form\ffeed")))
     assert 'declaredName="form\ufffdfeed"' in text
     assert messages == [
-        "SM759 the 'declaredName' of 'form\ffeed' has characters that XML cannot have: they are"
-        " replaced"
+        "SM759 the 'declaredName' of 'form\ffeed' contains characters that XML does not "
+        "allow: they are replaced"
     ]
 
 

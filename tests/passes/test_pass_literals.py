@@ -45,7 +45,7 @@ FLOW_PORT = (
 def test_a_flow_port_with_a_direction_that_does_not_exist_has_the_default(value):
     graph, (found,) = refined(FLOW_PORT.format(value), "ports")
     assert (found.rule.code, found.subject.id) == ("SM220", "x")
-    assert found.message.endswith(f"is '{value}', which is none of in, out, inout")
+    assert found.message.endswith(f"is '{value}', which is not one of in, out, inout")
     assert graph["x"].attrs["direction"] == "inout"
 
 

@@ -358,8 +358,8 @@ def test_the_id_counts_when_the_path_leads_elsewhere():
     text = "overlay: 1\nports:\n  s-in: {path: Plant/Stopper/p_sOut, direction: in}\n"
     graph, sink = laid_over(text)
     assert lines(sink) == [
-        "SM340 warning: the id 's-in' is that of 'Plant/Stopper/p_sIn' now, "
-        "not of 'Plant/Stopper/p_sOut'"
+        "SM340 warning: the id 's-in' now belongs to 'Plant/Stopper/p_sIn', not to "
+        "'Plant/Stopper/p_sOut'"
     ]
     assert "direction" not in graph["s-out"].attrs
 

@@ -78,8 +78,8 @@ def test_what_is_new_in_a_standard_library_stands_in_without_complaint(href, nam
 def test_what_no_version_of_a_standard_library_has_is_told(href, count, name):
     _, sink = refined(pointing(href, "DataType"), "resolve")
     assert lines(sink) == [
-        f"SM153 warning: '{href.partition('#')[0]}' is known to sysmlc without reading it, but "
-        f"{count} of what the model takes from it is not"
+        f"SM153 warning: the built-in description of '{href.partition('#')[0]}' lacks {count} "
+        f"of the elements that the model uses"
     ]
     assert next(iter(sink)).notes == (f"DataType '{name}', used by p",)
     assert next(iter(sink)).subject.place.ordinal == 1
@@ -107,8 +107,8 @@ def test_absent_library_is_one_warning_that_lists_what_it_takes_down():
     )
     graph, sink = refined(text, "resolve")
     assert lines(sink) == [
-        "SM152 warning: 'lib.uml' is not part of the compile unit; what it holds (2) is known by "
-        "name only"
+        "SM152 warning: 'lib.uml' is not part of the compile unit; its elements (2) are known "
+        "by name only"
     ]
     assert next(iter(sink)).notes == ("Class 'A', used by p, r", "Class 'b', used by q")
     stubs = {one.name for one in graph if one.attrs.get("external")}

@@ -48,7 +48,7 @@ def problems(loaded, body):
         ),
         (
             '<Item Name="a"><Size>big</Size></Item>',
-            [(2, "a::Size", "the text of 'Size' is 'big', which is no xs:double")],
+            [(2, "a::Size", "the text of 'Size' is 'big', which is not a valid xs:double")],
         ),
         (
             '<Item Name="a"><Item Name="b"/><Size>1</Size></Item>',

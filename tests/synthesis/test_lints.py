@@ -59,8 +59,10 @@ def test_a_dead_end_is_shown_by_a_state():
         promise always n=2 -> n'=0
         """
     )
-    assert ("SM534", "the environment of 'c' can come to where its assumptions leave it no next "
-            "step: n=2") in found(made)  # fmt: skip
+    message = (
+        "the environment of 'c' can reach a state in which its assumptions allow no next step: n=2"
+    )
+    assert ("SM534", message) in found(made)
 
 
 @pytest.mark.parametrize("assumed", ["power", "power & (n=1 | n=2)"])

@@ -219,12 +219,12 @@ _WORDS = (
     (
         r"Element '(?P<a>[^']*)', attribute '(?P<b>[^']*)': '(?P<c>.*)' is not a valid value "
         r"of the (?:\w+ )?(?:atomic )?type '(?P<d>[^']*)'\.?$",
-        "the attribute '{b}' of '{a}' is '{c}', which is no {d}",
+        "the attribute '{b}' of '{a}' is '{c}', which is not a valid {d}",
     ),
     (
         r"Element '(?P<a>[^']*)': '(?P<c>.*)' is not a valid value "
         r"of the (?:\w+ )?(?:atomic )?type '(?P<d>[^']*)'\.?$",
-        "the text of '{a}' is '{c}', which is no {d}",
+        "the text of '{a}' is '{c}', which is not a valid {d}",
     ),
     (
         r"Element '(?P<a>[^']*)', attribute '(?P<b>[^']*)': The value '(?P<c>.*)' does not match "

@@ -75,7 +75,7 @@ def test_the_comment_is_told_once_with_what_it_keeps(plant):
     sink = Sink()
     write_document(plant, sink)
     (told,) = [found for found in sink if found.rule.code == "SM726"]
-    assert "UML has no place for Document (1)" in told.notes
+    assert "UML cannot express Document (1)" in told.notes
     assert {found.rule.code for found in sink} <= {"SM723", "SM724", "SM726"}
 
 

@@ -829,8 +829,8 @@ def test_a_mirror_without_id_that_has_the_name_of_its_master_is_not_stored():
         (
             "the left one",
             [
-                "SM638: the description of 'Plant::cell::s::left' is left out: "
-                "in 's' it only shows another element"
+                "SM638: the description of 'Plant::cell::s::left' is omitted: in 's' it is a "
+                "mirror of another element"
             ],
         ),
     ],
@@ -1015,15 +1015,15 @@ def test_elements_that_caex_does_not_have_are_reported_and_counted():
         (
             '<RoleRequirements/><InternalLink Name="l" RefPartnerSideA="" RefPartnerSideB=""/>',
             [
-                "SM140: 'InternalLink' of 'Plant::i' stands after 'RoleRequirements', "
-                "against the schema of CAEX (1 place)"
+                "SM140: 'InternalLink' of 'Plant::i' comes after 'RoleRequirements', against "
+                "the schema of CAEX (1 place)"
             ],
         ),
         ('<InternalLink Name="l" RefPartnerSideA="" RefPartnerSideB=""/><RoleRequirements/>', []),
         (
             "<SourceObjectInformation OriginID='a'/><AdditionalInformation/>",
             [
-                "SM140: 'AdditionalInformation' of 'Plant::i' stands after "
+                "SM140: 'AdditionalInformation' of 'Plant::i' comes after "
                 "'SourceObjectInformation', against the schema of CAEX (1 place)"
             ],
         ),

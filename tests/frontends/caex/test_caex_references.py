@@ -324,8 +324,8 @@ def test_of_two_declarations_of_an_alias_the_first_counts():
     assert reading.targets("Roles::Gate", "specializes") == ["Shared::Base"]
     assert len(reading.find_all("Al", "Import")) == 2
     assert reading.findings == [
-        "SM636: the alias 'Al' stands for '../libs/other.aml' here, and for "
-        "'../libs/base.aml' before"
+        "SM636: the alias 'Al' is declared for '../libs/other.aml', but already stands for "
+        "'../libs/base.aml'"
     ]
 
 

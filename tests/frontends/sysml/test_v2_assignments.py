@@ -163,10 +163,10 @@ def test_what_two_behaviours_write_is_nobodys_own():
     text = V2.replace("action work {", f"{other}\n        action work {{")
     graph, sink = v2(text.replace("if n < 3", "if total < 9"))
     assert [one.message for one in sink if one.rule.code == "SM544"] == [
-        "the contract of 'reset' leaves 'total' to the environment, although action 'clear' writes "
-        "it: 'add' writes it too",
-        "the contract of 'work' leaves 'total' to the environment, although action 'add' writes "
-        "it: 'clear' writes it too",
+        "the contract of 'reset' treats 'total' as an input although action 'clear' assigns "
+        "it: 'add' assigns it too",
+        "the contract of 'work' treats 'total' as an input although action 'add' assigns it: "
+        "'clear' assigns it too",
     ]
     assert "total" not in [
         one.name for one in contract(graph).variables if one.owner is Owner.SYSTEM
@@ -197,7 +197,7 @@ def test_what_a_state_machine_of_the_block_writes_is_not_the_activitys():
         }"""
     graph, sink = v2(V2.replace("action work {", f"{machine}\n        action work {{"))
     assert [one.message.rpartition(": ")[2] for one in sink if one.rule.code == "SM544"] == [
-        "'life' writes it too"
+        "'life' assigns it too"
     ]
     assert "SM546" in [one.rule.code for one in sink]
     owners = [
@@ -276,8 +276,8 @@ def test_each_of_several_assignments_stops_at_the_bound_for_itself():
 def test_an_assignment_to_a_constant_is_told():
     told, becomes = told_of("assign full := true;")
     assert told[0] == (
-        "SM415 warning: 'full := true' assigns to 'full', which is no changeable property with "
-        "finite values of Cell"
+        "SM415 warning: 'full := true' assigns to 'full', which is not a changeable property "
+        "of Cell with finitely many values"
     )
     assert becomes == []
 
@@ -285,8 +285,8 @@ def test_an_assignment_to_a_constant_is_told():
 def test_a_value_of_another_type_is_told():
     told, becomes = told_of("assign mode := Color::red;")
     assert told == [
-        "SM544 info: the contract of 'work' leaves 'mode' to the environment, although action 'up' "
-        "writes it: 'Color::red' is not known, or has too many cases",
+        "SM544 info: the contract of 'work' treats 'mode' as an input although action 'up' "
+        "assigns it: 'Color::red' is not known, or has too many cases",
         "SM413 warning: assignment 'mode := Color::red': 'Color::red' is one of red, blue, not of "
         "on, off",
     ]

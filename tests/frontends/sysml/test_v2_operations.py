@@ -189,9 +189,9 @@ def test_what_nobody_asks_the_coordinator_for_is_told():
     assert found == [
         (
             "SM595",
-            "part 'clamp' of 'Cells::Machine' assumes '!clamp.run_turn | turn_executed', which "
-            "nothing around it promises (Whenever action 'turn' runs, the environment ends it "
-            "sooner or later)",
+            "part 'clamp' of 'Cells::Machine' assumes '!clamp.run_turn | turn_executed', "
+            "which neither the other parts nor the block's assumptions guarantee "
+            "(Whenever action 'turn' runs, the environment ends it sooner or later)",
         ),
         (
             "SM596",
@@ -251,7 +251,7 @@ def test_an_operation_within_another_one_has_no_end_of_its_own_and_that_is_told(
     assert found == [
         (
             "SM508",
-            "nothing in 'Machine' says when step 'swap' of 'twice' is over; whoever is around the "
-            "block decides it",
+            "no behaviour of 'Machine' determines when step 'swap' of 'twice' ends; the "
+            "environment of the block decides it",
         )
     ]

@@ -200,8 +200,8 @@ def test_what_has_no_finite_values_is_an_opaque_effect_with_a_warning():
     assert [(one.severity, one.message) for one in found] == [
         (
             Severity.WARNING,
-            "'machine.age := 1.5' assigns to 'machine.age', which is no changeable property with "
-            "finite values of Cell",
+            "'machine.age := 1.5' assigns to 'machine.age', which is not a changeable "
+            "property of Cell with finitely many values",
         )
     ]
 

@@ -65,8 +65,8 @@ def clear(name: str) -> str:
 def test_what_another_behaviour_writes_is_nobodys_own(model):
     graph, sink = plant(**model)
     assert any(
-        one.startswith("the contract of 'work' leaves 'full' to the environment")
-        and one.endswith("'clear' writes it too")
+        one.startswith("the contract of 'work' treats 'full' as an input")
+        and one.endswith("'clear' assigns it too")
         for one in told(sink)
     )
     assert owners(graph, "full") == {Owner.ENVIRONMENT}
@@ -82,8 +82,8 @@ def test_an_output_that_is_bound_to_a_feature_writes_it():
     step = "then action reset : Reset { inout x = full; }"
     graph, sink = plant(step=step, elsewhere=reset)
     assert told(sink) == [
-        "the contract of 'work' leaves 'full' to the environment, although action 'fill' and "
-        "action 'reset' write it: the value that it gets is not known"
+        "the contract of 'work' treats 'full' as an input although action 'fill' and action "
+        "'reset' assign it: the value that it gets is not known"
     ]
     assert owners(graph, "full") == {Owner.ENVIRONMENT}
 
@@ -99,10 +99,10 @@ def test_machines_that_write_the_same_promise_nothing_of_it():
     other = "attribute other : Boolean; " + MACHINE.format(name="mode", value="false")
     graph, sink = plant(beside=other)
     assert told(sink) == [
-        "the contract of 'work' leaves 'full' to the environment, although action 'fill' writes "
-        "it: 'mode' writes it too",
-        "the contract of 'mode' leaves 'full' to the environment and shows 'full := false' as "
-        "output 'full_false': 'fill' writes it too",
+        "the contract of 'work' treats 'full' as an input although action 'fill' assigns it: "
+        "'mode' assigns it too",
+        "'full' is also assigned by 'fill', so the contract of 'mode' treats it as an input "
+        "and shows 'full := false' as output 'full_false'",
     ]
     assert owners(graph, "full") == {Owner.ENVIRONMENT}
 
@@ -125,8 +125,8 @@ def test_the_rule_of_machines_reports_its_wrong_model_and_not_its_right_one():
 def test_what_belongs_to_another_object_is_told_and_is_no_unknown_name(action, reason):
     _, sink = plant(elsewhere=action.replace("ACTION", clear(reason)))
     assert (
-        "the contract of 'reset' leaves 'full' to the environment, although action 'clear' writes "
-        "it: it belongs to another object"
+        "the contract of 'reset' treats 'full' as an input although action 'clear' assigns it: "
+        "it belongs to another object"
     ) in told(sink)
     assert told(sink, "SM545") == []
 
@@ -149,4 +149,4 @@ def test_what_an_activity_inherits_is_known():
 def test_help_fits_the_reason():
     _, sink = plant(beside=clear("full"))
     helps = {one.help for one in sink if one.rule.code == "SM544"}
-    assert helps == {"let one behaviour alone write it, or specify its value in a requirement"}
+    assert helps == {"let only one behaviour assign it, or specify its value in a requirement"}

@@ -91,8 +91,8 @@ def test_stereotypes_of_diagrams_are_notation():
 def test_an_application_to_nothing_is_reported():
     reading = read(papyrus(PORT, '<Blocks:Block xmi:id="a" base_Class="gone"/>'))
     assert reading.findings == [
-        "stereotype-without-element: stereotype 'Block' is applied once to nothing that is in the "
-        "model"
+        "stereotype-without-element: stereotype 'Block' is applied once to elements that are "
+        "not in the model"
     ]
     assert read(papyrus(PORT, '<Blocks:Block xmi:id="a" base_Class="k"/>')).findings == []
 

@@ -24,8 +24,8 @@ def messages(reading):
 def test_an_unknown_attribute_of_a_used_element_is_reported_at_its_location():
     reading = list_messages((ROBOT, f'{ROBOT} isAbstrct="true"'))
     assert messages(reading) == [
-        "attribute 'isAbstrct' of 'Library::Robot', taken from 'Company%20Library.mdzip', is known "
-        "neither to UML nor to MagicDraw"
+        "attribute 'isAbstrct' of 'Library::Robot', taken from 'Company%20Library.mdzip', is "
+        "defined neither by UML nor by MagicDraw"
     ]
     (finding,) = reading.sink
     assert finding.help == "did you mean 'isAbstract'?"

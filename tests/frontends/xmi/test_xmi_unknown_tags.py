@@ -15,8 +15,8 @@ def test_a_misspelt_tag_is_reported_once():
     applied = FLOW.format("p", 'directon="in"') + FLOW.format("q", 'directon="out"')
     reading = read(papyrus(PROPERTY, applied))
     assert reading.findings == [
-        "unknown-tag: tag 'directon' of stereotype 'FlowProperty' on 'M::C::p' "
-        "and 1 more is none of SysML"
+        "unknown-tag: tag 'directon' of stereotype 'FlowProperty' on 'M::C::p' and 1 more is "
+        "not defined by SysML"
     ]
     (finding,) = reading.sink
     assert (finding.help, finding.subject.id) == ("did you mean 'direction'?", "sp")

@@ -40,7 +40,7 @@ def test_an_unknown_value_is_reported_once_and_omitted():
 )
 def test_enumerated_attributes(model, known):
     (message,) = read(papyrus(model)).findings
-    assert message.endswith(f"which is none of {known}")
+    assert message.endswith(f"which is not one of {known}")
 
 
 @pytest.mark.parametrize(("written", "leaf"), [("1", True), ("0", None), ("true", True)])

@@ -174,7 +174,7 @@ def _explain_loss(
     if verdict is Verdict.IGNORED_NOTATION:
         return None, "drawing or tool settings"
     if is_baseless:
-        return rules.BASELESS, "applied to nothing that is in the model"
+        return rules.BASELESS, "applied to a missing element"
     return rules.UNSUPPORTED, "not read"
 
 
