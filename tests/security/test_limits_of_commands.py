@@ -168,6 +168,7 @@ def wait_for(process, condition):
 
 @pytest.mark.slow
 @pytest.mark.skipif(sys.platform != "linux", reason="only Linux enforces memory limits")
+@pytest.mark.usefixtures("default_signals")
 def test_watch_goes_on_after_a_limit_or_a_crash(project):
     errors, lines = project / "errors.txt", project / "lines.txt"
     model = project / "plant.sysml"
