@@ -58,70 +58,71 @@ NO_ENVIRONMENT = rule(
     "SM533",
     "assumptions-unsatisfiable",
     Severity.ERROR,
-    "no environment keeps the assumptions of '{component}'",
-    help="weaken the assumptions; together they allow no run",
+    "the assumptions of '{component}' are unsatisfiable",
+    help="weaken the assumptions; no run satisfies all of them",
 )
 DEADLOCK = rule(
     "SM534",
     "environment-deadlock",
     Severity.WARNING,
-    "the environment of '{component}' can come to where its assumptions leave it no next step: "
-    "{said}",
-    help="say the assumption of the next step (x' instead of x): the state is never reached then",
+    "the environment of '{component}' can reach a state in which its assumptions allow "
+    "no next step: {said}",
+    help="write the assumption about the next step (x' instead of x), so that the state is "
+    "never reached",
 )
 NOT_SEPARATED = rule(
     "SM535",
     "not-well-separated",
     Severity.WARNING,
-    "'{component}' can force its environment to break the assumptions{said}",
-    help="assume only what the environment can keep whatever the component may do",
+    "'{component}' can force its environment to violate the assumptions{said}",
+    help="assume only what the environment can satisfy whatever the component does",
 )
 NO_FRAME = rule(
     "SM536",
     "output-without-frame",
     Severity.WARNING,
-    "nothing says what becomes of output '{name}' of '{component}' {said}",
-    help="say when it stays as it is ({name}'={name})",
+    "output '{name}' of '{component}' may change freely {said}",
+    help="add a guarantee for the steps in which it stays unchanged ({name}'={name})",
 )
 WRONG_OWNER = rule(
     "SM537",
     "decided-by-the-other",
     Severity.WARNING,
     "'{component}' {name} '{formula}', which {said} decides alone",
-    help="move it to the other side of the contract, or change who owns the variables",
+    help="move it to the other side of the contract, or change the owner of the variables",
 )
 NO_FAIRNESS = rule(
     "SM538",
     "fairness-missing",
     Severity.WARNING,
-    "'{component}' could keep its contract if its environment did not wait for ever{said}",
+    "'{component}' could satisfy its contract if its environment did not wait forever{said}",
     help="add a liveness assumption",
 )
 INITIAL_INPUT = rule(
     "SM539",
     "initial-guarantee-over-input",
     Severity.INFO,
-    "the initial guarantee '{formula}' of '{component}' speaks of inputs",
-    help="say what outputs start with, and what inputs start with as an assumption",
+    "the initial guarantee '{formula}' of '{component}' refers to inputs",
+    help="guarantee the initial values of outputs, and state those of inputs as an assumption",
 )
 NEXT_IN_LIVENESS = rule(
     "SM540",
     "next-inside-liveness",
     Severity.ERROR,
-    "'{formula}' of '{component}' speaks of the next step in what recurs",
-    help="let a variable remember: m' <-> (what holds now), and ask for m again and again",
+    "'{formula}' of '{component}' refers to the next step inside a liveness formula",
+    help="store the condition in a variable (m' <-> condition), and require m infinitely often",
 )
 IDLE = rule(
     "SM541",
     "vacuous-win",
     Severity.WARNING,
-    "'{component}' keeps its contract without ever doing anything",
-    help="promise something that only an action brings about",
+    "'{component}' satisfies its contract without ever acting",
+    help="guarantee something that only an action achieves",
 )
 NEEDLESS = rule(
     "SM542",
     "fairness-not-needed",
     Severity.WARNING,
-    "'{component}' brings about what it promises although nothing that is assumed recurs",
-    help="tie what is promised to what is assumed, or leave the assumption out",
+    "'{component}' satisfies its liveness guarantees without the fairness assumptions",
+    help="relate the guarantees to the assumptions, or remove the assumptions",
 )

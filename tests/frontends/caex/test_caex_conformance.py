@@ -15,12 +15,12 @@ def element_with(body):
 UNKNOWN = [
     (
         element_with("").replace('ID="1"', 'ID="1" RefBaseClassPath="Lib/C"'),
-        "'Plant::i' has an attribute 'RefBaseClassPath', which CAEX does not have at "
+        "'Plant::i' has an attribute 'RefBaseClassPath', which CAEX does not define for "
         "'InternalElement'; did you mean 'RefBaseSystemUnitPath'?",
     ),
     (
         element_with('<Attribute Name="a" Value="5"/><Attribute Name="b" Value="5"/>'),
-        "'Plant::i::a' has an attribute 'Value', which CAEX does not have at 'Attribute' "
+        "'Plant::i::a' has an attribute 'Value', which CAEX does not define for 'Attribute' "
         "(2 elements); known: AttributeDataType, ChangeMode, ID, Name, RefAttributeType, Unit",
     ),
     (

@@ -259,8 +259,8 @@ GONE = "1ac5c9b2-45f8-4a4c-8d6a-6d2f5f3b8a01"
         (
             "2",
             [
-                "SM143: 'a' is a mirror of itself, by way of '2'",
-                "SM143: 'b' is a mirror of itself, by way of '1'",
+                "SM143: 'a' is a mirror of itself, through '2'",
+                "SM143: 'b' is a mirror of itself, through '1'",
             ],
         ),
         (
@@ -364,7 +364,7 @@ def test_a_side_may_name_an_interface_that_only_the_class_holds(side):
 def test_an_unresolved_side_is_reported_and_the_link_becomes_a_dependency(side, problem):
     reading = Read(aml_2(cell_with_link(side, "20")))
     assert reading.links() == {}
-    assert reading.findings == [f"SM135: link 'l': its side A says '{side}', and {problem}"]
+    assert reading.findings == [f"SM135: link 'l': its side A refers to '{side}', and {problem}"]
     link = reading.find("Plant::cell::l", "Dependency")
     assert link.attrs["subkind"] == "internal-link"
     ends = [*reading.graph.targets(link, "client"), *reading.graph.targets(link, "supplier")]

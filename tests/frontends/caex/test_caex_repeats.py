@@ -20,35 +20,35 @@ def instance_with(body, path="Lib/C"):
 
 PORT = f'<ExternalInterface Name="p" ID="2">{ONE}{TWO}</ExternalInterface>'
 REPEATS = [
-    (classes(class_with("") * 2), "'Lib' has two of 'SystemUnitClass' named 'C'"),
-    (classes("") * 2, "'plant.aml' has two of 'SystemUnitClassLib' named 'Lib'"),
-    (classes(class_with(ONE + TWO)), "'Lib::C' has two of 'Attribute' named 'a'"),
+    (classes(class_with("") * 2), "'Lib' has two 'SystemUnitClass' elements named 'C'"),
+    (classes("") * 2, "'plant.aml' has two 'SystemUnitClassLib' elements named 'Lib'"),
+    (classes(class_with(ONE + TWO)), "'Lib::C' has two 'Attribute' elements named 'a'"),
     (
         classes(class_with(f'<Attribute Name="b">{ONE}{TWO}</Attribute>')),
-        "'Lib::C::b' has two of 'Attribute' named 'a'",
+        "'Lib::C::b' has two 'Attribute' elements named 'a'",
     ),
     (
         types(f'<AttributeType Name="T">{ONE}{TWO}</AttributeType>'),
-        "'Types::T' has two of 'Attribute' named 'a'",
+        "'Types::T' has two 'Attribute' elements named 'a'",
     ),
     (
         classes(class_with(ONE)) + instance_with(TWO + THREE),
-        "'Plant::i' has two of 'Attribute' named 'a'",
+        "'Plant::i' has two 'Attribute' elements named 'a'",
     ),
     (
         classes(class_with(ONE)) + instance_with(ONE + ONE),
-        "'Plant::i' has two of 'Attribute' named 'a'",
+        "'Plant::i' has two 'Attribute' elements named 'a'",
     ),
     (
         classes(class_with(ONE.replace(">", ' ID="3">', 1) + TWO)),
-        "'Lib::C' has two of 'Attribute' named 'a'",
+        "'Lib::C' has two 'Attribute' elements named 'a'",
     ),
     (
         classes(class_with("", "C") + class_with("", 'C" ID="3')),
-        "'Lib' has two of 'SystemUnitClass' named 'C'",
+        "'Lib' has two 'SystemUnitClass' elements named 'C'",
     ),
-    (instance_with(ONE + TWO, ""), "'Plant::i' has two of 'Attribute' named 'a'"),
-    (instance_with(PORT, ""), "'Plant::i::p' has two of 'Attribute' named 'a'"),
+    (instance_with(ONE + TWO, ""), "'Plant::i' has two 'Attribute' elements named 'a'"),
+    (instance_with(PORT, ""), "'Plant::i::p' has two 'Attribute' elements named 'a'"),
 ]
 
 
@@ -125,7 +125,7 @@ def test_each_mirror_that_leads_into_a_cycle_is_reported_with_its_master(ids):
     masters = {"a": "b", "b": "c", "c": "b", "d": "a"}
     reading = Read(plant("".join(mirror(id, masters[id]) for id in ids)))
     assert reading.findings == [
-        f"SM143: '{id}' is a mirror of itself, by way of '{masters[id]}'" for id in ids
+        f"SM143: '{id}' is a mirror of itself, through '{masters[id]}'" for id in ids
     ]
 
 

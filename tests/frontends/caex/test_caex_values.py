@@ -78,7 +78,7 @@ def instance_with(body):
     return class_with(attribute("xs:double", "1")) + plant(f"{element}</InternalElement>")
 
 
-INVALID_DOUBLE = ["SM631: the value 'two' of 'a' is no xs:double"]
+INVALID_DOUBLE = ["SM631: the value 'two' of 'a' is not a valid xs:double"]
 LENGTH = types('<AttributeType Name="L" AttributeDataType="xs:double"/>')
 
 
@@ -117,14 +117,14 @@ def test_an_invalid_value_is_reported_once_a_file():
             )
         )
     )
-    assert reading.findings == ["SM631: the value 'two' of 'a' and 3 more is no xs:double"]
+    assert reading.findings == ["SM631: the value 'two' of 'a' and 3 more is not a valid xs:double"]
     assert reading.find("Lib::C::a").attrs["default"] == "two"
 
 
 def test_values_of_attribute_types_are_checked():
     values = "<DefaultValue>1</DefaultValue><Value>two</Value>"
     reading = Read(LENGTH.replace("/>", f">{values}</AttributeType>"))
-    assert reading.findings == ["SM631: the value 'two' of 'L' is no xs:double"]
+    assert reading.findings == ["SM631: the value 'two' of 'L' is not a valid xs:double"]
     attrs = reading.find("Types::L").attrs
     assert (attrs["default"], attrs["default_value"]) == ("two", "1")
     reading = Read(LENGTH.replace("/>", "><DefaultValue>1</DefaultValue></AttributeType>"))
@@ -142,15 +142,17 @@ def test_values_of_interfaces_and_bounds_are_checked():
         f"{attribute('xs:int', '2.5')}</ExternalInterface>"
     )
     assert Read(interfaces(port) + used).findings == [
-        "SM631: the value 'two' of 'a' is no xs:int",
-        "SM631: the value '2.5' of 'a' is no xs:int",
+        "SM631: the value 'two' of 'a' is not a valid xs:int",
+        "SM631: the value '2.5' of 'a' is not a valid xs:int",
     ]
     bound = (
         '<Attribute Name="a" AttributeDataType="xs:int"><Constraint Name="few">'
         "<OrdinalScaledType><RequiredMaxValue>many</RequiredMaxValue></OrdinalScaledType>"
         "</Constraint></Attribute>"
     )
-    assert Read(class_with(bound)).findings == ["SM631: the value 'many' of 'few' is no xs:int"]
+    assert Read(class_with(bound)).findings == [
+        ("SM631: the value 'many' of 'few' is not a valid xs:int")
+    ]
 
 
 @pytest.mark.parametrize(
@@ -163,7 +165,7 @@ def test_values_of_interfaces_and_bounds_are_checked():
 )
 def test_an_unknown_data_type_is_reported(data_type, hint):
     assert Read(class_with(attribute(data_type, "x"))).findings == [
-        f"SM632: the data type '{data_type}' of 'a' is none of XML Schema; {hint}"
+        f"SM632: the data type '{data_type}' of 'a' is not defined by XML Schema; {hint}"
     ]
 
 

@@ -21,20 +21,21 @@ UNKNOWN_ATTRIBUTE = rule(
     "SM633",
     "unknown-caex-attribute",
     Severity.WARNING,
-    "{element} has an attribute '{attribute}', which CAEX does not have at '{tag}'{more}; {hint}",
+    "{element} has an attribute '{attribute}', which CAEX does not define for "
+    "'{tag}'{more}; {hint}",
 )
 STRAY_TEXT = rule(
     "SM634",
     "stray-caex-text",
     Severity.WARNING,
-    "{element} holds the text '{text}'{more}; CAEX has none at '{tag}'",
-    help="remove it, or put it into a Description",
+    "{element} contains the text '{text}'{more}; CAEX allows no text in '{tag}'",
+    help="remove it, or move it into a Description",
 )
 REPEATED_NAME = rule(
     "SM635",
     "repeated-caex-name",
     Severity.WARNING,
-    "{owner} has two of '{tag}' named '{name}'",
+    "{owner} has two '{tag}' elements named '{name}'",
     help="rename or remove one of them",
 )
 

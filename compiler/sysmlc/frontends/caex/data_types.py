@@ -18,14 +18,14 @@ INVALID_VALUE = rule(
     "SM631",
     "value-not-of-data-type",
     Severity.WARNING,
-    "the value '{value}' of '{element}'{more} is no {data_type}",
+    "the value '{value}' of '{element}'{more} is not a valid {data_type}",
     help="{hint}",
 )
 UNKNOWN_DATA_TYPE = rule(
     "SM632",
     "unknown-data-type",
     Severity.WARNING,
-    "the data type '{data_type}' of '{element}' is none of XML Schema; {hint}",
+    "the data type '{data_type}' of '{element}' is not defined by XML Schema; {hint}",
 )
 
 _HINTS = {

@@ -14,7 +14,7 @@ REPEATED_ALIAS = rule(
     "SM636",
     "repeated-alias",
     Severity.WARNING,
-    "the alias '{alias}' stands for '{path}' here, and for '{first}' before",
+    "the alias '{alias}' is declared for '{path}', but already stands for '{first}'",
     help="give one of them another alias",
 )
 

@@ -189,16 +189,16 @@ NOT_EVALUABLE = rule(
     "SM261",
     "not-evaluable",
     Severity.ERROR,
-    "{what} needs '{called}', which says nothing without a running system",
-    help="use operators and what the metadata says itself",
+    "{what} uses '{called}', which cannot be evaluated without a running system",
+    help="use only operators and the features of the metadata",
 )
 
 NOT_BOOLEAN = rule(
     "SM262",
     "condition-not-boolean",
     Severity.ERROR,
-    "the {role} of '{name}' is neither true nor false",
-    help="write a comparison, or something of the type Boolean",
+    "the {role} of '{name}' is not Boolean",
+    help="write a comparison, or an expression of the type Boolean",
 )
 
 _METADATA = kinds_of("MetadataFeature")

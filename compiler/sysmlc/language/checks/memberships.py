@@ -245,7 +245,7 @@ ONLY_ONE = rule(
     "SM223",
     "only-one",
     Severity.ERROR,
-    "'{owner}' may have one {role} only",
+    "'{owner}' may have only one {role}",
     help="keep the first one, or redefine it",
 )
 SUBJECT_FIRST = rule(

@@ -136,7 +136,7 @@ NOT_ACCESSIBLE = rule(
     "SM225",
     "feature-not-accessible",
     Severity.ERROR,
-    "'{name}' is a feature of '{owner}', and nothing around here is one",
+    "'{name}' is a feature of '{owner}', which is not the type of any enclosing element",
     help="use dot notation: the part, a dot, '{name}'",
 )
 

@@ -187,14 +187,14 @@ TYPED_BY = rule(
     "SM221",
     "usage-type",
     Severity.ERROR,
-    "{usage} must be typed by {wanted}, and '{type}' is {found}",
+    "{usage} must be typed by {wanted}, but '{type}' is {found}",
     help="use {wanted} as the type",
 )
 ONE_TYPE = rule(
     "SM222",
     "usage-one-type",
     Severity.ERROR,
-    "{usage} must be typed by one definition, and has {types}",
+    "{usage} must be typed by one definition, but has {types}",
     help="keep one of them, or let one specialise the other",
 )
 

@@ -199,7 +199,7 @@ def _check_import(node: Node, errors: Errors) -> None:
 def _check_enumeration(node: Node, errors: Errors) -> None:
     for member in node.members:
         if member.kind != "EnumerationUsage" and member.membership != "OwningMembership":
-            _report(member, "what is no enumerated value", "other definitions", errors)
+            _report(member, "a member that is not an enumerated value", "other definitions", errors)
         elif member.kind.endswith("Definition"):
             _report(member, "a definition", "packages and other definitions", errors)
 

@@ -92,8 +92,8 @@ OPAQUE_TIME = rule(
     "SM417",
     "opaque-time",
     Severity.WARNING,
-    "time '{text}' is no constant relative time; the environment says when it comes, as "
-    "'{variable}'",
+    "time '{text}' is not a constant relative time; the contract treats the event "
+    "as the input '{variable}'",
     help="write a number, or a number with a unit (after 5 s), and mark the event as relative",
 )
 _SECONDS = {

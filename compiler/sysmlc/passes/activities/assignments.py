@@ -172,9 +172,9 @@ WRITTEN = rule(
     "SM544",
     "guard-reads-what-is-written",
     Severity.INFO,
-    "the contract of '{activity}' leaves '{name}' to the environment, although {writers} {verb} "
+    "the contract of '{activity}' treats '{name}' as an input although {writers} {verb} "
     "it: {reason}",
-    help="{advice}, or say what becomes of it in a requirement",
+    help="{advice}, or specify its value in a requirement",
 )
 
 
@@ -196,7 +196,7 @@ UNKNOWN = Refusal(
 
 def refuse_shared(writer: str) -> Refusal:
     """Return the refusal of a feature that another behaviour writes."""
-    return Refusal(f"'{writer}' writes it too", "let one behaviour alone write it")
+    return Refusal(f"'{writer}' assigns it too", "let only one behaviour assign it")
 
 
 class UntrackedFeature(Struct, frozen=True):
@@ -218,7 +218,7 @@ def report_untracked(
             activity=activity.name,
             name=feature.feature.name,
             writers=" and ".join(feature.writers),
-            verb="writes" if len(feature.writers) == 1 else "write",
+            verb="assigns" if len(feature.writers) == 1 else "assign",
             reason=feature.why.reason,
             advice=feature.why.advice.format(name=feature.feature.name),
         )

@@ -292,7 +292,7 @@ UNKNOWN_LITERAL = rule(
     "SM220",
     "unknown-literal",
     Severity.WARNING,
-    "the {attribute} of '{element}' is '{value}', which is none of {known}",
+    "the {attribute} of '{element}' is '{value}', which is not one of {known}",
     help="choose one of {known} in the modelling tool",
 )
 
