@@ -21,6 +21,7 @@ from sysmlc.logic.activities.token_graph import TokenGraph
 from sysmlc.logic.classification import classify
 from sysmlc.logic.contract import Class, Conjunct, Contract, Owner
 from sysmlc.logic.expressions.context import context_of
+from sysmlc.logic.feature_writes import WriterIndex
 from sysmlc.logic.formula import Formula
 from sysmlc.logic.machines import derivation as statemachine
 from sysmlc.logic.machines.reader import MachineOptions, read_machine
@@ -32,7 +33,6 @@ from sysmlc.logic.requirements.statements import component_of, definition_of
 from sysmlc.logic.services import derivation as services
 from sysmlc.logic.spelling import FormulaError
 from sysmlc.logic.texts.formal import describe_error, is_formal, read_formal
-from sysmlc.logic.writers import Writers
 
 SAME_COMPONENT = rule(
     "SM500",
@@ -74,14 +74,14 @@ class Contracts(Struct, frozen=True):
         graph.store(Contract, sorted(derived, key=lambda contract: contract.component))
 
     def _derive_machines(self, graph: Graph, sink: Sink) -> Iterator[Contract]:
-        writers = Writers(graph)
+        writers = WriterIndex(graph)
         for element in graph.of_kind(Kind.STATE_MACHINE):
             contract = self._derive_machine(graph, element, writers, sink)
             if contract is not None:
                 yield contract
 
     def _derive_machine(
-        self, graph: Graph, element: Element, writers: Writers, sink: Sink
+        self, graph: Graph, element: Element, writers: WriterIndex, sink: Sink
     ) -> Contract | None:
         if not _is_behaviour(graph, element):
             return None

@@ -33,9 +33,9 @@ from sysmlc.logic.expressions.expression import (
 )
 from sysmlc.logic.expressions.features import Feature
 from sysmlc.logic.expressions.parsing import parse_effect, parse_expression
+from sysmlc.logic.feature_writes import WriterIndex, find_label
 from sysmlc.logic.machines.machine import Action, Assign, Raise
 from sysmlc.logic.names import Names
-from sysmlc.logic.writers import Writers, called
 
 SHARED = rule(
     "SM546",
@@ -52,12 +52,14 @@ class Sharing(Struct, frozen=True):
 
     graph: Graph
     machine: Element
-    writers: Writers | None = None
+    writers: WriterIndex | None = None
     """None: it alone is looked at."""
 
     def find_other_writer(self, feature: Element) -> Element | None:
         """Return a behaviour outside the machine that writes *feature*."""
-        return None if self.writers is None else self.writers.beside(feature, self.machine)
+        if self.writers is None:
+            return None
+        return self.writers.find_other_writer(feature, self.machine)
 
 
 NOT_UNDERSTOOD = rule(
@@ -282,7 +284,7 @@ def _has_other_writer(
             name=feature.element.name,
             text=text.strip(),
             variable=_effect_output(reading, text, behaviour),
-            writer=called(reading.graph, writer),
+            writer=find_label(reading.graph, writer),
         )
     return writer is not None
 

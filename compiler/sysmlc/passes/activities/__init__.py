@@ -14,8 +14,8 @@ from msgspec.structs import replace
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Edge, Element, Graph, Kind, query
 from sysmlc.logic.activities.token_graph import TokenGraph
+from sysmlc.logic.feature_writes import WriterIndex
 from sysmlc.logic.requirements.statements import component_of
-from sysmlc.logic.writers import Writers
 from sysmlc.passes.activities import checks as activity_checks
 from sysmlc.passes.activities import construction as activity_tokens
 from sysmlc.passes.activities import drawing as activity_drawing
@@ -37,7 +37,7 @@ class _OtherBehaviours(Struct, frozen=True):
     """Facts about other behaviours: the exceptions they raise and the features they write."""
 
     raising: Raising
-    writers: Writers
+    writers: WriterIndex
 
 
 class Activities(Struct, frozen=True):
@@ -118,7 +118,7 @@ class Activities(Struct, frozen=True):
 
 
 def _analyse_behaviours(graph: Graph) -> _OtherBehaviours:
-    return _OtherBehaviours(find_raising(graph), Writers(graph))
+    return _OtherBehaviours(find_raising(graph), WriterIndex(graph))
 
 
 def _find_depth(graph: Graph, activity: Element, inside: Element) -> int:

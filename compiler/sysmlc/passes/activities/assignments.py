@@ -16,10 +16,9 @@ from sysmlc.logic.expressions.elaboration import ElaborationError, Fault
 from sysmlc.logic.expressions.expression import Expression
 from sysmlc.logic.expressions.features import Feature
 from sysmlc.logic.expressions.named_elements import find_named_values
+from sysmlc.logic.feature_writes import FeatureWrite, WriterIndex, find_label, iter_writes
 from sysmlc.logic.machines.actions import NOT_ASSIGNABLE, RULE_OF_FAULT, check_assignable
 from sysmlc.logic.machines.moves import SATURATES
-from sysmlc.logic.writers import Writers, called
-from sysmlc.logic.written import Assigned, assigned
 from sysmlc.passes.activities.inputs import Scope
 from sysmlc.support.suggestions import did_you_mean
 
@@ -27,15 +26,15 @@ from sysmlc.support.suggestions import did_you_mean
 class ResolvedAssignment(Struct, frozen=True):
     """An assignment of an action. ``feature`` is None if the name means nothing in the activity."""
 
-    assignment: Assigned
+    assignment: FeatureWrite
     feature: Feature | None
 
 
 def read_assignments(
-    graph: Graph, actions: Iterable[Element], scope: Scope, writers: Writers
+    graph: Graph, actions: Iterable[Element], scope: Scope, writers: WriterIndex
 ) -> list[list[ResolvedAssignment]]:
     """Return the assignments of each action that has any, in the order of execution."""
-    assignments = (assigned(graph, action) for action in actions)
+    assignments = (iter_writes(graph, action) for action in actions)
     resolved = (
         [
             ResolvedAssignment(action, _resolve_target(action, scope, writers))
@@ -46,11 +45,11 @@ def read_assignments(
     return [row for row in resolved if row]
 
 
-def _resolve_target(assignment: Assigned, scope: Scope, writers: Writers) -> Feature | None:
+def _resolve_target(assignment: FeatureWrite, scope: Scope, writers: WriterIndex) -> Feature | None:
     """Return the feature that the activity knows under the assigned name, or under its own name."""
     feature = scope.find_feature(assignment.name)
     if feature is None:
-        target = writers.target(assignment.action, assignment.name)
+        target = writers.resolve_target(assignment.action, assignment.name)
         same_feature = None if target is None else scope.find_feature(target.name)
         feature = (
             same_feature if same_feature is not None and same_feature.element is target else None
@@ -126,7 +125,7 @@ def report_unknown_targets(
     graph: Graph,
     activity: Element,
     written: Iterable[list[ResolvedAssignment]],
-    writers: Writers,
+    writers: WriterIndex,
     sink: Sink,
 ) -> None:
     """Report names that the activity does not know (SM545) or another object owns (SM544)."""
@@ -137,11 +136,11 @@ def report_unknown_targets(
     for assignment in unresolved:
         if assignment.is_bound or assignment.action.subkind == "write":
             continue
-        target = writers.target(assignment.action, assignment.name)
+        target = writers.resolve_target(assignment.action, assignment.name)
         if target is not None:
             if activity in graph.ancestors(target):
                 continue
-            label = called(graph, assignment.action)
+            label = find_label(graph, assignment.action)
             unfollowed = UntrackedFeature(target, ELSEWHERE, (f"action '{label}'",))
             report_untracked(graph, activity, [unfollowed], sink)
         elif assignment.name.partition(".")[0] not in (

@@ -14,11 +14,10 @@ from sysmlc.logic.activities.token_graph import Store, TokenGraph, Write
 from sysmlc.logic.contract import Domain, IntegerDomain, Owner, Variable
 from sysmlc.logic.expressions.elaboration import ElaborationError
 from sysmlc.logic.expressions.features import Feature
+from sysmlc.logic.feature_writes import FeatureWrite, WriterIndex, find_label
 from sysmlc.logic.formula import Formula
 from sysmlc.logic.machines.symbolic_path import split_by_range
 from sysmlc.logic.simplify import is_satisfiable, remove_redundant, substitute
-from sysmlc.logic.writers import Writers, called
-from sysmlc.logic.written import Assigned
 from sysmlc.passes.activities.assignments import (
     DECIDED,
     ELSEWHERE,
@@ -44,7 +43,7 @@ def track_stores(
     assignments: Iterable[list[ResolvedAssignment]],
     tokens: TokenGraph,
     scope: Scope,
-    writers: Writers,
+    writers: WriterIndex,
 ) -> tuple[TokenGraph, list[UntrackedFeature]]:
     """Return the token graph with the variables that its nodes assign, and the untracked features.
 
@@ -67,13 +66,13 @@ class _StoreTracker:
         activity: Element,
         tokens: TokenGraph,
         scope: Scope,
-        writers: Writers,
+        writers: WriterIndex,
     ) -> None:
         self.graph, self.activity, self.tokens, self.scope = graph, activity, tokens, scope
         self.writers = writers
         self.nodes = {node.id: node for node in tokens.workers()}
         self.features: dict[str, Feature] = {}
-        self.assigned: dict[str, list[Assigned]] = {}
+        self.assigned: dict[str, list[FeatureWrite]] = {}
         self.writes: dict[str, list[Write]] = {}
         self.refused: dict[str, Refusal] = {}
         self.outside: set[str] = set()
@@ -111,7 +110,7 @@ class _StoreTracker:
             self.writes.setdefault(name, []).append(Write(node, text, cases, tuple(stops[name])))
 
     def _evaluate_cases(
-        self, assignment: Assigned, feature: Feature, cases_of: dict[str, _Cases]
+        self, assignment: FeatureWrite, feature: Feature, cases_of: dict[str, _Cases]
     ) -> list[_Way]:
         """Return the values that an assignment gives, each with its condition.
 
@@ -209,7 +208,7 @@ class _StoreTracker:
     def _find_other_writer(self, feature: Feature) -> Element | None:
         name = feature.variable
         if name not in self.others:
-            self.others[name] = self.writers.beside(feature.element, self.activity)
+            self.others[name] = self.writers.find_other_writer(feature.element, self.activity)
         return self.others[name]
 
     def _find_refusal(self, name: str) -> Refusal | None:
@@ -226,7 +225,7 @@ class _StoreTracker:
         if name in self.refused:
             return self.refused[name]
         writer = None if self._is_local(feature) else self._find_other_writer(feature)
-        return None if writer is None else refuse_shared(called(self.graph, writer))
+        return None if writer is None else refuse_shared(find_label(self.graph, writer))
 
     def _make_store(self, name: str) -> Store:
         feature = self.features[name]

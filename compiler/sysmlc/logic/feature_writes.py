@@ -1,0 +1,270 @@
+"""Writes of features: which features an action writes, and which actions write a feature.
+
+An action assigns a feature (``x := e`` in its body), writes a structural feature (UML 2.5.1,
+16.8.3: Add Structural Feature Value, with a literal as value), or binds an output of what it calls
+to a feature (SysML 2.0, 7.16: ``out x = level``).
+"""
+
+import re
+from collections.abc import Iterable, Iterator
+
+from msgspec import Struct
+
+from sysmlc.ir import Edge, Element, Graph, Kind, query
+from sysmlc.logic.expressions.named_elements import VALUE_KINDS, find_named_values
+from sysmlc.logic.expressions.expression import (
+    Assignment,
+    Expression,
+    ExpressionError,
+    name_of,
+    print_expression,
+)
+from sysmlc.logic.expressions.parsing import parse_effect, parse_expression
+
+_ASSIGNED_NAME = re.compile(r"([^\W\d]\w*)\s*:=")
+"""The last name of each assigned path, in a body without quoted names."""
+_PATH_SEPARATOR = re.compile(r"::|\.")
+_NAMED = (*VALUE_KINDS, *query.CLASSIFIERS, Kind.PACKAGE)
+"""Kinds that a path of names may lead through."""
+
+
+class FeatureWrite(Struct, frozen=True):
+    """A write of a feature by an action; ``value`` is None if the model does not give the value."""
+
+    action: Element
+    name: str
+    value: Expression | None
+    is_bound: bool = False
+    """Whether an output of what the action calls is bound to the feature, so that the environment
+    decides the value.
+    """
+
+    @property
+    def text(self) -> str:
+        """The value as text, empty without a value."""
+        return "" if self.value is None else print_expression(self.value)
+
+
+# -- features that an action writes ----------------------------------------------------------------
+
+
+def iter_writes(graph: Graph, action: Element) -> Iterator[FeatureWrite]:
+    """Yield the writes of an action in the order of execution."""
+    if action.subkind == "write":
+        yield from _read_write_action(graph, action)
+    yield from _iter_assignments(action)
+    for name in _iter_bound_names(graph, action):
+        yield FeatureWrite(action, name, None, is_bound=True)
+
+
+def _iter_written_names(graph: Graph, action: Element) -> Iterator[str]:
+    """Yield the names that an action writes; a write action refers to its feature instead."""
+    yield from (write.name for write in _iter_assignments(action))
+    yield from _iter_bound_names(graph, action)
+
+
+def _iter_mentioned_names(graph: Graph, action: Element) -> Iterator[str]:
+    """Yield the last names of all features that an action may write, mostly without parsing."""
+    if action.subkind == "write":
+        yield from (feature.name for feature in graph.targets(action, Edge.CALLS))
+    body = action.attrs.get("body")
+    if isinstance(body, str) and ":=" in body:
+        if "'" in body:
+            # A quoted name may contain blanks and ":=", so the body must be parsed.
+            yield from (_last_name(name) for name in _iter_written_names(graph, action))
+        else:
+            yield from _ASSIGNED_NAME.findall(body)
+    yield from (_last_name(name) for name in _iter_bound_names(graph, action))
+
+
+def _last_name(path: str) -> str:
+    """Return the last name of a path: ``load`` of ``arm.load``."""
+    return path.rpartition("::")[2].rpartition(".")[2]
+
+
+def _iter_bound_names(graph: Graph, action: Element) -> Iterator[str]:
+    """Yield the names of features to which outputs of what the action calls are bound."""
+    for pin in graph.owned(action) if action.kind is Kind.ACTION else ():
+        if pin.attrs.get("direction") in ("out", "inout", "return"):
+            text = pin.attrs.get("value")
+            name = _parse_name(text) if isinstance(text, str) else None
+            if name:
+                yield name
+
+
+def _parse_name(text: str) -> str | None:
+    """Return the path of names that a text is, None for another expression."""
+    try:
+        return name_of(parse_expression(text))
+    except ExpressionError:
+        return None
+
+
+def _iter_assignments(action: Element) -> Iterator[FeatureWrite]:
+    """Yield the assignments in the body of an opaque action or function behaviour."""
+    body = action.attrs.get("body")
+    if action.subkind not in ("opaque", "function"):
+        return
+    if not isinstance(body, str) or ":=" not in body:
+        return
+    try:
+        statements = parse_effect(body)
+    except ExpressionError:
+        return
+    for statement in statements:
+        name = name_of(statement.target) if isinstance(statement, Assignment) else None
+        if name and isinstance(statement, Assignment):
+            yield FeatureWrite(action, name.removeprefix("self."), statement.value)
+
+
+def _read_write_action(graph: Graph, action: Element) -> Iterator[FeatureWrite]:
+    """Yield the write of an Add Structural Feature Value action."""
+    feature = graph.target(action, Edge.CALLS)
+    if feature is not None:
+        yield FeatureWrite(action, feature.name, _read_written_value(graph, action))
+
+
+def _read_written_value(graph: Graph, action: Element) -> Expression | None:
+    """Return the literal that a write action stores in the object that performs the activity."""
+    pins = {pin.subkind or pin.name: pin for pin in graph.owned(action) if pin.kind is Kind.PIN}
+    object_pin, value_pin = pins.get("object"), pins.get("value")
+    if value_pin is None or not _is_self(graph, object_pin):
+        return None
+    text = _read_literal(graph, value_pin)
+    try:
+        return None if text is None else parse_expression(text)
+    except ExpressionError:
+        return None
+
+
+def _is_self(graph: Graph, pin: Element | None) -> bool:
+    """Whether the object at the pin is the one that performs the activity."""
+    source = None if pin is None else _find_source(graph, pin)
+    return source is None or source.subkind == "read-self"
+
+
+def _read_literal(graph: Graph, pin: Element) -> str | None:
+    """Return the literal of the value action whose flow enters the pin, else of the pin itself."""
+    source = _find_source(graph, pin)
+    holder = source if source is not None and source.subkind == "value" else pin
+    value = holder.attrs.get("value")
+    if value is None:
+        return None
+    return str(value).lower() if isinstance(value, bool) else str(value)
+
+
+def _find_source(graph: Graph, pin: Element) -> Element | None:
+    """Return the action from which the only flow into a pin comes."""
+    flows = list(graph.sources(pin, Edge.FLOW_TARGET))
+    source = graph.target(flows[0], Edge.FLOW_SOURCE) if len(flows) == 1 else None
+    return graph.owner(source) if source is not None and source.kind is Kind.PIN else source
+
+
+# -- actions that write a feature ------------------------------------------------------------------
+
+
+class WriterIndex:
+    """The actions and effects of a graph by the features that they write.
+
+    The first query builds the index. The graph must not change while the index is in use.
+    """
+
+    def __init__(self, graph: Graph) -> None:
+        self._graph = graph
+        self._candidates_by_name: dict[str, list[Element]] | None = None
+        self._members_by_scope: dict[str, dict[str, Element]] = {}
+
+    def find_other_writer(self, feature: Element, behaviour: Element) -> Element | None:
+        """Return the first writer of the feature that is outside the behaviour."""
+        for writer in self._iter_writers(feature):
+            if writer is not behaviour and behaviour not in self._graph.ancestors(writer):
+                return writer
+        return None
+
+    def resolve_target(self, writer: Element, path: str) -> Element | None:
+        """Return the feature that a path (``full``, ``arm.load``, ``Plant::total``) denotes.
+
+        The first name is looked up in the scopes around the writer, nearest first.
+        """
+        first, *rest = _PATH_SEPARATOR.split(path)
+        element = self._find_visible(writer, first)
+        for name in rest:
+            element = None if element is None else self._find_member_of_value(element, name)
+        return element if element is not None and element.kind in VALUE_KINDS else None
+
+    def _iter_writers(self, feature: Element) -> Iterator[Element]:
+        # An object has one value for a feature and for all features that redefine it.
+        redefinitions = (
+            feature,
+            *query.redefined_features(self._graph, feature),
+            *self._list_redefining(feature),
+        )
+        for slot in redefinitions:
+            for writer in self._list_candidates(slot.name):
+                if slot in self._iter_written_features(writer, slot.name):
+                    yield writer
+
+    def _list_candidates(self, name: str) -> list[Element]:
+        """Return the actions that may write a feature of the name."""
+        # Parsing the bodies of all actions instead would take ten times as long.
+        if self._candidates_by_name is None:
+            self._candidates_by_name = _index_candidates(self._graph)
+        return self._candidates_by_name.get(name, [])
+
+    def _iter_written_features(self, writer: Element, last_name: str) -> Iterator[Element | None]:
+        """Yield the features that an action writes by paths that end with the name."""
+        if writer.subkind == "write":
+            yield from self._graph.targets(writer, Edge.CALLS)
+        for path in _iter_written_names(self._graph, writer):
+            if _last_name(path) == last_name:
+                yield self.resolve_target(writer, path)
+
+    def _list_redefining(self, feature: Element) -> Iterable[Element]:
+        """Return the features that redefine the feature, directly or transitively."""
+        visited = {feature.id: feature}
+        worklist = [feature]
+        for redefined in worklist:
+            redefining = self._graph.sources(redefined, Edge.REDEFINES)
+            new = [element for element in redefining if element.id not in visited]
+            visited.update((element.id, element) for element in new)
+            worklist += new
+        return worklist[1:]
+
+    def _find_visible(self, writer: Element, name: str) -> Element | None:
+        """Return the member of that name of the nearest scope around the writer, or a root."""
+        for scope in (writer, *self._graph.ancestors(writer)):
+            member = self._find_member(scope, name)
+            if member is not None:
+                return member
+        return next((root for root in self._graph.roots() if root.name == name), None)
+
+    def _find_member_of_value(self, element: Element, name: str) -> Element | None:
+        """Return the member of an element, or else of its type."""
+        type_ = query.type_of(self._graph, element)
+        return self._find_member(element, name) or (type_ and self._find_member(type_, name))
+
+    def _find_member(self, scope: Element, name: str) -> Element | None:
+        """Return the member of a scope, inherited ones of a classifier included."""
+        members = self._members_by_scope.get(scope.id)
+        if members is None:
+            owned = (element for element in self._graph.owned(scope) if element.kind in _NAMED)
+            members = {element.name: element for element in owned if element.name}
+            if scope.kind in query.CLASSIFIERS:
+                members |= find_named_values(self._graph, scope)
+            self._members_by_scope[scope.id] = members
+        return members.get(name)
+
+
+def _index_candidates(graph: Graph) -> dict[str, list[Element]]:
+    """Return the actions and activities by the last names of features that they may write."""
+    candidates: dict[str, list[Element]] = {}
+    for action in (*graph.of_kind(Kind.ACTION), *graph.of_kind(Kind.ACTIVITY)):
+        for name in dict.fromkeys(_iter_mentioned_names(graph, action)):
+            candidates.setdefault(name, []).append(action)
+    return candidates
+
+
+def find_label(graph: Graph, writer: Element) -> str:
+    """Return the name of a writer; a nameless action or effect is called like its owner."""
+    elements = (writer, *graph.ancestors(writer))
+    return next((element.name for element in elements if element.name), writer.subkind)
