@@ -14,7 +14,7 @@ from sysmlc.logic.contract import (
     Owner,
     Variable,
 )
-from sysmlc.logic.formats.counting import in_order
+from sysmlc.logic.formats.encodings import sort_by_class
 from sysmlc.logic.formula import Apply, Const, Op, Var
 
 VARIABLES = (
@@ -95,7 +95,7 @@ def canonical(contract):
     def side(found):
         whole = f.both(*map(ltl, found))
         parts = {Conjunct(part, class_, ""): None for class_, part in classify(whole)}
-        return in_order(one for one in parts if one.formula != f.TRUE)
+        return sort_by_class(one for one in parts if one.formula != f.TRUE)
 
     return (
         sorted(contract.variables, key=lambda one: (one.owner, one.name)),

@@ -21,7 +21,7 @@ from sysmlc.logic.contract import (
 )
 from sysmlc.logic.formats import rules
 from sysmlc.logic.formula import Const, Var
-from sysmlc.logic.ltl import parse_formula
+from sysmlc.logic.infix import parse_formula
 from sysmlc.logic.printing import print_formula
 
 RULES = [one for code, one in sorted(catalogue().items()) if "SM580" <= code <= "SM589"]

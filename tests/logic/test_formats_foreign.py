@@ -24,7 +24,7 @@ from sysmlc.logic.contract import (
 )
 from sysmlc.logic.domains import values
 from sysmlc.logic.evaluate import value_of
-from sysmlc.logic.ltl import parse_formula
+from sysmlc.logic.infix import parse_formula
 
 OPERATORS = {
     "=": lambda a, b: a == b,

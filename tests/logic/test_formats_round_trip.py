@@ -31,7 +31,7 @@ def test_what_was_written_is_read_again(form, contract):
     sink = Sink()
     (again,) = formats.read(text, "Gate.txt", sink, form)
     assert [found.message for found in sink] == []
-    assert canonical(again) == canonical(formats.plain(contract, form))
+    assert canonical(again) == canonical(formats.lower(contract, form))
 
 
 @given(contract=contracts)

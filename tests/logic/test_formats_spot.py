@@ -12,7 +12,7 @@ from sysmlc.logic import formula as f
 from sysmlc.logic.contract import BooleanDomain, Class, Conjunct, Contract, Owner, Variable
 from sysmlc.logic.formats import NotExpressibleError
 from sysmlc.logic.formula import Apply, Const, Op, Var
-from sysmlc.logic.ltl import parse_formula
+from sysmlc.logic.infix import parse_formula
 
 VARIABLES = tuple(
     Variable(name, owner, BooleanDomain())

@@ -7,7 +7,8 @@ from lark.exceptions import UnexpectedInput
 from ltl_judge import judge
 
 from sysmlc.logic.contract import BooleanDomain, IntegerDomain
-from sysmlc.logic.ltl import FormulaError, line_and_column, parse_formula
+from sysmlc.logic.infix import parse_formula
+from sysmlc.logic.syntax import FormulaError, line_and_column
 
 TRUTHS = ("p", "q", "r'", "true", "false")
 SIGNS = ("&", "&&", "|", "||", "->", "<->", "!", "(", ")", "G", "F", "X", "[]", "<>", "U", "W", "V")
@@ -52,7 +53,7 @@ def test_the_reader_and_the_grammar_agree(words):
 def test_every_fault_has_its_place(text, place, reason):
     with pytest.raises(FormulaError) as caught:
         parse_formula(text, DOMAINS)
-    assert (line_and_column(text, caught.value.at), str(caught.value)) == (place, reason)
+    assert (line_and_column(text, caught.value.offset), str(caught.value)) == (place, reason)
 
 
 def test_a_variable_may_be_called_like_an_operator():

@@ -14,8 +14,9 @@ from hypothesis import strategies as st
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import BooleanDomain, EnumerationDomain, IntegerDomain
 from sysmlc.logic.formula import Apply, Const, Op, Var
-from sysmlc.logic.ltl import FormulaError, parse_formula
+from sysmlc.logic.infix import parse_formula
 from sysmlc.logic.printing import print_formula
+from sysmlc.logic.syntax import FormulaError
 
 VARIABLES = {
     "p": BooleanDomain(),

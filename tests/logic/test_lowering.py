@@ -18,11 +18,16 @@ from sysmlc.logic.contract import (
     Variable,
 )
 from sysmlc.logic.evaluate import is_true
-from sysmlc.logic.formats import plain
-from sysmlc.logic.formats.counting import counted, in_bits
-from sysmlc.logic.formats.lower import TooManyValuesError, renamed, without_arithmetic, written_out
+from sysmlc.logic.formats import lower
+from sysmlc.logic.formats.encodings import encode_as_bits, encode_as_integers
+from sysmlc.logic.formats.lowering import (
+    TooManyValuesError,
+    eliminate_arithmetic,
+    expand_comparison,
+    rename_reserved,
+)
 from sysmlc.logic.formula import Apply, Const, Op, Var
-from sysmlc.logic.ltl import parse_formula
+from sysmlc.logic.infix import parse_formula
 
 
 def number(variable, value):
@@ -65,9 +70,9 @@ PAIRS = [
 @settings(max_examples=60, deadline=None)
 def test_a_lowered_formula_is_true_for_the_same_values(formula):
     contract = Contract("C", "", VARIABLES, (), (Conjunct(formula, Class.SAFETY, "here"),))
-    flat = without_arithmetic(contract).guarantees[0].formula
-    numbers = counted(contract, is_flat=True).guarantees[0].formula
-    bits = in_bits(contract).guarantees[-1].formula
+    flat = eliminate_arithmetic(contract).guarantees[0].formula
+    numbers = encode_as_integers(contract, is_flat=True).guarantees[0].formula
+    bits = encode_as_bits(contract).guarantees[-1].formula
     for now, then in PAIRS:
         truth = is_true(formula, now, then)
         assert is_true(flat, now, then) == truth
@@ -84,7 +89,7 @@ def as_sums(row):
 @settings(max_examples=100, deadline=None)
 def test_sums_of_slugs_are_true_for_the_same_values(formula):
     contract = Contract("C", "", VARIABLES, (), (Conjunct(formula, Class.SAFETY, "here"),))
-    sums = plain(contract, "structured").guarantees[0].formula
+    sums = lower(contract, "structured").guarantees[0].formula
     for now, then in PAIRS[:100]:
         assert is_true(sums, as_sums(now), as_sums(then)) == is_true(formula, now, then)
 
@@ -94,7 +99,7 @@ def test_a_sum_about_a_range_below_0_counts_from_0_in_slugs(text):
     known = {one.name: one.domain for one in VARIABLES}
     formula = parse_formula(text, known)
     contract = Contract("C", "", VARIABLES, (), (Conjunct(formula, Class.SAFETY, "here"),))
-    sums = plain(contract, "structured").guarantees[0].formula
+    sums = lower(contract, "structured").guarantees[0].formula
     truths = [
         (is_true(formula, row, row), is_true(sums, as_sums(row), as_sums(row))) for row in ROWS
     ]
@@ -105,15 +110,15 @@ def test_a_sum_about_a_range_below_0_counts_from_0_in_slugs(text):
 def test_a_comparison_may_begin_with_the_constant(text):
     formula = parse_formula(text, {one.name: one.domain for one in VARIABLES})
     contract = Contract("C", "", VARIABLES, (), (Conjunct(formula, Class.SAFETY, "here"),))
-    flat = without_arithmetic(contract).guarantees[0].formula
-    bits = in_bits(contract).guarantees[-1].formula
+    flat = eliminate_arithmetic(contract).guarantees[0].formula
+    bits = encode_as_bits(contract).guarantees[-1].formula
     for row in ROWS:
         truth = is_true(formula, row, row)
         assert [is_true(flat, row, row), is_true(bits, as_bits(row), as_bits(row))] == [truth] * 2
 
 
 def test_bits_that_stand_for_no_value_are_ruled_out_on_their_owner_s_side():
-    made = in_bits(Contract("C", "", VARIABLES, (), ()))
+    made = encode_as_bits(Contract("C", "", VARIABLES, (), ()))
     assert [one.name for one in made.variables if one.name.startswith("m_")] == ["m_0", "m_1"]
     ruled = {one.text: one.class_ for one in made.guarantees}
     assert ruled == {"'m' is at most 2.": Class.SAFETY, "'mode' is at most 2.": Class.SAFETY}
@@ -121,7 +126,9 @@ def test_bits_that_stand_for_no_value_are_ruled_out_on_their_owner_s_side():
 
 
 def test_names_that_a_language_has_taken_get_an_underscore():
-    made = renamed(Contract("C", "", VARIABLES, (), (busy("mode"),)), ("go", "mode", "busy"))
+    made = rename_reserved(
+        Contract("C", "", VARIABLES, (), (busy("mode"),)), ("go", "mode", "busy")
+    )
     names = [one.name for one in made.variables]
     assert names == ["go_", "n", "low", "done", "m", "mode_"]
     assert made.variables[-1].domain == EnumerationDomain(("idle", "busy_", "stop"))
@@ -131,7 +138,7 @@ def test_names_that_a_language_has_taken_get_an_underscore():
 def test_a_name_that_is_taken_gets_another_underscore_wherever_it_is_said():
     domain = EnumerationDomain(("busy", "busy_"))
     mode, said = Variable("mode", Owner.SYSTEM, domain), (busy("mode"), busy("mode"))
-    made = renamed(Contract("C", "", (mode,), said[:1], said[1:]), ("busy",))
+    made = rename_reserved(Contract("C", "", (mode,), said[:1], said[1:]), ("busy",))
     assert made.variables[0].domain == EnumerationDomain(("busy__", "busy_"))
     assert made.assumptions[0].formula == f.eq(Var("mode"), Const("busy__"))
     assert made.guarantees[0].formula == f.eq(Var("mode"), Const("busy__"))
@@ -145,5 +152,5 @@ def test_what_compares_too_many_values_is_named():
     domain = {name: IntegerDomain(0, 999) for name in "ab"}
     comparison = Apply(Op.LT, (Var("a"), Var("b")))
     with pytest.raises(TooManyValuesError):
-        written_out(comparison, domain)
-    assert written_out(comparison, domain, 1 << 20) is not None
+        expand_comparison(comparison, domain)
+    assert expand_comparison(comparison, domain, 1 << 20) is not None

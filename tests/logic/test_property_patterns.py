@@ -9,9 +9,10 @@ from test_reductions import bit_rules, ltl
 
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import BooleanDomain, IntegerDomain
-from sysmlc.logic.ltl import FormulaError, line_and_column, parse_formula
+from sysmlc.logic.infix import parse_formula
 from sysmlc.logic.reduction.formula_reduction import NotReducibleError, reduce_formula
 from sysmlc.logic.reduction.history import History
+from sysmlc.logic.syntax import FormulaError, line_and_column
 from sysmlc.logic.texts.formal import read_sentence
 
 DOMAINS = {name: BooleanDomain() for name in "pqrs"} | {"n": IntegerDomain(0, 3)}
@@ -149,7 +150,7 @@ def test_a_bounded_response_means_nested_nexts(scope, expected):
 def test_a_malformed_sentence_is_reported_with_its_location(text, place, reason):
     with pytest.raises(FormulaError) as caught:
         read_sentence(text, DOMAINS)
-    assert line_and_column(text, caught.value.at) == place
+    assert line_and_column(text, caught.value.offset) == place
     assert reason in str(caught.value)
 
 
@@ -168,7 +169,7 @@ def test_any_words_are_a_sentence_or_a_fault_with_a_location(words):
     try:
         formula = read_sentence(text, DOMAINS)
     except FormulaError as error:
-        assert 0 <= error.at <= len(text)  # noqa: PT017
+        assert 0 <= error.offset <= len(text)  # noqa: PT017
     else:
         assert reduce_formula(formula, History(DOMAINS))
 

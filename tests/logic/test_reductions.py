@@ -9,7 +9,7 @@ from test_formats_spot import for_spot
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import BooleanDomain, Class, Conjunct, Contract, Owner, Variable
 from sysmlc.logic.formula import Apply, Op, Var
-from sysmlc.logic.ltl import parse_formula
+from sysmlc.logic.infix import parse_formula
 from sysmlc.logic.printing import print_formula
 from sysmlc.logic.reduction.contract_reduction import reduce_contract
 from sysmlc.logic.reduction.formula_reduction import NotReducibleError, reduce_formula

@@ -14,7 +14,7 @@ from sysmlc.logic.contract import (
     Owner,
     Variable,
 )
-from sysmlc.logic.ltl import parse_formula
+from sysmlc.logic.infix import parse_formula
 
 CLASSES = {"at first": Class.INIT, "always": Class.SAFETY, "recurs": Class.LIVENESS}
 SIDES = {"assume": [], "promise": []}

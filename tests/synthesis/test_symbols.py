@@ -12,7 +12,7 @@ from sysmlc.logic import formula as f
 from sysmlc.logic.contract import IntegerDomain, Owner, Variable
 from sysmlc.logic.evaluate import is_true
 from sysmlc.logic.formula import Apply, Const, Op, Var
-from sysmlc.logic.ltl import parse_formula
+from sysmlc.logic.infix import parse_formula
 from sysmlc.synthesis import Manager, SymbolError, Symbols
 
 VARIABLES = contract("""

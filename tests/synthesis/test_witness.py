@@ -4,7 +4,7 @@ import pytest
 from contracts_in_lines import contract
 
 from sysmlc.logic.contract import BooleanDomain, Class, Conjunct
-from sysmlc.logic.ltl import parse_formula
+from sysmlc.logic.infix import parse_formula
 from sysmlc.synthesis.algebra.fair_systems import Trace
 from sysmlc.synthesis.witnesses import Party, Witness, describe_run, witness_diagram, witness_files
 

@@ -109,8 +109,8 @@ def _read_specification(file: Path, language: str, config: "Config") -> Contract
     from sysmlc.sources.limits import DOCUMENT_LIMITS
     from sysmlc.sources.whole import read_whole
 
-    if language and not (language in formats.FORMS and formats.FORMS[language].is_read):
-        readable = ", ".join(name for name, form in formats.FORMS.items() if form.is_read)
+    if language and not (language in formats.FORMATS and formats.FORMATS[language].is_read):
+        readable = ", ".join(name for name, form in formats.FORMATS.items() if form.is_read)
         fail(f"'{language}' is no form that is read; known are {readable}")
     try:
         name = escape_undecodable(file.as_posix())

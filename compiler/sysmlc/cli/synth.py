@@ -100,7 +100,7 @@ def command(
     from sysmlc.cli import session
     from sysmlc.cli.contract_files import read_contracts
     from sysmlc.cli.progress import Progress
-    from sysmlc.logic.formats.lower import unambiguous
+    from sysmlc.logic.formats.lowering import rename_ambiguous_literals
     from sysmlc.synthesis import Limits
     from sysmlc.synthesis.decision import Options
 
@@ -112,7 +112,7 @@ def command(
     progress = Progress(settings.verbose)
     limits = Limits(nodes, int(LIMITS.gibibytes * _GIBIBYTE), seconds or LIMITS.seconds)
     read = read_contracts(file, language, config, settings)
-    read = replace(read, contracts=tuple(map(unambiguous, read.contracts)))
+    read = replace(read, contracts=tuple(map(rename_ambiguous_literals, read.contracts)))
     options = Options(engine or "", limits, progress.note, is_explained=not is_decided_only)
     try:
         if is_played:

@@ -11,7 +11,6 @@ from collections.abc import Iterable, Iterator
 from msgspec import Struct
 
 from sysmlc.ir import Edge, Element, Graph, Kind, query
-from sysmlc.logic.expressions.named_elements import VALUE_KINDS, find_named_values
 from sysmlc.logic.expressions.expression import (
     Assignment,
     Expression,
@@ -19,6 +18,7 @@ from sysmlc.logic.expressions.expression import (
     name_of,
     print_expression,
 )
+from sysmlc.logic.expressions.named_elements import VALUE_KINDS, find_named_values
 from sysmlc.logic.expressions.parsing import parse_effect, parse_expression
 
 _ASSIGNED_NAME = re.compile(r"([^\W\d]\w*)\s*:=")

@@ -1,7 +1,8 @@
-"""Formulas in infix notation, read by precedence; tables say how a language spells them.
+"""Parser of infix formulas by operator precedence; a ``Syntax`` defines operators and spelling.
 
-grammars/ltl.lark is the grammar of the neutral spelling; the tests hold this reader against it
-(decision 22: to import Lark and to build its tables takes 0.15 s in every run).
+grammars/ltl.lark specifies the neutral form, and the tests compare this parser with it. The parser
+does not run the grammar, because importing Lark and building its tables takes 0.15 s in every run
+(decision 22).
 """
 
 from collections.abc import Callable, Mapping
@@ -11,39 +12,43 @@ from sysmlc.logic import domains
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import BooleanDomain, Domain, EnumerationDomain
 from sysmlc.logic.formula import Apply, Const, Formula, Op, Var
-from sysmlc.logic.spelling import (
+from sysmlc.logic.syntax import (
     ARITHMETIC,
     COMPARISONS,
-    ORDERS,
+    NEUTRAL,
+    ORDERINGS,
     Cursor,
     FormulaError,
     Syntax,
     Token,
+    tokenize,
 )
 from sysmlc.support.recursion import allow_recursion
 
-DEEPEST = 200
-"""Levels of nesting that are read: what comes after walks through formulas by recursion."""
-TRUTH, NUMBER, WORD = "truth", "number", "word"
-"""Kinds of operands; the kind of an enumeration's values is its domain."""
+MAX_DEPTH = 200
+"""Most levels of nesting; later steps walk through formulas recursively."""
+BOOLEAN, NUMBER, WORD = "boolean", "number", "word"
+"""Kinds of terms. A word is a literal whose enumeration is not known yet; a term whose enumeration
+is known has the domain as its kind.
+"""
 Kind = str | EnumerationDomain
 
 
-class Part(NamedTuple):
-    """Part of a formula, what kind of value it has, and where it begins."""
+class Term(NamedTuple):
+    """A part of a formula, the kind of its value, and the offset where it begins."""
 
     formula: Formula
     kind: Kind
-    at: int
+    offset: int
 
 
-class Reader:
-    """Reads formulas from a cursor; a language with more to an operand overrides ``word``."""
+class FormulaReader:
+    """Reads formulas from a cursor; a format overrides what its names and operands mean."""
 
-    counts_literals: ClassVar[bool] = False
-    """Whether a number names the literal of an enumeration in that place, from 0."""
+    accepts_literal_numbers: ClassVar[bool] = False
+    """Whether ``door = 1`` means the second literal of the enumeration of ``door``."""
 
-    negates_operands: ClassVar[bool] = False
+    allows_bare_negation: ClassVar[bool] = False
     """Whether ``a = !b`` needs no parentheses."""
 
     def __init__(self, cursor: Cursor, syntax: Syntax, variables: Mapping[str, Domain]) -> None:
@@ -52,194 +57,223 @@ class Reader:
         self._syntax = syntax
         self._depth = 0
 
-    def formula(self, weakest: int = 0) -> Formula:
-        """The formula that comes next, which is true or false, and joined by no weaker operator.
+    def read_formula(self, min_precedence: int = 0) -> Formula:
+        """Read a Boolean formula up to the first operator of a lower precedence.
 
         Raises FormulaError.
         """
-        with allow_recursion(DEEPEST):
-            return self.truth(self.part(weakest))
+        with allow_recursion(MAX_DEPTH):
+            return self.require_boolean(self.read_term(min_precedence))
 
-    def truth(self, part: Part) -> Formula:
-        """The part's formula, which must be true or false. Raises FormulaError."""
-        if part.kind != TRUTH:
-            raise FormulaError(f"{self.told(part)} is not Boolean", part.at)
-        return part.formula
+    def require_boolean(self, term: Term) -> Formula:
+        """Return the formula of a term that must be Boolean. Raises FormulaError."""
+        if term.kind != BOOLEAN:
+            raise FormulaError(f"{self.describe(term)} is not Boolean", term.offset)
+        return term.formula
 
-    def number(self, part: Part) -> Formula:
-        """The part's formula, which must be a number. Raises FormulaError."""
-        if part.kind != NUMBER:
-            raise FormulaError(f"{self.told(part)} is not a number", part.at)
-        return part.formula
+    def require_number(self, term: Term) -> Formula:
+        """Return the formula of a term that must be a number. Raises FormulaError."""
+        if term.kind != NUMBER:
+            raise FormulaError(f"{self.describe(term)} is not a number", term.offset)
+        return term.formula
 
-    def told(self, part: Part) -> str:
-        """The part as messages call it."""
-        match part.formula:
+    def describe(self, term: Term) -> str:
+        """Return what messages call the term."""
+        match term.formula:
             case Var(name) | Const(name):
                 return f"'{str(name).lower() if isinstance(name, bool) else name}'"
             case _:
-                return {TRUTH: "a condition", NUMBER: "a sum"}.get(str(part.kind), "this")
+                return {BOOLEAN: "a condition", NUMBER: "a sum"}.get(str(term.kind), "this")
 
-    def part(self, weakest: int) -> Part:
-        """What comes next, as far as its operators bind as strongly or more."""
+    def read_term(self, min_precedence: int) -> Term:
+        """Read a term up to the first operator of a lower precedence. Raises FormulaError."""
         self._depth += 1
-        if self._depth > DEEPEST:
-            raise FormulaError(f"it is nested more than {DEEPEST} deep", self.cursor.next.at)
-        left, steps = self._operand(weakest), 0
-        while (op := self._operator(weakest)) is not None:
-            steps += op not in (Op.AND, Op.OR)
-            if self._depth + steps > DEEPEST:
-                raise FormulaError(f"it has more than {DEEPEST} operands", self.cursor.next.at)
-            left = self._applied(op, left)
+        if self._depth > MAX_DEPTH:
+            reason = f"it is nested more than {MAX_DEPTH} deep"
+            raise FormulaError(reason, self.cursor.next.offset)
+        left, depth = self._read_prefix_or_operand(min_precedence), self._depth
+        while (op := self._peek_operator(min_precedence)) is not None:
+            # Chains of "and" and "or" become one flat formula; others nest at each operator.
+            depth += op not in (Op.AND, Op.OR)
+            if depth > MAX_DEPTH:
+                reason = f"it has more than {MAX_DEPTH} operands"
+                raise FormulaError(reason, self.cursor.next.offset)
+            left = self._read_infix(op, left)
         self._depth -= 1
         return left
 
-    def _operator(self, weakest: int) -> Op | None:
+    def _peek_operator(self, min_precedence: int) -> Op | None:
+        """Return the infix operator that comes next, unless its precedence is too low."""
         token = self.cursor.next
         if token.kind not in ("sign", "name"):
             return None
         op = self._syntax.infix.get(token.text)
-        return op if op is not None and self._syntax.strength[op] >= weakest else None
+        is_strong = op is not None and self._syntax.precedence[op] >= min_precedence
+        return op if is_strong else None
 
-    def _applied(self, op: Op, left: Part) -> Part:
-        own = self._syntax.strength[op]
-        if op in _GATHERED:
-            return self._gathered(op, own, left)
-        at = self.cursor.take().at
-        right = self.part(own + (op not in self._syntax.from_the_right))
+    def _read_infix(self, op: Op, left: Term) -> Term:
+        """Read the operator and its right operand."""
+        precedence = self._syntax.precedence[op]
+        if op in _CHAINS:
+            return self._read_chain(op, precedence, left)
+        offset = self.cursor.take().offset
+        right = self.read_term(precedence + (op not in self._syntax.right_associative))
         if op in COMPARISONS:
-            made = self._compared(op, left, right, at)
-            if (further := self._operator(own)) in COMPARISONS and further is not None:
-                self.cursor.fail()
-            return made
+            comparison = self._build_comparison(op, left, right, offset)
+            if self._peek_operator(precedence) in COMPARISONS:
+                self.cursor.fail()  # a < b < c
+            return comparison
         if op in ARITHMETIC:
-            return Part(f.compare(op, self.number(left), self.number(right)), NUMBER, left.at)
-        return Part(_joined(op, self.truth(left), self.truth(right)), TRUTH, left.at)
+            formula = f.compare(op, self.require_number(left), self.require_number(right))
+            return Term(formula, NUMBER, left.offset)
+        formula = _apply_connective(op, self.require_boolean(left), self.require_boolean(right))
+        return Term(formula, BOOLEAN, left.offset)
 
-    def _gathered(self, op: Op, own: int, left: Part) -> Part:
-        """All operands of a chain at once: one after the other would take the square of it."""
-        found = [self.truth(left)]
-        while self._operator(own) is op:
+    def _read_chain(self, op: Op, precedence: int, left: Term) -> Term:
+        """Read all operands of a chain of one operator."""
+        operands = [self.require_boolean(left)]
+        while self._peek_operator(precedence) is op:
             self.cursor.take()
-            found.append(self.truth(self.part(own + 1)))
-        return Part(_GATHERED[op](*found), TRUTH, left.at)
+            operands.append(self.require_boolean(self.read_term(precedence + 1)))
+        # Flattening after each operand would take quadratic time.
+        return Term(_CHAINS[op](*operands), BOOLEAN, left.offset)
 
-    def _compared(self, op: Op, left: Part, right: Part, at: int) -> Part:
-        right = self._as_literal(right, left)
-        left = self._as_literal(left, right) if right.formula.__class__ is Var else left
-        if op in ORDERS:
-            return Part(f.compare(op, self.number(left), self.number(right)), TRUTH, left.at)
+    def _build_comparison(self, op: Op, left: Term, right: Term, offset: int) -> Term:
+        right = self._convert_to_literal(right, left)
+        if isinstance(right.formula, Var):
+            left = self._convert_to_literal(left, right)
+        if op in ORDERINGS:
+            formula = f.compare(op, self.require_number(left), self.require_number(right))
+            return Term(formula, BOOLEAN, left.offset)
         if isinstance(left.kind, EnumerationDomain) and isinstance(right.kind, EnumerationDomain):
-            return Part(_of_enumerations(op, left, right), TRUTH, left.at)
+            return Term(_compare_enumerations(op, left, right), BOOLEAN, left.offset)
         if left.kind != right.kind or left.kind == WORD:
-            self._mismatch(left, right, at)
-        return Part(f.compare(op, left.formula, right.formula), TRUTH, left.at)
+            self._raise_mismatch(left, right, offset)
+        return Term(f.compare(op, left.formula, right.formula), BOOLEAN, left.offset)
 
-    def _as_literal(self, part: Part, other: Part) -> Part:
-        """A name that the enumeration on the other side has is a literal of it."""
-        if not isinstance(other.kind, EnumerationDomain):
-            return part
-        match part.formula, other.kind:
-            case ((Var(name, False) | Const(str(name))), EnumerationDomain(literals)) if (
-                name in literals
+    def _convert_to_literal(self, term: Term, opposite: Term) -> Term:
+        """Return the literal that *term* names in the enumeration on the opposite side, if any."""
+        if not isinstance(opposite.kind, EnumerationDomain):
+            return term
+        literals = opposite.kind.literals
+        match term.formula:
+            case Var(name, False) | Const(str(name)) if name in literals:
+                return Term(Const(name), opposite.kind, term.offset)
+            case Const(int(index)) if (
+                self.accepts_literal_numbers and term.kind == NUMBER and 0 <= index < len(literals)
             ):
-                return Part(Const(name), other.kind, part.at)
-            case Const(int(index)), EnumerationDomain(literals) if (
-                self.counts_literals and part.kind == NUMBER and 0 <= index < len(literals)
-            ):
-                return Part(Const(literals[index]), other.kind, part.at)
+                return Term(Const(literals[index]), opposite.kind, term.offset)
             case _:
-                return part
+                return term
 
-    def _mismatch(self, left: Part, right: Part, at: int) -> NoReturn:
-        for one, other in ((right, left), (left, right)):
-            if isinstance(other.kind, EnumerationDomain):
-                values = domains.describe(other.kind)
-                reason = f"{self.told(one)} is no value of {self.told(other)} ({values})"
-                raise FormulaError(reason, one.at)
-        raise FormulaError(f"{self.told(left)} and {self.told(right)} cannot be compared", at)
+    def _raise_mismatch(self, left: Term, right: Term, offset: int) -> NoReturn:
+        for value, variable in ((right, left), (left, right)):
+            if isinstance(variable.kind, EnumerationDomain):
+                values = domains.describe(variable.kind)
+                value_text, variable_text = self.describe(value), self.describe(variable)
+                reason = f"{value_text} is no value of {variable_text} ({values})"
+                raise FormulaError(reason, value.offset)
+        texts = f"{self.describe(left)} and {self.describe(right)}"
+        raise FormulaError(f"{texts} cannot be compared", offset)
 
-    def _operand(self, weakest: int) -> Part:
+    def _read_prefix_or_operand(self, min_precedence: int) -> Term:
         token = self.cursor.next
         op = self._syntax.prefix.get(token.text) if token.kind in ("sign", "name") else None
-        if op is not None and not (token.kind == "name" and self._is_name(token)):
-            return self._prefixed(op, weakest)
-        return self.operand()
+        if op is not None and not (token.kind == "name" and self._is_variable(token)):
+            return self._read_prefix(op, min_precedence)
+        return self.read_operand()
 
-    def _is_name(self, token: Token) -> bool:
-        """Whether a variable is meant that is called like an operator: nothing follows it."""
-        behind = self.cursor.after_next
-        opens = behind.text in self._syntax.prefix or behind.text in self._syntax.brackets
-        is_operand = behind.kind in ("name", "number", "string") or opens
-        is_infix = behind.kind == "name" and behind.text in self._syntax.infix
+    def _is_variable(self, token: Token) -> bool:
+        """Whether a word such as ``G`` is a variable: it is declared, and no operand follows."""
+        follower = self.cursor.after_next
+        is_opening = follower.text in self._syntax.prefix or follower.text in self._syntax.brackets
+        is_operand = follower.kind in ("name", "number", "string") or is_opening
+        is_infix = follower.kind == "name" and follower.text in self._syntax.infix
         return token.text in self.variables and (not is_operand or is_infix)
 
-    def _prefixed(self, op: Op, weakest: int) -> Part:
-        own = self._syntax.strength[op]
-        if own < weakest and not (op is Op.NOT and self.negates_operands):
+    def _read_prefix(self, op: Op, min_precedence: int) -> Term:
+        """Read a prefix operator and its operand."""
+        precedence = self._syntax.precedence[op]
+        if precedence < min_precedence and not (op is Op.NOT and self.allows_bare_negation):
             self.cursor.fail()
-        at = self.cursor.take().at
-        inner = self.truth(self.part(max(own, weakest)))
-        return Part(f.negate(inner) if op is Op.NOT else Apply(op, (inner,)), TRUTH, at)
+        offset = self.cursor.take().offset
+        operand = self.require_boolean(self.read_term(max(precedence, min_precedence)))
+        formula = f.negate(operand) if op is Op.NOT else Apply(op, (operand,))
+        return Term(formula, BOOLEAN, offset)
 
-    def operand(self) -> Part:
-        """A value, a name, or something in brackets."""
+    def read_operand(self) -> Term:
+        """Read a constant, a name, or a term in brackets. Raises FormulaError."""
         token = self.cursor.next
         if token.text in self._syntax.brackets and token.kind == "sign":
-            return self._bracketed()
+            return self._read_brackets()
         if token.kind == "number" or token.text == "-":
-            return Part(Const(self.cursor.integer()), NUMBER, token.at)
+            return Term(Const(self.cursor.read_integer()), NUMBER, token.offset)
         if token.kind == "name":
             self.cursor.take()
-            if token.text in self._syntax.truths:
-                return Part(Const(self._syntax.truths[token.text]), TRUTH, token.at)
-            return self.word(token)
+            if token.text in self._syntax.booleans:
+                return Term(Const(self._syntax.booleans[token.text]), BOOLEAN, token.offset)
+            return self.resolve_name(token)
         return self.cursor.fail()
 
-    def _bracketed(self) -> Part:
+    def _read_brackets(self) -> Term:
         opening = self.cursor.take()
-        inner = self.part(0)
+        term = self.read_term(0)
         self.cursor.expect(self._syntax.brackets[opening.text])
-        return Part(inner.formula, inner.kind, opening.at)
+        return Term(term.formula, term.kind, opening.offset)
 
-    def word(self, token: Token) -> Part:
-        """What a name means that was just read."""
+    def resolve_name(self, token: Token) -> Term:
+        """Return the term that a name means, which is consumed already. Raises FormulaError."""
         if token.text in self.variables:
-            return self.variable(token, self.cursor.took("'"))
+            return self.build_variable(token, self.cursor.accept("'"))
         if any(domains.contains(domain, token.text) for domain in self.variables.values()):
-            return Part(Const(token.text), WORD, token.at)
-        raise FormulaError(f"'{token.text}' is neither a variable nor a literal", token.at)
+            return Term(Const(token.text), WORD, token.offset)
+        raise FormulaError(f"'{token.text}' is neither a variable nor a literal", token.offset)
 
-    def variable(self, token: Token, is_primed: bool) -> Part:
-        """A variable, now or in the next step."""
-        return Part(Var(token.text, is_primed), kind_of(self.variables[token.text]), token.at)
+    def build_variable(self, token: Token, is_primed: bool) -> Term:
+        """Return a variable as a term; primed, it is the variable's value in the next step."""
+        kind = kind_of(self.variables[token.text])
+        return Term(Var(token.text, is_primed), kind, token.offset)
 
 
 def kind_of(domain: Domain) -> Kind:
-    """The kind of the values of a domain."""
+    """Return the kind of the values of a domain."""
     if isinstance(domain, EnumerationDomain):
         return domain
-    return TRUTH if isinstance(domain, BooleanDomain) else NUMBER
+    return BOOLEAN if isinstance(domain, BooleanDomain) else NUMBER
 
 
-def _of_enumerations(op: Op, left: Part, right: Part) -> Formula:
-    """A comparison of two; when they have different literals, by those that both have."""
-    literals = [getattr(part.kind, "literals", ()) for part in (left, right)]
-    if literals[0] == literals[1]:
+def _compare_enumerations(op: Op, left: Term, right: Term) -> Formula:
+    """Compare two enumerations; different ones are equal where both have a literal they share."""
+    left_literals, right_literals = (getattr(term.kind, "literals", ()) for term in (left, right))
+    if left_literals == right_literals:
         return f.compare(op, left.formula, right.formula)
-    same = f.either(
+    equality = f.either(
         *(
-            f.both(f.eq(left.formula, Const(one)), f.eq(right.formula, Const(one)))
-            for one in literals[0]
-            if one in literals[1]
+            f.both(f.eq(left.formula, Const(literal)), f.eq(right.formula, Const(literal)))
+            for literal in left_literals
+            if literal in right_literals
         )
     )
-    return same if op is Op.EQ else f.negate(same)
+    return equality if op is Op.EQ else f.negate(equality)
 
 
-_GATHERED: dict[Op, Callable[..., Formula]] = {Op.AND: f.both, Op.OR: f.either}
-_JOINS: dict[Op, Callable[[Formula, Formula], Formula]] = {Op.IMPLIES: f.implies, Op.IFF: f.iff}
+_CHAINS: dict[Op, Callable[..., Formula]] = {Op.AND: f.both, Op.OR: f.either}
+_FOLDING: dict[Op, Callable[[Formula, Formula], Formula]] = {Op.IMPLIES: f.implies, Op.IFF: f.iff}
 
 
-def _joined(op: Op, left: Formula, right: Formula) -> Formula:
-    return _JOINS[op](left, right) if op in _JOINS else Apply(op, (left, right))
+def _apply_connective(op: Op, left: Formula, right: Formula) -> Formula:
+    return _FOLDING[op](left, right) if op in _FOLDING else Apply(op, (left, right))
+
+
+def parse_formula(
+    text: str, variables: Mapping[str, Domain], reader_class: type[FormulaReader] = FormulaReader
+) -> Formula:
+    """Parse a formula in the neutral form, which ``printing`` writes, or in SPIN's spelling.
+
+    A name is a variable, or a literal where an enumeration is compared with it. Raises
+    FormulaError with the offset of the fault.
+    """
+    reader = reader_class(Cursor(tokenize(text, NEUTRAL)), NEUTRAL, variables)
+    formula = reader.read_formula()
+    reader.cursor.expect_end()
+    return formula

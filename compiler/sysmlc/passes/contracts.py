@@ -31,7 +31,7 @@ from sysmlc.logic.requirements.derivation import add_features
 from sysmlc.logic.requirements.scope import Scope, scope_of
 from sysmlc.logic.requirements.statements import component_of, definition_of
 from sysmlc.logic.services import derivation as services
-from sysmlc.logic.spelling import FormulaError
+from sysmlc.logic.syntax import FormulaError
 from sysmlc.logic.texts.formal import describe_error, is_formal, read_formal
 
 SAME_COMPONENT = rule(

@@ -16,7 +16,7 @@ from sysmlc.diagnostics import Sink
 from sysmlc.logic import domains
 from sysmlc.logic.contract import BooleanDomain, Class, Conjunct, Contract, Variable
 from sysmlc.logic.evaluate import Evaluation, compile_evaluation
-from sysmlc.logic.formats.document_text import type_of
+from sysmlc.logic.formats.contract_json import encode_domain
 from sysmlc.logic.formula import Apply, Const, Formula, Literal, Op, Var
 from sysmlc.logic.printing import print_formula
 from sysmlc.support.file_names import assign_file_names
@@ -131,7 +131,7 @@ def encode_variable(variable: Variable) -> dict[str, object]:
     """Return a variable as a JSON value."""
     return {
         "name": variable.name,
-        "type": type_of(variable.domain),
+        "type": encode_domain(variable.domain),
         "origin": variable.origin,
     }
 

@@ -16,7 +16,7 @@ from sysmlc.logic.contract import (
     EnumerationDomain,
     IntegerDomain,
 )
-from sysmlc.logic.ltl import parse_formula
+from sysmlc.logic.infix import parse_formula
 from sysmlc.passes import pipeline
 from sysmlc.support import resources
 from sysmlc.support.output import Output

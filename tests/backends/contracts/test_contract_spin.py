@@ -22,7 +22,7 @@ from sysmlc.logic.contract import (
     Owner,
     Variable,
 )
-from sysmlc.logic.formats.spin_text import spin, spin_conjunct
+from sysmlc.logic.formats.spin import SpinPrinter, print_spin
 from sysmlc.logic.formula import Apply, Const, Op, Var
 
 spot = pytest.importorskip("spot")
@@ -41,6 +41,10 @@ VALUES = {
     "m": [0, 1, 2, 3],
     "mode": ["idle", "busy", "Off"],
 }
+
+
+def print_conjunct(conjunct):
+    return SpinPrinter(DOMAINS).print_conjunct(conjunct)
 
 
 def read(text):
@@ -124,8 +128,8 @@ def assert_same(conjunct):
     names = sorted({v.name for v in f.variables(conjunct.formula)})
     known = axioms(names)
     expected = spot.formula(f"{known} & {wrap[conjunct.class_].format(table)}")
-    found = spot.formula.And([spot.formula(known), read(spin_conjunct(conjunct, DOMAINS))])
-    assert spot.are_equivalent(found, expected), spin_conjunct(conjunct, DOMAINS)
+    found = spot.formula.And([spot.formula(known), read(print_conjunct(conjunct))])
+    assert spot.are_equivalent(found, expected), print_conjunct(conjunct)
 
 
 # -- random formulas ---------------------------------------------------------------------------
@@ -165,7 +169,7 @@ formulas = st.recursive(
 @pytest.mark.parametrize("op", [Op.EQ, Op.NE, Op.LT, Op.GE])
 def test_a_value_beyond_the_range_is_no_proposition_of_its_own(op):
     formula = Apply(op, (Var("n"), Const(9)))
-    assert "9" not in spin_conjunct(Conjunct(formula, Class.SAFETY, "x"), DOMAINS)
+    assert "9" not in print_conjunct(Conjunct(formula, Class.SAFETY, "x"))
     assert_same(Conjunct(formula, Class.SAFETY, "x"))
 
 
@@ -191,18 +195,18 @@ def test_one_formula_for_the_whole_contract():
             ),
         ),
     )
-    text = spin(contract)
+    text = print_spin(contract)
     assert text == ("([]<>(p)) -> (({mode==idle}) && [](p -> X {mode==busy}))\n")
     assert read(text) == spot.formula('GFp -> ("mode==idle" & G(p -> X"mode==busy"))')
 
 
 def test_no_assumption_is_true():
     contract = Contract("C", "c", (Variable("p", Owner.SYSTEM, BooleanDomain()),), (), ())
-    assert spin(contract) == "(true) -> (true)\n"
+    assert print_spin(contract) == "(true) -> (true)\n"
 
 
 def test_general_ltl_keeps_its_operators():
     formula = Apply(Op.UNTIL, (f.negate(Var("p")), f.eventually(f.eq(Var("m"), Const(3)))))
-    text = spin_conjunct(Conjunct(formula, Class.OTHER, "x"), DOMAINS)
+    text = print_conjunct(Conjunct(formula, Class.OTHER, "x"))
     assert text == "(!p U <>{m==3})"
     assert spot.are_equivalent(read(text), spot.formula('!p U F"m==3"'))

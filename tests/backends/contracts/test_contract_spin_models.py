@@ -18,7 +18,7 @@ from sysmlc.driver import Request, compile_model
 from sysmlc.ir.text import parse_text
 from sysmlc.logic.contract import Class, Contract
 from sysmlc.logic.domains import values
-from sysmlc.logic.formats.spin_text import spin, spin_conjunct
+from sysmlc.logic.formats.spin import SpinPrinter, print_spin
 from sysmlc.logic.formula import Apply, Const, Op, Var, variables
 from sysmlc.passes import pipeline
 
@@ -130,7 +130,7 @@ def number(formula, world):
 
 def below(conjunct, domains):
     """Spot's reading of the text, without the temporal operators of the conjunct's class."""
-    found = read(spin_conjunct(conjunct, domains))
+    found = read(SpinPrinter(domains).print_conjunct(conjunct))
     operators = {Class.SAFETY: [spot.op_G], Class.LIVENESS: [spot.op_G, spot.op_F]}
     for operator in operators.get(conjunct.class_, []):
         if found.is_constant():
@@ -150,7 +150,7 @@ def assert_contract_is_the_same(contract):
         same = spot.are_equivalent(
             spot.formula.And([known, found]), spot.formula.And([known, expected])
         )
-        assert same, spin_conjunct(conjunct, domains)
+        assert same, SpinPrinter(domains).print_conjunct(conjunct)
 
 
 @pytest.mark.parametrize("name", MODELS)
@@ -164,10 +164,10 @@ def test_the_whole_text_is_the_implication_of_its_conjuncts(name):
     (contract,) = contracts(MODELS[name])
     domains = {v.name: v.domain for v in contract.variables}
     sides = [
-        spot.formula.And([read(spin_conjunct(one, domains)) for one in conjuncts])
+        spot.formula.And([read(SpinPrinter(domains).print_conjunct(one)) for one in conjuncts])
         for conjuncts in (contract.assumptions, contract.guarantees)
     ]
-    assert read(spin(contract)) == spot.formula.Implies(*sides)
+    assert read(print_spin(contract)) == spot.formula.Implies(*sides)
 
 
 def test_a_changed_formula_is_noticed():
@@ -253,7 +253,7 @@ def assert_contracts_are_the_same(model):
             names = dict.fromkeys(v.name for v in variables(conjunct.formula))
             known = spot.formula(axioms(domains, names))
             expected = spot.formula(translated(domains, conjunct.formula))
-            text = spin_conjunct(conjunct, domains)
+            text = SpinPrinter(domains).print_conjunct(conjunct)
             assert not differ(known, below(conjunct, domains), expected, names), text
 
 

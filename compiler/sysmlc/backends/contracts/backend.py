@@ -9,9 +9,9 @@ from sysmlc.backends.templates import TemplateError, Templates
 from sysmlc.diagnostics import Severity, Sink, Subject, rule
 from sysmlc.ir import Graph
 from sysmlc.logic.contract import Contract
-from sysmlc.logic.formats.document_text import text
-from sysmlc.logic.formats.lower import unambiguous
-from sysmlc.logic.formats.spin_text import TooLargeError, spin
+from sysmlc.logic.formats.contract_json import print_contract
+from sysmlc.logic.formats.lowering import rename_ambiguous_literals
+from sysmlc.logic.formats.spin import TooLargeError, print_spin
 from sysmlc.support.file_names import assign_file_names
 from sysmlc.support.output import Output
 
@@ -46,7 +46,7 @@ class ContractsBackend(Struct, frozen=True):
         with Templates(self.name, options.templates) as templates:
             for contract in contracts:
                 path = f"contracts/{names[contract.component]}"
-                _add(graph, unambiguous(contract), output, path, sink, templates)
+                _add(graph, rename_ambiguous_literals(contract), output, path, sink, templates)
 
 
 def _add(
@@ -58,7 +58,7 @@ def _add(
     templates: Templates,
 ) -> None:
     trace = tuple(trace_of(graph, contract))
-    output.add(f"{path}.contract.json", text(contract), trace, "contracts")
+    output.add(f"{path}.contract.json", print_contract(contract), trace, "contracts")
     _add_spin(graph, contract, output, f"{path}.spin.ltl", trace, sink)
     _add_page(graph, contract, output, f"{path}.md", trace, sink, templates)
 
@@ -72,7 +72,7 @@ def _add_spin(
     sink: Sink,
 ) -> None:
     try:
-        output.add(path, spin(contract), trace, "contracts")
+        output.add(path, print_spin(contract), trace, "contracts")
     except TooLargeError:
         subject = graph.subject(graph[contract.origin])
         sink.report(TOO_LARGE, subject, component=contract.component, file=path)

@@ -1,92 +1,117 @@
-"""Forms that contracts are read from and written in, found by name, by ending and by content."""
+"""Formats of contracts: read and write them; detect a format by file ending and content.
+
+Each format is a module with three functions: ``read(file)`` returns the contracts of a file and
+reports its faults, ``lower(contract, format_name)`` rewrites a contract until the format can
+express it, and ``write(contract, format_name)`` prints the lowered contract. One module may serve
+several formats.
+"""
 
 import re
 from importlib import import_module
-from typing import Any
+from typing import Protocol, cast
 
 from msgspec import Struct
 
 from sysmlc.diagnostics import Sink
 from sysmlc.logic.contract import Contract
 from sysmlc.logic.formats import rules
-from sysmlc.logic.formats.file import NotExpressibleError, opened
+from sysmlc.logic.formats.draft import SpecificationFile
+from sysmlc.logic.formats.writing import NotExpressibleError
 
-__all__ = ["FORMS", "Form", "NotExpressibleError", "form_of", "plain", "read", "write"]
+_BYTE_ORDER_MARK = "\N{ZERO WIDTH NO-BREAK SPACE}"
+__all__ = ["FORMATS", "Format", "NotExpressibleError", "detect_format", "lower", "read", "write"]
 
 
-class Form(Struct, frozen=True):
-    """One form: the module that reads and writes it, endings of its files, how they begin."""
+class Format(Struct, frozen=True):
+    """A format: the name of its module, and the endings and signature of its files."""
 
     module: str
     endings: tuple[str, ...]
-    sign: str = r"(?!)"
-    """What is in every file of the form (a regular expression)."""
+    signature: str = r"(?!)"
+    """A regular expression that matches in every file of the format."""
     is_written: bool = True
     is_read: bool = True
 
 
-FORMS = {
-    "contract": Form("documents", (".contract.json",), r'"format"\s*:\s*"sysmlc-contract/1"'),
-    "neutral": Form("documents", (".gr1.json",), r'^\s*\{[\s\S]*"variables"\s*:'),
-    "slugsin": Form("slugsin", (".slugsin",)),
-    "structured": Form("slugs", (".structuredslugs",), r"^\s*\[(INPUT|OUTPUT)\]"),
-    "chase": Form("chase", (), r"^\s*CONTRACT\s+\w+\s*:"),
-    "chasejson": Form("chasejson", (".chase.json",), r'^\s*\{[\s\S]*"(inputs|outputs)"\s*:'),
-    "smv": Form("smv", (".smv",), r"^\s*MODULE\s+main\b"),
-    "spot": Form("spot", (".spot.ltl",), r"^\.(inputs|outputs)\b"),
-    "tlsf": Form("tlsf", (".tlsf",), r"^\s*INFO\s*\{"),
-    "gr1c": Form("gr1c", (".spc",), r"^\s*(ENV|SYS)\s*:"),
-    "spectra": Form("spectra", (".spectra",), r"^\s*(module|spec)\s+\w+\s", is_written=False),
-    "spin": Form("spin", (".spin.ltl",), r"^[^\n]*(\[\]|<>)"),
+class _FormatModule(Protocol):
+    """The functions of a format's module."""
+
+    def read(self, file: SpecificationFile) -> tuple[Contract, ...]: ...
+
+    def lower(self, contract: Contract, format_name: str) -> Contract: ...
+
+    def write(self, contract: Contract, format_name: str) -> str: ...
+
+
+FORMATS = {
+    "contract": Format("contract_json", (".contract.json",), r'"format"\s*:\s*"sysmlc-contract/1"'),
+    "neutral": Format("contract_json", (".gr1.json",), r'^\s*\{[\s\S]*"variables"\s*:'),
+    "slugsin": Format("slugs", (".slugsin",)),
+    "structured": Format("slugs", (".structuredslugs",), r"^\s*\[(INPUT|OUTPUT)\]"),
+    "chase": Format("chase", (), r"^\s*CONTRACT\s+\w+\s*:"),
+    "chasejson": Format("chase_json", (".chase.json",), r'^\s*\{[\s\S]*"(inputs|outputs)"\s*:'),
+    "smv": Format("smv", (".smv",), r"^\s*MODULE\s+main\b"),
+    "spot": Format("spot", (".spot.ltl",), r"^\.(inputs|outputs)\b"),
+    "tlsf": Format("tlsf", (".tlsf",), r"^\s*INFO\s*\{"),
+    "gr1c": Format("gr1c", (".spc",), r"^\s*(ENV|SYS)\s*:"),
+    "spectra": Format("spectra", (".spectra",), r"^\s*(module|spec)\s+\w+\s", is_written=False),
+    "spin": Format("spin", (".spin.ltl",), r"^[^\n]*(\[\]|<>)"),
 }
-"""The forms by name. What a file is, is asked of the endings first, then of the signs, in order."""
+"""The formats by name, in the order of detection: an earlier signature wins."""
 
 
-def form_of(text: str, path: str) -> str:
-    """The name of the form that a file is in; empty when it is not seen."""
-    for name, form in FORMS.items():
-        if path.lower().endswith(form.endings) and form.is_read:
+def detect_format(text: str, path: str) -> str:
+    """Return the name of the format of a file, by its ending or else by its content.
+
+    The name is empty if no format matches.
+    """
+    readable = {name: format_ for name, format_ in FORMATS.items() if format_.is_read}
+    for name, format_ in readable.items():
+        if path.lower().endswith(format_.endings):
             return name
-    for name, form in FORMS.items():
-        if form.is_read and re.search(form.sign, text, re.MULTILINE):
+    for name, format_ in readable.items():
+        if re.search(format_.signature, text, re.MULTILINE):
             return name
     return ""
 
 
-def read(text: str, path: str, sink: Sink, form: str = "") -> tuple[Contract, ...]:
-    """The contracts of a file; ``form`` empty means that it is to be seen from the file.
+def read(text: str, path: str, sink: Sink, format_name: str = "") -> tuple[Contract, ...]:
+    """Return the contracts of a file; detect the format if its name is empty.
 
-    What is wrong is reported with line and column; a contract that has something wrong is not
-    among those that are returned. Raises ValueError for a form that is not known or not read.
+    Faults are reported with line and column, and a contract with a fault is omitted. Raises
+    ValueError for a format that is unknown or not readable.
     """
-    file = opened(text.removeprefix("\N{ZERO WIDTH NO-BREAK SPACE}"), path, sink)
-    found = form or form_of(text, path)
-    if not found:
-        file.report(rules.UNKNOWN_FORM, 0, file=path, forms=", ".join(FORMS))
+    file = SpecificationFile.from_text(
+        text.removeprefix("\N{ZERO WIDTH NO-BREAK SPACE}"), path, sink
+    )
+    name = format_name or detect_format(text, path)
+    if not name:
+        file.report(rules.UNKNOWN_FORM, 0, file=path, forms=", ".join(FORMATS))
         return ()
-    if found not in FORMS or not FORMS[found].is_read:
-        raise ValueError(f"form {found!r} is not read")
-    return _of(found).read(file)  # type: ignore[no-any-return]
+    if name not in FORMATS or not FORMATS[name].is_read:
+        raise ValueError(f"form {name!r} is not read")
+    return _load_module(name).read(file)
 
 
-def write(contract: Contract, form: str) -> str:
-    """The contract in a form, ending with a newline.
+def write(contract: Contract, format_name: str) -> str:
+    """Return the contract as text that ends with a newline.
 
-    Raises NotExpressibleError when the form has no words for it, and ValueError for a form that
-    is not known or not written.
+    Raises NotExpressibleError if the format cannot express it, and ValueError for a format that is
+    unknown or not writable.
     """
-    if form not in FORMS or not FORMS[form].is_written:
-        raise ValueError(f"form {form!r} is not written")
-    return _of(form).write(contract, form)  # type: ignore[no-any-return]
+    if format_name not in FORMATS or not FORMATS[format_name].is_written:
+        raise ValueError(f"form {format_name!r} is not written")
+    return _load_module(format_name).write(contract, format_name)
 
 
-def plain(contract: Contract, form: str) -> Contract:
-    """The contract that a form has words for: what reading gives when it was written.
+def lower(contract: Contract, format_name: str) -> Contract:
+    """Return the contract that reading gives after the contract was written.
 
     Raises NotExpressibleError.
     """
-    return _of(form).plain(contract, form)  # type: ignore[no-any-return]
+    return _load_module(format_name).lower(contract, format_name)
 
 
-def _of(form: str) -> Any:  # noqa: ANN401 - a module
-    return import_module(f"sysmlc.logic.formats.{FORMS[form].module}")
+def _load_module(name: str) -> _FormatModule:
+    module = import_module(f"sysmlc.logic.formats.{FORMATS[name].module}")
+    return cast("_FormatModule", module)

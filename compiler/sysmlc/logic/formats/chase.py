@@ -1,10 +1,11 @@
 """CHASE's .ltl: contracts with typed inputs and outputs, LTL assumptions and guarantees.
 
-Source: demos and grammar of chase-cps/chase; what it has beyond (reals, probabilities) is named.
+Source: demos and grammar of chase-cps/chase. Real numbers and probabilities are reported as
+outside.
 """
 
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import (
@@ -17,220 +18,235 @@ from sysmlc.logic.contract import (
     Owner,
     Variable,
 )
-from sysmlc.logic.formats import rules
-from sysmlc.logic.formats.base import lowered, said_ltl
-from sysmlc.logic.formats.counting import counted
-from sysmlc.logic.formats.draft import Draft, joined
-from sysmlc.logic.formats.file import File
-from sysmlc.logic.formats.lower import each_formula, renamed, without_weak_until
-from sysmlc.logic.formats.spelt import LTL, Spelling, primed
+from sysmlc.logic.formats.draft import ContractDraft, SpecificationFile, read_conjuncts
+from sysmlc.logic.formats.encodings import encode_as_integers
+from sysmlc.logic.formats.lowering import eliminate_weak_until, rename_reserved, rewrite_conjuncts
+from sysmlc.logic.formats.writing import (
+    LTL_WORDS,
+    Notation,
+    add_prime,
+    apply_lowering,
+    convert_to_word,
+    print_ltl_conjunct,
+)
 from sysmlc.logic.formula import Op
-from sysmlc.logic.infix import Part, Reader
-from sysmlc.logic.spelling import (
-    COMPARING,
-    CONNECTIVES,
-    COUNTING,
-    STRENGTH,
+from sysmlc.logic.infix import BOOLEAN, FormulaReader, Term
+from sysmlc.logic.syntax import (
+    ARITHMETIC_SIGNS,
+    BOOLEANS,
+    COMPARISON_SIGNS,
+    CONNECTIVE_SIGNS,
+    PRECEDENCE,
     TEMPORAL_SIGNS,
     TEMPORAL_WORDS,
-    TRUTHS,
     UNTIL_WORDS,
     Cursor,
     FormulaError,
     Syntax,
     Token,
-    tokens,
+    tokenize,
 )
 
 SYNTAX = Syntax(
     {"!": Op.NOT, "~": Op.NOT, **TEMPORAL_WORDS, **TEMPORAL_SIGNS},
-    {**CONNECTIVES, "/\\": Op.AND, "\\/": Op.OR, **UNTIL_WORDS, **COMPARING, **COUNTING},
-    TRUTHS,
+    {
+        **CONNECTIVE_SIGNS,
+        "/\\": Op.AND,
+        "\\/": Op.OR,
+        **UNTIL_WORDS,
+        **COMPARISON_SIGNS,
+        **ARITHMETIC_SIGNS,
+    },
+    BOOLEANS,
     {"(": ")"},
-    STRENGTH,
-    (":", ";"),
-    r"\#[^\n]*",
+    PRECEDENCE,
+    signs=(":", ";"),
+    comment=r"\#[^\n]*",
 )
-_BOX = re.compile(r"\[[ \t]+\]")
-"""Blanks are allowed in the box of "always"."""
+_BOX_WITH_BLANKS = re.compile(r"\[[ \t]+\]")
 _OWNERS = {"input": Owner.ENVIRONMENT, "output": Owner.SYSTEM}
 _SIDES = {"Assumptions": Owner.ENVIRONMENT, "Guarantees": Owner.SYSTEM}
-_SPELLING = Spelling(LTL | {Op.DIV: "/"}, primed)
+_RESERVED = frozenset(
+    {*SYNTAX.prefix, *SYNTAX.infix, *BOOLEANS, *_OWNERS, *_SIDES, "P", "NAME", "CONTRACT", "is"}
+    | {"boolean", "integer", "real", "variable", "proposition"}
+)
 
 
-def read(file: File) -> tuple[Contract, ...]:
-    """The contracts of the file that have nothing wrong; ``contract`` in their order."""
-    text = _BOX.sub(lambda match: f"[]{' ' * (len(match.group()) - 2)}", file.text)
-    cursor = Cursor(tokens(text, SYNTAX))
-    head = Draft(file, "CHASE")
+# -- reading ---------------------------------------------------------------------------------------
+
+
+def read(file: SpecificationFile) -> tuple[Contract, ...]:
+    """Return the contracts of the file without those for which a fault was reported."""
+    # CHASE allows blanks in the box of "always". Offsets must stay, so the box moves to the left.
+    text = _BOX_WITH_BLANKS.sub(lambda match: f"[]{' ' * (len(match.group()) - 2)}", file.text)
+    cursor = Cursor(tokenize(text, SYNTAX))
     names: list[str] = []
-    head.statement(cursor, lambda: names.append(_title(cursor, "NAME", ";")), ";")
-    found: list[Contract] = []
-    while cursor.next.kind != "end":
-        draft = Draft(file, "CHASE")
-        found.extend(_Contract(draft, cursor).read(names[0] if names else ""))
-    return tuple(found)
+    ContractDraft(file, "CHASE").read_statement(
+        cursor, lambda: names.append(_read_system_name(cursor)), ";"
+    )
+    contracts: list[Contract] = []
+    while not cursor.is_at_end:
+        reader = _ContractReader(ContractDraft(file, "CHASE"), cursor)
+        contracts.extend(reader.read(names[0] if names else ""))
+    return tuple(contracts)
 
 
-def _title(cursor: Cursor, word: str, end: str) -> str:
-    cursor.expect(word)
-    if end == ";":
-        cursor.expect(":")
+def _read_system_name(cursor: Cursor) -> str:
+    cursor.expect("NAME")
+    cursor.expect(":")
     name = cursor.expect_kind("name", "a name").text
-    cursor.expect(end)
+    cursor.expect(";")
     return name
 
 
-class _Contract:
+def _read_contract_name(cursor: Cursor) -> str:
+    cursor.expect("CONTRACT")
+    name = cursor.expect_kind("name", "a name").text
+    cursor.expect(":")
+    return name
+
+
+class _ContractReader:
     """Reads one contract, from ``CONTRACT`` to the next."""
 
-    def __init__(self, draft: Draft, cursor: Cursor) -> None:
+    def __init__(self, draft: ContractDraft, cursor: Cursor) -> None:
         self._draft = draft
         self._cursor = cursor
         self._owner = Owner.SYSTEM
-        self._propositions: dict[str, Part] = {}
+        self._propositions: dict[str, Term] = {}
 
     def read(self, system: str) -> tuple[Contract, ...]:
-        """The contract, unless something is wrong with it."""
+        """Return the contract, or nothing if a fault was reported."""
         names: list[str] = []
-        start = self._cursor.mark()
-        self._statement(lambda: names.append(_title(self._cursor, "CONTRACT", ":")))
-        while self._cursor.next.kind != "end" and not self._cursor.has("CONTRACT"):
-            self._statement(self._part)
-        if self._cursor.mark() == start:
-            self._cursor.take()
+        self._read_statement(lambda: names.append(_read_contract_name(self._cursor)))
+        while not self._cursor.is_at_end and not self._cursor.is_next("CONTRACT"):
+            self._read_statement(self._read_part)
         parts = (system, *names) if names != [system] else names
-        return self._draft.contracts(".".join(filter(None, parts)))
+        return self._draft.build(".".join(filter(None, parts)))
 
-    def _statement(self, read: Callable[[], None]) -> None:
-        self._draft.statement(self._cursor, read, ";")
+    def _read_statement(self, read: Callable[[], None]) -> None:
+        self._draft.read_statement(self._cursor, read, ";")
 
-    def _part(self) -> None:
+    def _read_part(self) -> None:
         cursor = self._cursor
-        if cursor.has(*_SIDES):
+        if cursor.is_next(*_SIDES):
             self._owner = _SIDES[cursor.take().text]
             cursor.expect(":")
-        elif cursor.has(*_OWNERS):
-            self._declaration()
-        elif cursor.took("proposition"):
-            self._proposition()
+        elif cursor.is_next(*_OWNERS):
+            self._read_declaration()
+        elif cursor.accept("proposition"):
+            self._read_proposition()
         else:
-            self._conjuncts()
+            self._read_conjuncts()
 
-    def _declaration(self) -> None:
+    def _read_declaration(self) -> None:
         owner = _OWNERS[self._cursor.take().text]
         type_ = self._cursor.expect("boolean", "integer", "real")
         domain: Domain = BooleanDomain()
         if type_.text == "real":
-            what = "a variable that is a real number"
-            self._draft.fault(rules.OUTSIDE, type_.at, what=what, form="CHASE")
+            self._draft.report_outside(type_.offset, "a variable that is a real number")
         elif type_.text == "integer":
-            domain = self._range()
+            domain = self._read_range()
         self._cursor.expect("variable")
         name = self._cursor.expect_kind("name", "a name")
         self._cursor.expect(";")
-        self._draft.declare(name.text, name.at, owner, domain)
+        self._draft.declare(name.text, name.offset, owner, domain)
 
-    def _range(self) -> Domain:
-        at = self._cursor.expect("(").at
-        low = self._cursor.integer()
+    def _read_range(self) -> Domain:
+        offset = self._cursor.expect("(").offset
+        low = self._cursor.read_integer()
         self._cursor.expect(":")
-        high = self._cursor.integer()
+        high = self._cursor.read_integer()
         self._cursor.expect(")")
         if low > high:
-            raise FormulaError(f"the range {low}:{high} is empty", at)
+            raise FormulaError(f"the range {low}:{high} is empty", offset)
         return IntegerDomain(low, high)
 
-    def _reader(self) -> "_Reader":
-        return _Reader(self._cursor, SYNTAX, self._draft.domains, self._propositions)
+    def _create_reader(self) -> "_ChaseReader":
+        return _ChaseReader(self._cursor, self._draft.domains, self._propositions)
 
-    def _proposition(self) -> None:
+    def _read_proposition(self) -> None:
         name = self._cursor.expect_kind("name", "a name")
         self._cursor.expect("is")
-        self._propositions[name.text] = self._reader().whole()
+        offset = self._cursor.next.offset
+        condition = self._create_reader().read_formula()
+        self._propositions[name.text] = Term(condition, BOOLEAN, offset)
         self._cursor.expect(";")
 
-    def _conjuncts(self) -> None:
-        def read_all() -> None:
-            found = list(joined(self._reader(), SYNTAX, ";"))
-            if not self._cursor.has(";"):
+    def _read_conjuncts(self) -> None:
+        def read() -> None:
+            conjuncts = list(read_conjuncts(self._create_reader(), SYNTAX, ";"))
+            if not self._cursor.is_next(";"):
                 self._cursor.fail("';' is expected")
-            for formula, at in found:
-                self._draft.add_ltl(self._owner, formula, at)
+            for formula, offset in conjuncts:
+                self._draft.add_ltl(self._owner, formula, offset)
 
-        if not self._draft.formula(self._owner, Class.OTHER, read_all):
+        if not self._draft.read_formula(self._owner, Class.OTHER, read):
             self._cursor.skip_to(";")
-        self._cursor.took(";")
+        self._cursor.accept(";")
 
 
-class _Reader(Reader):
-    """Knows the contract's propositions."""
+class _ChaseReader(FormulaReader):
+    """Reads formulas with the propositions of the contract."""
 
     def __init__(
         self,
         cursor: Cursor,
-        syntax: Syntax,
-        variables: dict[str, Domain],
-        propositions: dict[str, Part],
+        variables: Mapping[str, Domain],
+        propositions: Mapping[str, Term],
     ) -> None:
-        super().__init__(cursor, syntax, variables)
+        super().__init__(cursor, SYNTAX, variables)
         self._propositions = propositions
 
-    def whole(self) -> Part:
-        """A condition, as a proposition's meaning."""
-        at = self.cursor.next.at
-        return Part(self.formula(), "truth", at)
-
-    def word(self, token: Token) -> Part:
+    def resolve_name(self, token: Token) -> Term:
         if token.text in self._propositions:
             return self._propositions[token.text]
-        if token.text == "P" and self.cursor.has("("):
-            raise FormulaError("probabilities are outside what is read", token.at)
-        return super().word(token)
+        if token.text == "P" and self.cursor.is_next("("):
+            raise FormulaError("probabilities are outside what is read", token.offset)
+        return super().resolve_name(token)
 
 
-def plain(contract: Contract, form: str) -> Contract:
-    """The contract as CHASE has words for it. Raises NotExpressibleError."""
-    words = each_formula(renamed(contract, _RESERVED), without_weak_until)
-    return lowered(words, form, lambda one: counted(one, is_flat=False, from_zero=False))
+# -- writing ---------------------------------------------------------------------------------------
 
 
-def write(contract: Contract, form: str) -> str:
-    """The contract; enumerations are counted."""
-    made = plain(contract, form)
+_NOTATION = Notation(LTL_WORDS | {Op.DIV: "/"}, add_prime)
+
+
+def lower(contract: Contract, format_name: str) -> Contract:
+    """Return the contract without enumerations and weak until. Raises NotExpressibleError."""
+    lowered = rewrite_conjuncts(rename_reserved(contract, _RESERVED), eliminate_weak_until)
+    return apply_lowering(
+        lowered,
+        format_name,
+        lambda contract: encode_as_integers(contract, is_flat=False, from_zero=False),
+    )
+
+
+def write(contract: Contract, format_name: str) -> str:
+    """Return the contract as text. Raises NotExpressibleError."""
+    lowered = lower(contract, format_name)
     system, _, name = contract.component.rpartition(".")
-    parts = [
-        f"NAME: {word(system or name)};\n",
-        f"CONTRACT {word(name)}:",
-        *(f"    {_declaration(one)}" for one in made.variables),
+    lines = [
+        f"NAME: {convert_to_word(system or name)};\n",
+        f"CONTRACT {convert_to_word(name)}:",
+        *(f"    {_print_declaration(variable)}" for variable in lowered.variables),
         "\n    Assumptions:",
-        *_lines(made.assumptions),
+        *_iter_lines(lowered.assumptions),
         "\n    Guarantees:",
-        *_lines(made.guarantees),
+        *_iter_lines(lowered.guarantees),
     ]
-    return "\n".join([*parts, ""])
+    return "\n".join([*lines, ""])
 
 
-def word(name: str) -> str:
-    """A qualified name as one word."""
-    made = "".join(char if char.isascii() and char.isalnum() else "_" for char in name)
-    return made if made and not made[0].isdigit() else f"_{made}"
-
-
-def _declaration(variable: Variable) -> str:
-    side = "input" if variable.owner is Owner.ENVIRONMENT else "output"
+def _print_declaration(variable: Variable) -> str:
+    direction = "input" if variable.owner is Owner.ENVIRONMENT else "output"
     type_ = "boolean"
     if isinstance(variable.domain, IntegerDomain):
         type_ = f"integer ({variable.domain.low}:{variable.domain.high})"
-    return f"{side} {type_} variable {variable.name};"
+    return f"{direction} {type_} variable {variable.name};"
 
 
-def _lines(conjuncts: tuple[Conjunct, ...]) -> Iterator[str]:
-    for one in conjuncts or (Conjunct(f.TRUE, Class.INIT, ""),):
-        yield f"        {said_ltl('CHASE', _SPELLING, one)};"
-
-
-_RESERVED = frozenset(
-    {*SYNTAX.prefix, *SYNTAX.infix, *TRUTHS, *_OWNERS, *_SIDES, "P", "NAME", "CONTRACT", "is"}
-    | {"boolean", "integer", "real", "variable", "proposition"}
-)
+def _iter_lines(conjuncts: tuple[Conjunct, ...]) -> Iterator[str]:
+    # The grammar of CHASE demands a formula in each section.
+    for conjunct in conjuncts or (Conjunct(f.TRUE, Class.INIT, ""),):
+        yield f"        {print_ltl_conjunct('CHASE', _NOTATION, conjunct)};"

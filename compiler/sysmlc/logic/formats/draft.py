@@ -1,117 +1,196 @@
-"""A contract while its text is read: what was declared and said, and what was wrong with it."""
+"""Text of a contract file, and a contract that is collected while the text is read.
 
+Every fault is reported. A contract with a fault is omitted from the result, so that no step after
+the reader works on half a contract.
+"""
+
+from bisect import bisect_right
 from collections.abc import Callable, Iterator
 
-from sysmlc.diagnostics import Rule
+from msgspec import Struct
+
+from sysmlc.diagnostics import Place, Rule, Sink, Subject
 from sysmlc.logic import formula as f
 from sysmlc.logic.classification import classify, convert_to_class
 from sysmlc.logic.contract import Class, Conjunct, Contract, Domain, Owner, Variable
 from sysmlc.logic.formats import rules
-from sysmlc.logic.formats.base import SECTIONS
-from sysmlc.logic.formats.file import File
 from sysmlc.logic.formula import Formula, Op
-from sysmlc.logic.infix import Reader
+from sysmlc.logic.infix import FormulaReader
 from sysmlc.logic.printing import print_formula
-from sysmlc.logic.spelling import Cursor, FormulaError, Syntax
+from sysmlc.logic.syntax import Cursor, FormulaError, Syntax
 
-SIDE = {Owner.ENVIRONMENT: "assumptions", Owner.SYSTEM: "guarantees"}
+SIDES = {Owner.ENVIRONMENT: "assumptions", Owner.SYSTEM: "guarantees"}
+"""The conjuncts that each owner promises."""
+SECTION_NAMES = {
+    (side, class_): side if class_ is Class.OTHER else f"{class_} {side}"
+    for side in SIDES.values()
+    for class_ in Class
+}
+"""What messages call the conjuncts of one side and class."""
 
 
-class Draft:
-    """Collects one contract; ``form`` is what messages call the language."""
+class SpecificationFile(Struct, frozen=True):
+    """The text of a file, its path, and the sink for diagnostics about it."""
 
-    def __init__(self, file: File, form: str) -> None:
+    text: str
+    path: str
+    sink: Sink
+    line_starts: tuple[int, ...]
+
+    @classmethod
+    def from_text(cls, text: str, path: str, sink: Sink) -> "SpecificationFile":
+        """Return a file with the offsets of its lines."""
+        line_starts = [0]
+        line_starts.extend(offset + 1 for offset, char in enumerate(text) if char == "\n")
+        return cls(text, path, sink, tuple(line_starts))
+
+    def locate(self, offset: int) -> tuple[int, int]:
+        """Return line and column of a character, both counted from 1."""
+        line = bisect_right(self.line_starts, offset)
+        return line, offset - self.line_starts[line - 1] + 1
+
+    def origin_at(self, offset: int) -> str:
+        """Return a location as the origin of a conjunct: ``file:line:column``."""
+        line, column = self.locate(offset)
+        return f"{self.path}:{line}:{column}"
+
+    def report(self, rule: Rule, offset: int, **facts: str) -> None:
+        """Report a rule about the character at the offset."""
+        line, column = self.locate(offset)
+        place = Place(self.path, line=line, column=column)
+        printable: dict[str, object] = {
+            name: _replace_surrogates(fact) for name, fact in facts.items()
+        }
+        self.sink.report(rule, Subject(place=place), notes=(), help="", **printable)
+
+
+def _replace_surrogates(text: str) -> str:
+    """Replace lone surrogates, which JSON can escape but UTF-8 cannot encode."""
+    return text.encode("utf-8", "replace").decode("utf-8")
+
+
+class ContractDraft:
+    """Collects the variables and conjuncts of one contract while its text is read."""
+
+    def __init__(self, file: SpecificationFile, language: str) -> None:
         self.file = file
-        self.form = form
+        self.language = language
+        """What messages call the language of the file."""
         self.is_broken = False
         self.variables: dict[str, Variable] = {}
         self.domains: dict[str, Domain] = {}
-        self._sides: dict[Owner, list[Conjunct]] = {owner: [] for owner in Owner}
+        self._conjuncts: dict[Owner, list[Conjunct]] = {owner: [] for owner in Owner}
 
-    def declare(self, name: str, at: int, owner: Owner, domain: Domain) -> None:
-        """Add a variable; a name that is there already is reported."""
+    def declare(self, name: str, offset: int, owner: Owner, domain: Domain) -> None:
+        """Add a variable; report a name that is declared already."""
         if name in self.variables:
-            self.fault(rules.DECLARED_TWICE, at, name=name)
+            self.report_fault(rules.DECLARED_TWICE, offset, name=name)
             return
         self.variables[name] = Variable(name, owner, domain)
         self.domains[name] = domain
 
-    def fault(self, rule: Rule, at: int, **facts: str) -> None:
-        """Report what is wrong with the contract; it is not among the results then."""
+    def report_fault(self, rule: Rule, offset: int, **facts: str) -> None:
+        """Report a fault, which omits the contract from the result."""
         self.is_broken = True
-        self.file.report(rule, at, **facts)
+        self.file.report(rule, offset, **facts)
 
-    def statement(self, cursor: Cursor, read: Callable[[], None], *ends: str) -> None:
-        """Read something; when it is not understood, report it and go on behind its end."""
+    def report_not_understood(self, offset: int, reason: str) -> None:
+        """Report text that does not follow the grammar of the language."""
+        self.report_fault(rules.NOT_UNDERSTOOD, offset, form=self.language, reason=reason)
+
+    def report_outside(self, offset: int, what: str) -> None:
+        """Report a construct of the language that this reader does not support."""
+        self.report_fault(rules.OUTSIDE, offset, what=what, form=self.language)
+
+    def read_statement(self, cursor: Cursor, read: Callable[[], None], *ends: str) -> None:
+        """Call *read*; if it fails, report the fault and continue behind the next of the ends."""
         try:
             read()
         except FormulaError as error:
-            self.fault(rules.NOT_UNDERSTOOD, error.at, form=self.form, reason=str(error))
-            cursor.skip_behind(*ends)
+            self.report_not_understood(error.offset, str(error))
+            cursor.skip_past(*ends)
 
-    def formula(self, owner: Owner, class_: Class, read: Callable[[], None]) -> bool:
-        """Read a formula of a section; whether it was understood, else it is reported."""
+    def read_formula(self, owner: Owner, class_: Class, read: Callable[[], None]) -> bool:
+        """Call *read* for formulas of a section; report a failure, return whether it succeeded."""
         try:
             read()
         except FormulaError as error:
-            section = SECTIONS[SIDE[owner], class_]
-            self.fault(rules.WRONG_FORMULA, error.at, section=section, reason=str(error))
+            section = SECTION_NAMES[SIDES[owner], class_]
+            self.report_fault(rules.WRONG_FORMULA, error.offset, section=section, reason=str(error))
             return False
         return True
 
-    def add(self, owner: Owner, class_: Class, formula: Formula, at: int, text: str = "") -> None:
-        """Add a conjunct whose class is said by where it stands."""
+    def add(
+        self, owner: Owner, class_: Class, formula: Formula, offset: int, text: str = ""
+    ) -> None:
+        """Add a conjunct whose section determines its class; report one that cannot have it."""
         step = convert_to_class(formula, class_)
         if step is None:
             reason = "it looks further than one step"
-            reason = "it speaks of the next step" if class_ is Class.INIT else reason
-            section, shown = SECTIONS[SIDE[owner], class_], print_formula(formula)
-            self.fault(rules.WRONG_CLASS, at, formula=shown, section=section, reason=reason)
+            if class_ is Class.INIT:
+                reason = "it speaks of the next step"
+            self._report_wrong_class(owner, class_, formula, offset, reason)
         elif step != f.TRUE:
-            self._sides[owner].append(Conjunct(step, class_, self.file.origin(at), text))
+            origin = self.file.origin_at(offset)
+            self._conjuncts[owner].append(Conjunct(step, class_, origin, text))
 
-    def add_classified(self, owner: Owner, class_: Class, formula: Formula, at: int) -> None:
-        """Add the conjuncts of a formula whose operators must say the class of its section."""
-        for found, part in classify(formula):
-            if found is class_:
-                self.add(owner, class_, part, at)
-                continue
-            section, shown = SECTIONS[SIDE[owner], class_], print_formula(formula)
-            reason = f"it is of class {found}"
-            self.fault(rules.WRONG_CLASS, at, formula=shown, section=section, reason=reason)
+    def add_classified(self, owner: Owner, class_: Class, formula: Formula, offset: int) -> None:
+        """Add the conjuncts of a formula in LTL; report those that are not of the class."""
+        for actual_class, part in classify(formula):
+            if actual_class is class_:
+                self.add(owner, class_, part, offset)
+            else:
+                reason = f"it is of class {actual_class}"
+                self._report_wrong_class(owner, class_, formula, offset, reason)
 
-    def add_ltl(self, owner: Owner, formula: Formula, at: int) -> None:
-        """Add the conjuncts of a formula in LTL, whose operators say their classes."""
+    def _report_wrong_class(
+        self, owner: Owner, class_: Class, formula: Formula, offset: int, reason: str
+    ) -> None:
+        self.report_fault(
+            rules.WRONG_CLASS,
+            offset,
+            formula=print_formula(formula),
+            section=SECTION_NAMES[SIDES[owner], class_],
+            reason=reason,
+        )
+
+    def add_ltl(self, owner: Owner, formula: Formula, offset: int) -> None:
+        """Add the conjuncts of a formula in LTL, whose operators determine their classes."""
         for class_, part in classify(formula):
             if part != f.TRUE:
-                self._sides[owner].append(Conjunct(part, class_, self.file.origin(at)))
+                conjunct = Conjunct(part, class_, self.file.origin_at(offset))
+                self._conjuncts[owner].append(conjunct)
 
-    def add_made(self, owner: Owner, conjunct: Conjunct) -> None:
-        """Add a conjunct that is made for another one."""
-        self._sides[owner].append(conjunct)
+    def add_derived(self, owner: Owner, conjunct: Conjunct) -> None:
+        """Add a conjunct that another conjunct needs, such as the definition of a history bit."""
+        self._conjuncts[owner].append(conjunct)
 
-    def contracts(self, name: str, origin: str = "") -> tuple[Contract, ...]:
-        """The contract, or nothing when something was wrong with it."""
+    def build(self, name: str, origin: str = "") -> tuple[Contract, ...]:
+        """Return the contract, or nothing if a fault was reported."""
         if self.is_broken:
             return ()
-        assumptions, guarantees = (tuple(self._sides[owner]) for owner in Owner)
+        assumptions, guarantees = (tuple(self._conjuncts[owner]) for owner in Owner)
         variables = tuple(self.variables.values())
         return (Contract(name, origin, variables, assumptions, guarantees),)
 
 
-def joined(reader: Reader, syntax: Syntax, *ends: str) -> Iterator[tuple[Formula, int]]:
-    """The conjuncts of a formula up to one of the ends, each with its place.
+def read_conjuncts(
+    reader: FormulaReader, syntax: Syntax, *ends: str
+) -> Iterator[tuple[Formula, int]]:
+    """Yield the conjuncts of a formula up to one of the ends, each with its offset.
 
-    Raises FormulaError.
+    A formula that is not a conjunction is yielded whole. Raises FormulaError.
     """
     cursor = reader.cursor
-    start, found = cursor.mark(), []
+    start, conjuncts = cursor.mark(), []
     while True:
-        at = cursor.next.at
-        found.append((reader.truth(reader.part(syntax.strength[Op.AND] + 1)), at))
-        if not cursor.took("&", "&&", "/\\"):
+        offset = cursor.next.offset
+        term = reader.read_term(syntax.precedence[Op.AND] + 1)
+        conjuncts.append((reader.require_boolean(term), offset))
+        if not cursor.accept("&", "&&", "/\\"):
             break
-    if not cursor.has(*ends) and cursor.next.kind != "end":
-        cursor.back_to(start)
-        found = [(reader.formula(), cursor.next.at)]
-    yield from found
+    if not cursor.is_next(*ends) and not cursor.is_at_end:
+        # An operator that binds more weakly than "and" follows: `a & b -> c` has one conjunct.
+        cursor.reset(start)
+        conjuncts = [(reader.read_formula(), cursor.next.offset)]
+    yield from conjuncts

@@ -7,35 +7,41 @@ from collections.abc import Iterator
 from pathlib import PurePath
 
 from sysmlc.logic.contract import BooleanDomain, Class, Contract, IntegerDomain, Owner, Variable
-from sysmlc.logic.formats.base import conjuncts_of, game, lowered, said
-from sysmlc.logic.formats.counting import counted
-from sysmlc.logic.formats.draft import Draft, joined
-from sysmlc.logic.formats.file import File
-from sysmlc.logic.formats.lower import renamed
-from sysmlc.logic.formats.spelt import LTL, Spelling, primed
+from sysmlc.logic.formats.draft import ContractDraft, SpecificationFile, read_conjuncts
+from sysmlc.logic.formats.encodings import encode_as_integers
+from sysmlc.logic.formats.lowering import rename_reserved
+from sysmlc.logic.formats.writing import (
+    LTL_WORDS,
+    Notation,
+    add_prime,
+    apply_lowering,
+    conjuncts_of,
+    print_conjunct,
+    reduce_to_gr1,
+)
 from sysmlc.logic.formula import Op
-from sysmlc.logic.infix import Reader
-from sysmlc.logic.spelling import (
-    COMPARING,
-    CONNECTIVES,
-    STRENGTH,
+from sysmlc.logic.infix import FormulaReader
+from sysmlc.logic.syntax import (
+    BOOLEANS,
+    COMPARISON_SIGNS,
+    CONNECTIVE_SIGNS,
+    PRECEDENCE,
     TEMPORAL_SIGNS,
-    TRUTHS,
     Cursor,
     Syntax,
-    tokens,
+    tokenize,
 )
 
 SYNTAX = Syntax(
     {"!": Op.NOT, **TEMPORAL_SIGNS},
-    {**CONNECTIVES, **COMPARING},
-    TRUTHS | {"True": True, "False": False},
+    {**CONNECTIVE_SIGNS, **COMPARISON_SIGNS},
+    BOOLEANS | {"True": True, "False": False},
     {"(": ")"},
-    STRENGTH,
-    (":", ";", "[", "]", ",", "-"),
-    r"\#[^\n]*",
+    PRECEDENCE,
+    signs=(":", ";", "[", "]", ",", "-"),
+    comment=r"\#[^\n]*",
 )
-_DECLARING = {"ENV": Owner.ENVIRONMENT, "SYS": Owner.SYSTEM}
+_DECLARATIONS = {"ENV": Owner.ENVIRONMENT, "SYS": Owner.SYSTEM}
 _SECTIONS = {
     "ENVINIT": (Owner.ENVIRONMENT, Class.INIT),
     "ENVTRANS": (Owner.ENVIRONMENT, Class.SAFETY),
@@ -44,80 +50,85 @@ _SECTIONS = {
     "SYSTRANS": (Owner.SYSTEM, Class.SAFETY),
     "SYSGOAL": (Owner.SYSTEM, Class.LIVENESS),
 }
-_BEFORE = {Class.INIT: "", Class.SAFETY: "[]", Class.LIVENESS: "[]<>"}
-_SPELLING = Spelling(LTL, primed, str)
+_OPERATORS = {Class.INIT: "", Class.SAFETY: "[]", Class.LIVENESS: "[]<>"}
+_NOTATION = Notation(LTL_WORDS, add_prime, str)
+_RESERVED = frozenset({*_DECLARATIONS, *_SECTIONS, *SYNTAX.booleans})
 
 
-def read(file: File) -> tuple[Contract, ...]:
-    """The contract of the file, whose name it has."""
-    draft = Draft(file, "gr1c")
-    cursor = Cursor(tokens(file.text, SYNTAX))
-    while cursor.next.kind != "end":
-        draft.statement(cursor, lambda: _section(draft, cursor), ";")
-    return draft.contracts(PurePath(file.path).stem)
+def read(file: SpecificationFile) -> tuple[Contract, ...]:
+    """Return the contract of the file, called like the file, or nothing after a fault."""
+    draft = ContractDraft(file, "gr1c")
+    cursor = Cursor(tokenize(file.text, SYNTAX))
+    while not cursor.is_at_end:
+        draft.read_statement(cursor, lambda: _read_section(draft, cursor), ";")
+    return draft.build(PurePath(file.path).stem)
 
 
-def _section(draft: Draft, cursor: Cursor) -> None:
-    title = cursor.expect(*_DECLARING, *_SECTIONS).text
+def _read_section(draft: ContractDraft, cursor: Cursor) -> None:
+    title = cursor.expect(*_DECLARATIONS, *_SECTIONS).text
     cursor.expect(":")
-    if title in _DECLARING:
+    if title in _DECLARATIONS:
         while cursor.next.kind == "name":
-            _declared(draft, cursor, _DECLARING[title])
-    elif not cursor.has(";"):
-        reader = Reader(cursor, SYNTAX, draft.domains)
-        _conjuncts(draft, reader, *_SECTIONS[title])
+            _read_declaration(draft, cursor, _DECLARATIONS[title])
+    elif not cursor.is_next(";"):
+        _read_conjuncts(draft, cursor, *_SECTIONS[title])
     cursor.expect(";")
 
 
-def _declared(draft: Draft, cursor: Cursor, owner: Owner) -> None:
+def _read_declaration(draft: ContractDraft, cursor: Cursor, owner: Owner) -> None:
     name = cursor.take()
-    if not cursor.took("["):
-        draft.declare(name.text, name.at, owner, BooleanDomain())
+    if not cursor.accept("["):
+        draft.declare(name.text, name.offset, owner, BooleanDomain())
         return
-    low = cursor.integer()
+    low = cursor.read_integer()
     cursor.expect(",")
-    high = cursor.integer()
+    high = cursor.read_integer()
     cursor.expect("]")
-    draft.declare(name.text, name.at, owner, IntegerDomain(min(low, high), high))
+    draft.declare(name.text, name.offset, owner, IntegerDomain(min(low, high), high))
 
 
-def _conjuncts(draft: Draft, reader: Reader, owner: Owner, class_: Class) -> None:
-    def read_all() -> None:
-        for formula, at in joined(reader, SYNTAX, ";"):
-            draft.add_classified(owner, class_, formula, at)
+def _read_conjuncts(draft: ContractDraft, cursor: Cursor, owner: Owner, class_: Class) -> None:
+    reader = FormulaReader(cursor, SYNTAX, draft.domains)
 
-    if not draft.formula(owner, class_, read_all):
-        reader.cursor.skip_to(";")
+    def read() -> None:
+        for formula, offset in read_conjuncts(reader, SYNTAX, ";"):
+            draft.add_classified(owner, class_, formula, offset)
 
-
-def plain(contract: Contract, form: str) -> Contract:
-    """The contract as gr1c has words for it. Raises NotExpressibleError."""
-    made = game(contract, form, apart=True)
-    return lowered(renamed(made, _RESERVED), form, lambda one: counted(one, is_flat=True))
+    if not draft.read_formula(owner, class_, read):
+        cursor.skip_to(";")
 
 
-def write(contract: Contract, form: str) -> str:
-    """The contract; enumerations are counted, and arithmetic is written out over the values."""
-    made = plain(contract, form)
-    owned = [
-        f"{title}:{''.join(f' {_declaration(v)}' for v in made.variables if v.owner is owner)};"
-        for title, owner in _DECLARING.items()
-    ]
-    sections = [f"{title}:{''.join(_lines(made, *key))};" for title, key in _SECTIONS.items()]
-    return "\n".join([*owned, "", *sections, ""])
-
-
-def _declaration(variable: Variable) -> str:
-    domain = variable.domain
-    return (
-        f"{variable.name} [0,{domain.high}]" if isinstance(domain, IntegerDomain) else variable.name
+def lower(contract: Contract, format_name: str) -> Contract:
+    """Return the contract in GR(1) over integers from 0. Raises NotExpressibleError."""
+    game = reduce_to_gr1(contract, format_name, separate_init=True)
+    return apply_lowering(
+        rename_reserved(game, _RESERVED),
+        format_name,
+        lambda contract: encode_as_integers(contract, is_flat=True),
     )
 
 
-def _lines(contract: Contract, owner: Owner, class_: Class) -> Iterator[str]:
-    for index, one in enumerate(conjuncts_of(contract, owner, class_)):
-        text = said("gr1c", _SPELLING.text, one)
-        yield f"\n{'& ' if index else '  '}{_BEFORE[class_]}({text})"
+def write(contract: Contract, format_name: str) -> str:
+    """Return the contract as text. Raises NotExpressibleError."""
+    lowered = lower(contract, format_name)
+    lines = []
+    for title, owner in _DECLARATIONS.items():
+        variables = (variable for variable in lowered.variables if variable.owner is owner)
+        declarations = "".join(f" {_print_declaration(variable)}" for variable in variables)
+        lines.append(f"{title}:{declarations};")
+    lines.append("")
+    for title, (owner, class_) in _SECTIONS.items():
+        lines.append(f"{title}:{''.join(_iter_lines(lowered, owner, class_))};")
+    return "\n".join([*lines, ""])
 
 
-_RESERVED = frozenset({*_DECLARING, *_SECTIONS, *SYNTAX.truths})
+def _print_declaration(variable: Variable) -> str:
+    if isinstance(variable.domain, IntegerDomain):
+        return f"{variable.name} [0,{variable.domain.high}]"
+    return variable.name
+
+
+def _iter_lines(contract: Contract, owner: Owner, class_: Class) -> Iterator[str]:
+    for index, conjunct in enumerate(conjuncts_of(contract, owner, class_)):
+        text = print_conjunct("gr1c", _NOTATION.print, conjunct)
+        yield f"\n{'& ' if index else '  '}{_OPERATORS[class_]}({text})"

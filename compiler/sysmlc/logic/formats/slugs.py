@@ -1,6 +1,10 @@
-"""Structured slugs: infix or prefix lines below ``[INPUT]``, ``[SYS_TRANS]`` ..., ranges, sums.
+"""Both formats of slugs: lines below ``[INPUT]``, ``[SYS_TRANS]`` and other sections.
 
-Source: slugs' examples and its tools/StructuredSlugsParser (what is no line of slugsin is infix).
+Structured slugs has ranges, and formulas in infix notation with sums; slugsin has Booleans, and
+formulas in prefix notation. The reader accepts both kinds of lines in both formats.
+
+Source: slugs' examples and its tools/StructuredSlugsParser, which takes every line that is not in
+prefix notation for infix notation.
 """
 
 import re
@@ -8,38 +12,62 @@ from collections.abc import Callable, Iterator
 from pathlib import PurePath
 
 from sysmlc.logic import formula as f
-from sysmlc.logic.contract import BooleanDomain, Class, Contract, IntegerDomain, Owner, Variable
-from sysmlc.logic.formats import rules
-from sysmlc.logic.formats.base import conjuncts_of, game, lowered, said
-from sysmlc.logic.formats.counting import counted
-from sysmlc.logic.formats.draft import Draft
-from sysmlc.logic.formats.file import File
-from sysmlc.logic.formats.lower import each_conjunct, flat, known, renamed
-from sysmlc.logic.formats.slugs_prefix import PrefixError, from_prefix
-from sysmlc.logic.formats.spelt import LTL, Spelling, primed
-from sysmlc.logic.formula import Apply, Const, Formula, Op, Var
-from sysmlc.logic.infix import TRUTH, Part, Reader
-from sysmlc.logic.spelling import (
-    COMPARING,
-    CONNECTIVES,
-    STRENGTH,
-    TRUTHS,
+from sysmlc.logic.contract import (
+    BooleanDomain,
+    Class,
+    Conjunct,
+    Contract,
+    IntegerDomain,
+    Owner,
+    Variable,
+)
+from sysmlc.logic.formats.draft import ContractDraft, SpecificationFile
+from sysmlc.logic.formats.encodings import encode_as_bits, encode_as_integers
+from sysmlc.logic.formats.lowering import (
+    flatten_atom,
+    index_domains,
+    rename_reserved,
+    rewrite_conjuncts,
+    rewrite_contract_atoms,
+)
+from sysmlc.logic.formats.prefix_notation import (
+    PrefixError,
+    eliminate_implications,
+    parse_prefix,
+    print_prefix,
+)
+from sysmlc.logic.formats.writing import (
+    LTL_WORDS,
+    Notation,
+    add_prime,
+    apply_lowering,
+    conjuncts_of,
+    print_conjunct,
+    reduce_to_gr1,
+)
+from sysmlc.logic.formula import Apply, Const, Formula, Literal, Op, Var
+from sysmlc.logic.infix import BOOLEAN, FormulaReader, Term
+from sysmlc.logic.syntax import (
+    BOOLEANS,
+    COMPARISON_SIGNS,
+    CONNECTIVE_SIGNS,
+    PRECEDENCE,
     Cursor,
     FormulaError,
     Syntax,
-    tokens,
+    tokenize,
 )
 
 SYNTAX = Syntax(
     {"!": Op.NOT},
-    {**CONNECTIVES, **COMPARING, "+": Op.ADD},
-    TRUTHS,
+    {**CONNECTIVE_SIGNS, **COMPARISON_SIGNS, "+": Op.ADD},
+    BOOLEANS,
     {"(": ")"},
-    STRENGTH,
-    ("^", "-"),
+    PRECEDENCE,
+    signs=("^", "-"),
 )
-DECLARING = {"INPUT": Owner.ENVIRONMENT, "OUTPUT": Owner.SYSTEM}
-SECTIONS = {
+_DECLARATIONS = {"INPUT": Owner.ENVIRONMENT, "OUTPUT": Owner.SYSTEM}
+_SECTIONS = {
     "ENV_INIT": (Owner.ENVIRONMENT, Class.INIT),
     "SYS_INIT": (Owner.SYSTEM, Class.INIT),
     "ENV_TRANS": (Owner.ENVIRONMENT, Class.SAFETY),
@@ -47,154 +75,192 @@ SECTIONS = {
     "ENV_LIVENESS": (Owner.ENVIRONMENT, Class.LIVENESS),
     "SYS_LIVENESS": (Owner.SYSTEM, Class.LIVENESS),
 }
-_TITLE = re.compile(r"\[(\w+)\]$")
-_DECLARED = re.compile(r"([^\W\d]\w*)(?:\s*:\s*(-?\d+)\s*\.\.\.\s*(-?\d+))?$")
-_IN_NAMES = re.compile(r"(?<=\w)[.@](?=\w)")
-"""Bits of slugs' own (``x@0.0.7``) become names that formulas of all forms can have."""
-_SPELLING = Spelling(
-    LTL, primed, lambda v: {True: "TRUE", False: "FALSE"}[v] if v.__class__ is bool else str(v)
-)
+_SECTION_TITLE = re.compile(r"\[(\w+)\]$")
+_DECLARATION = re.compile(r"([^\W\d]\w*)(?:\s*:\s*(-?\d+)\s*\.\.\.\s*(-?\d+))?$")
+_MAX_BOUND_LENGTH = 18
+_SIGN_IN_NAME = re.compile(r"(?<=\w)[.@](?=\w)")
+"""The bits that slugs makes of ranges are called ``x@0.0.7``."""
 
 
-def read(file: File) -> tuple[Contract, ...]:
-    """The contract of the file, whose name it has; slugsin is read by ``[SECTION]`` too."""
-    draft = Draft(file, "slugs")
-    title = ""
-    for at, line in lines(_IN_NAMES.sub("_", file.text)):
-        found = _TITLE.match(line)
-        if found:
-            title = _title(draft, found.group(1), at)
-        elif title in DECLARING:
-            _declare(draft, line, at, DECLARING[title])
-        elif title in SECTIONS:
-            _conjunct(draft, line, at, *SECTIONS[title])
+# -- reading ---------------------------------------------------------------------------------------
+
+
+def read(file: SpecificationFile) -> tuple[Contract, ...]:
+    """Return the contract of the file, called like the file, or nothing after a fault."""
+    draft = ContractDraft(file, "slugs")
+    section = ""
+    # Names with "@" and "." are no identifiers in the other formats.
+    for offset, line in _iter_lines(_SIGN_IN_NAME.sub("_", file.text)):
+        title = _SECTION_TITLE.match(line)
+        if title:
+            section = _read_title(draft, title.group(1), offset)
+        elif section in _DECLARATIONS:
+            _read_declaration(draft, line, offset, _DECLARATIONS[section])
+        elif section in _SECTIONS:
+            _read_conjunct(draft, line, offset, *_SECTIONS[section])
         elif not draft.is_broken:
-            draft.fault(rules.NOT_UNDERSTOOD, at, form="slugs", reason="it is below no [SECTION]")
-    return draft.contracts(PurePath(file.path).stem)
+            draft.report_not_understood(offset, "it is below no [SECTION]")
+    return draft.build(PurePath(file.path).stem)
 
 
-def lines(text: str) -> Iterator[tuple[int, str]]:
-    """Lines with something but a comment, without blanks around, with their places."""
-    at = 0
+def _iter_lines(text: str) -> Iterator[tuple[int, str]]:
+    """Yield the lines that are not empty, without comments and indentation, with their offsets."""
+    offset = 0
     for line in text.split("\n"):
-        kept = line.partition("#")[0]
-        if kept.strip():
-            yield at + len(kept) - len(kept.lstrip()), kept.strip()
-        at += len(line) + 1
+        content = line.partition("#")[0]
+        if content.strip():
+            yield offset + len(content) - len(content.lstrip()), content.strip()
+        offset += len(line) + 1
 
 
-def _title(draft: Draft, title: str, at: int) -> str:
-    if title in DECLARING or title in SECTIONS:
+def _read_title(draft: ContractDraft, title: str, offset: int) -> str:
+    """Return the title of a section; report an unknown one and return an empty text."""
+    if title in _DECLARATIONS or title in _SECTIONS:
         return title
-    known_ones = ", ".join([*DECLARING, *SECTIONS])
-    reason = f"[{title}] is no section; there are {known_ones}"
-    draft.fault(rules.NOT_UNDERSTOOD, at, form="slugs", reason=reason)
+    titles = ", ".join([*_DECLARATIONS, *_SECTIONS])
+    draft.report_not_understood(offset, f"[{title}] is no section; there are {titles}")
     return ""
 
 
-def _declare(draft: Draft, line: str, at: int, owner: Owner) -> None:
-    found = _DECLARED.match(line)
-    if found is None:
+def _read_declaration(draft: ContractDraft, line: str, offset: int, owner: Owner) -> None:
+    declaration = _DECLARATION.match(line)
+    if declaration is None:
         reason = f"'{line}' is neither a name nor a name with a range (x:0...7)"
-        draft.fault(rules.NOT_UNDERSTOOD, at, form="slugs", reason=reason)
+        draft.report_not_understood(offset, reason)
         return
-    name, low, high = found.groups()
+    name, low, high = declaration.groups()
     if low is None:
-        draft.declare(name, at, owner, BooleanDomain())
-    elif len(low) > 18 or len(high) > 18 or int(low) > int(high):
-        reason = f"the range of '{name}' is empty or too large"
-        draft.fault(rules.NOT_UNDERSTOOD, at, form="slugs", reason=reason)
+        draft.declare(name, offset, owner, BooleanDomain())
+    elif max(len(low), len(high)) > _MAX_BOUND_LENGTH or int(low) > int(high):
+        draft.report_not_understood(offset, f"the range of '{name}' is empty or too large")
     else:
-        draft.declare(name, at, owner, IntegerDomain(int(low), int(high)))
+        draft.declare(name, offset, owner, IntegerDomain(int(low), int(high)))
 
 
-def _conjunct(draft: Draft, line: str, at: int, owner: Owner, class_: Class) -> None:
-    def read_line() -> None:
-        draft.add(owner, class_, _formula(draft, line, at), at)
+def _read_conjunct(
+    draft: ContractDraft, line: str, offset: int, owner: Owner, class_: Class
+) -> None:
+    def read() -> None:
+        draft.add(owner, class_, _parse_line(draft, line, offset), offset)
 
-    draft.formula(owner, class_, read_line)
+    draft.read_formula(owner, class_, read)
 
 
-def _formula(draft: Draft, line: str, at: int) -> Formula:
-    """A line: in prefix notation if it can be that. Raises FormulaError."""
+def _parse_line(draft: ContractDraft, line: str, offset: int) -> Formula:
+    """Parse a line in prefix notation, or else in infix notation. Raises FormulaError."""
     try:
-        return from_prefix(line, draft.domains)
+        return parse_prefix(line, draft.domains)
     except PrefixError:
         pass
     try:
-        cursor = Cursor(tokens(line, SYNTAX))
-        made = _Reader(cursor, SYNTAX, draft.domains).formula()
-        if cursor.next.kind != "end":
-            cursor.fail()
+        reader = _SlugsReader(Cursor(tokenize(line, SYNTAX)), SYNTAX, draft.domains)
+        formula = reader.read_formula()
+        reader.cursor.expect_end()
     except FormulaError as error:
-        raise FormulaError(str(error), at + error.at) from None
-    return made
+        raise FormulaError(str(error), offset + error.offset) from None
+    return formula
 
 
-class _Reader(Reader):
-    """``a ^ b`` is either of two; 0 and 1 are truths where a truth is asked for."""
+class _SlugsReader(FormulaReader):
+    """``a ^ b`` is exclusive or; 0 and 1 are Booleans where a Boolean is required."""
 
-    def truth(self, part: Part) -> Formula:
-        if isinstance(part.formula, Const) and part.formula.value in (0, 1):
-            return Const(bool(part.formula.value))
-        return super().truth(part)
+    def require_boolean(self, term: Term) -> Formula:
+        if isinstance(term.formula, Const) and term.formula.value in (0, 1):
+            return Const(bool(term.formula.value))
+        return super().require_boolean(term)
 
-    def part(self, weakest: int) -> Part:
-        left = super().part(weakest)
-        while weakest <= STRENGTH[Op.OR] and self.cursor.took("^"):
-            right = super().part(STRENGTH[Op.OR] + 1)
-            other = f.negate(f.iff(self.truth(left), self.truth(right)))
-            left = Part(other, TRUTH, left.at)
+    def read_term(self, min_precedence: int) -> Term:
+        left = super().read_term(min_precedence)
+        while min_precedence <= PRECEDENCE[Op.OR] and self.cursor.accept("^"):
+            right = super().read_term(PRECEDENCE[Op.OR] + 1)
+            equivalence = f.iff(self.require_boolean(left), self.require_boolean(right))
+            left = Term(f.negate(equivalence), BOOLEAN, left.offset)
         return left
 
 
-def plain(contract: Contract, form: str) -> Contract:
-    """The contract as structured slugs have words for it. Raises NotExpressibleError."""
-    made = game(contract, form, primed_liveness=True)
-    return lowered(renamed(made, SYNTAX.truths), form, _without_minus)
+# -- writing ---------------------------------------------------------------------------------------
 
 
-def write(contract: Contract, form: str) -> str:
-    """The contract; enumerations are counted, what is not a sum is written out over the values."""
-    return sections(
-        plain(contract, form), lambda one: said(form, _SPELLING.text, one), _declaration
+def _print_literal(value: Literal) -> str:
+    return {True: "TRUE", False: "FALSE"}[value] if isinstance(value, bool) else str(value)
+
+
+_NOTATION = Notation(LTL_WORDS, add_prime, _print_literal)
+
+
+def lower(contract: Contract, format_name: str) -> Contract:
+    """Return the contract in GR(1), over Booleans for slugsin, over integers for structured slugs.
+
+    Raises NotExpressibleError.
+    """
+    game = reduce_to_gr1(contract, format_name, allow_primed_liveness=True)
+    if format_name == "slugsin":
+        return apply_lowering(
+            game,
+            format_name,
+            lambda contract: rewrite_conjuncts(encode_as_bits(contract), eliminate_implications),
+        )
+    return apply_lowering(
+        rename_reserved(game, SYNTAX.booleans), format_name, _eliminate_unsupported
     )
 
 
-def _without_minus(contract: Contract) -> Contract:
-    sums = counted(contract, is_flat=False)
-    domains_of = known(sums)
-    return each_conjunct(sums, lambda leaf: leaf if _is_sum(leaf) else flat(leaf, domains_of))
+def _eliminate_unsupported(contract: Contract) -> Contract:
+    """Encode enumerations, and expand comparisons that slugs does not support."""
+    encoded = encode_as_integers(contract, is_flat=False)
+    domains = index_domains(encoded)
+    return rewrite_contract_atoms(
+        encoded, lambda atom: atom if _is_supported(atom) else flatten_atom(atom, domains)
+    )
 
 
-def _is_sum(formula: Formula) -> bool:
-    """Whether slugs can say it: sums of variables and numbers that are not negative."""
+def _is_supported(formula: Formula) -> bool:
+    """Whether a term is a sum of variables and numbers that are not negative."""
     match formula:
         case Const(value):
             return isinstance(value, int) and value >= 0
         case Apply(op, args):
-            return op not in (Op.SUB, Op.MUL, Op.DIV, Op.MOD) and all(map(_is_sum, args))
+            return op not in (Op.SUB, Op.MUL, Op.DIV, Op.MOD) and all(map(_is_supported, args))
         case Var():
             return True
 
 
-def sections(
+def write(contract: Contract, format_name: str) -> str:
+    """Return the contract as text. Raises NotExpressibleError."""
+    lowered = lower(contract, format_name)
+    if format_name == "slugsin":
+        return _print_sections(
+            lowered,
+            lambda variable: variable.name,
+            lambda conjunct: print_prefix(conjunct.formula),
+        )
+    return _print_sections(
+        lowered,
+        _print_declaration,
+        lambda conjunct: print_conjunct(format_name, _NOTATION.print, conjunct),
+    )
+
+
+def _print_sections(
     contract: Contract,
-    text: Callable[..., str],
-    declarations: Callable[[Variable], str],
+    print_declaration: Callable[[Variable], str],
+    print_line: Callable[[Conjunct], str],
 ) -> str:
-    """The sections of a file of slugs, one line a conjunct."""
-    made = []
-    for title, owner in DECLARING.items():
-        owned = [declarations(one) for one in contract.variables if one.owner is owner]
-        made.append("\n".join([f"[{title}]", *owned, ""]))
-    for title, key in SECTIONS.items():
-        texts = [text(one) for one in conjuncts_of(contract, *key)]
-        made.append("\n".join([f"[{title}]", *texts, ""]))
-    return "\n".join(made)
+    sections = []
+    for title, owner in _DECLARATIONS.items():
+        lines = [
+            print_declaration(variable)
+            for variable in contract.variables
+            if variable.owner is owner
+        ]
+        sections.append("\n".join([f"[{title}]", *lines, ""]))
+    for title, (owner, class_) in _SECTIONS.items():
+        lines = [print_line(conjunct) for conjunct in conjuncts_of(contract, owner, class_)]
+        sections.append("\n".join([f"[{title}]", *lines, ""]))
+    return "\n".join(sections)
 
 
-def _declaration(variable: Variable) -> str:
+def _print_declaration(variable: Variable) -> str:
     if isinstance(variable.domain, IntegerDomain):
         return f"{variable.name}:{variable.domain.low}...{variable.domain.high}"
     return variable.name

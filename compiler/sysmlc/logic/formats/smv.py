@@ -1,7 +1,7 @@
 """SMV (NuSMV, nuXmv): variables with types, and the contract as one LTLSPEC.
 
-A comment behind a variable, ``-- input`` or ``-- output``, says who decides it. NuSMV's LTL has
-no next value inside of a comparison, so what compares a value with the next is written out.
+A comment behind a variable, ``-- input`` or ``-- output``, names its owner. NuSMV's LTL does not
+allow a next value inside a comparison, so a comparison of a current with a next value is expanded.
 """
 
 import re
@@ -18,201 +18,58 @@ from sysmlc.logic.contract import (
     Owner,
     Variable,
 )
-from sysmlc.logic.formats import rules
-from sysmlc.logic.formats.base import lowered
-from sysmlc.logic.formats.draft import Draft
-from sysmlc.logic.formats.file import File
-from sysmlc.logic.formats.lower import (
-    each_conjunct,
-    each_formula,
-    known,
-    renamed,
-    without_weak_until,
-    written_out,
+from sysmlc.logic.formats.draft import ContractDraft, SpecificationFile
+from sysmlc.logic.formats.lowering import (
+    eliminate_weak_until,
+    expand_comparison,
+    index_domains,
+    rename_reserved,
+    rewrite_conjuncts,
+    rewrite_contract_atoms,
 )
-from sysmlc.logic.formats.spelt import LTL, Spelling
-from sysmlc.logic.formats.spot import implication, sides
+from sysmlc.logic.formats.spot import print_implication, read_sides
+from sysmlc.logic.formats.writing import (
+    LTL_WORDS,
+    Notation,
+    add_next_operator,
+    apply_lowering,
+    convert_to_word,
+)
 from sysmlc.logic.formula import Apply, Formula, Op, Var
-from sysmlc.logic.infix import Part, Reader
-from sysmlc.logic.spelling import (
-    COMPARING,
-    CONNECTIVES,
-    COUNTING,
-    STRENGTH,
+from sysmlc.logic.infix import FormulaReader, Term
+from sysmlc.logic.syntax import (
+    ARITHMETIC_SIGNS,
+    BOOLEANS,
+    COMPARISON_SIGNS,
+    COMPARISONS,
+    CONNECTIVE_SIGNS,
+    PRECEDENCE,
     TEMPORAL_WORDS,
-    TRUTHS,
     Cursor,
     FormulaError,
     Syntax,
     Token,
-    tokens,
+    tokenize,
 )
 
 SYNTAX = Syntax(
     {"!": Op.NOT, **TEMPORAL_WORDS},
-    {**CONNECTIVES, "U": Op.UNTIL, "V": Op.RELEASE, **COMPARING, **COUNTING},
-    TRUTHS,
+    {
+        **CONNECTIVE_SIGNS,
+        "U": Op.UNTIL,
+        "V": Op.RELEASE,
+        **COMPARISON_SIGNS,
+        **ARITHMETIC_SIGNS,
+    },
+    BOOLEANS,
     {"(": ")"},
-    STRENGTH,
-    (":", ";", "{", "}", ",", "..", ":="),
-    r"--[^\n]*",
+    PRECEDENCE,
+    signs=(":", ";", "{", "}", ",", "..", ":="),
+    comment=r"--[^\n]*",
 )
-_SPELLING = Spelling({**LTL, Op.RELEASE: "V"}, lambda name: f"next({name})")
 _OWNERS = {"input": Owner.ENVIRONMENT, "output": Owner.SYSTEM}
-_SAYS = re.compile(r"[^\n]*?--\s*(input|output)\b")
-_RULES = ("MODULE", "VAR", "IVAR", "LTLSPEC")
-
-
-def read(file: File) -> tuple[Contract, ...]:
-    """The contract of the file's main module."""
-    draft = Draft(file, "SMV")
-    cursor = Cursor(tokens(file.text, SYNTAX))
-    name = [PurePath(file.path).stem]
-    while cursor.next.kind != "end":
-        draft.statement(cursor, lambda: _section(draft, cursor, name), ";")
-    return draft.contracts(name[-1])
-
-
-def _section(draft: Draft, cursor: Cursor, name: list[str]) -> None:
-    title = cursor.expect_kind("name", "a section")
-    if title.text == "MODULE":
-        cursor.expect_kind("name", "a name")
-    elif title.text in ("VAR", "IVAR"):
-        while cursor.next.kind == "name" and cursor.after_next.text == ":":
-            _declaration(draft, cursor)
-    elif title.text == "LTLSPEC":
-        _specification(draft, cursor, name)
-    else:
-        draft.fault(rules.OUTSIDE, title.at, what=f"'{title.text}'", form="SMV")
-        cursor.skip_to(*_RULES)
-
-
-def _declaration(draft: Draft, cursor: Cursor) -> None:
-    name = cursor.take()
-    cursor.expect(":")
-    domain = _domain(cursor)
-    end = cursor.expect(";").at
-    found = _SAYS.match(draft.file.text, end)
-    if found is None:
-        reason = f"a comment '-- input' or '-- output' must say who decides '{name.text}'"
-        raise FormulaError(reason, name.at)
-    draft.declare(name.text, name.at, _OWNERS[found.group(1)], domain)
-
-
-def _domain(cursor: Cursor) -> Domain:
-    if cursor.took("boolean"):
-        return BooleanDomain()
-    at = cursor.next.at
-    if cursor.took("{"):
-        literals = [cursor.expect_kind("name", "a value").text]
-        while cursor.took(","):
-            literals.append(cursor.expect_kind("name", "a value").text)
-        cursor.expect("}")
-        if len(set(literals)) < len(literals):
-            raise FormulaError("a value is there twice", at)
-        return EnumerationDomain(tuple(literals))
-    low = cursor.integer()
-    cursor.expect("..")
-    high = cursor.integer()
-    if low > high:
-        raise FormulaError(f"the range {low}..{high} is empty", at)
-    return IntegerDomain(low, high)
-
-
-def _specification(draft: Draft, cursor: Cursor, name: list[str]) -> None:
-    if cursor.took("NAME"):
-        name.append(cursor.expect_kind("name", "a name").text)
-        cursor.expect(":=")
-
-    def read_all() -> None:
-        sides(draft, _Reader(cursor, SYNTAX, draft.domains))
-        if not cursor.has(";") and cursor.next.kind != "end":
-            cursor.fail("';' is expected")
-
-    if not draft.formula(Owner.SYSTEM, Class.OTHER, read_all):
-        cursor.skip_to(";")
-    cursor.took(";")
-
-
-class _Reader(Reader):
-    """``next(e)`` is e with the values of the next step."""
-
-    def word(self, token: Token) -> Part:
-        if token.text != "next" or not self.cursor.took("("):
-            return super().word(token)
-        inner = self.part(0)
-        self.cursor.expect(")")
-        return Part(f.primed(inner.formula), inner.kind, token.at)
-
-
-def plain(contract: Contract, form: str) -> Contract:
-    """The contract as NuSMV's LTL has words for it. Raises NotExpressibleError."""
-    words = frozenset({*SYNTAX.prefix, *SYNTAX.infix, *TRUTHS, *_RULES, *_KEYWORDS})
-    plain_words = each_formula(renamed(contract, words), without_weak_until)
-    return lowered(plain_words, form, _apart)
-
-
-def _apart(contract: Contract) -> Contract:
-    domains_of = known(contract)
-
-    def leaf(formula: Formula) -> Formula:
-        steps = {variable.primed for variable in f.variables(formula)}
-        return written_out(formula, domains_of) if len(steps) > 1 else formula
-
-    return each_conjunct(contract, leaf)
-
-
-def write(contract: Contract, form: str) -> str:
-    """The contract as a module whose LTLSPEC holds where the guarantees follow."""
-    from sysmlc.logic.formats.chase import word
-
-    made = plain(contract, form)
-    spec = implication(made, _Next(_SPELLING.words, _SPELLING.next), form)
-    declared = [_declared(one) for one in made.variables]
-    name = word(contract.component)
-    return "\n".join(["MODULE main", "VAR", *declared, f"LTLSPEC NAME {name} := {spec};", ""])
-
-
-class _Next(Spelling, frozen=True):
-    """A comparison of next values is ``X`` before the comparison."""
-
-    def text(self, formula: Formula) -> str:
-        if any(variable.primed for variable in f.variables(formula)) and _is_leaf(formula):
-            return f"X {self._bare(_unprimed(formula))}"
-        return super().text(formula)
-
-    def _bare(self, formula: Formula) -> str:
-        text = super().text(formula)
-        return text if isinstance(formula, Var) else f"({text})"
-
-
-def _is_leaf(formula: Formula) -> bool:
-    comparisons = (Op.EQ, Op.NE, Op.LT, Op.LE, Op.GT, Op.GE)
-    return isinstance(formula, Var) or (isinstance(formula, Apply) and formula.op in comparisons)
-
-
-def _unprimed(formula: Formula) -> Formula:
-    match formula:
-        case Var(name):
-            return Var(name)
-        case Apply(op, args):
-            return Apply(op, tuple(_unprimed(arg) for arg in args))
-        case _:
-            return formula
-
-
-def _declared(variable: Variable) -> str:
-    side = "input" if variable.owner is Owner.ENVIRONMENT else "output"
-    match variable.domain:
-        case BooleanDomain():
-            type_ = "boolean"
-        case IntegerDomain(low, high):
-            type_ = f"{low}..{high}"
-        case EnumerationDomain(literals):
-            type_ = f"{{{', '.join(literals)}}}"
-    return f"  {variable.name} : {type_}; -- {side}"
-
-
+_OWNER_COMMENT = re.compile(r"[^\n]*?--\s*(input|output)\b")
+_SECTIONS = ("MODULE", "VAR", "IVAR", "LTLSPEC")
 _KEYWORDS = frozenset(
     re.findall(
         r"\w+",
@@ -224,3 +81,170 @@ _KEYWORDS = frozenset(
         "in xor xnor self TRUE FALSE count abs max min",
     )
 )
+_RESERVED = _KEYWORDS | {*SYNTAX.prefix, *SYNTAX.infix, *BOOLEANS}
+
+
+# -- reading ---------------------------------------------------------------------------------------
+
+
+def read(file: SpecificationFile) -> tuple[Contract, ...]:
+    """Return the contract of the file's main module, or nothing if a fault was reported.
+
+    The name of the last LTLSPEC, else of the file, is the name of the contract.
+    """
+    draft = ContractDraft(file, "SMV")
+    cursor = Cursor(tokenize(file.text, SYNTAX))
+    names = [PurePath(file.path).stem]
+    while not cursor.is_at_end:
+        draft.read_statement(cursor, lambda: _read_section(draft, cursor, names), ";")
+    return draft.build(names[-1])
+
+
+def _read_section(draft: ContractDraft, cursor: Cursor, names: list[str]) -> None:
+    title = cursor.expect_kind("name", "a section")
+    if title.text == "MODULE":
+        cursor.expect_kind("name", "a name")
+    elif title.text in ("VAR", "IVAR"):
+        while cursor.next.kind == "name" and cursor.after_next.text == ":":
+            _read_declaration(draft, cursor)
+    elif title.text == "LTLSPEC":
+        _read_specification(draft, cursor, names)
+    else:
+        draft.report_outside(title.offset, f"'{title.text}'")
+        cursor.skip_to(*_SECTIONS)
+
+
+def _read_declaration(draft: ContractDraft, cursor: Cursor) -> None:
+    name = cursor.take()
+    cursor.expect(":")
+    domain = _read_type(cursor)
+    end = cursor.expect(";").offset
+    # Comments are not among the tokens.
+    comment = _OWNER_COMMENT.match(draft.file.text, end)
+    if comment is None:
+        reason = f"a comment '-- input' or '-- output' must say who decides '{name.text}'"
+        raise FormulaError(reason, name.offset)
+    draft.declare(name.text, name.offset, _OWNERS[comment.group(1)], domain)
+
+
+def _read_type(cursor: Cursor) -> Domain:
+    if cursor.accept("boolean"):
+        return BooleanDomain()
+    offset = cursor.next.offset
+    if cursor.accept("{"):
+        literals = [cursor.expect_kind("name", "a value").text]
+        while cursor.accept(","):
+            literals.append(cursor.expect_kind("name", "a value").text)
+        cursor.expect("}")
+        if len(set(literals)) < len(literals):
+            raise FormulaError("a value is there twice", offset)
+        return EnumerationDomain(tuple(literals))
+    low = cursor.read_integer()
+    cursor.expect("..")
+    high = cursor.read_integer()
+    if low > high:
+        raise FormulaError(f"the range {low}..{high} is empty", offset)
+    return IntegerDomain(low, high)
+
+
+def _read_specification(draft: ContractDraft, cursor: Cursor, names: list[str]) -> None:
+    if cursor.accept("NAME"):
+        names.append(cursor.expect_kind("name", "a name").text)
+        cursor.expect(":=")
+
+    def read() -> None:
+        read_sides(draft, _SmvReader(cursor, SYNTAX, draft.domains))
+        if not cursor.is_next(";") and not cursor.is_at_end:
+            cursor.fail("';' is expected")
+
+    if not draft.read_formula(Owner.SYSTEM, Class.OTHER, read):
+        cursor.skip_to(";")
+    cursor.accept(";")
+
+
+class _SmvReader(FormulaReader):
+    """Reads ``next(e)`` as e with the values of the next step."""
+
+    def resolve_name(self, token: Token) -> Term:
+        if token.text != "next" or not self.cursor.accept("("):
+            return super().resolve_name(token)
+        term = self.read_term(0)
+        self.cursor.expect(")")
+        return Term(f.primed(term.formula), term.kind, token.offset)
+
+
+# -- writing ---------------------------------------------------------------------------------------
+
+
+def lower(contract: Contract, format_name: str) -> Contract:
+    """Return the contract without weak until and without comparisons across a step.
+
+    Raises NotExpressibleError.
+    """
+    lowered = rewrite_conjuncts(rename_reserved(contract, _RESERVED), eliminate_weak_until)
+    return apply_lowering(lowered, format_name, _expand_step_comparisons)
+
+
+def _expand_step_comparisons(contract: Contract) -> Contract:
+    domains = index_domains(contract)
+
+    def expand(atom: Formula) -> Formula:
+        has_two_steps = len({variable.primed for variable in f.variables(atom)}) > 1
+        return expand_comparison(atom, domains) if has_two_steps else atom
+
+    return rewrite_contract_atoms(contract, expand)
+
+
+def write(contract: Contract, format_name: str) -> str:
+    """Return a module whose LTLSPEC is that the assumptions imply the guarantees."""
+    lowered = lower(contract, format_name)
+    specification = print_implication(lowered, _NOTATION, format_name)
+    name = convert_to_word(contract.component)
+    lines = [
+        "MODULE main",
+        "VAR",
+        *map(_print_declaration, lowered.variables),
+        f"LTLSPEC NAME {name} := {specification};",
+    ]
+    return "\n".join([*lines, ""])
+
+
+def _print_declaration(variable: Variable) -> str:
+    direction = "input" if variable.owner is Owner.ENVIRONMENT else "output"
+    match variable.domain:
+        case BooleanDomain():
+            type_ = "boolean"
+        case IntegerDomain(low, high):
+            type_ = f"{low}..{high}"
+        case EnumerationDomain(literals):
+            type_ = f"{{{', '.join(literals)}}}"
+    return f"  {variable.name} : {type_}; -- {direction}"
+
+
+class _SmvNotation(Notation, frozen=True):
+    """Writes ``X`` before a comparison of next values, since NuSMV's LTL has no ``next(x)``."""
+
+    def print(self, formula: Formula) -> str:
+        is_primed = any(variable.primed for variable in f.variables(formula))
+        if not is_primed or not _is_atom(formula):
+            return super().print(formula)
+        text = super().print(_remove_primes(formula))
+        return f"X {text}" if isinstance(formula, Var) else f"X ({text})"
+
+
+def _is_atom(formula: Formula) -> bool:
+    is_comparison = isinstance(formula, Apply) and formula.op in COMPARISONS
+    return is_comparison or isinstance(formula, Var)
+
+
+def _remove_primes(formula: Formula) -> Formula:
+    match formula:
+        case Var(name):
+            return Var(name)
+        case Apply(op, args):
+            return Apply(op, tuple(map(_remove_primes, args)))
+        case _:
+            return formula
+
+
+_NOTATION = _SmvNotation({**LTL_WORDS, Op.RELEASE: "V"}, add_next_operator)

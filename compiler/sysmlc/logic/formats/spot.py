@@ -1,6 +1,7 @@
-"""Spot: one LTL formula over Booleans, and who decides them (``.inputs``, ``.outputs``).
+"""Spot: one LTL formula over Booleans, with lines ``.inputs`` and ``.outputs`` for the owners.
 
-The lines below the formula are those of ltlsynt's ``--part-file``.
+The lines below the formula are those of ltlsynt's ``--part-file``. SPIN and SMV also have one
+formula ``assumptions -> guarantees``, which this module reads and writes for them.
 """
 
 import re
@@ -9,18 +10,21 @@ from pathlib import PurePath
 
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import BooleanDomain, Class, Conjunct, Contract, Owner
-from sysmlc.logic.formats import rules
-from sysmlc.logic.formats.base import lowered, said_ltl
-from sysmlc.logic.formats.counting import in_bits
-from sysmlc.logic.formats.draft import Draft
-from sysmlc.logic.formats.file import File
-from sysmlc.logic.formats.lower import renamed
-from sysmlc.logic.formats.spelt import LTL, Spelling, next_of
+from sysmlc.logic.formats.draft import ContractDraft, SpecificationFile
+from sysmlc.logic.formats.encodings import encode_as_bits
+from sysmlc.logic.formats.lowering import rename_reserved
+from sysmlc.logic.formats.writing import (
+    LTL_WORDS,
+    Notation,
+    add_next_operator,
+    apply_lowering,
+    print_ltl_conjunct,
+)
 from sysmlc.logic.formula import Op, Var
-from sysmlc.logic.infix import TRUTH, Part, Reader
-from sysmlc.logic.spelling import (
-    CONNECTIVES,
-    STRENGTH,
+from sysmlc.logic.infix import BOOLEAN, FormulaReader, Term
+from sysmlc.logic.syntax import (
+    CONNECTIVE_SIGNS,
+    PRECEDENCE,
     TEMPORAL_SIGNS,
     TEMPORAL_WORDS,
     UNTIL_WORDS,
@@ -28,13 +32,13 @@ from sysmlc.logic.spelling import (
     FormulaError,
     Syntax,
     Token,
-    tokens,
+    tokenize,
 )
 
 SYNTAX = Syntax(
     {"!": Op.NOT, "~": Op.NOT, **TEMPORAL_WORDS, **TEMPORAL_SIGNS},
     {
-        **CONNECTIVES,
+        **CONNECTIVE_SIGNS,
         **UNTIL_WORDS,
         "/\\": Op.AND,
         "\\/": Op.OR,
@@ -43,111 +47,130 @@ SYNTAX = Syntax(
     },
     {"true": True, "false": False, "1": True, "0": False},
     {"(": ")"},
-    STRENGTH,
-    ("-",),
+    PRECEDENCE,
+    signs=("-",),
 )
-PARTS = re.compile(r"^[ \t]*\.(inputs|outputs)\b[ \t:]*([^\n]*)$", re.MULTILINE)
-_SPELLING = Spelling(LTL, next_of)
-OWNERS = {"inputs": Owner.ENVIRONMENT, "outputs": Owner.SYSTEM}
+_PARTITION_LINE = re.compile(r"^[ \t]*\.(inputs|outputs)\b[ \t:]*([^\n]*)$", re.MULTILINE)
+_NAME = re.compile(r"[^\s,]+")
+_OWNERS = {"inputs": Owner.ENVIRONMENT, "outputs": Owner.SYSTEM}
+_NOTATION = Notation(LTL_WORDS, add_next_operator)
+_RESERVED = frozenset({*SYNTAX.prefix, *SYNTAX.infix, *SYNTAX.booleans, "M", "xor"})
 
 
-def read(file: File) -> tuple[Contract, ...]:
-    """The contract of the file: of ``a -> g`` the assumptions and guarantees."""
-    draft = Draft(file, "Spot")
-    for match in PARTS.finditer(file.text):
-        for word in re.finditer(r"[^\s,]+", match.group(2)):
-            at = match.start(2) + word.start()
-            if word.group().isidentifier():
-                draft.declare(word.group(), at, OWNERS[match.group(1)], BooleanDomain())
+# -- reading ---------------------------------------------------------------------------------------
+
+
+def read(file: SpecificationFile) -> tuple[Contract, ...]:
+    """Return the contract of the file, called like the file, or nothing after a fault."""
+    draft = ContractDraft(file, "Spot")
+    for line in _PARTITION_LINE.finditer(file.text):
+        for name in _NAME.finditer(line.group(2)):
+            offset = line.start(2) + name.start()
+            if name.group().isidentifier():
+                draft.declare(name.group(), offset, _OWNERS[line.group(1)], BooleanDomain())
             else:
-                reason = f"'{word.group()}' is no name that formulas can have"
-                draft.fault(rules.NOT_UNDERSTOOD, at, form="Spot", reason=reason)
-    text = PARTS.sub(lambda match: " " * len(match.group()), file.text)
-    read_implication(draft, text, SYNTAX, Atoms)
-    return draft.contracts(PurePath(file.path).stem.removesuffix(".spot"))
+                reason = f"'{name.group()}' is no name that formulas can have"
+                draft.report_not_understood(offset, reason)
+    read_implication(draft, blank_partition(file.text), SYNTAX, _SpotReader)
+    return draft.build(PurePath(file.path).stem.removesuffix(".spot"))
 
 
-def read_implication(draft: Draft, text: str, syntax: Syntax, reader: type[Reader]) -> None:
-    """Read ``assumptions -> guarantees``, or guarantees alone, into the draft."""
-    cursor = Cursor(tokens(text, syntax))
-    reading = reader(cursor, syntax, draft.domains)
-
-    def read_all() -> None:
-        sides(draft, reading)
-        if cursor.next.kind != "end":
-            cursor.fail()
-
-    draft.formula(Owner.SYSTEM, Class.OTHER, read_all)
+def read_partition(text: str) -> dict[str, Owner]:
+    """Return the owners of the variables that the lines ``.inputs`` and ``.outputs`` name."""
+    return {
+        name: _OWNERS[line.group(1)]
+        for line in _PARTITION_LINE.finditer(text)
+        for name in _NAME.findall(line.group(2))
+    }
 
 
-def sides(draft: Draft, reading: Reader) -> None:
-    """Read ``assumptions -> guarantees``, or guarantees alone, up to what is no formula.
+def blank_partition(text: str) -> str:
+    """Replace the lines ``.inputs`` and ``.outputs`` by blanks, which preserves offsets."""
+    return _PARTITION_LINE.sub(lambda line: " " * len(line.group()), text)
 
-    The arrow is not an operator here: its sides stay two, even if one of them is false.
+
+def read_implication(
+    draft: ContractDraft, text: str, syntax: Syntax, reader_class: type[FormulaReader]
+) -> None:
+    """Add the text ``assumptions -> guarantees``, or guarantees alone, to the draft."""
+    cursor = Cursor(tokenize(text, syntax))
+
+    def read() -> None:
+        read_sides(draft, reader_class(cursor, syntax, draft.domains))
+        cursor.expect_end()
+
+    draft.read_formula(Owner.SYSTEM, Class.OTHER, read)
+
+
+def read_sides(draft: ContractDraft, reader: FormulaReader) -> None:
+    """Read ``assumptions -> guarantees``, or guarantees alone, and add them to the draft.
+
+    Raises FormulaError.
     """
-    at = reading.cursor.next.at
-    first = reading.formula(STRENGTH[Op.IMPLIES] + 1)
-    if not reading.cursor.took("->"):
-        draft.add_ltl(Owner.SYSTEM, first, at)
+    # The formula is not read whole, because folding would drop a side if the other is constant.
+    offset = reader.cursor.next.offset
+    left = reader.read_formula(PRECEDENCE[Op.IMPLIES] + 1)
+    if not reader.cursor.accept("->"):
+        draft.add_ltl(Owner.SYSTEM, left, offset)
         return
-    behind = reading.cursor.next.at
-    promised = reading.formula()
-    draft.add_ltl(Owner.ENVIRONMENT, first, at)
-    draft.add_ltl(Owner.SYSTEM, promised, behind)
+    right_offset = reader.cursor.next.offset
+    right = reader.read_formula()
+    draft.add_ltl(Owner.ENVIRONMENT, left, offset)
+    draft.add_ltl(Owner.SYSTEM, right, right_offset)
 
 
-class Atoms(Reader):
-    """Spot's atoms: names, quoted or not; 0 and 1 are truths."""
+class _SpotReader(FormulaReader):
+    """Reads Spot's atomic propositions, which may be quoted; 0 and 1 are Booleans."""
 
-    def operand(self) -> Part:
+    def read_operand(self) -> Term:
         token = self.cursor.next
-        if token.kind == "number" and token.text in self._syntax.truths:
+        if token.kind == "number" and token.text in SYNTAX.booleans:
             self.cursor.take()
-            return Part(f.const(self._syntax.truths[token.text]), TRUTH, token.at)
+            return Term(f.const(SYNTAX.booleans[token.text]), BOOLEAN, token.offset)
         if token.kind == "string":
             self.cursor.take()
-            return self.word(Token("name", token.text[1:-1], token.at))
-        return super().operand()
+            return self.resolve_name(Token("name", token.text[1:-1], token.offset))
+        return super().read_operand()
 
-    def word(self, token: Token) -> Part:
+    def resolve_name(self, token: Token) -> Term:
         if token.text in self.variables:
-            return Part(Var(token.text), TRUTH, token.at)
+            return Term(Var(token.text), BOOLEAN, token.offset)
         where = "lines below it, or in the .part file beside it"
         reason = f"'{token.text}' is among neither the .inputs nor the .outputs ({where})"
-        raise FormulaError(reason, token.at)
+        raise FormulaError(reason, token.offset)
 
 
-def plain(contract: Contract, form: str) -> Contract:
-    """The contract over Booleans. Raises NotExpressibleError."""
-    return lowered(renamed(contract, _RESERVED), form, in_bits)
+# -- writing ---------------------------------------------------------------------------------------
 
 
-def write(contract: Contract, form: str) -> str:
-    """The contract over bits as one formula, and below it who decides them."""
-    made = plain(contract, form)
-    return "\n".join([implication(made, _SPELLING, "Spot"), *parts(made), ""])
+def lower(contract: Contract, format_name: str) -> Contract:
+    """Return the contract over Booleans. Raises NotExpressibleError."""
+    return apply_lowering(rename_reserved(contract, _RESERVED), format_name, encode_as_bits)
 
 
-def parts(contract: Contract) -> list[str]:
-    """The lines that say who decides the variables."""
-    owned = {
-        title: [one.name for one in contract.variables if one.owner is owner]
-        for title, owner in OWNERS.items()
-    }
-    return [" ".join([f".{title}", *names]) for title, names in owned.items()]
+def write(contract: Contract, format_name: str) -> str:
+    """Return the contract as one formula over bits with the owners of the bits below it."""
+    lowered = lower(contract, format_name)
+    formula = print_implication(lowered, _NOTATION, "Spot")
+    return "\n".join([formula, *list_partition(lowered), ""])
 
 
-def implication(contract: Contract, spelling: Spelling, form: str) -> str:
-    """``(assumptions) -> (guarantees)``; the guarantees alone when nothing is assumed."""
-    assumed, promised = (
-        _joined(side, spelling, form) for side in (contract.assumptions, contract.guarantees)
-    )
-    return f"({assumed}) {spelling.words[Op.IMPLIES]} ({promised})"
+def list_partition(contract: Contract) -> list[str]:
+    """Return the lines ``.inputs`` and ``.outputs``."""
+    lines = []
+    for title, owner in _OWNERS.items():
+        names = [variable.name for variable in contract.variables if variable.owner is owner]
+        lines.append(" ".join([f".{title}", *names]))
+    return lines
 
 
-def _joined(conjuncts: Iterable[Conjunct], spelling: Spelling, form: str) -> str:
-    texts = [f"({said_ltl(form, spelling, one)})" for one in conjuncts]
-    return f" {spelling.words[Op.AND]} ".join(texts) or "true"
+def print_implication(contract: Contract, notation: Notation, format_name: str) -> str:
+    """Return ``(assumptions) -> (guarantees)``, with ``true`` for no assumptions."""
+    assumptions = _print_conjunction(contract.assumptions, notation, format_name)
+    guarantees = _print_conjunction(contract.guarantees, notation, format_name)
+    return f"({assumptions}) {notation.words[Op.IMPLIES]} ({guarantees})"
 
 
-_RESERVED = frozenset({*SYNTAX.prefix, *SYNTAX.infix, *SYNTAX.truths, "M", "xor"})
+def _print_conjunction(conjuncts: Iterable[Conjunct], notation: Notation, format_name: str) -> str:
+    texts = [f"({print_ltl_conjunct(format_name, notation, conjunct)})" for conjunct in conjuncts]
+    return f" {notation.words[Op.AND]} ".join(texts) or "true"

@@ -1,6 +1,6 @@
 """TLSF: sections of assumptions and guarantees over Boolean signals, parameters, definitions.
 
-Source: TLSF v1.1; enumerations, sets and patterns of its full form are named as outside.
+Source: TLSF v1.1. Enumerations, sets and patterns of its full form are reported as outside.
 """
 
 import re
@@ -12,31 +12,47 @@ from msgspec.structs import replace
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import BooleanDomain, Class, Contract, Owner
 from sysmlc.logic.formats import rules
-from sysmlc.logic.formats.base import conjuncts_of, lowered, said_ltl
-from sysmlc.logic.formats.counting import in_bits
-from sysmlc.logic.formats.draft import Draft
-from sysmlc.logic.formats.file import File
-from sysmlc.logic.formats.lower import renamed
-from sysmlc.logic.formats.spelt import LTL, Spelling, next_of
-from sysmlc.logic.formats.tlsf_tree import INFIX, PREFIX, QUANTIFIERS, Tree, expression
-from sysmlc.logic.formats.tlsf_values import DEEPEST_CALL, Bus, Definition, Value, Values
+from sysmlc.logic.formats.draft import ContractDraft, SpecificationFile
+from sysmlc.logic.formats.encodings import encode_as_bits
+from sysmlc.logic.formats.lowering import rename_reserved
+from sysmlc.logic.formats.tlsf_expressions import (
+    INFIX,
+    MAX_CALL_DEPTH,
+    PREFIX,
+    QUANTIFIERS,
+    Bus,
+    Definition,
+    Evaluator,
+    Tree,
+    Value,
+    parse_expression,
+)
+from sysmlc.logic.formats.writing import (
+    LTL_WORDS,
+    Notation,
+    add_next_operator,
+    apply_lowering,
+    conjuncts_of,
+    print_ltl_conjunct,
+)
 from sysmlc.logic.formula import Formula, Op, Var
-from sysmlc.logic.infix import DEEPEST
-from sysmlc.logic.spelling import Cursor, Syntax, tokens
+from sysmlc.logic.infix import MAX_DEPTH
+from sysmlc.logic.syntax import Cursor, Syntax, Token, tokenize
 from sysmlc.support.escapes import escape_invisible
 from sysmlc.support.recursion import allow_recursion
 
 _SIGNS = ("!", "&&", "||", "->", "<->", "==", "!=", "<", "<=", ">", ">=", "+", "-", "*", "/", "%")
+# The tables of operators are empty: `tlsf_expressions` parses expressions, with other precedences.
 SYNTAX = Syntax(
     {},
     {},
     {},
     {"(": ")", "[": "]", "{": "}"},
     {},
-    (*_SIGNS, ";", ":", ",", "=", "~", "."),
-    r"//[^\n]*|/\*[\s\S]*?\*/",
-    r"[^\W\d][\w'@]*",
-    r'"[^"]*"',
+    signs=(*_SIGNS, ";", ":", ",", "=", "~", "."),
+    comment=r"//[^\n]*|/\*[\s\S]*?\*/",
+    name=r"[^\W\d][\w'@]*",
+    string=r'"[^"]*"',
 )
 _OWNERS = {"INPUTS": Owner.ENVIRONMENT, "OUTPUTS": Owner.SYSTEM}
 _SECTIONS = {
@@ -51,177 +67,195 @@ _SECTIONS = {
     "GUARANTEE": (Owner.SYSTEM, Class.OTHER),
     "GUARANTEES": (Owner.SYSTEM, Class.OTHER),
 }
-_OUTSIDE = {"Moore": "the semantics of Moore machines", "Finite": "the semantics of finite runs"}
-_Handler = Callable[[Cursor, str], None]
+_UNSUPPORTED_SEMANTICS = {
+    "Moore": "the semantics of Moore machines",
+    "Finite": "the semantics of finite runs",
+}
+_MAX_BUS_WIDTH = 1 << 12
+_RESERVED = frozenset(
+    {*INFIX, *PREFIX, *QUANTIFIERS, *_SECTIONS, *_OWNERS, "otherwise", "true", "false", "IN"}
+    | {"INFO", "MAIN", "GLOBAL", "PARAMETERS", "DEFINITIONS", "SUM", "PROD", "MIN", "MAX", "CAP"}
+    | {"CUP", "SETMINUS", "SIZE", "enum"}
+)
 
 
-def read(file: File) -> tuple[Contract, ...]:
-    """The contract of the file, whose name it has."""
-    with allow_recursion(DEEPEST + 2 * DEEPEST_CALL):
-        return _File(file).read()
+# -- reading ---------------------------------------------------------------------------------------
+
+_SectionReader = Callable[[str], None]
+"""Reads one item of the section with the title."""
 
 
-class _File:
-    """Reads a file: first what is declared anywhere in it, then what is said."""
+def read(file: SpecificationFile) -> tuple[Contract, ...]:
+    """Return the contract of the file, called like the file, or nothing after a fault."""
+    # The evaluator recurses over trees and over calls.
+    with allow_recursion(MAX_DEPTH + 2 * MAX_CALL_DEPTH):
+        return _TlsfReader(file).read()
 
-    def __init__(self, file: File) -> None:
-        self._draft = Draft(file, "TLSF")
-        self._cursor = Cursor(tokens(file.text, SYNTAX))
+
+class _TlsfReader:
+    """Reads a file in two rounds: declarations, which may stand below their use, and formulas."""
+
+    def __init__(self, file: SpecificationFile) -> None:
+        self._draft = ContractDraft(file, "TLSF")
+        self._cursor = Cursor(tokenize(file.text, SYNTAX))
         self._definitions: dict[str, Definition] = {}
-        self._known: dict[str, Value] = {}
-        self._values = Values(self._definitions, self._known)
+        self._signals: dict[str, Value] = {}
+        self._evaluator = Evaluator(self._definitions, self._signals)
 
     def read(self) -> tuple[Contract, ...]:
-        """The contract, unless something is wrong with it."""
-        self._each_section(self._declaring)
-        self._cursor.back_to(0)
-        self._each_section(self._saying)
-        return self._draft.contracts(PurePath(self._draft.file.path).stem)
+        """Return the contract, or nothing if a fault was reported."""
+        self._read_sections(self._read_declaration)
+        self._cursor.reset(0)
+        self._read_sections(self._read_formula)
+        return self._draft.build(PurePath(self._draft.file.path).stem)
 
-    def _each_section(self, handle: _Handler) -> None:
+    def _read_sections(self, read_item: _SectionReader) -> None:
         cursor = self._cursor
-        while cursor.next.kind != "end" and not self._draft.is_broken:
-            self._draft.statement(cursor, lambda: self._section(handle), "}")
+        while not cursor.is_at_end and not self._draft.is_broken:
+            self._draft.read_statement(cursor, lambda: self._read_section(read_item), "}")
 
-    def _section(self, handle: _Handler) -> None:
-        title = self._cursor.expect_kind("name", "a section").text
-        self._cursor.expect("{")
-        self._inside(title, handle)
-
-    def _inside(self, title: str, handle: _Handler) -> None:
-        """What stands in a section up to its brace; MAIN and GLOBAL hold further ones."""
+    def _read_section(self, read_item: _SectionReader) -> None:
+        """Read a section; MAIN and GLOBAL contain sections."""
         cursor = self._cursor
-        while not cursor.took("}"):
-            if cursor.next.kind == "end":
+        title = cursor.expect_kind("name", "a section").text
+        cursor.expect("{")
+        while not cursor.accept("}"):
+            if cursor.is_at_end:
                 cursor.fail("'}' is expected")
             if title in ("MAIN", "GLOBAL"):
-                self._section(handle)
+                self._read_section(read_item)
             else:
-                handle(cursor, title)
+                read_item(title)
 
-    def _declaring(self, cursor: Cursor, title: str) -> None:
+    def _read_declaration(self, title: str) -> None:
         if title == "INFO":
-            self._info(cursor)
+            self._read_info()
         elif title in ("PARAMETERS", "DEFINITIONS"):
-            self._definition(cursor)
+            self._read_definition()
         elif title in _OWNERS:
-            self._signal(cursor, _OWNERS[title])
+            self._read_signal(_OWNERS[title])
         elif title in _SECTIONS:
-            self._skip(cursor)
+            self._skip_section()
         else:
-            cursor.fail(f"'{title}' is no section that is known; what it holds")
+            self._cursor.fail(f"'{title}' is no section that is known; what it holds")
 
-    def _skip(self, cursor: Cursor) -> None:
-        """Go on to the brace that closes the section."""
-        depth = 0
-        while cursor.next.kind != "end" and (depth or not cursor.has("}")):
-            depth += cursor.has("{") - cursor.has("}")
+    def _skip_section(self) -> None:
+        """Move to the brace that closes the section."""
+        cursor, depth = self._cursor, 0
+        while not cursor.is_at_end and (depth or not cursor.is_next("}")):
+            depth += cursor.is_next("{") - cursor.is_next("}")
             cursor.take()
 
-    def _info(self, cursor: Cursor) -> None:
+    def _read_info(self) -> None:
+        cursor = self._cursor
         title = cursor.expect_kind("name", "a title")
-        at = cursor.expect(":").at + 1
+        offset = cursor.expect(":").offset + 1
         words = []
-        while not cursor.has("}") and cursor.next.kind != "end" and cursor.after_next.text != ":":
+        while not cursor.is_next("}") and not cursor.is_at_end and cursor.after_next.text != ":":
             words.append(cursor.take().text)
         if title.text == "SEMANTICS":
-            self._semantics([word for word in words if word != ","], at)
+            self._check_semantics([word for word in words if word != ","], offset)
 
-    def _semantics(self, words: list[str], at: int) -> None:
+    def _check_semantics(self, words: list[str], offset: int) -> None:
         for word in words:
-            if word in _OUTSIDE:
-                self._draft.fault(rules.OUTSIDE, at, what=_OUTSIDE[word], form="TLSF")
-        if _OUTSIDE.keys().isdisjoint(words) and "Strict" not in words:
-            self._draft.file.report(rules.NOT_STRICT, at, semantics=",".join(words))
+            if word in _UNSUPPORTED_SEMANTICS:
+                self._draft.report_outside(offset, _UNSUPPORTED_SEMANTICS[word])
+        if _UNSUPPORTED_SEMANTICS.keys().isdisjoint(words) and "Strict" not in words:
+            self._draft.file.report(rules.NOT_STRICT, offset, semantics=",".join(words))
 
-    def _definition(self, cursor: Cursor) -> None:
+    def _read_definition(self) -> None:
+        cursor = self._cursor
         name = cursor.expect_kind("name", "a name")
         if name.text == "enum":
-            self._draft.fault(rules.OUTSIDE, name.at, what="an enumeration", form="TLSF")
-            self._cursor.skip_behind(";")
+            self._draft.report_outside(name.offset, "an enumeration")
+            cursor.skip_past(";")
             return
         parameters = []
-        if cursor.took("("):
+        if cursor.accept("("):
             parameters.append(cursor.expect_kind("name", "a name").text)
-            while cursor.took(","):
+            while cursor.accept(","):
                 parameters.append(cursor.expect_kind("name", "a name").text)
             cursor.expect(")")
         cursor.expect("=")
-        clauses = [_clause(cursor)]
-        while not cursor.took(";"):
-            clauses.append(_clause(cursor))
+        clauses = [self._read_clause()]
+        while not cursor.accept(";"):
+            clauses.append(self._read_clause())
         if name.text in self._definitions:
-            self._draft.fault(rules.DECLARED_TWICE, name.at, name=name.text)
+            self._draft.report_fault(rules.DECLARED_TWICE, name.offset, name=name.text)
         self._definitions[name.text] = Definition(tuple(parameters), tuple(clauses))
 
-    def _signal(self, cursor: Cursor, owner: Owner) -> None:
-        name = cursor.expect_kind("name", "a name")
-        if not cursor.took("["):
+    def _read_clause(self) -> tuple[Tree | None, Tree]:
+        """Read ``guard: body``, ``otherwise: body`` or a body alone."""
+        cursor = self._cursor
+        if cursor.accept("otherwise"):
+            cursor.expect(":")
+            return None, parse_expression(cursor)
+        first = parse_expression(cursor)
+        return (first, parse_expression(cursor)) if cursor.accept(":") else (None, first)
+
+    def _read_signal(self, owner: Owner) -> None:
+        cursor = self._cursor
+        token = cursor.expect_kind("name", "a name")
+        name = _replace_signs(token.text)
+        if not cursor.accept("["):
             cursor.expect(";")
-            self._declare(_plain_name(name.text), name.at, owner)
-            self._known[name.text] = Var(_plain_name(name.text))
+            self._declare(name, token, owner)
+            self._signals[token.text] = Var(name)
             return
-        size = self._values.number(expression(cursor), {})
+        width = self._evaluator.evaluate_number(parse_expression(cursor), {})
         cursor.expect("]")
         cursor.expect(";")
-        if not 0 <= size <= _WIDEST:
-            cursor.fail(f"a bus has 0 to {_WIDEST} bits")
-        bits = tuple(f"{_plain_name(name.text)}_{bit}" for bit in range(size))
+        if not 0 <= width <= _MAX_BUS_WIDTH:
+            cursor.fail(f"a bus has 0 to {_MAX_BUS_WIDTH} bits")
+        bits = tuple(f"{name}_{bit}" for bit in range(width))
         for bit in bits:
-            self._declare(bit, name.at, owner)
-        self._known[name.text] = Bus(bits)
+            self._declare(bit, token, owner)
+        self._signals[token.text] = Bus(bits)
 
-    def _declare(self, name: str, at: int, owner: Owner) -> None:
-        self._draft.declare(name, at, owner, BooleanDomain())
+    def _declare(self, name: str, token: Token, owner: Owner) -> None:
+        self._draft.declare(name, token.offset, owner, BooleanDomain())
 
-    def _saying(self, cursor: Cursor, title: str) -> None:
+    def _read_formula(self, title: str) -> None:
         if title not in _SECTIONS:
-            self._skip(cursor)
+            self._skip_section()
             return
+        cursor = self._cursor
         owner, class_ = _SECTIONS[title]
 
-        def read_one() -> None:
-            tree = expression(cursor)
-            if not cursor.has(";", "}"):
+        def read() -> None:
+            tree = parse_expression(cursor)
+            if not cursor.is_next(";", "}"):
                 cursor.fail("';' is expected")
-            self._add(owner, class_, self._values.truth(tree, {}), _start(tree))
+            formula = self._evaluator.evaluate_formula(tree, {})
+            self._add_formula(owner, class_, formula, _find_start(tree))
 
-        if not self._draft.formula(owner, class_, read_one):
+        if not self._draft.read_formula(owner, class_, read):
             cursor.skip_to(";", "}")
-        while cursor.took(";"):
+        while cursor.accept(";"):
             pass
 
-    def _add(self, owner: Owner, class_: Class, formula: Formula, at: int) -> None:
+    def _add_formula(self, owner: Owner, class_: Class, formula: Formula, offset: int) -> None:
         if class_ is Class.INIT:
-            self._draft.add_classified(owner, class_, formula, at)
+            self._draft.add_classified(owner, class_, formula, offset)
         else:
             whole = f.always(formula) if class_ is Class.SAFETY else formula
-            self._draft.add_ltl(owner, whole, at)
+            self._draft.add_ltl(owner, whole, offset)
 
 
-def _plain_name(name: str) -> str:
-    """A name without the signs that only TLSF has in names."""
+def _replace_signs(name: str) -> str:
+    """Replace the signs ``'`` and ``@``, which only TLSF allows in names."""
     return re.sub(r"\W", "_", name)
 
 
-def _start(tree: Tree) -> int:
-    return min([tree.at, *(_start(arg) for arg in tree.args[:1])])
+def _find_start(tree: Tree) -> int:
+    """Return the offset of the first character; the offset of a tree is that of its operator."""
+    return min([tree.offset, *(_find_start(arg) for arg in tree.args[:1])])
 
 
-def _clause(cursor: Cursor) -> tuple[Tree | None, Tree]:
-    if cursor.took("otherwise"):
-        cursor.expect(":")
-        return None, expression(cursor)
-    first = expression(cursor)
-    return (first, expression(cursor)) if cursor.took(":") else (None, first)
+# -- writing ---------------------------------------------------------------------------------------
 
-
-_WIDEST = 1 << 12
-_SPELLING = Spelling(
-    LTL | {Op.AND: "&&", Op.OR: "||"},
-    next_of,
-)
-_WRITTEN = {
+_NOTATION = Notation(LTL_WORDS | {Op.AND: "&&", Op.OR: "||"}, add_next_operator)
+_WRITTEN_SECTIONS = {
     "INITIALLY": (Owner.ENVIRONMENT, (Class.INIT,)),
     "PRESET": (Owner.SYSTEM, (Class.INIT,)),
     "REQUIRE": (Owner.ENVIRONMENT, (Class.SAFETY,)),
@@ -231,16 +265,17 @@ _WRITTEN = {
 }
 
 
-def plain(contract: Contract, form: str) -> Contract:
-    """The contract over Booleans. Raises NotExpressibleError."""
-    return lowered(renamed(contract, _RESERVED), form, in_bits)
+def lower(contract: Contract, format_name: str) -> Contract:
+    """Return the contract over Booleans. Raises NotExpressibleError."""
+    return apply_lowering(rename_reserved(contract, _RESERVED), format_name, encode_as_bits)
 
 
-def write(contract: Contract, form: str) -> str:
-    """The contract over bits, with the semantics of games (strict implication)."""
-    made = plain(contract, form)
+def write(contract: Contract, format_name: str) -> str:
+    """Return the contract over bits, with the semantics of GR(1) games (strict implication)."""
+    lowered = lower(contract, format_name)
+    # A string of TLSF ends at the next quotation mark, and has no escapes.
     title = escape_invisible(contract.component).replace("\\", "").replace('"', "")
-    parts = [
+    lines = [
         "INFO {",
         f'  TITLE:       "{title}"',
         '  DESCRIPTION: "Contract of the component, written by sysmlc."',
@@ -248,30 +283,23 @@ def write(contract: Contract, form: str) -> str:
         "  TARGET:      Mealy",
         "}\n",
         "MAIN {",
-        *(_block(name, _signals(made, owner)) for name, owner in _OWNERS.items()),
-        *(_block(name, _lines(made, *key)) for name, key in _WRITTEN.items()),
-        "}",
     ]
-    return "\n".join([*parts, ""])
+    for section, owner in _OWNERS.items():
+        names = (variable.name for variable in lowered.variables if variable.owner is owner)
+        lines.append(_print_section(section, names))
+    for section, (owner, classes) in _WRITTEN_SECTIONS.items():
+        lines.append(_print_section(section, _iter_formulas(lowered, owner, classes)))
+    return "\n".join([*lines, "}", ""])
 
 
-def _block(title: str, lines: Iterator[str]) -> str:
-    return "\n".join([f"  {title} {{", *(f"    {line};" for line in lines), "  }"])
+def _print_section(title: str, items: Iterator[str]) -> str:
+    return "\n".join([f"  {title} {{", *(f"    {item};" for item in items), "  }"])
 
 
-def _signals(contract: Contract, owner: Owner) -> Iterator[str]:
-    return (one.name for one in contract.variables if one.owner is owner)
-
-
-def _lines(contract: Contract, owner: Owner, classes: tuple[Class, ...]) -> Iterator[str]:
+def _iter_formulas(contract: Contract, owner: Owner, classes: tuple[Class, ...]) -> Iterator[str]:
     for class_ in classes:
-        for one in conjuncts_of(contract, owner, class_):
-            shown = one if class_ is Class.LIVENESS else replace(one, class_=Class.OTHER)
-            yield said_ltl("TLSF", _SPELLING, shown)
-
-
-_RESERVED = frozenset(
-    {*INFIX, *PREFIX, *QUANTIFIERS, *_SECTIONS, *_OWNERS, "otherwise", "true", "false", "IN"}
-    | {"INFO", "MAIN", "GLOBAL", "PARAMETERS", "DEFINITIONS", "SUM", "PROD", "MIN", "MAX", "CAP"}
-    | {"CUP", "SETMINUS", "SIZE", "enum"}
-)
+        for conjunct in conjuncts_of(contract, owner, class_):
+            # The section implies "always" for safety; only liveness needs its operators.
+            if class_ is not Class.LIVENESS:
+                conjunct = replace(conjunct, class_=Class.OTHER)
+            yield print_ltl_conjunct("TLSF", _NOTATION, conjunct)

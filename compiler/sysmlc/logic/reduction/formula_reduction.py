@@ -13,7 +13,7 @@ from sysmlc.logic.contract import Class
 from sysmlc.logic.evaluate import has_primes
 from sysmlc.logic.formula import Apply, Formula, Op
 from sysmlc.logic.reduction.history import History
-from sysmlc.logic.spelling import PAST, TEMPORAL
+from sysmlc.logic.syntax import PAST, TEMPORAL
 
 _MAX_NEXT_DEPTH = 64
 """Most nested X of a formula; each level needs a history bit."""

@@ -24,7 +24,7 @@ from sysmlc.logic.requirements.statements import (
     definition_of,
     find_redefining_operation,
 )
-from sysmlc.logic.spelling import FormulaError
+from sysmlc.logic.syntax import FormulaError
 from sysmlc.logic.texts.formal import describe_error, is_formal, read_formal
 
 NOT_A_FORMULA = rule(

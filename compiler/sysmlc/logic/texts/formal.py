@@ -16,15 +16,15 @@ from sysmlc.logic.classification import has_future
 from sysmlc.logic.contract import Domain
 from sysmlc.logic.evaluate import has_primes
 from sysmlc.logic.formula import Formula, Op
-from sysmlc.logic.infix import Part, Reader
-from sysmlc.logic.spelling import (
+from sysmlc.logic.infix import FormulaReader, Term
+from sysmlc.logic.syntax import (
     NEUTRAL,
     PAST,
     PAST_WORDS,
     Cursor,
     FormulaError,
     line_and_column,
-    tokens,
+    tokenize,
 )
 from sysmlc.logic.texts import patterns
 from sysmlc.logic.texts.patterns import Scope
@@ -60,7 +60,7 @@ def read_formal(text: str, language: str, variables: Mapping[str, Domain]) -> Fo
 
 def describe_error(error: FormulaError, text: str) -> str:
     """Return the message of an error with its column, and with its line if the text has several."""
-    line, column = line_and_column(text, error.at)
+    line, column = line_and_column(text, error.offset)
     location = f"line {line}, column {column}" if "\n" in text.strip() else f"column {column}"
     return f"{error} ({location})"
 
@@ -76,27 +76,26 @@ _TEMPORAL_SYNTAX = replace(
 
 def read_temporal_logic(text: str, variables: Mapping[str, Domain]) -> Formula:
     """Return the formula of a text in the neutral form with Y, O, H and S. Raises FormulaError."""
-    reader = _TemporalReader(Cursor(tokens(text, _TEMPORAL_SYNTAX)), _TEMPORAL_SYNTAX, variables)
-    formula = reader.formula()
-    if reader.cursor.next.kind != "end":
-        reader.cursor.fail()
+    reader = _TemporalReader(Cursor(tokenize(text, _TEMPORAL_SYNTAX)), _TEMPORAL_SYNTAX, variables)
+    formula = reader.read_formula()
+    reader.cursor.expect_end()
     return formula
 
 
-class _TemporalReader(Reader):
+class _TemporalReader(FormulaReader):
     """Reader that rejects operators of the past over the future."""
 
-    def _prefixed(self, op: Op, weakest: int) -> Part:
-        return self._check_past(op, super()._prefixed(op, weakest))
+    def _read_prefix(self, op: Op, min_precedence: int) -> Term:
+        return self._check_past(op, super()._read_prefix(op, min_precedence))
 
-    def _applied(self, op: Op, left: Part) -> Part:
-        return self._check_past(op, super()._applied(op, left))
+    def _read_infix(self, op: Op, left: Term) -> Term:
+        return self._check_past(op, super()._read_infix(op, left))
 
-    def _check_past(self, op: Op, part: Part) -> Part:
-        args = getattr(part.formula, "args", ())
+    def _check_past(self, op: Op, term: Term) -> Term:
+        args = getattr(term.formula, "args", ())
         if op in PAST and any(has_future(arg) or has_primes(arg) for arg in args):
-            raise FormulaError(f"'{op}' cannot look back at what is yet to come", part.at)
-        return part
+            raise FormulaError(f"'{op}' cannot look back at what is yet to come", term.offset)
+        return term
 
 
 # -- sentences -----------------------------------------------------------------------------------
@@ -112,10 +111,10 @@ _ENDINGS: dict[str, Callable[[Scope, Formula], Formula]] = {
 
 def read_sentence(text: str, variables: Mapping[str, Domain]) -> Formula:
     """Return the formula of a sentence. Raises FormulaError with the offset of the fault."""
-    cursor = Cursor(tokens(text, _SENTENCE_SYNTAX))
+    cursor = Cursor(tokenize(text, _SENTENCE_SYNTAX))
     formula = _SentenceReader(cursor, variables).read()
-    cursor.took(".")
-    if cursor.next.kind != "end":
+    cursor.accept(".")
+    if not cursor.is_at_end:
         cursor.fail("the end of the sentence is expected")
     return formula
 
@@ -156,7 +155,7 @@ class _SentenceReader:
         else:
             # Only a stated scope may be followed by a comma.
             return Scope("globally")
-        self._cursor.took(",")
+        self._cursor.accept(",")
         return scope
 
     def _read_after_adverb(self, scope: Scope, adverb: str) -> Formula:
@@ -177,7 +176,7 @@ class _SentenceReader:
         """Read ``P [holds][,] [then] ...`` after *if*."""
         trigger = self._read_condition()
         self._accept("holds")
-        self._cursor.took(",")
+        self._cursor.accept(",")
         self._accept("then")
         if self._accept("previously"):
             return patterns.precedence(scope, self._read_held_condition(), trigger)
@@ -195,7 +194,7 @@ class _SentenceReader:
             steps = self._read_count("steps", "step")
             return patterns.bounded_response(scope, trigger, answer, steps)
         self._accept("holds")
-        if self._cursor.next.kind == "end" or self._cursor.has("."):
+        if self._cursor.is_at_end or self._cursor.is_next("."):
             return patterns.universality(scope, f.implies(trigger, answer))
         return self._fail("'eventually holds', 'previously held' or 'holds within N steps'")
 
@@ -215,7 +214,7 @@ class _SentenceReader:
         return self._fail(f"'{endings}' or 'holds at most N times'")
 
     def _read_condition(self) -> Formula:
-        return self._conditions.formula()
+        return self._conditions.read_formula()
 
     def _read_held_condition(self) -> Formula:
         """Read ``P [holds|held]``."""
@@ -231,9 +230,9 @@ class _SentenceReader:
         if token.text.lower() in words:
             self._cursor.take()
             return words[token.text.lower()]
-        number = self._cursor.integer()
+        number = self._cursor.read_integer()
         if not 0 <= number <= _MAX_TIMES:
-            raise FormulaError(f"a number from 0 to {_MAX_TIMES} is expected", token.at)
+            raise FormulaError(f"a number from 0 to {_MAX_TIMES} is expected", token.offset)
         self._expect_one_of(*units)
         return number
 
@@ -252,7 +251,7 @@ class _SentenceReader:
         start = self._cursor.mark()
         for word in words:
             if self._cursor.next.text.lower() != word:
-                self._cursor.back_to(start)
+                self._cursor.reset(start)
                 return False
             self._cursor.take()
         return True
@@ -261,12 +260,12 @@ class _SentenceReader:
         self._cursor.fail(f"{expected} is expected")
 
 
-class _ConditionReader(Reader):
+class _ConditionReader(FormulaReader):
     """Reader of conditions about the present: no temporal operators, no primes."""
 
-    def formula(self, weakest: int = 0) -> Formula:
-        offset = self.cursor.next.at
-        formula = super().formula(weakest)
+    def read_formula(self, min_precedence: int = 0) -> Formula:
+        offset = self.cursor.next.offset
+        formula = super().read_formula(min_precedence)
         if has_primes(formula) or has_future(formula):
             raise FormulaError("a condition of a pattern is about the present", offset)
         return formula

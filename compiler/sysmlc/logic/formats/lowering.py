@@ -1,0 +1,289 @@
+"""Lowering of contracts: reserved names, weak until, comparisons and arithmetic.
+
+Each function returns a contract with the same meaning that uses fewer constructs. ``encodings``
+goes further and replaces enumerations by integers, and integers by bits.
+"""
+
+from collections.abc import Callable, Iterable, Mapping
+from functools import lru_cache
+
+from msgspec.structs import replace
+
+from sysmlc.logic import domains
+from sysmlc.logic import formula as f
+from sysmlc.logic.contract import (
+    BooleanDomain,
+    Conjunct,
+    Contract,
+    Domain,
+    EnumerationDomain,
+    Variable,
+)
+from sysmlc.logic.evaluate import Evaluation, compile_evaluation
+from sysmlc.logic.formula import Apply, Const, Formula, Literal, Op, Var
+from sysmlc.logic.syntax import ARITHMETIC, COMPARISONS
+
+MAX_VALUATIONS = 1 << 16
+"""Most valuations of its variables over which a comparison is expanded."""
+_CACHED_EXPANSIONS = 1 << 12
+Domains = Mapping[str, Domain]
+"""The domains of variables by name."""
+Rewrite = Callable[[Formula], Formula]
+
+
+class TooManyValuesError(ValueError):
+    """A comparison has too many valuations to be expanded; ``conjunct`` contains it."""
+
+    def __init__(self, conjunct: Conjunct | None = None) -> None:
+        super().__init__("it compares more values than can be written out")
+        self.conjunct = conjunct
+
+
+# -- traversal -------------------------------------------------------------------------------------
+
+
+def index_domains(contract: Contract) -> dict[str, Domain]:
+    """Return the domains of the contract's variables by name."""
+    return {variable.name: variable.domain for variable in contract.variables}
+
+
+def rewrite_atoms(formula: Formula, rewrite: Rewrite) -> Formula:
+    """Replace every atom of the formula: each comparison, Boolean variable and constant."""
+    match formula:
+        case Apply(op, args) if op not in COMPARISONS:
+            return _build(op, tuple(rewrite_atoms(arg, rewrite) for arg in args))
+        case _:
+            return rewrite(formula)
+
+
+_BUILDERS: dict[Op, Callable[..., Formula]] = {
+    Op.AND: f.both,
+    Op.OR: f.either,
+    Op.NOT: f.negate,
+    Op.IMPLIES: f.implies,
+}
+
+
+def _build(op: Op, args: tuple[Formula, ...]) -> Formula:
+    """Apply the operator; Boolean connectives are flattened and their constants folded."""
+    return _BUILDERS[op](*args) if op in _BUILDERS else Apply(op, args)
+
+
+def rewrite_contract_atoms(
+    contract: Contract, rewrite: Rewrite, variables: Iterable[Variable] | None = None
+) -> Contract:
+    """Replace the atoms of every conjunct. Raises TooManyValuesError."""
+    return rewrite_conjuncts(contract, lambda formula: rewrite_atoms(formula, rewrite), variables)
+
+
+def rewrite_conjuncts(
+    contract: Contract, rewrite: Rewrite, variables: Iterable[Variable] | None = None
+) -> Contract:
+    """Replace the formula of every conjunct, and the variables if any are given.
+
+    Raises TooManyValuesError with the conjunct whose rewriting raised it.
+    """
+
+    def rewrite_one(conjunct: Conjunct) -> Conjunct:
+        try:
+            return replace(conjunct, formula=rewrite(conjunct.formula))
+        except TooManyValuesError:
+            raise TooManyValuesError(conjunct) from None
+
+    return replace(
+        contract,
+        variables=contract.variables if variables is None else tuple(variables),
+        assumptions=tuple(map(rewrite_one, contract.assumptions)),
+        guarantees=tuple(map(rewrite_one, contract.guarantees)),
+    )
+
+
+def eliminate_weak_until(formula: Formula) -> Formula:
+    """Replace ``a W b`` by ``b R (a | b)``."""
+    match formula:
+        case Apply(Op.WEAK_UNTIL, (left, right)):
+            stay, goal = eliminate_weak_until(left), eliminate_weak_until(right)
+            return Apply(Op.RELEASE, (goal, f.either(stay, goal)))
+        case Apply(op, args):
+            return _build(op, tuple(map(eliminate_weak_until, args)))
+        case _:
+            return formula
+
+
+# -- names -----------------------------------------------------------------------------------------
+
+
+def rename_reserved(contract: Contract, reserved: Iterable[str]) -> Contract:
+    """Append underscores to variables and literals that are reserved words of a format.
+
+    A literal with the name of a variable is renamed too.
+    """
+    words = frozenset(reserved)
+    names = _assign_names([variable.name for variable in contract.variables], words)
+    taken = words | {*names, *names.values()}
+    literals = _assign_names(_list_literals(contract), taken)
+    variables = [
+        replace(
+            variable,
+            name=names[variable.name],
+            domain=_rename_literals(variable.domain, literals),
+        )
+        for variable in contract.variables
+    ]
+    return rewrite_contract_atoms(
+        contract, lambda formula: _rename(formula, names, literals), variables
+    )
+
+
+def rename_ambiguous_literals(contract: Contract) -> Contract:
+    """Rename literals with the name of a variable.
+
+    In ``state=red``, ``red`` could otherwise be the literal or the variable.
+    """
+    names = {variable.name for variable in contract.variables}
+    is_ambiguous = not names.isdisjoint(_list_literals(contract))
+    return rename_reserved(contract, ()) if is_ambiguous else contract
+
+
+def _list_literals(contract: Contract) -> Iterable[str]:
+    """Return the literals of all enumerations; a literal of two enumerations occurs once."""
+    return dict.fromkeys(
+        literal
+        for variable in contract.variables
+        if isinstance(variable.domain, EnumerationDomain)
+        for literal in variable.domain.literals
+    )
+
+
+def _assign_names(names: Iterable[str], words: frozenset[str]) -> dict[str, str]:
+    """Map each name to itself, or, if it is one of the words, to a new name with underscores."""
+    names = list(names)
+    taken = set(names) | words
+    assigned = {}
+    for name in names:
+        new_name = name
+        while new_name in words or (new_name != name and new_name in taken):
+            new_name += "_"
+        taken.add(new_name)
+        assigned[name] = new_name
+    return assigned
+
+
+def _rename_literals(domain: Domain, literals: Mapping[str, str]) -> Domain:
+    if not isinstance(domain, EnumerationDomain):
+        return domain
+    return replace(domain, literals=tuple(literals[literal] for literal in domain.literals))
+
+
+def _rename(formula: Formula, names: Mapping[str, str], literals: Mapping[str, str]) -> Formula:
+    match formula:
+        case Var(name, primed):
+            return Var(names[name], primed)
+        case Const(str(value)):
+            return Const(literals.get(value, value))
+        case Apply(op, args):
+            return Apply(op, tuple(_rename(arg, names, literals) for arg in args))
+        case _:
+            return formula
+
+
+# -- comparisons -----------------------------------------------------------------------------------
+
+
+def eliminate_arithmetic(contract: Contract) -> Contract:
+    """Rewrite comparisons so that each compares a variable with one of its values.
+
+    Raises TooManyValuesError.
+    """
+    variable_domains = index_domains(contract)
+    return rewrite_contract_atoms(contract, lambda atom: flatten_atom(atom, variable_domains))
+
+
+def flatten_atom(atom: Formula, variable_domains: Domains) -> Formula:
+    """Rewrite an atom into comparisons of variables with values. Raises TooManyValuesError."""
+    match atom:
+        case Apply(Op.EQ | Op.NE as op, (left, right)) if is_boolean(left, variable_domains):
+            equivalence = f.iff(
+                *(
+                    rewrite_atoms(side, lambda inner: flatten_atom(inner, variable_domains))
+                    for side in (left, right)
+                )
+            )
+            return equivalence if op is Op.EQ else f.negate(equivalence)
+        case Apply(_, (Var(name), Const(value))) if domains.contains(variable_domains[name], value):
+            return atom
+        case Apply(op, (Const(value), Var(name) as var)) if domains.contains(
+            variable_domains[name], value
+        ):
+            return Apply(_MIRRORED.get(op, op), (var, Const(value)))
+        case Apply():
+            return expand_comparison(atom, variable_domains)
+        case _:
+            return atom
+
+
+_MIRRORED = {Op.LT: Op.GT, Op.GT: Op.LT, Op.LE: Op.GE, Op.GE: Op.LE}
+"""The comparison with its sides exchanged."""
+
+
+def is_boolean(formula: Formula, variable_domains: Domains) -> bool:
+    """Whether the value of a formula is true or false."""
+    match formula:
+        case Var(name):
+            return isinstance(variable_domains[name], BooleanDomain)
+        case Const(value):
+            return isinstance(value, bool)
+        case Apply(op):
+            return op not in ARITHMETIC
+
+
+def expand_comparison(
+    comparison: Formula, variable_domains: Domains, limit: int = MAX_VALUATIONS
+) -> Formula:
+    """Return the valuations that make a comparison true, as a formula over ``x = value``.
+
+    Raises TooManyValuesError.
+    """
+    variables = tuple(dict.fromkeys(f.variables(comparison)))
+    pairs = tuple((variable, variable_domains[variable.name]) for variable in variables)
+    return _expand(comparison, pairs, limit)
+
+
+@lru_cache(_CACHED_EXPANSIONS)
+def _expand(comparison: Formula, variables: tuple[tuple[Var, Domain], ...], limit: int) -> Formula:
+    count = 1
+    for _, domain in variables:
+        count *= domains.size(domain)
+    if count > limit:
+        raise TooManyValuesError
+    return _expand_variables(compile_evaluation(comparison), variables, {}, {})
+
+
+def _expand_variables(
+    evaluation: Evaluation,
+    variables: tuple[tuple[Var, Domain], ...],
+    current: dict[str, Literal],
+    following: dict[str, Literal],
+) -> Formula:
+    """Return a case distinction over the variables; the first variable is the outermost."""
+    if not variables:
+        return Const(bool(evaluation(current, following)))
+    (variable, domain), rest = variables[0], variables[1:]
+    cases = []
+    for value in domains.values(domain):
+        extended = {variable.name: value}
+        if variable.primed:
+            case = _expand_variables(evaluation, rest, current, following | extended)
+        else:
+            case = _expand_variables(evaluation, rest, current | extended, following)
+        cases.append((value, case))
+    if len({case for _, case in cases}) == 1:
+        return cases[0][1]
+    return f.either(*(f.both(build_equality(variable, value), case) for value, case in cases))
+
+
+def build_equality(variable: Var, value: Literal) -> Formula:
+    """Return the formula that a variable has a value."""
+    if isinstance(value, bool):
+        return variable if value else f.negate(variable)
+    return f.eq(variable, Const(value))
