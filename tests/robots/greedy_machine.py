@@ -13,7 +13,7 @@ def greedy_machine(study):
     """State 1 is for a robot that was not in its target in the step before."""
     contract = controller_contract(study)
     sides = [tuple(one for one in contract.variables if one.owner is owner) for owner in Owner]
-    here, goal = (f.primed(f.var(name(ANY))) for name in (terms.position, terms.target))
+    here, goal = (f.prime(f.var(name(ANY))) for name in (terms.position, terms.target))
     is_home = f.eq(here, goal)
     moves = [_move(is_home, STAY, 0), *_going(study), _move(f.TRUE, STAY, 1)]
     resting = (_move(is_home, STAY, 0), _move(f.TRUE, STAY, 1))
@@ -33,7 +33,7 @@ def _going(study):
                 is_there = terms.is_in_any(terms.position(ANY), cells)
                 sees = f.var(terms.sensor(ANY, way))
                 when = f.both(is_there, sees, terms.equals(terms.target(ANY), goal))
-                yield _move(f.primed(when), way, 1)
+                yield _move(f.prime(when), way, 1)
 
 
 def greedy_answers(study):

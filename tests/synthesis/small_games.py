@@ -76,7 +76,7 @@ def plant(seed: int) -> Contract:
     meaning = truth(die, [Var("a"), Var("p")], known, 1)
     assumptions = [
         Conjunct(f.iff(Var("d"), meaning), Class.INIT, ""),
-        Conjunct(f.primed(f.iff(Var("d"), meaning)), Class.SAFETY, ""),
+        Conjunct(f.prime(f.iff(Var("d"), meaning)), Class.SAFETY, ""),
         *obedient(die, p, [a, p, *outputs]),
         *conjuncts(die, Class.SAFETY, 1, variables, [a]),
         *conjuncts(die, Class.LIVENESS, 1, variables[:3], []),
@@ -98,7 +98,7 @@ def numbered(name: str, owner: Owner) -> Variable:
 
 def later(conjunct: Conjunct) -> Conjunct:
     """The same about the next step, always."""
-    return Conjunct(f.primed(conjunct.formula), Class.SAFETY, "")
+    return Conjunct(f.prime(conjunct.formula), Class.SAFETY, "")
 
 
 def obedient(die: random.Random, moved: Variable, about: list[Variable]):

@@ -88,7 +88,7 @@ class Judge:
             is_plain = all(v.name in self.inputs and not v.primed for v in found)
             if one.class_ is Class.SAFETY and is_plain:
                 assumed.append(replace(one, class_=Class.INIT))
-                one = replace(one, formula=f.primed(one.formula))
+                one = replace(one, formula=f.prime(one.formula))
             assumed.append(one)
         return replace(made, assumptions=tuple(assumed))
 

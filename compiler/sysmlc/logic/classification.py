@@ -56,7 +56,7 @@ def replace_next_by_primes(formula: Formula) -> Formula | None:
     match formula:
         case Apply(Op.NEXT, (inner,)):
             is_one_step = not has_future(inner) and not has_primes(inner)
-            return f.primed(inner) if is_one_step else None
+            return f.prime(inner) if is_one_step else None
         case Apply(op, _) if op in _TEMPORAL:
             return None
         case Apply(op, args):

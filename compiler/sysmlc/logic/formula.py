@@ -1,7 +1,7 @@
 """Linear temporal logic over variables with finite domains, as immutable values.
 
-Formulas are built with the functions at the end (``var``, ``eq``, ``both``, ``always`` ...), which
-flatten operands and fold constants; other modules do not call the classes.
+The functions at the end (``var``, ``eq``, ``both``, ``always`` ...) build formulas; they flatten
+chains and fold constants. The classes build exactly the formula that is given.
 """
 
 from dataclasses import dataclass
@@ -12,8 +12,7 @@ from weakref import WeakValueDictionary
 Literal = bool | int | str
 """A value of a variable: Boolean, integer, or the name of an enumeration literal."""
 _CACHED_FORMULAS = 1 << 14
-"""Formulas that are kept with what they are made of, and with their variables: machines of one
-kind ask for the same again and again."""
+"""Cache size: state machines of one kind build the same formulas."""
 
 
 class Op(StrEnum):
@@ -50,8 +49,8 @@ class Op(StrEnum):
     __hash__ = str.__hash__
 
 
+# In Python 3.11, looking up a member of an enumeration takes twice as long as a global name.
 _NOT, _AND, _OR, _IMPLIES, _IFF, _EQ = Op.NOT, Op.AND, Op.OR, Op.IMPLIES, Op.IFF, Op.EQ
-# Module-level names: in Python 3.11, looking up a member of an enumeration takes twice as long.
 
 
 # Equal formulas are one object (interning), so that comparing them and looking them up takes
@@ -130,24 +129,24 @@ FALSE = Const(False)
 
 
 def const(value: Literal) -> Const:
-    """A literal."""
+    """Return a constant."""
     return Const(value)
 
 
 @lru_cache(_CACHED_FORMULAS)
 def var(name: str) -> Var:
-    """A variable in the present step."""
+    """Return a variable in the current step."""
     return Var(name)
 
 
 @lru_cache(_CACHED_FORMULAS)
-def primed(formula: Formula) -> Formula:
+def prime(formula: Formula) -> Formula:
     """Return the formula about the next step: every variable is primed."""
     match formula:
         case Var(name):
             return Var(name, primed=True)
         case Apply(op, args):
-            return _applied(op, tuple(primed(arg) for arg in args))
+            return _apply(op, tuple(prime(arg) for arg in args))
         case _:
             return formula
 
@@ -155,58 +154,58 @@ def primed(formula: Formula) -> Formula:
 def negate(formula: Formula) -> Formula:
     """Return the negation; a double negation is removed."""
     if isinstance(formula, Apply):
-        return formula.args[0] if formula.op is _NOT else _applied(_NOT, (formula,))
+        return formula.args[0] if formula.op is _NOT else _apply(_NOT, (formula,))
     if isinstance(formula, Const) and isinstance(formula.value, bool):
         return FALSE if formula.value else TRUE
-    return _applied(_NOT, (formula,))
+    return _apply(_NOT, (formula,))
 
 
 def both(*formulas: Formula) -> Formula:
     """Return the flat conjunction without ``true``; ``true`` for no operands."""
-    return _flat(_AND, formulas, TRUE, FALSE)
+    return _flatten(_AND, formulas, TRUE, FALSE)
 
 
 def either(*formulas: Formula) -> Formula:
     """Return the flat disjunction without ``false``; ``false`` for no operands."""
-    return _flat(_OR, formulas, FALSE, TRUE)
+    return _flatten(_OR, formulas, FALSE, TRUE)
 
 
 def implies(left: Formula, right: Formula) -> Formula:
-    """Implication."""
+    """Return the implication with folded constants."""
     if left == TRUE:
         return right
     if left == FALSE or right == TRUE:
         return TRUE
-    return negate(left) if right == FALSE else _applied(_IMPLIES, (left, right))
+    return negate(left) if right == FALSE else _apply(_IMPLIES, (left, right))
 
 
 def iff(left: Formula, right: Formula) -> Formula:
-    """Equivalence of two Booleans."""
-    return _applied(_IFF, (left, right))
+    """Return the equivalence of two Boolean formulas."""
+    return _apply(_IFF, (left, right))
 
 
 def compare(op: Op, left: Formula, right: Formula) -> Formula:
-    """Comparison of two values."""
-    return _applied(op, (left, right))
+    """Return a comparison of two values, or a sum or product of them."""
+    return _apply(op, (left, right))
 
 
 def eq(left: Formula, right: Formula) -> Formula:
-    """Equality of two values."""
-    return _applied(_EQ, (left, right))
+    """Return the equality of two values."""
+    return _apply(_EQ, (left, right))
 
 
 def always(formula: Formula) -> Formula:
-    """In every step from now on."""
-    return _applied(Op.ALWAYS, (formula,))
+    """Return that the formula holds in the current step and in every later step."""
+    return _apply(Op.ALWAYS, (formula,))
 
 
 def eventually(formula: Formula) -> Formula:
-    """In some step from now on."""
-    return _applied(Op.EVENTUALLY, (formula,))
+    """Return that the formula holds in the current step or in a later step."""
+    return _apply(Op.EVENTUALLY, (formula,))
 
 
 @lru_cache(_CACHED_FORMULAS)
-def _applied(op: Op, args: tuple[Formula, ...]) -> Apply:
+def _apply(op: Op, args: tuple[Formula, ...]) -> Apply:
     """Return ``Apply(op, args)`` from a cache."""
     return Apply(op, args)
 
@@ -224,7 +223,8 @@ def variables(formula: Formula) -> tuple[Var, ...]:
 
 
 @lru_cache(_CACHED_FORMULAS)
-def _flat(op: Op, formulas: tuple[Formula, ...], unit: Const, zero: Const) -> Formula:
+def _flatten(op: Op, formulas: tuple[Formula, ...], unit: Const, zero: Const) -> Formula:
+    """Return the chain of *op* with each operand once; *unit* is neutral, *zero* absorbs."""
     parts: dict[Formula, None] = {}
     for formula in formulas:
         if isinstance(formula, Apply) and formula.op is op:

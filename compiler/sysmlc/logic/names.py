@@ -1,4 +1,4 @@
-"""Identifiers for formulas, made from the names in the model."""
+"""Identifiers for formulas, derived from the names in the model."""
 
 import re
 from functools import lru_cache
@@ -16,7 +16,7 @@ _CACHED_NAMES = 1 << 12
 @lru_cache(_CACHED_NAMES)
 def identifier(name: str, fallback: str = "x") -> str:
     """Return the name as an identifier that every target accepts: letters, digits, underscores."""
-    # Most names are identifiers as they are.
+    # A shortcut for most names, which are identifiers already.
     is_plain = name.isascii() and name.isidentifier()
     text = name if is_plain else _INVALID_CHARACTERS.sub("_", name.strip())
     text = text.strip("_")[:40].rstrip("_") or fallback

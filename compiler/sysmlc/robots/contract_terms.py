@@ -121,7 +121,7 @@ def repeat_in_every_step(conjuncts: Iterable[Conjunct]) -> Iterator[Conjunct]:
     all_conjuncts = list(conjuncts)
     yield from all_conjuncts
     for conjunct in all_conjuncts:
-        yield safety_conjunct(f.primed(conjunct.formula), conjunct.origin, conjunct.text)
+        yield safety_conjunct(f.prime(conjunct.formula), conjunct.origin, conjunct.text)
 
 
 def stay_forever(robot: Robot) -> Conjunct:
@@ -172,7 +172,7 @@ def motion_rules(study: Study, robot: Robot, is_total: bool) -> Iterator[Conjunc
             if next_cell is None and not is_total:
                 continue
             before = f.both(is_in_cell(robot, cell), equals(command(robot), way))
-            after = f.primed(is_in_cell(robot, cell if next_cell is None else next_cell))
+            after = f.prime(is_in_cell(robot, cell if next_cell is None else next_cell))
             text = f"'{way}' moves '{robot.name}' on from cell {cell}."
             yield safety_conjunct(f.implies(before, after), robot.origin, text)
 
@@ -186,7 +186,7 @@ def stable_target_by_cell(study: Study, robot: Robot) -> Iterator[Conjunct]:
     for cell in study.grid.cells:
         target_here = equals(target(robot), cell)
         yield safety_conjunct(
-            f.implies(f.both(is_away_from_target(robot), target_here), f.primed(target_here)),
+            f.implies(f.both(is_away_from_target(robot), target_here), f.prime(target_here)),
             robot.origin,
             text,
         )
@@ -197,7 +197,7 @@ def stable_target_formula(robot: Robot) -> Conjunct:
     text = f"The target of '{robot.name}' stays until it is reached."
     target_value = f.var(target(robot))
     return safety_conjunct(
-        f.implies(is_away_from_target(robot), f.eq(f.primed(target_value), target_value)),
+        f.implies(is_away_from_target(robot), f.eq(f.prime(target_value), target_value)),
         robot.origin,
         text,
     )
@@ -209,7 +209,7 @@ def sensor_obedience(robot: Robot) -> Iterator[Conjunct]:
         moves = equals(command(robot), way)
         text = f"'{robot.name}' goes {way} only when the way is free."
         yield safety_conjunct(
-            f.primed(f.implies(moves, f.var(sensor(robot, way)))), robot.origin, text
+            f.prime(f.implies(moves, f.var(sensor(robot, way)))), robot.origin, text
         )
 
 

@@ -108,9 +108,9 @@ def define_targets(study: Study, robot: Robot) -> Iterator[Conjunct]:
     for cell in study.grid.cells:
         reach = terms.is_in_any(terms.position(robot), sorted(study.grid.distances(cell)))
         receives_goal = f.both(terms.is_at_target(robot), is_sent_to(robot, cell), reach)
-        next_target = f.primed(terms.equals(terms.target(robot), cell))
+        next_target = f.prime(terms.equals(terms.target(robot), cell))
         yield terms.safety_conjunct(f.implies(receives_goal, next_target), robot.origin, text)
-        keeps_target = f.eq(f.primed(target_value), target_value)
+        keeps_target = f.eq(f.prime(target_value), target_value)
         has_unreachable_goal = f.both(
             terms.is_at_target(robot), is_sent_to(robot, cell), f.negate(reach)
         )
@@ -121,7 +121,7 @@ def define_targets(study: Study, robot: Robot) -> Iterator[Conjunct]:
         terms.is_away_from_target(robot), terms.equals(terms.goal(robot), NONE)
     )
     yield terms.safety_conjunct(
-        f.implies(keeps_old_target, f.eq(f.primed(target_value), target_value)), robot.origin, text
+        f.implies(keeps_old_target, f.eq(f.prime(target_value), target_value)), robot.origin, text
     )
 
 
@@ -149,10 +149,10 @@ def never_sent(robot: Robot) -> Conjunct:
 
 def _keep_goal(robot: Robot, cell: int) -> Conjunct:
     has_arrived = f.both(terms.is_in_cell(robot, cell), terms.equals(terms.target(robot), cell))
-    is_under_way = f.both(is_sent_to(robot, cell), f.negate(f.primed(has_arrived)))
+    is_under_way = f.both(is_sent_to(robot, cell), f.negate(f.prime(has_arrived)))
     text = f"'{robot.name}' keeps a target until it has reached it."
     return terms.safety_conjunct(
-        f.implies(is_under_way, f.primed(is_sent_to(robot, cell))), robot.origin, text
+        f.implies(is_under_way, f.prime(is_sent_to(robot, cell))), robot.origin, text
     )
 
 

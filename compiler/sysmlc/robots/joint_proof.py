@@ -284,5 +284,5 @@ class _RobotGroup:
 
 def _induction_obligations(conjunct: Conjunct) -> tuple[Conjunct, Conjunct]:
     """Return that a condition holds initially, and in each next step."""
-    next_formula = f.primed(conjunct.formula)
+    next_formula = f.prime(conjunct.formula)
     return replace(conjunct, class_=Class.INIT), replace(conjunct, formula=next_formula)

@@ -71,7 +71,7 @@ def _list_assumptions(study: Study, travel: TravelTimes) -> Iterator[Conjunct]:
         text = "The timer counts the steps of the mission."
         yield terms.initial_conjunct(terms.equals(TIMER, 0), study.origin, text)
         for number in range(last_deadline + 2):
-            after = f.primed(terms.equals(TIMER, min(number + 1, last_deadline + 1)))
+            after = f.prime(terms.equals(TIMER, min(number + 1, last_deadline + 1)))
             yield terms.safety_conjunct(
                 f.implies(terms.equals(TIMER, number), after), study.origin, text
             )
@@ -90,7 +90,7 @@ def _list_assumptions(study: Study, travel: TravelTimes) -> Iterator[Conjunct]:
 def _rest_without_target(robot: Robot) -> Conjunct:
     text = f"Without a target '{robot.name}' stays where it is."
     place = f.var(terms.place(robot))
-    stays = f.both(f.eq(f.primed(place), place), f.primed(terms.equals(terms.clock(robot), 0)))
+    stays = f.both(f.eq(f.prime(place), place), f.prime(terms.equals(terms.clock(robot), 0)))
     return terms.safety_conjunct(
         f.implies(terms.equals(terms.goal(robot), NONE), stays), robot.origin, text
     )
@@ -106,22 +106,22 @@ def _limit_travel_time(
     under_way = f.both(
         terms.equals(terms.place(robot), origin), terms.equals(terms.goal(robot), name)
     )
-    arrives = f.primed(
+    arrives = f.prime(
         f.both(terms.equals(terms.place(robot), name), terms.equals(terms.clock(robot), 0))
     )
     count = f.var(terms.clock(robot))
     if start_place == target_number:
         text = f"'{robot.name}' is in '{name}' already."
         return terms.safety_conjunct(f.implies(under_way, arrives), robot.origin, text)
-    stays_at_origin = f.primed(terms.equals(terms.place(robot), origin))
+    stays_at_origin = f.prime(terms.equals(terms.place(robot), origin))
     if max_steps is None:
         text = f"'{robot.name}' cannot get from '{origin}' to '{name}'."
-        never = f.both(stays_at_origin, f.primed(terms.equals(terms.clock(robot), 0)))
+        never = f.both(stays_at_origin, f.prime(terms.equals(terms.clock(robot), 0)))
         return terms.safety_conjunct(f.implies(under_way, never), robot.origin, text)
     continues = f.both(
         f.compare(Op.LT, count, f.const(max_steps - 1)),
         stays_at_origin,
-        f.eq(f.primed(count), f.Apply(Op.ADD, (count, f.const(1)))),
+        f.eq(f.prime(count), f.Apply(Op.ADD, (count, f.const(1)))),
     )
     text = f"'{robot.name}' gets from '{origin}' to '{name}' in {max_steps} steps at most."
     return terms.safety_conjunct(
@@ -150,28 +150,28 @@ def _target_guarantees(study: Study, number: int) -> Iterator[Conjunct]:
     is_done = f.var(terms.completion(target))
     arrivals = [_arrives_at(robot, target) for robot in study.robots]
     text = f"'{target.name}' has been reached when a robot has."
-    definition = f.iff(f.primed(is_done), f.either(is_done, *arrivals))
+    definition = f.iff(f.prime(is_done), f.either(is_done, *arrivals))
     yield terms.safety_conjunct(definition, target.origin, text)
     for robot in study.robots:
         is_sent = terms.equals(terms.goal(robot), target.word)
-        arrives = f.primed(terms.equals(terms.place(robot), target.word))
+        arrives = f.prime(terms.equals(terms.place(robot), target.word))
         text = f"'{robot.name}' keeps a target until it has reached it."
-        keeps_target = f.implies(f.both(is_sent, f.negate(arrives)), f.primed(is_sent))
+        keeps_target = f.implies(f.both(is_sent, f.negate(arrives)), f.prime(is_sent))
         yield terms.safety_conjunct(keeps_target, robot.origin, text)
         text = f"'{target.name}' is reached once."
-        is_reached_once = f.primed(f.implies(is_done, f.negate(is_sent)))
+        is_reached_once = f.prime(f.implies(is_done, f.negate(is_sent)))
         yield terms.safety_conjunct(is_reached_once, target.origin, text)
     for first, second in combinations(study.robots, 2):
         text = f"One robot goes to '{target.name}'."
         both_are_sent = f.both(
             *(terms.equals(terms.goal(robot), target.word) for robot in (first, second))
         )
-        yield terms.safety_conjunct(f.primed(f.negate(both_are_sent)), target.origin, text)
+        yield terms.safety_conjunct(f.prime(f.negate(both_are_sent)), target.origin, text)
 
 
 def _arrives_at(robot: Robot, target: Target) -> Formula:
     is_sent = terms.equals(terms.goal(robot), target.word)
-    return f.both(is_sent, f.primed(terms.equals(terms.place(robot), target.word)))
+    return f.both(is_sent, f.prime(terms.equals(terms.place(robot), target.word)))
 
 
 def _respect_orders(study: Study) -> Iterator[Conjunct]:
@@ -180,7 +180,7 @@ def _respect_orders(study: Study) -> Iterator[Conjunct]:
         for robot in study.robots:
             is_sent = terms.equals(terms.goal(robot), later.word)
             text = f"'{later.name}' comes after '{earlier.name}'."
-            waits_for_earlier = f.primed(f.implies(is_sent, f.var(terms.completion(earlier))))
+            waits_for_earlier = f.prime(f.implies(is_sent, f.var(terms.completion(earlier))))
             yield terms.safety_conjunct(waits_for_earlier, order.origin, text)
             if order.is_carried:
                 yield from _carry(robot, earlier, later, order.origin)
@@ -188,11 +188,11 @@ def _respect_orders(study: Study) -> Iterator[Conjunct]:
 
 def _carry(robot: Robot, earlier: Target, later: Target, origin: str) -> Iterator[Conjunct]:
     text = f"Who was in '{earlier.name}' goes on to '{later.name}', nobody else does."
-    is_sent = f.primed(terms.equals(terms.goal(robot), later.word))
-    has_arrived = f.primed(terms.equals(terms.place(robot), earlier.word))
+    is_sent = f.prime(terms.equals(terms.goal(robot), later.word))
+    has_arrived = f.prime(terms.equals(terms.place(robot), earlier.word))
     yield terms.safety_conjunct(f.implies(is_sent, has_arrived), origin, text)
-    is_not_done = f.negate(f.primed(f.var(terms.completion(later))))
-    has_no_target = f.primed(terms.equals(terms.goal(robot), NONE))
+    is_not_done = f.negate(f.prime(f.var(terms.completion(later))))
+    has_no_target = f.prime(terms.equals(terms.goal(robot), NONE))
     continues = f.implies(f.both(has_arrived, is_not_done), f.either(is_sent, has_no_target))
     yield terms.safety_conjunct(continues, origin, text)
 

@@ -51,7 +51,7 @@ def _list_guarantees(study: Study, robot: Robot) -> Iterator[Conjunct]:
         terms.equals(terms.command(robot), STAY), robot.origin, "At first it stays."
     )
     yield from terms.sensor_obedience(robot)
-    stays_next = f.primed(terms.equals(terms.command(robot), STAY))
+    stays_next = f.prime(terms.equals(terms.command(robot), STAY))
     text = f"In its target '{robot.name}' stays for a step."
     yield terms.safety_conjunct(
         f.implies(terms.is_at_target(robot), stays_next), robot.origin, text
@@ -110,12 +110,12 @@ def count_steps(study: Study, robot: Robot) -> Iterator[Conjunct]:
     if not study.counter_size:
         return
     position, count = f.var(terms.position(robot)), f.var(terms.steps(robot))
-    is_moved = f.negate(f.eq(f.primed(position), position))
+    is_moved = f.negate(f.eq(f.prime(position), position))
     text = f"'{robot.name}' counts its steps."
     yield terms.initial_conjunct(terms.equals(terms.steps(robot), 0), robot.origin, text)
-    unchanged = f.implies(f.negate(is_moved), f.eq(f.primed(count), count))
+    unchanged = f.implies(f.negate(is_moved), f.eq(f.prime(count), count))
     yield terms.safety_conjunct(unchanged, robot.origin, text)
     for number in range(study.counter_size):
         before = f.both(is_moved, terms.equals(terms.steps(robot), number))
-        after = f.primed(terms.equals(terms.steps(robot), (number + 1) % study.counter_size))
+        after = f.prime(terms.equals(terms.steps(robot), (number + 1) % study.counter_size))
         yield terms.safety_conjunct(f.implies(before, after), robot.origin, text)

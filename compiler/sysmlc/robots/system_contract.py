@@ -113,11 +113,11 @@ def _count_timer(robot: Robot, most: int) -> Iterator[Conjunct]:
     text = f"The timer of '{robot.name}' counts the steps since it has its target."
     count = terms.timer(robot)
     yield terms.initial_conjunct(terms.equals(count, 0), robot.origin, text)
-    reset = f.implies(terms.is_at_target(robot), f.primed(terms.equals(count, 0)))
+    reset = f.implies(terms.is_at_target(robot), f.prime(terms.equals(count, 0)))
     yield terms.safety_conjunct(reset, robot.origin, text)
     for number in range(most + 1):
         before = f.both(terms.is_away_from_target(robot), terms.equals(count, number))
-        after = f.primed(terms.equals(count, min(number + 1, most)))
+        after = f.prime(terms.equals(count, min(number + 1, most)))
         yield terms.safety_conjunct(f.implies(before, after), robot.origin, text)
 
 
@@ -150,7 +150,7 @@ def _move_guarantees(study: Study) -> Iterator[Conjunct]:
         yield from count_steps(study, robot)
     yield from _forbid_following(study)
     for conjunct in _forbid_meeting(study, terms.safety_conjunct):
-        yield terms.safety_conjunct(f.primed(conjunct.formula), conjunct.origin, conjunct.text)
+        yield terms.safety_conjunct(f.prime(conjunct.formula), conjunct.origin, conjunct.text)
 
 
 def _start_at_rest(study: Study) -> Iterator[Conjunct]:
@@ -174,7 +174,7 @@ def _are_in_different_cells(first: Robot, second: Robot, is_primed: bool = False
     """
     first_position, second_position = f.var(terms.position(first)), f.var(terms.position(second))
     return f.compare(
-        Op.NE, f.primed(first_position) if is_primed else first_position, second_position
+        Op.NE, f.prime(first_position) if is_primed else first_position, second_position
     )
 
 
@@ -193,7 +193,7 @@ def _forbid_blocked_commands(study: Study, robot: Robot) -> Iterator[Conjunct]:
             )
             for condition in blocked:
                 yield terms.safety_conjunct(
-                    f.primed(f.negate(f.both(moves, condition))), robot.origin, text
+                    f.prime(f.negate(f.both(moves, condition))), robot.origin, text
                 )
 
 
@@ -201,7 +201,7 @@ def _move_to_neighbours(study: Study, robot: Robot) -> Iterator[Conjunct]:
     """State that a robot moves to a neighbour cell or stays."""
     for cell in study.grid.cells:
         reachable = (cell, *(neighbour for _, neighbour in study.grid.neighbours(cell)))
-        moves = f.primed(terms.is_in_any(terms.position(robot), reachable))
+        moves = f.prime(terms.is_in_any(terms.position(robot), reachable))
         text = f"From cell {cell} '{robot.name}' goes to a neighbour, or stays."
         yield terms.safety_conjunct(
             f.implies(terms.is_in_cell(robot, cell), moves), robot.origin, text

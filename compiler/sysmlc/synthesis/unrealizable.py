@@ -245,7 +245,7 @@ def _value_predicates(variable: Variable) -> Sequence[Formula]:
 
 def _frame_condition(variable: Variable) -> Formula:
     current = f.var(variable.name)
-    next_value = f.primed(current)
+    next_value = f.prime(current)
     return (f.iff if isinstance(variable.domain, BooleanDomain) else f.eq)(next_value, current)
 
 

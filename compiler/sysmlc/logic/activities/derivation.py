@@ -151,7 +151,7 @@ def _constant(value: bool) -> Formula:
 
 
 def _next_value(variable: str, value: Formula) -> Formula:
-    return f.iff(f.primed(f.var(variable)), value)
+    return f.iff(f.prime(f.var(variable)), value)
 
 
 def _describe_edge(formulas: StepFormulas, edge: TokenEdge) -> str:
@@ -203,7 +203,7 @@ def _derive_choice(formulas: StepFormulas, node: TokenNode) -> Iterator[Conjunct
         f.negate(formulas.ended_formula(node.region)),
     )
     arrivals = [
-        f.both(f.primed(token_at(edge)), f.negate(formulas.kept_formula(edge))) for edge in branches
+        f.both(f.prime(token_at(edge)), f.negate(formulas.kept_formula(edge))) for edge in branches
     ]
     exclusions = [
         f.negate(f.both(first, second))
@@ -227,7 +227,7 @@ def _interruption_of_edge(formulas: StepFormulas, edge: TokenEdge) -> Formula:
 def _derive_branch_update(formulas: StepFormulas, edge: TokenEdge) -> Iterator[Conjunct]:
     """Yield when a branch may, and when it must, hold a token in the next step."""
     next_token, cleared = (
-        f.primed(token_at(edge)),
+        f.prime(token_at(edge)),
         formulas.cleared_formula(edge.region, {edge.source, edge.target}),
     )
     begin = f.both(formulas.begin_formula(edge.region), _constant(edge.marked))
@@ -352,7 +352,7 @@ def _write_formulas(formulas: StepFormulas, store: Store, write: Write) -> Itera
 
 def _equality(store: Store, value: Formula, *, is_next: bool) -> Formula:
     name = f.var(store.variable.name)
-    variable = f.primed(name) if is_next else name
+    variable = f.prime(name) if is_next else name
     if not isinstance(store.variable.domain, BooleanDomain):
         return f.eq(variable, value)
     if isinstance(value, Const):

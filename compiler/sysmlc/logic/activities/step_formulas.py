@@ -224,7 +224,7 @@ class StepFormulas:
         if not self.is_chosen(edge):
             return self.given_formula(edge)
         return f.both(
-            self.given_formula(edge), f.primed(token_at(edge)), f.negate(self.kept_formula(edge))
+            self.given_formula(edge), f.prime(token_at(edge)), f.negate(self.kept_formula(edge))
         )
 
     # -- ends of regions -------------------------------------------------------------------

@@ -194,7 +194,7 @@ def _range_conjuncts(variable: Variable, name: str, domain: Domain) -> Iterator[
         return
     text = f"'{variable.name}' is one of {describe(variable.domain)}."
     yield Conjunct(in_range, Class.INIT, variable.origin, text)
-    yield Conjunct(f.primed(in_range), Class.SAFETY, variable.origin, text)
+    yield Conjunct(f.prime(in_range), Class.SAFETY, variable.origin, text)
 
 
 def _range_bounds(variable: Variable, value: Formula, domain: Domain) -> Iterator[Formula]:

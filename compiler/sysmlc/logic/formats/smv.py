@@ -170,7 +170,7 @@ class _SmvReader(FormulaReader):
             return super().resolve_name(token)
         term = self.read_term(0)
         self.cursor.expect(")")
-        return Term(f.primed(term.formula), term.kind, token.offset)
+        return Term(f.prime(term.formula), term.kind, token.offset)
 
 
 # -- writing ---------------------------------------------------------------------------------------

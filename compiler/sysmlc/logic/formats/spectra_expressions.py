@@ -168,7 +168,7 @@ class SpectraReader(FormulaReader):
         if token.text == "next" and self.cursor.accept("("):
             term = self.read_term(0)
             self.cursor.expect(")")
-            return Term(f.primed(term.formula), term.kind, token.offset)
+            return Term(f.prime(term.formula), term.kind, token.offset)
         if token.text in self.variables:
             return self.build_variable(token, self.cursor.accept("'"))
         if token.text in self.definitions:

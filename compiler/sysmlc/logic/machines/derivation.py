@@ -138,7 +138,7 @@ def _initial_value_fact(exploration: Exploration, path: Path, name: str) -> Form
 
 
 def _equality(exploration: Exploration, name: str, value: Formula, is_primed: bool) -> Formula:
-    variable = f.primed(f.var(name)) if is_primed else f.var(name)
+    variable = f.prime(f.var(name)) if is_primed else f.var(name)
     if isinstance(value, Const) and isinstance(value.value, bool):
         return variable if value.value else f.negate(variable)
     if _is_boolean(exploration, name):
@@ -202,11 +202,11 @@ def _choices_on_path(exploration: Exploration, move: Move, path: Path) -> Iterat
 def _effect_formulas(exploration: Exploration, path: Path) -> Iterator[Formula]:
     """Yield what holds in the next step when the path is taken."""
     for variable, literal in path.entered.items():
-        yield f.primed(f.eq(f.var(variable), Const(literal)))
+        yield f.prime(f.eq(f.var(variable), Const(literal)))
     for name, value in path.values.items():
         yield _equality(exploration, name, value, is_primed=True)
     for name in path.raised:
-        yield f.primed(f.var(name))
+        yield f.prime(f.var(name))
 
 
 def _derive_choices(exploration: Exploration) -> Iterator[Conjunct]:
@@ -274,9 +274,9 @@ def _frame_formula(exploration: Exploration, name: str) -> Formula:
     """Return what holds in the next step if no move changes the variable."""
     machine = exploration.machine
     if name in machine.outputs:
-        return f.negate(f.primed(f.var(name)))
+        return f.negate(f.prime(f.var(name)))
     if any(vertex.pick == name for vertex in machine.vertices.values()):
-        return f.primed(f.eq(f.var(name), Const(NO_EVENT)))
+        return f.prime(f.eq(f.var(name), Const(NO_EVENT)))
     return _equality(exploration, name, f.var(name), is_primed=True)
 
 
@@ -310,9 +310,9 @@ def _derive_clocks(exploration: Exploration) -> Iterator[Conjunct]:
         incremented = f.compare(Op.ADD, clock, Const(1))
         is_full = f.eq(clock, Const(bound.high))
         cases = (
-            (f.both(stay, is_below), f.eq(f.primed(clock), incremented), texts.CLOCK_RUNS),
-            (f.both(stay, is_full), f.eq(f.primed(clock), Const(bound.high)), texts.CLOCK_STOPS),
-            (f.negate(stay), f.eq(f.primed(clock), Const(0)), texts.CLOCK_RESETS),
+            (f.both(stay, is_below), f.eq(f.prime(clock), incremented), texts.CLOCK_RUNS),
+            (f.both(stay, is_full), f.eq(f.prime(clock), Const(bound.high)), texts.CLOCK_STOPS),
+            (f.negate(stay), f.eq(f.prime(clock), Const(0)), texts.CLOCK_RESETS),
         )
         for case, update, text in cases:
             text = text.format(clock=state.timer, state=state.literal)
@@ -341,7 +341,7 @@ def _derive_memories(exploration: Exploration) -> Iterator[Conjunct]:
     machine = exploration.machine
     for name, expression in machine.memories.items():
         truth = elaborate_condition(expression, machine.scope)
-        formula = f.iff(f.primed(f.var(name)), truth)
+        formula = f.iff(f.prime(f.var(name)), truth)
         yield Conjunct(
             formula, Class.SAFETY, _origin_of(exploration, name), texts.describe_memory(name, truth)
         )
@@ -357,7 +357,7 @@ def _derive_memories(exploration: Exploration) -> Iterator[Conjunct]:
 
 def _derive_history(exploration: Exploration, region: Region) -> Iterator[Conjunct]:
     """Yield how the variable behind a history pseudostate is updated and kept."""
-    origin, next_memory = _origin_of(exploration, region.memory), f.primed(f.var(region.memory))
+    origin, next_memory = _origin_of(exploration, region.memory), f.prime(f.var(region.memory))
     is_inactive = f.eq(f.var(region.variable), Const(INACTIVE))
     state = exploration.machine.vertices[region.state].literal
     update = f.implies(f.negate(is_inactive), f.eq(next_memory, f.var(region.variable)))

@@ -296,7 +296,7 @@ def is_chosen_formula(pick: str, literal: str) -> Formula:
     """Return the formula that a choice was made in favour of a transition; it becomes visible in
     the next step.
     """
-    return f.primed(f.eq(f.var(pick), Const(literal)))
+    return f.prime(f.eq(f.var(pick), Const(literal)))
 
 
 def _report_faults(

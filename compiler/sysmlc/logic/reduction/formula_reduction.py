@@ -227,7 +227,7 @@ class FormulaReduction:
     def _shift_back(self, formula: Formula, steps: int) -> Formula:
         """Return the condition that *formula* held some steps ago; -1 is the next step."""
         if steps < 0:
-            return f.primed(formula)
+            return f.prime(formula)
         for _ in range(steps):
             formula = self._previous(formula)
         return formula

@@ -204,7 +204,7 @@ def _split_by_class(
         yield from classify(formula)
     elif is_assumed and scope.is_about_inputs(formula):
         yield Class.INIT, formula
-        yield Class.SAFETY, f.primed(formula)
+        yield Class.SAFETY, f.prime(formula)
     else:
         yield Class.SAFETY, formula
 

@@ -111,29 +111,29 @@ def _make_variable(feature: Feature) -> Variable:
 def _derive_assumptions(call: _ServiceCall) -> Iterator[Conjunct]:
     name, id = call.service.element.name, call.service.element.id
     next_inputs = {
-        condition.variable: f.primed(f.var(condition.variable)) for condition in call.inputs
+        condition.variable: f.prime(f.var(condition.variable)) for condition in call.inputs
     }
     for condition in call.conditions(is_before=True):
         text = f"Who asks for '{name}' sees to it that {_name_of(condition)} holds."
         if not _reads_any(condition.formula, call.outputs):
             first = f.implies(call.call, condition.formula)
             yield Conjunct(first, Class.INIT, condition.constraint.id, text)
-        later = f.implies(f.primed(call.call), substitute(condition.formula, next_inputs))
+        later = f.implies(f.prime(call.call), substitute(condition.formula, next_inputs))
         yield Conjunct(later, Class.SAFETY, condition.constraint.id, text)
     waiting = f.both(call.runs, f.negate(call.done))
-    no_repetition = f.implies(waiting, f.negate(f.primed(call.call)))
+    no_repetition = f.implies(waiting, f.negate(f.prime(call.call)))
     text = f"'{name}' is not asked for again before it is done."
     yield Conjunct(no_repetition, Class.SAFETY, id, text)
     for feature in call.inputs:
         value = f.var(feature.variable)
         text = f"'{feature.element.name}' stays as it is until '{name}' is done."
-        unchanged = f.implies(waiting, _equality(f.primed(value), value, feature))
+        unchanged = f.implies(waiting, _equality(f.prime(value), value, feature))
         yield Conjunct(unchanged, Class.SAFETY, feature.element.id, text)
 
 
 def _derive_guarantees(call: _ServiceCall) -> Iterator[Conjunct]:
     name, id = call.service.element.name, call.service.element.id
-    after_done, after_busy = f.primed(call.done), f.primed(call.busy)
+    after_done, after_busy = f.prime(call.done), f.prime(call.busy)
     idle = f.both(f.negate(call.busy), f.negate(call.done))
     yield Conjunct(idle, Class.INIT, id, f"'{name}' is not running at the start.")
     runs = f.iff(after_busy, f.both(call.runs, f.negate(call.done), f.negate(after_done)))
@@ -143,11 +143,11 @@ def _derive_guarantees(call: _ServiceCall) -> Iterator[Conjunct]:
     yield Conjunct(ends, Class.SAFETY, id, f"'{name}' is done only when it was asked for.")
     for condition in call.conditions(is_before=False):
         text = f"When '{name}' is done, {_name_of(condition)} holds."
-        conjunct = f.implies(after_done, f.primed(condition.formula))
+        conjunct = f.implies(after_done, f.prime(condition.formula))
         yield Conjunct(conjunct, Class.SAFETY, condition.constraint.id, text)
     for feature in call.outputs:
         value = f.var(feature.variable)
-        unchanged = f.implies(f.negate(after_done), _equality(f.primed(value), value, feature))
+        unchanged = f.implies(f.negate(after_done), _equality(f.prime(value), value, feature))
         text = f"What '{name}' makes of '{feature.element.name}' is seen when it is done."
         yield Conjunct(unchanged, Class.SAFETY, feature.element.id, text)
     text = f"'{name}' is done in the end, whenever it is asked for."

@@ -120,7 +120,7 @@ def _weaken_guarantees(view: Viewpoint, broken: Var | None) -> Iterator[Conjunct
     if broken is None:
         yield from view.guarantees
         return
-    next_broken = f.primed(broken)
+    next_broken = f.prime(broken)
     first = _conjoin_class(view.assumptions, Class.INIT)
     safety = _conjoin_class(view.assumptions, Class.SAFETY)
     becomes_broken = f.either(broken, f.negate(safety))

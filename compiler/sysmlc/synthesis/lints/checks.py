@@ -21,7 +21,7 @@ from sysmlc.logic.contract import (
     Variable,
 )
 from sysmlc.logic.domains import size, values
-from sysmlc.logic.formula import Formula, Var, primed, variables
+from sysmlc.logic.formula import Formula, Var, prime, variables
 from sysmlc.logic.printing import print_formula, print_literal
 from sysmlc.synthesis import rules
 from sysmlc.synthesis.algebra.fair_systems import FairSystem, Runs
@@ -86,7 +86,7 @@ def _split_assumption(conjunct: Conjunct, inputs: set[str]) -> Iterator[Conjunct
         yield conjunct
         return
     yield replace(conjunct, class_=Class.INIT)
-    yield replace(conjunct, formula=primed(conjunct.formula))
+    yield replace(conjunct, formula=prime(conjunct.formula))
 
 
 def _sole_owner(conjunct: Conjunct, owners: dict[str, Owner]) -> Owner | None:
