@@ -9,9 +9,8 @@ from functools import cache
 
 from sysmlc.frontends.caex import data_types, rules, value_types
 from sysmlc.frontends.caex.attributes import lower_attribute, lower_constraints
-from sysmlc.frontends.caex.columns import read_document
 from sysmlc.frontends.caex.context import Context
-from sysmlc.frontends.caex.document import Document, Node
+from sysmlc.frontends.caex.document import Document, Node, read_document
 from sysmlc.frontends.caex.interfaces import lower_interface
 from sysmlc.frontends.caex.types import Type
 from sysmlc.frontends.caex.vocabulary import (

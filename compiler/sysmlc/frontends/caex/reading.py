@@ -4,10 +4,9 @@ from collections.abc import Sequence
 
 from sysmlc.diagnostics import Coverage, Place, Sink, Subject
 from sysmlc.frontends.caex import headers, libraries, rules
-from sysmlc.frontends.caex.columns import read_document
 from sysmlc.frontends.caex.context import Context
 from sysmlc.frontends.caex.coverage import report_coverage
-from sysmlc.frontends.caex.document import Document
+from sysmlc.frontends.caex.document import Document, read_document
 from sysmlc.frontends.caex.hierarchies import Components
 from sysmlc.frontends.caex.links import LinkLowering
 from sysmlc.frontends.caex.metadata import lower_metadata
