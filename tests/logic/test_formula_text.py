@@ -134,13 +134,13 @@ def test_a_truth_is_no_number():
 
 def test_formulas_that_nobody_has_are_forgotten():
     """But for those that are remembered to be found again soon, whose number is bounded."""
-    assert f._applied.cache_info().maxsize is not None
-    f._applied.cache_clear()
+    assert f._apply.cache_info().maxsize is not None
+    f._apply.cache_clear()
     gc.collect()
     before = len(f._APPLIED)
     made = [f.eq(Var(f"only_here_{number}"), Const(number)) for number in range(51)]
     assert len(f._APPLIED) > before + 50
     del made
-    f._applied.cache_clear()
+    f._apply.cache_clear()
     gc.collect()
     assert len(f._APPLIED) == before

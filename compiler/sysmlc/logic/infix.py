@@ -91,16 +91,16 @@ class FormulaReader:
         if self._depth > MAX_DEPTH:
             reason = f"it is nested more than {MAX_DEPTH} deep"
             raise FormulaError(reason, self.cursor.next.offset)
-        left, depth = self._read_prefix_or_operand(min_precedence), self._depth
+        term, depth = self._read_prefix_or_operand(min_precedence), self._depth
         while (op := self._peek_operator(min_precedence)) is not None:
             # Chains of "and" and "or" become one flat formula; others nest at each operator.
             depth += op not in (Op.AND, Op.OR)
             if depth > MAX_DEPTH:
                 reason = f"it has more than {MAX_DEPTH} operands"
                 raise FormulaError(reason, self.cursor.next.offset)
-            left = self._read_infix(op, left)
+            term = self._read_infix(op, term)
         self._depth -= 1
-        return left
+        return term
 
     def _peek_operator(self, min_precedence: int) -> Op | None:
         """Return the infix operator that comes next, unless its precedence is too low."""

@@ -9,6 +9,7 @@ _RESERVED = frozenset(
 
 
 _INVALID_CHARACTERS = re.compile(r"[^0-9A-Za-z_]+")
+_MAX_LENGTH = 40
 _CACHED_NAMES = 1 << 12
 """Cache size: names of actions and states recur often."""
 
@@ -19,7 +20,7 @@ def identifier(name: str, fallback: str = "x") -> str:
     # A shortcut for most names, which are identifiers already.
     is_plain = name.isascii() and name.isidentifier()
     text = name if is_plain else _INVALID_CHARACTERS.sub("_", name.strip())
-    text = text.strip("_")[:40].rstrip("_") or fallback
+    text = text.strip("_")[:_MAX_LENGTH].rstrip("_") or fallback
     text = f"_{text}" if text[0].isdigit() else text
     return f"{text}_" if text in _RESERVED else text
 
@@ -42,7 +43,7 @@ class Names:
         return candidate
 
 
-def unique(names: list[str], fallback: str, *taken: str) -> tuple[str, ...]:
+def make_unique(names: list[str], fallback: str, *taken: str) -> tuple[str, ...]:
     """Return identifiers for the names in order, all different and none of the taken ones."""
     source = Names(*taken)
     return tuple(source.new(name, fallback) for name in names)

@@ -263,7 +263,8 @@ def _select_facts(
     for variables, part in sorted(candidates, key=lambda candidate: len(candidate[0])):
         if variables.isdisjoint(f.variables(formula)):
             continue
-        if _size(selected_variables | variables, known) <= _MAX_VALUATIONS_REDUNDANCY:
+        variable_domains = (known[variable.name] for variable in selected_variables | variables)
+        if _count(variable_domains, _MAX_VALUATIONS_REDUNDANCY) <= _MAX_VALUATIONS_REDUNDANCY:
             selected_variables |= variables
             chosen.append(part)
     return f.both(*chosen)
@@ -272,13 +273,6 @@ def _select_facts(
 def _split_conjunction(formula: Formula) -> tuple[Formula, ...]:
     is_and = isinstance(formula, Apply) and formula.op is Op.AND
     return formula.args if is_and and isinstance(formula, Apply) else (formula,)
-
-
-def _size(variables: set[Var], known: Mapping[str, Domain]) -> int:
-    total = 1
-    for variable in variables:
-        total *= domains.size(known[variable.name])
-    return total
 
 
 _TEMPORAL = frozenset([Op.NEXT, Op.ALWAYS, Op.EVENTUALLY, Op.UNTIL, Op.RELEASE, Op.WEAK_UNTIL])

@@ -31,7 +31,7 @@ from sysmlc.logic.expressions.named_elements import (
     find_object_values,
     find_port_values,
 )
-from sysmlc.logic.names import unique
+from sysmlc.logic.names import make_unique
 
 ASSUMED_RANGE = rule(
     "SM410",
@@ -128,7 +128,7 @@ def _find_elements(
 def _name_variables(elements: Mapping[str, Element]) -> dict[str, str]:
     """Return a unique variable for each name, in document order."""
     names = sorted(elements, key=lambda name: (elements[name].ordinal, name))
-    return dict(zip(names, unique(names, "value", "event", "none"), strict=True))
+    return dict(zip(names, make_unique(names, "value", "event", "none"), strict=True))
 
 
 # -- features ------------------------------------------------------------------------------------
@@ -237,7 +237,7 @@ class _FeatureTable(Mapping[str, Feature]):
         ]
         texts = tuple(dict.fromkeys(known_texts))
         names = [text.strip() or "empty" for text in texts]
-        return EnumerationDomain(unique([*names, _OTHER_TEXT], "text"), texts)
+        return EnumerationDomain(make_unique([*names, _OTHER_TEXT], "text"), texts)
 
 
 # -- values that a behaviour mentions ------------------------------------------------------------

@@ -9,7 +9,7 @@ from functools import cached_property
 
 from sysmlc.ir import Edge, Element, Graph, Kind, query
 from sysmlc.logic.contract import EnumerationDomain
-from sysmlc.logic.names import unique
+from sysmlc.logic.names import make_unique
 
 VALUE_KINDS = (Kind.PROPERTY, Kind.PORT, Kind.FLOW_PROPERTY, Kind.PARAMETER)
 """Kinds of the elements that have a value in a context."""
@@ -176,7 +176,7 @@ def literals_of(graph: Graph, enumeration: Element) -> dict[str, str]:
     """Return the identifiers of the literals of an enumeration, by literal name."""
     owned = graph.owned(enumeration)
     names = [element.name for element in owned if element.kind is Kind.ENUMERATION_LITERAL]
-    return dict(zip(names, unique(names, "literal"), strict=True))
+    return dict(zip(names, make_unique(names, "literal"), strict=True))
 
 
 class Enumerations:

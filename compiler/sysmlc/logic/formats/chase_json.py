@@ -66,8 +66,8 @@ def _read_document(draft: ContractDraft, document: LocatedObject) -> None:
 
 def _declare(draft: ContractDraft, name: str, type_: object, offset: int, owner: Owner) -> None:
     if type_ == "real":
-        what = f"'{name}', which is a real number,"
-        draft.report_outside(getattr(type_, "offset", offset), what)
+        type_offset = getattr(type_, "offset", offset)
+        draft.report_outside(type_offset, f"'{name}', which is a real number,")
         return
     check_name(name, offset)
     draft.declare(name, offset, owner, read_domain(name, type_, offset))

@@ -170,12 +170,12 @@ class _SlugsReader(FormulaReader):
         return super().require_boolean(term)
 
     def read_term(self, min_precedence: int) -> Term:
-        left = super().read_term(min_precedence)
+        term = super().read_term(min_precedence)
         while min_precedence <= PRECEDENCE[Op.OR] and self.cursor.accept("^"):
             right = super().read_term(PRECEDENCE[Op.OR] + 1)
-            equivalence = f.iff(self.require_boolean(left), self.require_boolean(right))
-            left = Term(f.negate(equivalence), BOOLEAN, left.offset)
-        return left
+            equivalence = f.iff(self.require_boolean(term), self.require_boolean(right))
+            term = Term(f.negate(equivalence), BOOLEAN, term.offset)
+        return term
 
 
 # -- writing ---------------------------------------------------------------------------------------

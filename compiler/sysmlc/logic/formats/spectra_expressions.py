@@ -128,23 +128,23 @@ class SpectraReader(FormulaReader):
         self._origin = origin
 
     def read_term(self, min_precedence: int) -> Term:
-        left = super().read_term(min_precedence)
+        term = super().read_term(min_precedence)
         while True:
             token = self.cursor.next
             if min_precedence <= PRECEDENCE[Op.UNTIL] and self.cursor.accept(*_PAST_INFIX):
                 right = self.read_term(PRECEDENCE[Op.UNTIL] + 1)
                 formula = self._build_since(
-                    token, self.require_boolean(left), self.require_boolean(right)
+                    token, self.require_boolean(term), self.require_boolean(right)
                 )
             elif min_precedence <= PRECEDENCE[Op.OR] and self.cursor.accept("xor"):
                 right = self.read_term(PRECEDENCE[Op.OR] + 1)
-                formula = f.negate(f.iff(self.require_boolean(left), self.require_boolean(right)))
+                formula = f.negate(f.iff(self.require_boolean(term), self.require_boolean(right)))
             else:
-                return left
-            left = Term(formula, BOOLEAN, left.offset)
+                return term
+            term = Term(formula, BOOLEAN, term.offset)
             # The operators of the base class may follow: `a xor b & c`.
             while (op := self._peek_operator(min_precedence)) is not None:
-                left = self._read_infix(op, left)
+                term = self._read_infix(op, term)
 
     def _build_since(self, token: Token, left: Formula, right: Formula) -> Formula:
         since = self._history.since

@@ -78,7 +78,7 @@ def parse_expression(cursor: Cursor, min_precedence: int = 0, depth: int = 0) ->
     """Parse an expression up to the first operator of a lower precedence. Raises FormulaError."""
     if depth > MAX_DEPTH:
         raise FormulaError(f"it is nested more than {MAX_DEPTH} deep", cursor.next.offset)
-    left = _parse_operand(cursor, depth)
+    tree = _parse_operand(cursor, depth)
     operators = depth
     while (token := cursor.next).text in INFIX and token.kind in ("sign", "name"):
         precedence, associativity = INFIX[token.text]
@@ -89,8 +89,8 @@ def parse_expression(cursor: Cursor, min_precedence: int = 0, depth: int = 0) ->
             raise FormulaError("it has too many operands", token.offset)
         cursor.take()
         right = parse_expression(cursor, precedence + (associativity == "left"), depth + 1)
-        left = _join(_SIGNS.get(token.text, token.text), token.offset, left, right)
-    return left
+        tree = _join(_SIGNS.get(token.text, token.text), token.offset, tree, right)
+    return tree
 
 
 def _join(sign: str, offset: int, left: Tree, right: Tree) -> Tree:
@@ -209,8 +209,8 @@ class Evaluator:
         if isinstance(value, Bus) and len(value.bits) == 1:
             return Var(value.bits[0])
         if isinstance(value, int | Bus):
-            what = "a number" if isinstance(value, int) else "a bus"
-            raise FormulaError(f"{what} stands where a condition is expected", tree.offset)
+            kind = "a number" if isinstance(value, int) else "a bus"
+            raise FormulaError(f"{kind} stands where a condition is expected", tree.offset)
         return value
 
     def evaluate(self, tree: Tree, scope: Scope) -> Value:

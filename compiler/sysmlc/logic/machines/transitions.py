@@ -37,7 +37,7 @@ from sysmlc.logic.machines.machine import (
 from sysmlc.logic.machines.supported_constructs import JOIN_BESIDE
 from sysmlc.logic.machines.vertices import MachineDraft, list_outgoing
 from sysmlc.logic.machines.well_formedness import find_common_state
-from sysmlc.logic.names import unique
+from sysmlc.logic.names import make_unique
 
 
 def read_occurrence(parts: MachineDraft, trigger: Element, vertex: Vertex) -> Occurrence:
@@ -48,7 +48,8 @@ def read_occurrence(parts: MachineDraft, trigger: Element, vertex: Vertex) -> Oc
     if kind == "change" or (not kind and "condition" in trigger.attrs):
         return _read_change(parts, trigger)
     if kind == "any":
-        parts.events.setdefault("any", unique([*parts.events.values(), "other"], "", NO_EVENT)[-1])
+        literals = make_unique([*parts.events.values(), "other"], "", NO_EVENT)
+        parts.events.setdefault("any", literals[-1])
         return OnEvent(None)
     return OnEvent(_read_event(parts, trigger))
 
@@ -60,7 +61,7 @@ def _read_event(parts: MachineDraft, trigger: Element) -> str:
     key = trigger.name if type_ is None else type_.id
     name = (type_.name if type_ is not None else "") or trigger.name or "event"
     if key not in parts.events:
-        literals = unique([*parts.events.values(), name], "event", NO_EVENT)
+        literals = make_unique([*parts.events.values(), name], "event", NO_EVENT)
         parts.events[key] = literals[-1]
     return parts.events[key]
 
@@ -158,7 +159,7 @@ def read_transitions(parts: MachineDraft) -> None:
     graph = parts.reading.graph
     for vertex in tuple(parts.vertices.values()):
         elements = list_outgoing(parts, vertex.id)
-        literals = unique(
+        literals = make_unique(
             [_base_literal(graph, element) for element, _ in elements], "transition", NO_EVENT
         )
         transitions = [

@@ -17,7 +17,7 @@ from sysmlc.logic.machines.machine import (
     submachine_id,
 )
 from sysmlc.logic.machines.supported_constructs import find_initial, find_submachine
-from sysmlc.logic.names import identifier, unique
+from sysmlc.logic.names import identifier, make_unique
 
 
 @dataclass(slots=True)
@@ -86,7 +86,7 @@ def _read_region(parts: MachineDraft, region: Element, state: str, name: str) ->
         vertex.name or ("final" if vertex.kind is Kind.FINAL_STATE else "state")
         for vertex in stable
     ]
-    literals = unique(fallbacks, "state", INACTIVE)
+    literals = make_unique(fallbacks, "state", INACTIVE)
     domain = EnumerationDomain((*((INACTIVE,) if state else ()), *literals))
     variable = parts.reading.variable_for(f"region {id}", name, Owner.SYSTEM, domain, region.id)
     initial = find_initial(graph, region)

@@ -30,7 +30,7 @@ from sysmlc.logic.expressions.features import Feature
 from sysmlc.logic.expressions.parsing import parse_expression
 from sysmlc.logic.formula import Formula, const, var, variables
 from sysmlc.logic.machines.actions import check_assignable
-from sysmlc.logic.names import Names, identifier, unique
+from sysmlc.logic.names import Names, identifier, make_unique
 from sysmlc.passes.activities import rules
 
 _CLASSIFIERS = (Kind.CLASS, Kind.COMPONENT, Kind.DATA_TYPE, Kind.INTERFACE, Kind.ACTOR)
@@ -233,7 +233,7 @@ class Inputs:
         texts = list(dict.fromkeys(literals))
         if set(texts) <= {"true", "false"}:
             return Answer(f.var(self._declare(prefix, BooleanDomain(), origin)), None)
-        other, *values = unique([OTHER, *texts], "value")
+        other, *values = make_unique([OTHER, *texts], "value")
         variable = f.var(self._declare(prefix, EnumerationDomain((*values, other)), origin))
         return Answer(variable, dict(zip(texts, values, strict=True)))
 
