@@ -1,4 +1,4 @@
-"""Formulas on traces: values, finite traces, lassos; the lasso against Spot."""
+"""Evaluation of formulas on valuations, finite traces and lassos; Spot judges the lassos."""
 
 import pickle
 
@@ -24,7 +24,7 @@ def test_integers_divide_towards_zero(left, right, quotient, rest):
     assert value_of(Apply(Op.MOD, (Const(left), Const(right))), {}) == rest
 
 
-def test_the_step_of_a_violation():
+def test_a_violation_is_found_at_its_first_step():
     rises = Conjunct(f.implies(P, Var("q", True)), Class.SAFETY, "x")
     trace = [{"p": False, "q": False}, {"p": True, "q": False}, {"p": True, "q": False}]
     assert find_violation(rises, trace) == 1
@@ -34,11 +34,11 @@ def test_the_step_of_a_violation():
 
 
 def test_liveness_is_violated_only_by_a_lasso():
-    again = Conjunct(P, Class.LIVENESS, "x")
+    recurrence = Conjunct(P, Class.LIVENESS, "x")
     trace = [{"p": True}, {"p": False}, {"p": False}]
-    assert find_violation(again, trace) is None
-    assert find_violation(again, trace, loop=1) == 1
-    assert find_violation(again, trace, loop=0) is None
+    assert find_violation(recurrence, trace) is None
+    assert find_violation(recurrence, trace, loop=1) == 1
+    assert find_violation(recurrence, trace, loop=0) is None
 
 
 _formulas = st.recursive(
@@ -68,7 +68,7 @@ _traces = st.lists(
 
 @given(_formulas, _traces, st.data())
 @settings(max_examples=120, deadline=None)
-def test_lassos_mean_what_spot_says(formula, trace, data):
+def test_spot_agrees_on_the_truth_on_lassos(formula, trace, data):
     spot = pytest.importorskip("spot")
     loop = data.draw(st.integers(0, len(trace) - 1))
     letters = ["&".join(n if step[n] else f"!{n}" for n in "pq") for step in trace]
@@ -95,7 +95,7 @@ _comparisons = st.builds(
 _steps = st.recursive(
     _comparisons,
     lambda inner: st.one_of(
-        inner.map(lambda one: Apply(Op.NOT, (one,))),
+        inner.map(lambda operand: Apply(Op.NOT, (operand,))),
         st.builds(
             lambda op, left, right: Apply(op, (left, right)),
             st.sampled_from([Op.AND, Op.OR, Op.IMPLIES, Op.IFF]),
@@ -109,10 +109,10 @@ _values = st.fixed_dictionaries({"x": st.integers(-3, 3), "y": st.integers(-3, 3
 
 
 @given(_steps, _values, _values)
-def test_an_evaluation_gives_the_value_of_its_formula(formula, now, then):
+def test_a_compiled_evaluation_gives_the_value_of_the_formula(formula, now, then):
     assert compile_evaluation(formula)(now, then) == value_of(formula, now, then)
 
 
-def test_a_formula_is_read_back_with_the_hash_of_this_process():
+def test_an_unpickled_formula_is_the_interned_one():
     formula = f.both(P, f.negate(Q))
     assert {pickle.loads(pickle.dumps(formula)): 1} == {formula: 1}
