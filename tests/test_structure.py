@@ -50,7 +50,6 @@ PLATFORM_MODULES = {"fcntl", "resource"}
 UNFINISHED = (
     "sysmlc.backends.sysml",
     "sysmlc.frontends.sysml",
-    "sysmlc.logic.texts",
 )
 """Packages whose names and imports are still to be reviewed; remove a line when that is done."""
 

@@ -7,8 +7,7 @@ from sysmlc.logic import formula as f
 from sysmlc.logic.contract import Class
 from sysmlc.logic.evaluate import has_primes
 from sysmlc.logic.formula import Apply, Formula, Op
-
-_TEMPORAL = frozenset([Op.NEXT, Op.ALWAYS, Op.EVENTUALLY, Op.UNTIL, Op.RELEASE, Op.WEAK_UNTIL])
+from sysmlc.logic.syntax import TEMPORAL
 
 
 def classify(formula: Formula) -> Iterator[tuple[Class, Formula]]:
@@ -57,7 +56,7 @@ def replace_next_by_primes(formula: Formula) -> Formula | None:
         case Apply(Op.NEXT, (inner,)):
             is_one_step = not has_future(inner) and not has_primes(inner)
             return f.prime(inner) if is_one_step else None
-        case Apply(op, _) if op in _TEMPORAL:
+        case Apply(op, _) if op in TEMPORAL:
             return None
         case Apply(op, args):
             parts = [replace_next_by_primes(arg) for arg in args]
@@ -82,6 +81,6 @@ def has_future(formula: Formula) -> bool:
     """Whether the formula has temporal operators of the future; primes do not count."""
     match formula:
         case Apply(op, args):
-            return op in _TEMPORAL or any(has_future(arg) for arg in args)
+            return op in TEMPORAL or any(has_future(arg) for arg in args)
         case _:
             return False

@@ -168,15 +168,15 @@ class _PairSearch:
     def _apply_move(self, move: Move) -> None:
         """Record what the places that a move marks are marked with, if the move is possible."""
         takes = self._mask_of(move.takes)
-        others = self._reached & ~takes & ~self._mask_of(move.clears)
+        remaining = self._reached & ~takes & ~self._mask_of(move.clears)
         for place in move.takes:
             concurrent = self.concurrent[place] | self._bits[place]
             if takes & ~(concurrent & self._reached):
                 return
-            others &= concurrent
+            remaining &= concurrent
         gives = self._mask_of(move.gives)
         for place in move.gives:
-            self._mark_place(place, (others | gives) & ~self._bits[place])
+            self._mark_place(place, (remaining | gives) & ~self._bits[place])
 
     def _mark_place(self, place: str, concurrent: int) -> None:
         bit = self._bits[place]

@@ -120,8 +120,8 @@ def _build_transitions(graph: TokenGraph, node: TokenNode) -> Iterator[NetTransi
         case Firing.ALL if takes:
             yield NetTransition(takes, gives, {node.id})
         case Firing.CHOICE if takes:
-            for given in sorted(gives):
-                yield NetTransition(set(takes), {given}, {node.id})
+            for edge_id in sorted(gives):
+                yield NetTransition(set(takes), {edge_id}, {node.id})
             if not gives:
                 yield NetTransition(takes, set(), {node.id})
         case Firing.WORK if takes:

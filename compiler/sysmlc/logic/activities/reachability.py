@@ -117,7 +117,9 @@ class _BitGraph:
         }
         self.content = {region: self._content_mask(region) for region in graph.regions()}
         self.structured = [p for p in self.parts if p.node.kind is NodeKind.STRUCTURED]
-        lost = {one.id: self._lost_mask(frozenset(one.nodes)) for one in graph.interruptibles}
+        lost = {
+            region.id: self._lost_mask(frozenset(region.nodes)) for region in graph.interruptibles
+        }
         self.hearing = [
             (
                 self.bits[edge.id],

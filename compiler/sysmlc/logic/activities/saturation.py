@@ -78,7 +78,7 @@ class _Search:
     def __init__(self, graph: TokenGraph, wanted: list[Write]) -> None:
         self._graph, self._game = graph, StepFormulas(graph)
         self._open = list(wanted)
-        self._domains = {one.name: one.domain for one in graph.inputs}
+        self._domains = {variable.name: variable.domain for variable in graph.inputs}
         self._steps = _MAX_MOVES // (len(graph.nodes) + len(graph.edges))
         values = (part for s in graph.stores for w in s.writes for p in w.values for part in p)
         read = _variable_names(values) & self._domains.keys()
@@ -157,11 +157,11 @@ class _PlannedChoices:
         """Return whether a condition holds; the plan decides conditions that depend on the
         environment.
         """
-        if all(one.name in values for one in f.variables(formula)):
+        if all(variable.name in values for variable in f.variables(formula)):
             return evaluate.is_true(formula, values)
         if formula not in self._answers:
-            given = {name: Const(value) for name, value in values.items()}
-            self._answers[formula] = self._choose_answer(substitute(formula, given))
+            constants = {name: Const(value) for name, value in values.items()}
+            self._answers[formula] = self._choose_answer(substitute(formula, constants))
         return self._answers[formula]
 
     def _choose_answer(self, formula: Formula) -> bool:

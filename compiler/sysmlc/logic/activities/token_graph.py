@@ -293,7 +293,7 @@ class TokenGraph(Struct, frozen=True, dict=True):
         """Return the edges that bring tokens into an interruptible region, from outside or at
         its start.
         """
-        region = next(one for one in self.interruptibles if one.id == interruptible)
+        region = next(region for region in self.interruptibles if region.id == interruptible)
         members = frozenset(region.nodes)
         return [
             edge

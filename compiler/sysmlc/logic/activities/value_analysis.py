@@ -41,9 +41,10 @@ class ValueAnalysis:
     def __init__(self, graph: TokenGraph, together: ConcurrencyRelation, store: Store) -> None:
         self._graph, self._together, self._store = graph, together, store
         self._game = StepFormulas(graph)
-        known = (*graph.inputs, *(one.variable for one in graph.stores))
-        self._image = _ValueSets(store, {one.name: one.domain for one in known})
-        self._writes = {one.node: one for one in store.writes}
+        variables = (*graph.inputs, *(other.variable for other in graph.stores))
+        domains = {variable.name: variable.domain for variable in variables}
+        self._image = _ValueSets(store, domains)
+        self._writes = {write.node: write for write in store.writes}
         self._takers = index_takers(together.moves)
         self._values_at: dict[str, int] = {}
         self._applied: dict[Move, int] = {}
@@ -66,7 +67,7 @@ class ValueAnalysis:
 
     def _propagate(self) -> None:
         start_edges = self._together.list_start_edges(ACTIVITY_REGION)
-        region_moves = [one for one in self._together.moves if one.clears]
+        region_moves = [move for move in self._together.moves if move.clears]
         self._add_values(start_edges, self._initial_values())
         previous: dict[str, int] = {}
         while previous != self._values_at:
@@ -91,9 +92,9 @@ class ValueAnalysis:
 
     def _add_values(self, places: Iterable[str], values: int) -> None:
         for place in places:
-            known = self._values_at.get(place, 0)
-            if values & ~known:
-                self._values_at[place] = known | values
+            present = self._values_at.get(place, 0)
+            if values & ~present:
+                self._values_at[place] = present | values
                 self._waiting.update(dict.fromkeys(self._takers(place)))
 
     def _apply_move(self, move: Move) -> None:

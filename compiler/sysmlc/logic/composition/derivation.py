@@ -61,7 +61,7 @@ def compose_blocks(graph: Graph, contracts: Iterable[Contract], sink: Sink) -> I
     parts must establish together. *contracts* are those that the pass ``contracts`` derives from
     the graph; composites are in the order of their components.
     """
-    by_origin = {one.origin: one for one in contracts}
+    by_origin = {contract.origin: contract for contract in contracts}
     open_steps: list[OpenStep] = []
     for element in _list_blocks(graph, by_origin):
         block = read_block(graph, element, by_origin)

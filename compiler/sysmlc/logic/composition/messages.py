@@ -32,25 +32,25 @@ _EVENT = "event"
 
 
 class Receipt(Struct, frozen=True):
-    """Something that can occur at a member: its name, and the formula that it occurs."""
+    """A message that can occur at a member: its name, and the formula that it occurs."""
 
     member: Member
-    what: str
+    message: str
     occurs: Formula
     origin: str
 
 
 class Sending(Struct, frozen=True):
-    """Something that a member sends; ``said`` is true in the step in which it is sent."""
+    """A message that a member sends; ``is_sent`` is true in the step in which it is sent."""
 
     member: Member
-    said: Formula
+    is_sent: Formula
 
 
 def derive_wiring(
     block: Block, members: Sequence[Member], wires: Iterable[Wire]
 ) -> Iterator[Conjunct]:
-    """Yield what occurs when something is sent, for each member that receives from others."""
+    """Yield the occurrences that messages cause, for each member that receives from others."""
     for member, receipts in _iter_listeners(block, members, tuple(wires)):
         yield from _derive_occurrences(member, receipts, _is_reachable_from_outside(block, member))
 
@@ -58,7 +58,7 @@ def derive_wiring(
 def derive_exclusions(
     block: Block, members: Sequence[Member], wires: Iterable[Wire]
 ) -> Iterator[Conjunct]:
-    """Yield that no two things are sent to one member in one step, so that nothing is lost.
+    """Yield that no two messages are sent to one member in one step, so that nothing is lost.
 
     No member guarantees this: a component sends what its contract demands.
     """
@@ -76,12 +76,12 @@ def derive_exclusions(
                 _describe_sending(second_receipt, second_sending),
             )
             text = f"{first} and {second} are sent to '{member.name}'."
-            coincidence = f.both(sending.said, second_sending.said)
+            coincidence = f.both(sending.is_sent, second_sending.is_sent)
             yield Conjunct(f.negate(coincidence), Class.SAFETY, receipt.origin, text)
 
 
 def _describe_sending(receipt: Receipt, sending: Sending) -> str:
-    return f"'{receipt.what}' by '{sending.member.name}'"
+    return f"'{receipt.message}' by '{sending.member.name}'"
 
 
 _Receipts = Sequence[tuple[Receipt, list[Sending]]]
@@ -112,13 +112,15 @@ def _is_reachable_from_outside(block: Block, member: Member) -> bool:
 
 
 def _derive_occurrences(member: Member, receipts: _Receipts, is_open: bool) -> Iterator[Conjunct]:
-    """Yield that nothing occurs unless it is sent, and that something sent occurs."""
-    sent_formulas = [f.either(*(sending.said for sending in sendings)) for _, sendings in receipts]
+    """Yield that a message occurs only if it is sent, and that a sent message occurs."""
+    sent_formulas = [
+        f.either(*(sending.is_sent for sending in sendings)) for _, sendings in receipts
+    ]
     for (receipt, sendings), is_sent in (
         () if is_open else zip(receipts, sent_formulas, strict=True)
     ):
         senders = " or ".join(dict.fromkeys(f"'{sending.member.name}'" for sending in sendings))
-        text = f"'{receipt.what}' occurs at '{member.name}' only when {senders} sends it."
+        text = f"'{receipt.message}' occurs at '{member.name}' only when {senders} sends it."
         yield Conjunct(f.implies(receipt.occurs, is_sent), Class.SAFETY, receipt.origin, text)
     for group, text in _group_receipts(member, receipts, sent_formulas):
         occurrences = [f.both(receipt.occurs, is_sent) for receipt, is_sent in group]
@@ -137,11 +139,11 @@ def _group_receipts(
     ]
     values = [pair for pair in pairs if not isinstance(pair[0].occurs, f.Var)]
     if values:
-        names = ", ".join(f"'{receipt.what}'" for receipt, _ in values)
+        names = ", ".join(f"'{receipt.message}'" for receipt, _ in values)
         yield values, f"What is sent to '{member.name}' of {names} occurs, one in a step."
     for pair in pairs:
         if pair not in values:
-            yield [pair], f"'{pair[0].what}' occurs at '{member.name}' when it is sent."
+            yield [pair], f"'{pair[0].message}' occurs at '{member.name}' when it is sent."
 
 
 # -- what members send and take ------------------------------------------------------------------
@@ -161,10 +163,10 @@ def _iter_receipts(graph: Graph, member: Member, wires: tuple[Wire, ...]) -> Ite
             if literal != NO_EVENT:
                 yield Receipt(member, literal, f.eq(value, Const(literal)), event.origin)
     for name, variable in inputs.items():
-        prefix, _, what = name.partition("_")
-        if prefix in ("receive", "call") and what and name not in feature_variables:
+        prefix, _, message = name.partition("_")
+        if prefix in ("receive", "call") and message and name not in feature_variables:
             occurs = f.var(name_in_composite(member, name, wires))
-            yield Receipt(member, what, occurs, variable.origin)
+            yield Receipt(member, message, occurs, variable.origin)
 
 
 def _iter_sendings(
@@ -172,18 +174,18 @@ def _iter_sendings(
 ) -> Iterator[Sending]:
     for sender in members:
         names = dict(_iter_outputs(block.graph, sender))
-        for what in _addressed_names(block, sender, receipt):
-            if what in names:
-                yield Sending(sender, f.var(name_in_composite(sender, names[what], wires)))
+        for output in _addressed_names(block, sender, receipt):
+            if output in names:
+                yield Sending(sender, f.var(name_in_composite(sender, names[output], wires)))
 
 
 def _addressed_names(block: Block, sender: Member, receipt: Receipt) -> Iterator[str]:
     """Yield the names of outputs with which a sender can address the receiver's event."""
     receiver = receipt.member
     if sender is not receiver and _are_joined(block, sender, receiver):
-        yield receipt.what
+        yield receipt.message
     if sender.path == ITSELF and receiver.path != ITSELF:
-        yield identifier(join_path(receiver.path, receipt.what))
+        yield identifier(join_path(receiver.path, receipt.message))
 
 
 def _are_joined(block: Block, left: Member, right: Member) -> bool:

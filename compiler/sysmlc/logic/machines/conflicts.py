@@ -283,7 +283,9 @@ def _can_leave(machine: Machine, transition: Transition, state: str) -> bool:
     """Return whether the transition can leave *state*."""
     if not state or transition.kind == "internal":
         return False
-    regions = [machine.find_main_region(one) for one in collect_segments(machine, transition)]
+    regions = [
+        machine.find_main_region(segment) for segment in collect_segments(machine, transition)
+    ]
     owners = [machine.regions[region].state for region in regions if region]
     return any(
         owner != state and not (owner and machine.contains(state, owner)) for owner in owners

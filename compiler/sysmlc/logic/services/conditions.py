@@ -51,7 +51,9 @@ class Service(Struct, frozen=True):
 
     def feature(self, variable: str) -> Feature:
         """Return the parameter or feature behind a variable."""
-        return next(one for one in self.context.features.values() if one.variable == variable)
+        return next(
+            feature for feature in self.context.features.values() if feature.variable == variable
+        )
 
 
 def iter_services(graph: Graph, assumed: tuple[int, int], sink: Sink) -> Iterator[Service]:

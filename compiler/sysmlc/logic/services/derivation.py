@@ -44,7 +44,9 @@ class _ServiceCall(Struct, frozen=True):
 
     def conditions(self, is_before: bool) -> Iterator[Condition]:
         """Yield the preconditions, or the postconditions."""
-        return (one for one in self.service.conditions if one.is_before is is_before)
+        return (
+            condition for condition in self.service.conditions if condition.is_before is is_before
+        )
 
 
 def derive_contracts(
