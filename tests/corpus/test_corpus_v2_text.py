@@ -10,7 +10,7 @@ import gc
 import pytest
 from plants import baygate
 
-from sysmlc.backends.sysml.document import document
+from sysmlc.backends.sysml.document import print_document
 from sysmlc.diagnostics import Coverage, Sink
 from sysmlc.driver import Request, compile_model, select_backends
 from sysmlc.frontends.sysml import FRONTEND
@@ -40,7 +40,7 @@ def units(corpus):
 
 
 def text_of(graph):
-    return document(graph, Sink())[0]
+    return print_document(graph, Sink())[0]
 
 
 def read(text):

@@ -11,8 +11,8 @@ import pytest
 from test_corpus_v2_text import read, units
 from told_losses import untold
 
-from sysmlc.backends.sysml.document import written
-from sysmlc.backends.sysml.printing import printed
+from sysmlc.backends.sysml.document import write_document
+from sysmlc.backends.sysml.printing import print_lines
 from sysmlc.diagnostics import Coverage, Severity, Sink
 from sysmlc.driver import Request, compile_model, select_backends
 from sysmlc.frontends.sysml import FRONTEND
@@ -81,9 +81,9 @@ def test_every_difference_is_told_as_a_loss_of_its_element(corpus):
     found = {}
     for name, files in units(corpus).items():
         graph = made(files).graph
-        book, lines = written(graph)
-        changes = compare(graph, read(printed(lines)), ("id",))
-        found[name] = len(untold(graph, book.losses.told, changes))
+        writer, lines = write_document(graph)
+        changes = compare(graph, read(print_lines(lines)), ("id",))
+        found[name] = len(untold(graph, writer.losses.by_element, changes))
     assert {name: count for name, count in found.items() if count > NOT_TOLD.get(name, 0)} == {}
     assert sum(found.values()) == sum(NOT_TOLD.values())
 
@@ -102,8 +102,8 @@ def test_our_own_text_keeps_the_rules_of_sysml_v2(corpus):
     found = {}
     for name, files in units(corpus).items():
         model = made(files)
-        _, lines = written(model.graph)
-        codes = rules_of(printed(lines)) - {one.rule.code for one in model.diagnostics}
+        _, lines = write_document(model.graph)
+        codes = rules_of(print_lines(lines)) - {one.rule.code for one in model.diagnostics}
         if codes:
             found[name] = codes
     assert found == {name: codes for name, (codes, _) in KNOWN_RULES.items()}

@@ -1,11 +1,11 @@
-"""What the standard library gives every member of a kind hides what has such a name further out."""
+"""Members inherit names from the standard library, which hide the same names further out."""
 
 import pytest
 from judging import judged
+from library_names import format_member_names
 from writing import lines_of, refined
 
-from sysmlc.backends.sysml import generate_inherited
-from sysmlc.backends.sysml.inherited import BASES, FILE, inherited
+from sysmlc.backends.sysml.library import BASES, MEMBER_NAMES_FILE, list_inherited_names
 from sysmlc.support import resources
 
 MODEL = """\
@@ -22,13 +22,14 @@ Package p "Plant"
 
 
 def test_the_names_are_those_of_the_standard_library():
-    assert resources.read_text("metamodels", FILE) == generate_inherited.text()
+    assert resources.read_text("metamodels", MEMBER_NAMES_FILE) == format_member_names()
 
 
 @pytest.mark.parametrize("keyword", sorted(BASES))
 def test_definitions_have_the_names_of_their_usages(keyword):
-    assert "self" in inherited("attribute")
-    assert inherited(keyword) == inherited(f"{keyword} def") != frozenset()
+    assert "self" in list_inherited_names("attribute")
+    names = list_inherited_names(keyword)
+    assert names == list_inherited_names(f"{keyword} def") != frozenset()
 
 
 @pytest.mark.parametrize(

@@ -13,8 +13,8 @@ from writing import lines_of, refined, text_of, written
 
 from examples.compiling import PLANT, compile_example
 from long_runs import quick_first
-from sysmlc.backends.sysml.library import IMPORTED, IMPORTS, UNITS, unit_name
-from sysmlc.backends.sysml.words import RESERVED, quoted
+from sysmlc.backends.sysml.library import IMPORTED, IMPORTS, UNITS, find_unit_name
+from sysmlc.backends.sysml.printing import RESERVED, quote_name
 from sysmlc.ir import Element, Kind
 from sysmlc.support import resources
 
@@ -158,9 +158,9 @@ def test_quantities_are_those_of_isq_with_units_of_si():
 
 def test_every_unit_is_one_of_the_library_or_of_ours():
     members = [
-        f"attribute a{number} : ISQ::{value} = 1 [{'::'.join(map(quoted, name.split('::')))}];"
+        f"attribute a{number} : ISQ::{value} = 1 [{'::'.join(map(quote_name, name.split('::')))}];"
         for number, (symbol, (value, _)) in enumerate(UNITS.items())
-        if (name := unit_name(Element("u", Kind.UNIT, attrs={"symbol": symbol})))
+        if (name := find_unit_name(Element("u", Kind.UNIT, attrs={"symbol": symbol})))
     ]
     assert len(members) == len(UNITS) > 50
     assert load(with_library(f"package P {{ {' '.join(members)} }}")).complaints == []
@@ -463,7 +463,7 @@ Package p "Plant"
 
 @given(st.text(min_size=1))
 def test_any_name_is_written_so_that_it_is_read_back(name):
-    made = quoted(name)
+    made = quote_name(name)
     assert parts(made)[0] == "".join(map(visible, name))
     if not made.startswith("'"):
         assert made.isascii()
@@ -480,7 +480,7 @@ def visible(char):
     "name", quick_first(["it's", "part", "in", "a b", "1st", "\\", "a\nb", "Tür", "_x"], 2)
 )
 def test_the_toolkit_reads_our_names(name):
-    loaded = load({"m.sysml": f"package {quoted(name)} {{ part {quoted(name)}; }}"})
+    loaded = load({"m.sysml": f"package {quote_name(name)} {{ part {quote_name(name)}; }}"})
     assert (name, name) in loaded.elements
 
 

@@ -1,7 +1,7 @@
 """Writes graphs as SysML v2 text, for the tests of the back end ``sysml``."""
 
 from sysmlc.backends.sysml.backend import LIBRARY
-from sysmlc.backends.sysml.document import document
+from sysmlc.backends.sysml.document import print_document
 from sysmlc.diagnostics import Coverage, Sink
 from sysmlc.frontends.xmi import FRONTEND
 from sysmlc.ir import Graph, parse_text
@@ -30,7 +30,7 @@ def refined(text):
 def written(graph):
     """The files, by name, and what they do not say: codes and messages."""
     sink = Sink()
-    text, uses_library = document(graph, sink)
+    text, uses_library = print_document(graph, sink)
     files = {"model.sysml": text}
     if uses_library:
         files[LIBRARY] = resources.read_text("metamodels", LIBRARY)

@@ -4,13 +4,13 @@ import pytest
 from reading_v2 import Reading
 from test_v2_roundtrip import PASSES, differences
 
-from sysmlc.backends.sysml.document import document
+from sysmlc.backends.sysml.document import print_document
 from sysmlc.diagnostics import Sink
 
 
 def written(text):
     """The lines of the text that the back end writes of a text, without indentation."""
-    made, _ = document(Reading(text, passes=PASSES).graph, Sink())
+    made, _ = print_document(Reading(text, passes=PASSES).graph, Sink())
     return [line.strip() for line in made.splitlines() if line.strip()]
 
 
@@ -74,7 +74,7 @@ def test_a_loop_over_what_no_expression_says_keeps_its_words():
     reading = Reading(LOOP, passes=PASSES)
     (region,) = [one for one in reading.graph if one.subkind == "expansion"]
     reading.graph.set(region, collection="the pallets of the belt")
-    made, _ = document(reading.graph, Sink())
+    made, _ = print_document(reading.graph, Sink())
     assert "for p in" not in made
     assert '"collection=the pallets of the belt"' in made
     assert differences(reading.graph) == []
@@ -124,6 +124,6 @@ def test_what_a_library_of_ours_has_is_referred_to_and_not_written():
 
 @pytest.mark.parametrize("text", [MEMBERS, LOOP, JOINED, SHIPPED])
 def test_no_error_is_told_of_what_is_written(text):
-    made, _ = document(Reading(text, passes=PASSES).graph, Sink())
+    made, _ = print_document(Reading(text, passes=PASSES).graph, Sink())
     again = Reading(made, passes=PASSES)
     assert [one.message for one in again.sink if one.is_error] == []

@@ -7,7 +7,7 @@ import pytest
 from reading_v2 import Reading
 
 from examples.compiling import ROOT
-from sysmlc.backends.sysml.document import document
+from sysmlc.backends.sysml.document import print_document
 from sysmlc.diagnostics import Sink
 from sysmlc.ir.compare import compare
 from sysmlc.logic.contract import Contract
@@ -86,10 +86,10 @@ def contracts(reading):
 def comes_back(text):
     """The contracts, once graph, text and contracts are found to be the same again."""
     once = Reading(text, passes=PASSES)
-    made, _ = document(once.graph, Sink())
+    made, _ = print_document(once.graph, Sink())
     again = Reading(made, passes=PASSES)
     assert [str(one) for one in compare(once.graph, again.graph, ("id",))] == []
-    assert document(again.graph, Sink())[0] == made
+    assert print_document(again.graph, Sink())[0] == made
     assert contracts(once) == contracts(again)
     assert [one.message for one in again.sink if one.is_error] == []
     return contracts(once)

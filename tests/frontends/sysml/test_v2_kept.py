@@ -2,7 +2,7 @@
 
 from test_v2_roundtrip import read_back
 
-from sysmlc.backends.sysml.document import document
+from sysmlc.backends.sysml.document import print_document
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Edge, Kind
 from sysmlc.ir.compare import compare
@@ -17,7 +17,7 @@ def graph_of(text):
 
 
 def lines_of(graph):
-    return [line.strip() for line in document(graph, Sink())[0].splitlines()]
+    return [line.strip() for line in print_document(graph, Sink())[0].splitlines()]
 
 
 def again(text):

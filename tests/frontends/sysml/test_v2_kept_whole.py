@@ -3,7 +3,7 @@
 import pytest
 from test_v2_kept import again, graph_of
 
-from sysmlc.backends.sysml.document import written
+from sysmlc.backends.sysml.document import write_document
 
 METHOD = """
 Package p "Plant"
@@ -119,8 +119,8 @@ def test_the_flow_that_a_decision_is_made_over_is_kept_by_its_name():
 
 def told(text):
     """The ids of elements of which a loss is told, with what is said of them."""
-    book, _ = written(graph_of(text))
-    found = book.losses.told.items()
+    writer, _ = write_document(graph_of(text))
+    found = writer.losses.by_element.items()
     return {id_: [facts.get("said", code) for code, facts in losses] for id_, losses in found}
 
 

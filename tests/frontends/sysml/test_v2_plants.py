@@ -6,7 +6,7 @@ import pytest
 
 from examples.compiling import compile_example, compile_text, outputs
 from long_runs import quick_first
-from sysmlc.backends.sysml.document import document
+from sysmlc.backends.sysml.document import print_document
 from sysmlc.diagnostics import Coverage, Severity, Sink
 from sysmlc.frontends.caex import FRONTEND as CAEX
 from sysmlc.frontends.sysml import FRONTEND
@@ -58,7 +58,7 @@ def plant(data, name="plant.aml"):
 
 
 def read_back(graph, sink=None):
-    text, _ = document(graph, Sink())
+    text, _ = print_document(graph, Sink())
     again, sink = Graph(), Sink() if sink is None else sink
     FRONTEND.read([Source("model.sysml", text.encode())], again, sink, Coverage())
     pipeline.build_pipeline(("resolve", "inherit", "classify", "ports")).run(again, sink)
@@ -111,7 +111,7 @@ def test_a_unit_that_si_does_not_have_comes_back_with_its_quantity():
 def test_a_name_that_the_text_cannot_have_comes_back():
     """``Quantities`` is a package of the standard library: the text has another name for ours."""
     data = PLANT.replace("Units", "Quantities").replace("{unit}", "m").encode()
-    text, _ = document(plant(data), Sink())
+    text, _ = print_document(plant(data), Sink())
     assert "package Quantities_2 {" in text
     assert differences(plant(data)) == []
 
@@ -142,7 +142,7 @@ Package p "Plant"
 
 def test_constraints_of_interfaces_and_of_attribute_types_are_well_formed_in_the_text():
     """A port has no parts, and a type is no value: these were errors of the text."""
-    text, _ = document(parse_text(WITH_CONSTRAINTS), Sink())
+    text, _ = print_document(parse_text(WITH_CONSTRAINTS), Sink())
     lines = [line.strip() for line in text.splitlines()]
     assert lines[lines.index("ref assert constraint Allowed {") + 2] == "way > 1"
     assert "constraint {" in lines

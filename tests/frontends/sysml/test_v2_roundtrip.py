@@ -10,8 +10,8 @@ import pytest
 from dialects.random_models import random_model
 from examples.compiling import EXAMPLES, PLANT, compile_example
 from long_runs import quick_first
-from sysmlc.backends.sysml.document import document
-from sysmlc.backends.sysml.stereotypes import is_standard
+from sysmlc.backends.sysml.document import print_document
+from sysmlc.backends.sysml.profiles import is_standard
 from sysmlc.diagnostics import Coverage, Sink
 from sysmlc.frontends.sysml import FRONTEND
 from sysmlc.frontends.xmi import FRONTEND as XMI
@@ -81,7 +81,7 @@ def spelt(text):
 
 def read_back(graph):
     """The graph of the text of a graph, and what was found in the text."""
-    text, _ = document(graph, Sink())
+    text, _ = print_document(graph, Sink())
     again, sink = Graph(), Sink()
     FRONTEND.read([Source("model.sysml", text.encode())], again, sink, Coverage())
     pipeline.build_pipeline(PASSES).run(again, sink, verify_each=True)

@@ -1,147 +1,226 @@
-"""Actions and control nodes of an activity, each with the successions that leave it."""
+"""Actions and control nodes of an activity, each followed by the successions that leave it."""
 
-from sysmlc.backends.sysml import annotations
-from sysmlc.backends.sysml.behaviours import sequence
-from sysmlc.backends.sysml.book import Book
-from sysmlc.backends.sysml.calls import call_target
-from sysmlc.backends.sysml.declarations import visibility
-from sysmlc.backends.sysml.effects import statements
-from sysmlc.backends.sysml.entry import Entry
-from sysmlc.backends.sysml.events import trigger
-from sysmlc.backends.sysml.loops import over
-from sysmlc.backends.sysml.printing import Line
-from sysmlc.backends.sysml.references import is_around
-from sysmlc.backends.sysml.structure import contents
-from sysmlc.backends.sysml.successions import first, leaving
-from sysmlc.backends.sysml.texts import opaque_lines
-from sysmlc.backends.sysml.words import quoted
+from sysmlc.backends.sysml.activity_flows import write_initial_successions, write_successions
+from sysmlc.backends.sysml.annotations import make_annotation
+from sysmlc.backends.sysml.behaviours import chain_statements, format_statements
+from sysmlc.backends.sysml.comments import write_opaque_bodies
+from sysmlc.backends.sysml.conditions import format_trigger
+from sysmlc.backends.sysml.declarations import list_visibility
+from sysmlc.backends.sysml.definitions import write_contents
+from sysmlc.backends.sysml.expressions import format_expression
+from sysmlc.backends.sysml.plan import Member
+from sysmlc.backends.sysml.printing import Line, quote_name
+from sysmlc.backends.sysml.references import format_chain, is_accessible, look_up
+from sysmlc.backends.sysml.writer import Writer
 from sysmlc.ir import Edge, Element, Kind
+from sysmlc.ir.query import features, generals, type_of
 
-_PLAIN = frozenset(
+_EXPRESSED_SUBKINDS = frozenset(
     {"", "opaque", "call-behavior", "call-operation", "send", "accept", "value", "read"}
 )
-"""Subkinds that words of SysML v2 say; the others are told by metadata."""
+"""Subkinds that keywords of SysML v2 express; metadata states the others."""
 
 
-def action(book: Book, entry: Entry) -> list[Line]:
-    """An action of an activity, and what follows it."""
-    element = entry.element
-    assert element is not None
-    write = _WRITERS.get(element.subkind, _other)
-    line = write(book, entry, element)
-    return [line, *leaving(book, entry)]
+def write_action(writer: Writer, member: Member) -> list[Line]:
+    """Write an action of an activity, and the successions that leave it."""
+    element = member.require_element()
+    write = _BY_SUBKIND.get(element.subkind, _write_other)
+    line = write(writer, member, element)
+    return [line, *write_successions(writer, member)]
 
 
-def _start(book: Book, entry: Entry, element: Element) -> str:
-    return " ".join([*visibility(book, element), "action", quoted(entry.name)])
+def write_control_node(writer: Writer, member: Member) -> list[Line]:
+    """Write a decision, merge, fork or join; a final node that ends all flows terminates."""
+    element = member.require_element()
+    keyword = member.shape.keyword
+    if keyword == "start":
+        return write_initial_successions(writer, member, element)
+    body = write_contents(writer, member)
+    name = quote_name(member.name)
+    if keyword == "action":
+        return [Line(f"action {name} terminate", body)]
+    return [Line(f"{keyword} {name}", body), *write_successions(writer, member)]
 
 
-def _contents(book: Book, entry: Entry, element: Element) -> list[Line]:
-    notes = (
-        []
-        if element.subkind in _PLAIN
-        else [annotations.ours(book, entry, "Kind", {"name": element.subkind})]
-    )
-    return notes + contents(book, entry)
+def write_control_flow(_writer: Writer, _member: Member) -> list[Line]:
+    """Write nothing: the node that a control flow leaves writes it as a succession."""
+    return []
 
 
-def _call(book: Book, entry: Entry, element: Element) -> Line:
-    """A call: an action of the behaviour's kind, or the performance of another one."""
-    body = _contents(book, entry, element)
-    target = book.graph.target(element, Edge.CALLS)
+def _format_head(writer: Writer, member: Member, element: Element) -> str:
+    return " ".join([*list_visibility(writer, element), "action", quote_name(member.name)])
+
+
+def _write_body(writer: Writer, member: Member, element: Element) -> list[Line]:
+    annotations = []
+    if element.subkind not in _EXPRESSED_SUBKINDS:
+        annotations.append(make_annotation(writer, member, "Kind", {"name": element.subkind}))
+    return annotations + write_contents(writer, member)
+
+
+# -- calls ---------------------------------------------------------------------------------------
+
+
+def _write_call(writer: Writer, member: Member, element: Element) -> Line:
+    """Write a call: an action typed by a definition, or the performance of another action."""
+    body = _write_body(writer, member, element)
+    target = writer.graph.target(element, Edge.CALLS)
     if target is None:
-        return Line(_start(book, entry, element), body)
-    other = book.plan.entry(target)
-    name = call_target(book, entry, element, target)
-    if name is None or other is None:
-        return Line(_start(book, entry, element), body)
-    if other.shape.is_definition:
-        return Line(f"{_start(book, entry, element)} : {name}", body)
-    words = " ".join([*visibility(book, element), "perform", "action", quoted(entry.name)])
+        return Line(_format_head(writer, member, element), body)
+    called = writer.plan.find(target)
+    name = _refer_to_called(writer, member, element, target)
+    if name is None or called is None:
+        return Line(_format_head(writer, member, element), body)
+    if called.shape.is_definition:
+        return Line(f"{_format_head(writer, member, element)} : {name}", body)
+    prefixes = list_visibility(writer, element)
+    words = " ".join([*prefixes, "perform", "action", quote_name(member.name)])
     return Line(f"{words} ::> {name}", body)
 
 
-def _opaque(book: Book, entry: Entry, element: Element) -> Line:
-    body = _contents(book, entry, element)
-    found = statements(book, entry, element)
-    if found is None:
-        return Line(_start(book, entry, element), body + opaque_lines(book, entry, element))
-    if len(found) == 1 and not found[0].startswith("perform"):
-        return Line(f"{_start(book, entry, element)} {found[0]}", body)
-    return Line(_start(book, entry, element), body + sequence(found))
+def _refer_to_called(
+    writer: Writer, member: Member, action: Element, target: Element
+) -> str | None:
+    """Return the name of a called definition, or the feature chain to a called action."""
+    called = writer.plan.find(target)
+    if called is None:
+        writer.record_unreachable(action, "calls")
+        return None
+    is_usage = not called.shape.is_definition
+    if is_usage and look_up(writer.plan, member.parent, called.name) is not called:
+        chain = _find_chain(writer, member, target)
+        if chain is not None:
+            return chain
+    return writer.refer_to(member.parent, action, Edge.CALLS, target)
 
 
-def _send(book: Book, entry: Entry, element: Element) -> Line:
-    body = _contents(book, entry, element)
-    name = None
-    for signal in book.graph.targets(element, Edge.CALLS):
-        name = book.name(entry.parent, element, Edge.CALLS, signal)
-    port = book.graph.get(str(element.attrs.get("on_port", element.attrs.get("port", ""))))
-    end = "" if port is None else book.name(entry.parent, element, Edge.ROLE, port)
-    sent = f" send new {name}()" if name is not None else " send"
-    return Line(f"{_start(book, entry, element)}{sent}{f' via {end}' if end else ''}", body)
+def _find_chain(writer: Writer, member: Member, operation: Element) -> str | None:
+    """Return the chain through the only property of the context whose type has the operation."""
+    owner = writer.graph.owner(operation)
+    for namespace in member.namespaces:
+        classifier = namespace.element
+        if classifier is None or classifier.kind not in (Kind.CLASS, Kind.COMPONENT):
+            continue
+        properties = [
+            feature
+            for feature in features(writer.graph, classifier)
+            if feature.kind is Kind.PROPERTY and _has_type(writer, feature, owner)
+        ]
+        if len(properties) == 1:
+            return format_chain(writer.plan, member.parent, [properties[0], operation])
+    return None
 
 
-def _accept(book: Book, entry: Entry, element: Element) -> Line:
-    body = _contents(book, entry, element)
-    found = book.graph.targets(element, Edge.TRIGGER)
-    if not found:
-        found = [one for one in book.graph.owned(element) if one.kind is Kind.TRIGGER]
-    book.said.update(one.id for one in found)
-    texts = [trigger(book, entry, one) for one in found]
-    if len(texts) > 1:
-        book.approximated(element, "an accept action with several triggers", "its first one")
-    return Line(f"{_start(book, entry, element)}{f' {texts[0]}' if texts else ''}", body)
+def _has_type(writer: Writer, feature: Element, owner: Element | None) -> bool:
+    type_ = type_of(writer.graph, feature)
+    return type_ is not None and (type_ is owner or owner in generals(writer.graph, type_))
 
 
-def _other(book: Book, entry: Entry, element: Element) -> Line:
-    """Any other action: its kind as metadata, what it is about as a reference."""
-    body = _contents(book, entry, element)
-    for target in book.graph.targets(element, Edge.CALLS):
-        other = book.plan.entry(target)
-        name = book.name(entry, element, Edge.CALLS, target)
-        if name is not None and other is not None and is_around(book.plan, entry, other):
-            mark = ":" if other.shape.is_definition else ":>"
-            body.append(Line(f"ref {mark} {name}"))
-    return Line(_start(book, entry, element), body + opaque_lines(book, entry, element))
+# -- other actions -------------------------------------------------------------------------------
 
 
-def structured(book: Book, entry: Entry) -> list[Line]:
-    """A structured node: an action that holds its nodes, or a loop over a collection."""
-    element = entry.element
-    assert element is not None
-    head, loop = _start(book, entry, element), over(book, entry, element)
-    body = contents(book, entry)
-    if loop:
-        kind = f"@{book.ours(entry, 'Kind')}"
-        head, body = f"{head} {loop}", [one for one in body if one.head != kind]
-    return [Line(head, body), *leaving(book, entry)]
+def _write_opaque(writer: Writer, member: Member, element: Element) -> Line:
+    body = _write_body(writer, member, element)
+    statements = format_statements(writer, member, element)
+    head = _format_head(writer, member, element)
+    if statements is None:
+        return Line(head, body + write_opaque_bodies(writer, element))
+    if len(statements) == 1 and not statements[0].startswith("perform"):
+        return Line(f"{head} {statements[0]}", body)
+    return Line(head, body + chain_statements(statements))
 
 
-def control(book: Book, entry: Entry) -> list[Line]:
-    """A decision, merge, fork or join; a final node that ends everything terminates."""
-    element = entry.element
-    assert element is not None
-    if entry.shape.keyword == "start":
-        return first(book, entry, element)
-    body = contents(book, entry)
-    if entry.shape.keyword == "action":
-        return [Line(f"action {quoted(entry.name)} terminate", body)]
-    return [Line(f"{entry.shape.keyword} {quoted(entry.name)}", body), *leaving(book, entry)]
+def _write_send(writer: Writer, member: Member, element: Element) -> Line:
+    body = _write_body(writer, member, element)
+    signal_name = None
+    for signal in writer.graph.targets(element, Edge.CALLS):
+        signal_name = writer.refer_to(member.parent, element, Edge.CALLS, signal)
+    port = writer.graph.get(str(element.attrs.get("on_port", element.attrs.get("port", ""))))
+    port_name = ""
+    if port is not None:
+        port_name = writer.refer_to(member.parent, element, Edge.ROLE, port) or ""
+    payload = f" send new {signal_name}()" if signal_name is not None else " send"
+    via = f" via {port_name}" if port_name else ""
+    return Line(f"{_format_head(writer, member, element)}{payload}{via}", body)
 
 
-_WRITERS = {
-    "call-behavior": _call,
-    "call-operation": _call,
-    "opaque": _opaque,
-    "": _opaque,
-    "send": _send,
-    "broadcast": _send,
-    "accept": _accept,
-    "accept-call": _accept,
+def _write_accept(writer: Writer, member: Member, element: Element) -> Line:
+    body = _write_body(writer, member, element)
+    triggers = writer.graph.targets(element, Edge.TRIGGER)
+    if not triggers:
+        triggers = [t for t in writer.graph.owned(element) if t.kind is Kind.TRIGGER]
+    writer.expressed.update(trigger.id for trigger in triggers)
+    accepts = [format_trigger(writer, member, trigger) for trigger in triggers]
+    if len(accepts) > 1:
+        said = "an accept action with several triggers"
+        writer.record_approximation(element, said, "its first one")
+    accept = f" {accepts[0]}" if accepts else ""
+    return Line(f"{_format_head(writer, member, element)}{accept}", body)
+
+
+def _write_other(writer: Writer, member: Member, element: Element) -> Line:
+    """Write any other action: metadata states its kind, a reference the feature that it uses."""
+    body = _write_body(writer, member, element)
+    for target in writer.graph.targets(element, Edge.CALLS):
+        target_member = writer.plan.find(target)
+        name = writer.refer_to(member, element, Edge.CALLS, target)
+        if name is None or target_member is None:
+            continue
+        if is_accessible(writer.plan, member, target_member):
+            operator = ":" if target_member.shape.is_definition else ":>"
+            body.append(Line(f"ref {operator} {name}"))
+    head = _format_head(writer, member, element)
+    return Line(head, body + write_opaque_bodies(writer, element))
+
+
+_BY_SUBKIND = {
+    "call-behavior": _write_call,
+    "call-operation": _write_call,
+    "opaque": _write_opaque,
+    "": _write_opaque,
+    "send": _write_send,
+    "broadcast": _write_send,
+    "accept": _write_accept,
+    "accept-call": _write_accept,
 }
 
 
-def nothing(_book: Book, _entry: Entry) -> list[Line]:
-    """What is written with something else: control flows, with the node that they leave."""
-    return []
+# -- structured nodes ----------------------------------------------------------------------------
+
+
+def write_structured_node(writer: Writer, member: Member) -> list[Line]:
+    """Write a structured node: an action with its nodes inside, or a loop over a collection."""
+    element = member.require_element()
+    head = _format_head(writer, member, element)
+    loop = _format_loop(writer, member, element)
+    body = write_contents(writer, member)
+    if loop:
+        # The keyword ``for`` states the kind of the node.
+        kind = f"@{writer.refer_to_sysmlc(member, 'Kind')}"
+        head, body = f"{head} {loop}", [line for line in body if line.head != kind]
+    return [Line(head, body), *write_successions(writer, member)]
+
+
+def _format_loop(writer: Writer, member: Member, element: Element) -> str:
+    """Return ``for p in belt.pallets`` for an iterative expansion region.
+
+    Empty if the collection is not an expression over the model. The loop declares its variable, so
+    that the variable has no line of its own.
+    """
+    is_loop = element.subkind == "expansion" and element.attrs.get("mode") == "iterative"
+    collection = element.attrs.get("collection")
+    variable = next((child for child in member.members if _is_variable(child)), None)
+    if not is_loop or not isinstance(collection, str) or variable is None:
+        return ""
+    expression = format_expression(writer, member.parent, collection)
+    if expression is None:
+        return ""
+    writer.declared_attributes.add(id(variable))
+    writer.collection_loops.add(element.id)
+    if variable.element is not None:
+        writer.expressed.add(variable.element.id)
+    return f"for {quote_name(variable.name)} in {expression}"
+
+
+def _is_variable(member: Member) -> bool:
+    return member.element is not None and member.element.subkind == "variable"

@@ -1,21 +1,27 @@
-"""Metadata of an element: stereotypes with their tags, ids of AutomationML, what UML alone says."""
+"""Metadata of an element: stereotypes and their tags, ids of AutomationML, preserved facts."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 
-from sysmlc.backends.sysml.book import Book
-from sysmlc.backends.sysml.entry import Entry
-from sysmlc.backends.sysml.kept import facts
-from sysmlc.backends.sysml.printing import Line
-from sysmlc.backends.sysml.references import reference, visible
+from sysmlc.backends.sysml.plan import Member
+from sysmlc.backends.sysml.preserved_facts import list_unexpressed_facts
+from sysmlc.backends.sysml.printing import (
+    Line,
+    format_comment,
+    quote_name,
+    quote_string,
+    replace_control_characters,
+)
+from sysmlc.backends.sysml.profiles import is_standard
+from sysmlc.backends.sysml.references import format_reference, visible_members
 from sysmlc.backends.sysml.rules import UNSAID_ATTRIBUTE
 from sysmlc.backends.sysml.shapes import is_part_port
-from sysmlc.backends.sysml.stereotypes import is_standard
-from sysmlc.backends.sysml.words import comment_lines, quoted, string, writable
+from sysmlc.backends.sysml.writer import Writer
 from sysmlc.ir import AttrValue, Edge, Element, Kind
 from sysmlc.ir.query import CLASSIFIERS
 
-_STRUCTURAL = frozenset({"part", "model", "caex", "internal-link", "alias", "variable"})
-_SUBKINDS = (
+_STRUCTURAL_SUBKINDS = frozenset({"part", "model", "caex", "internal-link", "alias", "variable"})
+"""Subkinds that follow from the place of an element, so that no metadata states them."""
+_WITH_SUBKIND = (
     Kind.CLASS,
     Kind.COMPONENT,
     Kind.PROPERTY,
@@ -27,8 +33,8 @@ _SUBKINDS = (
     Kind.STRUCTURED,
     Kind.CONSTRAINT,
 )
-"""Kinds whose subkind no keyword of SysML v2 says."""
-_KINDS = {
+"""Kinds whose subkind no keyword of SysML v2 expresses."""
+_KIND_NAMES = {
     Kind.INTERFACE: "interface",
     Kind.COMPONENT: "component",
     Kind.ACTOR: "actor",
@@ -37,12 +43,12 @@ _KINDS = {
     Kind.DATA_STORE: "data-store",
     Kind.INTERACTION: "interaction",
 }
-"""Kinds that a keyword of SysML v2 says only nearly."""
+"""Kinds that share their keyword with another kind."""
 _ITEMS = (Kind.CLASS, Kind.SIGNAL, Kind.ITEM, Kind.DATA_TYPE, Kind.COMPONENT)
-"""Kinds of what flows; the domain of flows and connectors follows from it."""
-_OF_CLASS = "#class"
-"""Ends the id of a class that only one InternalElement has; AutomationML gave it none."""
-_AML = {
+"""Kinds of items that flow; the domain of flows and connectors follows from them."""
+_ADDED_CLASS_SUFFIX = "#class"
+"""End of the id of a class that the front end adds for an InternalElement without a class."""
+_CAEX_ATTRIBUTES = {
     "data_type": "dataType",
     "unit": "unit",
     "category": "category",
@@ -54,190 +60,212 @@ _AML = {
     "associated_facet": "associatedFacet",
     "default_value": "defaultValue",
 }
-
-
-def of(book: Book, entry: Entry) -> list[Line]:
-    """All metadata of an element."""
-    element = entry.element
-    if element is None:
-        return []
-    return [
-        *_description(element),
-        *_named(book, entry, element),
-        *_kept(book, entry, element),
-        *_aml(book, entry, element),
-        *_interfaces(book, entry, element),
-        *_kind(book, entry, element),
-        *_partitions(book, entry, element),
-        *_outside(book, entry, element),
-        *_applications(book, entry, element),
-    ]
-
-
-def _description(element: Element) -> list[Line]:
-    """What AutomationML says of a feature in words; documents and libraries list it themselves."""
-    text = element.attrs.get("description")
-    return [Line("doc", text=comment_lines(str(text)))] if text else []
-
-
-def _named(book: Book, entry: Entry, element: Element) -> list[Line]:
-    """The name in the source, where the text has another one; none where the text needs one."""
-    if not entry.name or entry.name == writable(element.name):
-        return []
-    return [ours(book, entry, "Named", {"name": element.name})]
-
-
-def _kept(book: Book, entry: Entry, element: Element) -> list[Line]:
-    """Attributes that nothing else in the text says."""
-    found = facts(book, entry, element)
-    return [ours(book, entry, "Kept", {"attributes": found})] if found else []
-
-
-def ours(book: Book, entry: Entry, name: str, facts: Mapping[str, AttrValue]) -> Line:
-    """An annotation by a metadata definition of our library; absent values are left out."""
-    body = [
-        Line(f"{key} = {_value(value)}") for key, value in facts.items() if value not in (None, "")
-    ]
-    return Line(f"@{book.ours(entry, name)}", body, is_short=True)
-
-
-def _value(value: AttrValue) -> str:
-    if isinstance(value, tuple):
-        return f"({', '.join(_value(one) for one in value)})"
-    if isinstance(value, bool):
-        return "true" if value else "false"
-    return repr(value) if isinstance(value, int | float) else string(str(value))
-
-
-def _aml(book: Book, entry: Entry, element: Element) -> list[Line]:
-    facts: dict[str, AttrValue] = {}
-    if element.source in book.caex:
-        local = element.id.rpartition("#")[2]
-        is_made = "/" in local or element.id.endswith(_OF_CLASS)
-        is_own = not is_made and local not in ("", element.name)
-        facts["id"] = local if is_own else None
-    for key, name in _AML.items():
-        given = element.attrs.get(key)
-        if given is not None:
-            facts[name] = str(given) if key == "default_value" else _flat(given)
-    if facts and _is_told(element):
-        facts["kind"] = element.subkind
-    kept = {key: value for key, value in facts.items() if value not in (None, "", ())}
-    return [ours(book, entry, "AutomationML", kept)] if kept else []
-
-
-def _flat(value: AttrValue) -> AttrValue:
-    """Pairs as one text each: attributes of metadata hold no lists of lists."""
-    if isinstance(value, tuple):
-        return tuple("=".join(map(str, one)) if isinstance(one, tuple) else one for one in value)
-    return value
-
-
-def _kind(book: Book, entry: Entry, element: Element) -> list[Line]:
-    is_named = _is_told(element) and element.source not in book.caex
-    domain = element.attrs.get("domain") if element.kind in _ITEMS else None
-    name = element.subkind if is_named else _KINDS.get(element.kind)
-    name = name or _plain_port(book, element) or _still(book, entry, element)
-    facts = {"name": name, "domain": domain}
-    return [ours(book, entry, "Kind", facts)] if any(facts.values()) else []
-
-
-def _plain_port(book: Book, element: Element) -> str | None:
-    """A port of UML, where SysML has proxy ports; those of AutomationML all are."""
-    is_plain = element.kind is Kind.PORT and element.role == "port"
-    is_plain = is_plain and not is_part_port(book.graph, element)
-    return "port" if is_plain and element.source not in book.caex else None
-
-
-def _still(book: Book, entry: Entry, element: Element) -> str | None:
-    """A behaviour of a classifier that does nothing, which would be an operation."""
-    is_usage = element.kind is Kind.ACTIVITY and entry.shape.keyword == "action"
-    owner = book.graph.owner(element) if is_usage else None
-    if owner is None or owner.kind not in CLASSIFIERS or element.attrs.get("body"):
-        return None
-    is_run = element in book.graph.targets(owner, Edge.CLASSIFIER_BEHAVIOR)
-    has_steps = any(one.kind in _STEPS for one in book.graph.owned(element))
-    return None if is_run or has_steps else "activity"
-
-
+"""Feature of the metadata definition ``AutomationML`` by attribute."""
 _STEPS = frozenset({Kind.ACTION, Kind.STRUCTURED, Kind.CONTROL})
 
 
-def _partitions(book: Book, entry: Entry, element: Element) -> list[Line]:
-    """The partitions and regions that an action stands in, as their names show them."""
-    names, meant = [], []
-    for one in book.graph.targets(element, Edge.IN_PARTITION):
-        represented = book.graph.target(one, Edge.REPRESENTS)
-        name = one.name or ("" if represented is None else represented.name)
+def write_annotations(writer: Writer, member: Member) -> list[Line]:
+    """Return all metadata of the element of a member; none for a member without an element."""
+    element = member.element
+    if element is None:
+        return []
+    return [
+        *_iter_documentation(element),
+        *_iter_source_name(writer, member, element),
+        *_iter_preserved_facts(writer, member, element),
+        *_iter_caex_attributes(writer, member, element),
+        *_iter_interface_ids(writer, member, element),
+        *_iter_kind(writer, member, element),
+        *_iter_partitions(writer, member, element),
+        *_iter_href(writer, member, element),
+        *_iter_applications(writer, member, element),
+    ]
+
+
+def make_annotation(
+    writer: Writer, member: Member, name: str, facts: Mapping[str, AttrValue]
+) -> Line:
+    """Return metadata by a definition of the library ``SysMLC``; absent values are omitted."""
+    body = [
+        Line(f"{key} = {_format_value(value)}")
+        for key, value in facts.items()
+        if value not in (None, "")
+    ]
+    return Line(f"@{writer.refer_to_sysmlc(member, name)}", body, is_short=True)
+
+
+def _format_value(value: AttrValue) -> str:
+    if isinstance(value, tuple):
+        return f"({', '.join(_format_value(item) for item in value)})"
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    return repr(value) if isinstance(value, int | float) else quote_string(str(value))
+
+
+def _iter_documentation(element: Element) -> Iterator[Line]:
+    """Yield the description of an AutomationML feature as documentation."""
+    text = element.attrs.get("description")
+    if text:
+        yield Line("doc", text=format_comment(str(text)))
+
+
+def _iter_source_name(writer: Writer, member: Member, element: Element) -> Iterator[Line]:
+    """Yield the name in the source if the member has another one."""
+    if member.name and member.name != replace_control_characters(element.name):
+        yield make_annotation(writer, member, "Named", {"name": element.name})
+
+
+def _iter_preserved_facts(writer: Writer, member: Member, element: Element) -> Iterator[Line]:
+    facts = list_unexpressed_facts(writer, member, element)
+    if facts:
+        yield make_annotation(writer, member, "Kept", {"attributes": facts})
+
+
+# -- AutomationML --------------------------------------------------------------------------------
+
+
+def _iter_caex_attributes(writer: Writer, member: Member, element: Element) -> Iterator[Line]:
+    facts: dict[str, AttrValue] = {}
+    if element.source in writer.caex_files:
+        local_id = element.id.rpartition("#")[2]
+        is_added = "/" in local_id or element.id.endswith(_ADDED_CLASS_SUFFIX)
+        is_own = not is_added and local_id not in ("", element.name)
+        facts["id"] = local_id if is_own else None
+    for key, name in _CAEX_ATTRIBUTES.items():
+        value = element.attrs.get(key)
+        if value is not None:
+            facts[name] = str(value) if key == "default_value" else _flatten(value)
+    if facts and _needs_subkind(element):
+        facts["kind"] = element.subkind
+    present = {name: value for name, value in facts.items() if value not in (None, "", ())}
+    if present:
+        yield make_annotation(writer, member, "AutomationML", present)
+
+
+def _flatten(value: AttrValue) -> AttrValue:
+    """Return pairs as ``key=value``: features of metadata hold no lists of lists."""
+    if isinstance(value, tuple):
+        return tuple(
+            "=".join(map(str, item)) if isinstance(item, tuple) else item for item in value
+        )
+    return value
+
+
+def _iter_interface_ids(writer: Writer, member: Member, element: Element) -> Iterator[Line]:
+    """Yield redefined ports with the ids that an InternalElement gives to inherited interfaces."""
+    pairs = element.attrs.get("interface_ids")
+    for pair in pairs if isinstance(pairs, tuple) else ():
+        port_id, id = pair if isinstance(pair, tuple) else ("", "")
+        port = writer.graph.get(str(port_id))
+        name = None if port is None else writer.refer_to_redefined(member, port)
+        if name is not None:
+            annotation = make_annotation(writer, member, "AutomationML", {"id": id})
+            yield Line(f"port :>> {name}", [annotation])
+
+
+# -- kinds ---------------------------------------------------------------------------------------
+
+
+def _iter_kind(writer: Writer, member: Member, element: Element) -> Iterator[Line]:
+    """Yield the kind of an element, where the keyword does not determine it, and its domain."""
+    has_subkind = _needs_subkind(element) and element.source not in writer.caex_files
+    name = element.subkind if has_subkind else _KIND_NAMES.get(element.kind)
+    name = name or _name_plain_port(writer, element) or _name_idle_activity(writer, member, element)
+    domain = element.attrs.get("domain") if element.kind in _ITEMS else None
+    if name or domain:
+        yield make_annotation(writer, member, "Kind", {"name": name, "domain": domain})
+
+
+def _needs_subkind(element: Element) -> bool:
+    subkind = element.subkind
+    is_structural = subkind in _STRUCTURAL_SUBKINDS
+    return bool(subkind) and element.kind in _WITH_SUBKIND and not is_structural
+
+
+def _name_plain_port(writer: Writer, element: Element) -> str | None:
+    """Return ``port`` for a port of UML: a reader takes all others for proxy ports of SysML."""
+    if element.kind is not Kind.PORT or element.role != "port":
+        return None
+    if is_part_port(writer.graph, element) or element.source in writer.caex_files:
+        return None
+    return "port"
+
+
+def _name_idle_activity(writer: Writer, member: Member, element: Element) -> str | None:
+    """Return ``activity`` for an activity without actions: a reader takes it for an operation."""
+    is_usage = element.kind is Kind.ACTIVITY and member.shape.keyword == "action"
+    owner = writer.graph.owner(element) if is_usage else None
+    if owner is None or owner.kind not in CLASSIFIERS or element.attrs.get("body"):
+        return None
+    is_run = element in writer.graph.targets(owner, Edge.CLASSIFIER_BEHAVIOR)
+    has_steps = any(child.kind in _STEPS for child in writer.graph.owned(element))
+    return None if is_run or has_steps else "activity"
+
+
+def _iter_partitions(writer: Writer, member: Member, element: Element) -> Iterator[Line]:
+    """Yield the names of the partitions and regions that contain an action."""
+    names, represented_names = [], []
+    for partition in writer.graph.targets(element, Edge.IN_PARTITION):
+        represented = writer.graph.target(partition, Edge.REPRESENTS)
+        name = partition.name or ("" if represented is None else represented.name)
         if name:
             names.append(name)
-            meant.append("" if represented is None else book.graph.qualified_name(represented))
+            represented_names.append(
+                "" if represented is None else writer.graph.qualified_name(represented)
+            )
     facts: dict[str, AttrValue] = {"names": tuple(names)}
-    if any(meant):
-        facts["represents"] = tuple(meant)
-    return [ours(book, entry, "Partition", facts)] if names else []
+    if any(represented_names):
+        facts["represents"] = tuple(represented_names)
+    if names:
+        yield make_annotation(writer, member, "Partition", facts)
 
 
-def _is_told(element: Element) -> bool:
-    subkind = element.subkind
-    return bool(subkind) and element.kind in _SUBKINDS and subkind not in _STRUCTURAL
-
-
-def _interfaces(book: Book, entry: Entry, element: Element) -> list[Line]:
-    """Ids that the interfaces of an InternalElement have besides those of its class."""
-    given = element.attrs.get("interface_ids")
-    lines = []
-    for pair in given if isinstance(given, tuple) else ():
-        port, id = pair if isinstance(pair, tuple) else ("", "")
-        target = book.graph.get(str(port))
-        name = None if target is None else book.redefined(entry, target)
-        if name is not None:
-            note = ours(book, entry, "AutomationML", {"id": id})
-            lines.append(Line(f"port :>> {name}", [note]))
-    return lines
-
-
-def _outside(book: Book, entry: Entry, element: Element) -> list[Line]:
+def _iter_href(writer: Writer, member: Member, element: Element) -> Iterator[Line]:
     href = element.attrs.get("href")
     if element.attrs.get("external") and href:
-        return [ours(book, entry, "External", {"href": href})]
-    return []
+        yield make_annotation(writer, member, "External", {"href": href})
 
 
-def _applications(book: Book, entry: Entry, element: Element) -> list[Line]:
-    lines = []
-    for one in book.graph.sources(element, Edge.SUBJECT):
-        if one.kind is not Kind.APPLICATION or one.id in book.said:
+# -- stereotypes ---------------------------------------------------------------------------------
+
+
+def _iter_applications(writer: Writer, member: Member, element: Element) -> Iterator[Line]:
+    for application in writer.graph.sources(element, Edge.SUBJECT):
+        is_new = application.id not in writer.expressed
+        if application.kind is not Kind.APPLICATION or not is_new:
             continue
-        book.said.add(one.id)
-        if is_standard(one):
-            book.approximated(element, "an applied stereotype of SysML", "a keyword")
+        writer.expressed.add(application.id)
+        if is_standard(application):
+            said = "an applied stereotype of SysML"
+            writer.record_approximation(element, said, "a keyword")
             continue
-        definition = book.plan.applied.get(one.id)
+        definition = writer.plan.metadata_definitions.get(application.id)
         if definition is not None:
-            lines.append(_application(book, entry, one, definition))
-    return lines
+            yield _write_application(writer, member, application, definition)
 
 
-def _application(book: Book, entry: Entry, one: Element, definition: Entry) -> Line:
-    name = reference(book.plan, entry, definition)
+def _write_application(
+    writer: Writer, member: Member, application: Element, definition: Member
+) -> Line:
+    name = format_reference(writer.plan, member, definition)
     body = []
-    for key, value in one.attrs.items():
+    for key, value in application.attrs.items():
         tag = key.removeprefix("tag.")
         if not key.startswith("tag."):
             continue
-        if tag not in visible(book.plan, definition):
-            book.losses.note(UNSAID_ATTRIBUTE, one, attribute=key, kind=one.name or "Application")
+        if tag not in visible_members(writer.plan, definition):
+            facts = {"attribute": key, "kind": application.name or "Application"}
+            writer.losses.record(UNSAID_ATTRIBUTE, application, **facts)
             continue
-        body.append(Line(f"{quoted(tag)} = {_tagged(book, value)}"))
+        body.append(Line(f"{quote_name(tag)} = {_format_tag(writer, value)}"))
     return Line(f"@{name}", body, is_short=True)
 
 
-def _tagged(book: Book, value: AttrValue) -> str:
-    """A tagged value; elements are named by their qualified names."""
+def _format_tag(writer: Writer, value: AttrValue) -> str:
+    """Return a tagged value; an id of an element becomes its qualified name."""
     if isinstance(value, tuple):
-        return f"({', '.join(_tagged(book, one) for one in value)})"
+        return f"({', '.join(_format_tag(writer, item) for item in value)})"
     if isinstance(value, str):
-        found = book.graph.get(value)
-        return string(value if found is None else book.graph.qualified_name(found))
-    return _value(value)
+        element = writer.graph.get(value)
+        return quote_string(value if element is None else writer.graph.qualified_name(element))
+    return _format_value(value)

@@ -1,11 +1,11 @@
-"""Back end ``sysml``: one text of SysML v2 for the unit, with our library beside it if needed."""
+"""Back end ``sysml``: the compile unit as one text of SysML v2, with ``SysMLC.sysml`` if needed."""
 
 import posixpath
 
 from msgspec import Struct
 
 from sysmlc.backends.base import EmitOptions
-from sysmlc.backends.sysml.document import document
+from sysmlc.backends.sysml.document import print_document
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Graph
 from sysmlc.support import resources
@@ -13,7 +13,7 @@ from sysmlc.support.file_names import assign_file_names
 from sysmlc.support.output import Output
 
 LIBRARY = "SysMLC.sysml"
-"""Our library of metadata definitions, which the text refers to."""
+"""The library of metadata definitions to which the text refers."""
 
 
 class SysmlBackend(Struct, frozen=True):
@@ -24,21 +24,20 @@ class SysmlBackend(Struct, frozen=True):
     is_default: bool = False
 
     def emit(self, graph: Graph, output: Output, sink: Sink, options: EmitOptions) -> None:
-        """Add ``sysml/<unit>.sysml``; report what the text cannot say."""
-        unit = _unit(graph, options)
-        text, uses_library = document(graph, sink)
+        """Add ``sysml/<unit>.sysml``; report what the text cannot express."""
+        unit = _choose_name(graph, options)
+        text, uses_library = print_document(graph, sink)
         output.add(f"sysml/{assign_file_names([unit])[unit]}.sysml", text, (), self.name)
         if uses_library:
-            output.add(
-                f"sysml/{LIBRARY}", resources.read_text("metamodels", LIBRARY), (), self.name
-            )
+            library = resources.read_text("metamodels", LIBRARY)
+            output.add(f"sysml/{LIBRARY}", library, (), self.name)
 
 
-def _unit(graph: Graph, options: EmitOptions) -> str:
-    """Name of the first input without its suffix, else of the first root."""
+def _choose_name(graph: Graph, options: EmitOptions) -> str:
+    """Return the name of the first input without its suffix, else that of the first root."""
     if options.inputs:
-        first = posixpath.basename(options.inputs[0].path.partition("!")[0])
-        return first.partition(".")[0] or first
+        file_name = posixpath.basename(options.inputs[0].path.partition("!")[0])
+        return file_name.partition(".")[0] or file_name
     return next((root.name for root in graph.roots() if root.name), "model")
 
 

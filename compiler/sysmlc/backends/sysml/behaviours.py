@@ -1,117 +1,163 @@
-"""Behaviours as wholes: actions, states, occurrences and verification cases."""
+"""Behaviours as definitions, as members of classifiers, and as actions of states and transitions.
 
-from sysmlc.backends.sysml.book import Book
-from sysmlc.backends.sysml.declarations import definition_head
-from sysmlc.backends.sysml.effects import statements
-from sysmlc.backends.sysml.entry import Entry
-from sysmlc.backends.sysml.printing import Line
-from sysmlc.backends.sysml.structure import contents
-from sysmlc.backends.sysml.texts import opaque_lines
-from sysmlc.backends.sysml.words import quoted
+The body of an opaque behaviour in sysmlc's own grammar of effects becomes assignments, send actions
+and performed actions; in all other languages it stays text.
+"""
+
+from sysmlc.backends.sysml.comments import write_opaque_bodies
+from sysmlc.backends.sysml.declarations import make_definition_head
+from sysmlc.backends.sysml.definitions import write_contents
+from sysmlc.backends.sysml.expressions import UnknownNameError, print_expression, resolve_name
+from sysmlc.backends.sysml.plan import Member
+from sysmlc.backends.sysml.printing import Line, quote_name
+from sysmlc.backends.sysml.writer import Writer
 from sysmlc.ir import Edge, Element, Kind
+from sysmlc.logic.expressions.expression import (
+    Assignment,
+    Call,
+    Expression,
+    ExpressionError,
+    Invocation,
+    Send,
+    Statement,
+)
+from sysmlc.logic.expressions.parsing import parse_effect
 
-_OWN_WORD = {"action": "perform", "state": "exhibit"}
+_RUN_BY_CLASSIFIER = {"action": "perform", "state": "exhibit"}
+_SUBACTIONS = (Edge.ENTRY, Edge.DO, Edge.EXIT, Edge.EFFECT)
 
 
-def behaviour(book: Book, entry: Entry) -> list[Line]:
-    """A behaviour that is a member of a package or a classifier.
+# -- members of packages and classifiers ---------------------------------------------------------
 
-    What its classifier runs is performed or exhibited by it. Those of states and transitions
-    are written with these.
+
+def write_behaviour(writer: Writer, member: Member) -> list[Line]:
+    """Write a behaviour that is a member of a package or a classifier.
+
+    The classifier performs or exhibits its classifier behaviour. The behaviours of states and
+    transitions have no lines of their own: ``write_subaction`` writes them.
     """
-    element = entry.element
-    assert element is not None
-    if _is_held(book, element):
+    element = member.require_element()
+    owner = writer.graph.owner(element)
+    if owner is not None and _is_subaction(writer, owner, element):
         return []
-    head = definition_head(book, entry)
-    owner = book.graph.owner(element)
-    if owner is not None and element in book.graph.targets(owner, Edge.CLASSIFIER_BEHAVIOR):
-        word = _OWN_WORD.get(entry.shape.keyword)
+    head = make_definition_head(writer, member)
+    if owner is not None and element in writer.graph.targets(owner, Edge.CLASSIFIER_BEHAVIOR):
+        word = _RUN_BY_CLASSIFIER.get(member.shape.keyword)
         head.prefixes += [word] if word else []
-    specified = book.graph.sources(element, Edge.METHOD)
-    if not specified and element.kind is Kind.STATE_MACHINE and _regions(book, element) > 1:
+    is_method = bool(writer.graph.sources(element, Edge.METHOD))
+    regions = [child for child in writer.graph.owned(element) if child.kind is Kind.REGION]
+    if not is_method and element.kind is Kind.STATE_MACHINE and len(regions) > 1:
         head.value = " parallel"
-    return [Line(head.text(), inside(book, entry, element))]
+    return [Line(head.format(), _write_body(writer, member, element))]
 
 
-def _regions(book: Book, element: Element) -> int:
-    return sum(one.kind is Kind.REGION for one in book.graph.owned(element))
+def _is_subaction(writer: Writer, owner: Element, behaviour: Element) -> bool:
+    return any(behaviour in writer.graph.targets(owner, edge) for edge in _SUBACTIONS)
 
 
-_HOLDING = (Edge.ENTRY, Edge.DO, Edge.EXIT, Edge.EFFECT)
-
-
-def _is_held(book: Book, element: Element) -> bool:
-    """Whether a state or a transition owns the behaviour and writes it in its place."""
-    owner = book.graph.owner(element)
-    return owner is not None and any(
-        element in book.graph.targets(owner, edge) for edge in _HOLDING
-    )
-
-
-def inside(book: Book, entry: Entry, element: Element) -> list[Line]:
-    """What stands between the braces of a behaviour."""
-    body = contents(book, entry)
-    objectives = book.objectives.pop(id(entry), [])
+def _write_body(writer: Writer, member: Member, element: Element) -> list[Line]:
+    body = write_contents(writer, member)
+    objectives = writer.objective_lines.pop(id(member), [])
     if objectives:
         body.insert(0, Line("objective", objectives))
-    return body + body_lines(book, entry, element)
+    statements = format_statements(writer, member, element)
+    if statements is None:
+        return body + write_opaque_bodies(writer, element)
+    return body + chain_statements(statements)
 
 
-def body_lines(book: Book, entry: Entry, element: Element) -> list[Line]:
-    """The text of an opaque behaviour: one action after the other, else in its own language."""
-    found = statements(book, entry, element)
-    if found is None:
-        return opaque_lines(book, entry, element)
-    return sequence(found)
+# -- actions of states and transitions -----------------------------------------------------------
 
 
-def sequence(found: list[str]) -> list[Line]:
-    """Actions one after the other."""
-    first, *rest = found
-    return [Line(first), *(Line(f"then {one}") for one in rest)]
+def write_subaction(writer: Writer, scope: Member, word: str, behaviour: Element) -> Line:
+    """Write the entry, do or exit action of a state, or the effect of a transition.
 
-
-def classified(book: Book, entry: Entry, element: Element) -> list[Line]:
-    """Classifier behaviours that stand elsewhere."""
-    lines = []
-    for one in book.graph.targets(element, Edge.CLASSIFIER_BEHAVIOR):
-        other = book.plan.entry(one)
-        if other is None or other.parent is entry:
-            continue
-        name = book.name(entry, element, Edge.CLASSIFIER_BEHAVIOR, one)
-        word = _OWN_WORD.get(other.shape.plain)
-        if name is not None and word is not None:
-            end = f"{other.shape.plain} : {name}" if other.shape.is_definition else name
-            lines.append(Line(f"{word} {end}"))
-    return lines
-
-
-def held(book: Book, scope: Entry, word: str, behaviour_: Element) -> Line:
-    """The entry, do or exit action of a state, or the effect of a transition."""
-    entry = book.plan.entry(behaviour_)
+    *word* is ``entry``, ``do`` or ``exit``; *scope* is the state or the transition.
+    """
+    member = writer.plan.find(behaviour)
     owner = scope.element
-    if entry is None or owner is None or behaviour_.owner != owner.id:
-        return _performed(book, scope, word, behaviour_)
-    book.said.add(behaviour_.id)
-    name = quoted(entry.name) if entry.name else ""
-    found = None if entry.members else statements(book, entry, behaviour_)
-    if found is not None and len(found) == 1 and not found[0].startswith("perform"):
-        start = f"action {name} " if name else ""
-        return Line(f"{word} {start}{found[0]}")
-    if found is not None and len(found) == 1 and not name:
-        return Line(f"{word} {found[0].removeprefix('perform ')}")
-    body = inside(book, entry, behaviour_)
-    if entry.shape.plain == "action":
+    if member is None or owner is None or behaviour.owner != owner.id:
+        return _write_reference(writer, scope, word, behaviour)
+    writer.expressed.add(behaviour.id)
+    name = quote_name(member.name) if member.name else ""
+    statements = None if member.members else format_statements(writer, member, behaviour)
+    if statements is not None and len(statements) == 1:
+        statement = statements[0]
+        if not statement.startswith("perform"):
+            start = f"action {name} " if name else ""
+            return Line(f"{word} {start}{statement}")
+        if not name:
+            return Line(f"{word} {statement.removeprefix('perform ')}")
+    body = _write_body(writer, member, behaviour)
+    keyword = member.shape.usage_keyword
+    if keyword == "action":
         return Line(f"{word} action {name}".rstrip(), body)
-    inner = Line(f"{entry.shape.plain} {name}".rstrip(), body)
-    return Line(f"{word} action", [inner])
+    return Line(f"{word} action", [Line(f"{keyword} {name}".rstrip(), body)])
 
 
-def _performed(book: Book, scope: Entry, word: str, behaviour_: Element) -> Line:
-    """A behaviour that stands elsewhere."""
-    name = book.name(scope, behaviour_, Edge.CALLS, behaviour_)
-    entry = book.plan.entry(behaviour_)
-    if name is None or entry is None:
+def _write_reference(writer: Writer, scope: Member, word: str, behaviour: Element) -> Line:
+    """Write a subaction that refers to a behaviour with another owner."""
+    name = writer.refer_to(scope, behaviour, Edge.CALLS, behaviour)
+    member = writer.plan.find(behaviour)
+    if name is None or member is None:
         return Line(f"{word} action")
-    return Line(f"{word} action : {name}" if entry.shape.is_definition else f"{word} {name}")
+    is_definition = member.shape.is_definition
+    return Line(f"{word} action : {name}" if is_definition else f"{word} {name}")
+
+
+# -- statements ----------------------------------------------------------------------------------
+
+
+def chain_statements(statements: list[str]) -> list[Line]:
+    """Return actions that run one after the other."""
+    first, *rest = statements
+    return [Line(first), *(Line(f"then {statement}") for statement in rest)]
+
+
+def format_statements(writer: Writer, scope: Member | None, element: Element) -> list[str] | None:
+    """Return the body of an opaque behaviour as actions; None if it is in another language."""
+    text = element.attrs.get("body")
+    if not isinstance(text, str) or "bodies" in element.attrs:
+        return None
+    try:
+        statements = [_format_statement(writer, scope, tree) for tree in parse_effect(text)]
+    except (ExpressionError, UnknownNameError, RecursionError):
+        return None
+    return statements or None
+
+
+def _format_statement(writer: Writer, scope: Member | None, statement: Statement) -> str:
+    match statement:
+        case Assignment(target, value):
+            feature = _format_target(writer, scope, target)
+            return f"assign {feature} := {print_expression(writer, scope, value)}"
+        case Send(signal, args, receiver):
+            arguments = ", ".join(print_expression(writer, scope, arg) for arg in args)
+            end = "" if receiver is None else _format_receiver(writer, scope, receiver)
+            return f"send new {print_expression(writer, scope, signal)}({arguments}){end}"
+        case Invocation(call):
+            return _format_performance(writer, scope, call)
+
+
+def _format_target(writer: Writer, scope: Member | None, target: Expression) -> str:
+    feature = resolve_name(writer, scope, target)
+    if feature is None or not feature.shape.is_usage:
+        raise UnknownNameError("target")
+    return print_expression(writer, scope, target)
+
+
+def _format_receiver(writer: Writer, scope: Member | None, receiver: Expression) -> str:
+    feature = resolve_name(writer, scope, receiver)
+    word = "via" if feature is not None and feature.shape.keyword == "port" else "to"
+    return f" {word} {print_expression(writer, scope, receiver)}"
+
+
+def _format_performance(writer: Writer, scope: Member | None, call: Expression) -> str:
+    """Return a performed action. Raises UnknownNameError for arguments, which have no notation."""
+    function = call.function if isinstance(call, Call) else call
+    if isinstance(call, Call) and call.args:
+        raise UnknownNameError("arguments")
+    action = resolve_name(writer, scope, function)
+    if action is None or action.shape.keyword != "action":
+        raise UnknownNameError("action")
+    return f"perform {print_expression(writer, scope, function)}"

@@ -1,17 +1,21 @@
-"""Conditions: expressions over the model, or text that becomes the name of a feature."""
+"""Conditions, times and triggers.
+
+A text that is not an expression over the model becomes the name of a feature, which the nearest
+namespace declares.
+"""
 
 import re
 
-from sysmlc.backends.sysml.book import Book
-from sysmlc.backends.sysml.entry import Entry
-from sysmlc.backends.sysml.expressions import expression
+from sysmlc.backends.sysml.expressions import format_expression
 from sysmlc.backends.sysml.library import UNITS
+from sysmlc.backends.sysml.plan import Member
+from sysmlc.backends.sysml.printing import quote_name
 from sysmlc.backends.sysml.rules import TEXT_AS_NAME
-from sysmlc.backends.sysml.words import quoted
-from sysmlc.ir import Element
+from sysmlc.backends.sysml.writer import Writer
+from sysmlc.ir import Edge, Element
 
 _DURATION = re.compile(r"\s*(\d+(?:\.\d+)?)\s*([a-zµ]*)\s*", re.IGNORECASE)
-_TIMES = {
+_TIME_UNITS = {
     "": "s",
     "sec": "s",
     "secs": "s",
@@ -23,46 +27,90 @@ _TIMES = {
     "hour": "h",
     "hours": "h",
 }
+_WITHOUT_DECLARATIONS = frozenset({"transition", "succession", "flow", "constraint"})
+"""Keywords of namespaces that declare no features; the namespace around them does."""
 
 
-def condition(book: Book, scope: Entry | None, element: Element, text: str) -> str:
-    """A condition as an expression; text that is none is the name of a Boolean attribute."""
-    found = expression(book, scope, text)
-    return found if found is not None else _named(book, scope, element, text, "Boolean")
+# -- conditions and times ------------------------------------------------------------------------
 
 
-def duration(book: Book, scope: Entry | None, element: Element, text: str) -> str:
-    """A duration: a number with a unit of time (seconds when there is none), or an expression."""
-    found = _DURATION.fullmatch(text)
-    if found is not None:
-        unit = _TIMES.get(found[2].lower(), found[2])
+def format_condition(writer: Writer, scope: Member | None, element: Element, text: str) -> str:
+    """Return a condition as an expression, else as the name of a Boolean attribute."""
+    return _format(writer, scope, element, text, "ScalarValues::Boolean")
+
+
+def _format_duration(writer: Writer, scope: Member | None, element: Element, text: str) -> str:
+    """Return a duration as a quantity; a number without a unit means seconds."""
+    match = _DURATION.fullmatch(text)
+    if match is not None:
+        unit = _TIME_UNITS.get(match[2].lower(), match[2])
         if UNITS.get(unit, ("", ""))[0] == "DurationValue":
             package = "SysMLC::Units" if unit in ("ms", "µs") else "SI"
-            return f"{found[1]} [{book.library(scope, f'{package}::{unit}')}]"
-    return _quantity(book, scope, element, text, "ISQ::DurationValue")
+            return f"{match[1]} [{writer.refer_to_library(scope, f'{package}::{unit}')}]"
+    return _format(writer, scope, element, text, "ISQ::DurationValue")
 
 
-def instant(book: Book, scope: Entry | None, element: Element, text: str) -> str:
-    """A point in time: an expression, or the name of an attribute."""
-    return _quantity(book, scope, element, text, "Time::TimeInstantValue")
+def _format_instant(writer: Writer, scope: Member | None, element: Element, text: str) -> str:
+    return _format(writer, scope, element, text, "Time::TimeInstantValue")
 
 
-def _quantity(book: Book, scope: Entry | None, element: Element, text: str, type_: str) -> str:
-    found = expression(book, scope, text)
-    return found if found is not None else _named(book, scope, element, text, type_)
+def _format(writer: Writer, scope: Member | None, element: Element, text: str, type_: str) -> str:
+    """Return an expression, else the name of an attribute with this type."""
+    expression = format_expression(writer, scope, text)
+    if expression is not None:
+        return expression
+    name = " ".join(text.split()) or "undefined"
+    writer.losses.record(TEXT_AS_NAME, element, text=name)
+    namespace = scope
+    while (
+        namespace is not None
+        and namespace.parent is not None
+        and namespace.shape.keyword in _WITHOUT_DECLARATIONS
+    ):
+        namespace = namespace.parent
+    if namespace is None:
+        return quote_name(name)
+    return writer.declare_attribute(namespace, name, type_)
 
 
-def _named(book: Book, scope: Entry | None, element: Element, text: str, type_: str) -> str:
-    """A feature of the nearest namespace, declared once for each text."""
-    shown = " ".join(text.split()) or "undefined"
-    book.losses.note(TEXT_AS_NAME, element, text=shown)
-    space = scope
-    while space is not None and space.parent is not None and space.shape.keyword in _SMALL:
-        space = space.parent
-    if space is None:
-        return quoted(shown)
-    full = type_ if "::" in type_ else f"ScalarValues::{type_}"
-    return book.declare(space, shown, full)
+# -- triggers ------------------------------------------------------------------------------------
 
 
-_SMALL = frozenset({"transition", "succession", "flow", "constraint"})
+def format_trigger(writer: Writer, scope: Member, trigger: Element) -> str:
+    """Return ``accept`` with a payload, and with the port at which it arrives."""
+    payload = _format_payload(writer, scope, trigger)
+    port = writer.graph.get(str(trigger.attrs.get("port", "")))
+    name = None if port is None else writer.refer_to(scope, trigger, Edge.ROLE, port)
+    return f"accept {payload}{f' via {name}' if name else ''}"
+
+
+def _format_payload(writer: Writer, scope: Member, trigger: Element) -> str:
+    if trigger.subkind == "time":
+        when = str(trigger.attrs.get("when", ""))
+        if when.replace(".", "", 1).isdigit():
+            writer.record_approximation(trigger, "a time without a unit", "seconds")
+        if trigger.attrs.get("relative"):
+            return f"after {_format_duration(writer, scope, trigger, when)}"
+        return f"at {_format_instant(writer, scope, trigger, when)}"
+    if trigger.subkind == "change":
+        text = str(trigger.attrs.get("condition", ""))
+        return f"when {format_condition(writer, scope, trigger, text)}"
+    return _format_message_payload(writer, scope, trigger)
+
+
+def _format_message_payload(writer: Writer, scope: Member, trigger: Element) -> str:
+    """Return the payload of a signal event, a call event, or an event of any message."""
+    type_ = writer.graph.target(trigger, Edge.TYPED_BY)
+    member = writer.plan.find(type_)
+    if trigger.subkind == "call" and (type_ is None or member is None):
+        return f"call : {writer.refer_to_sysmlc(scope, 'Call')}"
+    if type_ is None or member is None:
+        return f"any : {writer.refer_to_library(scope, 'Base::Anything')}"
+    if member.shape.is_definition:
+        name = writer.refer_to(scope, trigger, Edge.TYPED_BY, type_)
+        payload = trigger.attrs.get("payload")
+        if payload:
+            return f"{quote_name(str(payload))} : {name}"
+        # The OpenMBEE toolkit does not read a payload that starts with the root ('$::').
+        return f": {name}" if str(name).startswith("$") else str(name)
+    return f"{quote_name(member.name)} : {writer.refer_to_sysmlc(scope, 'Call')}"

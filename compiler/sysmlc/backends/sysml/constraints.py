@@ -1,14 +1,13 @@
-"""Constraints, and expressions that are conditions or texts of another language."""
+"""Constraints: expressions, or texts in other languages."""
 
-from sysmlc.backends.sysml import annotations
-from sysmlc.backends.sysml.book import Book
-from sysmlc.backends.sysml.declarations import visibility
-from sysmlc.backends.sysml.entry import Entry
-from sysmlc.backends.sysml.expressions import expression
-from sysmlc.backends.sysml.printing import Line
-from sysmlc.backends.sysml.references import qualified
-from sysmlc.backends.sysml.texts import opaque_lines
-from sysmlc.backends.sysml.words import quoted
+from sysmlc.backends.sysml.annotations import write_annotations
+from sysmlc.backends.sysml.comments import write_opaque_bodies
+from sysmlc.backends.sysml.declarations import list_visibility
+from sysmlc.backends.sysml.expressions import format_expression
+from sysmlc.backends.sysml.plan import Member
+from sysmlc.backends.sysml.printing import Line, quote_name
+from sysmlc.backends.sysml.references import format_qualified_name
+from sysmlc.backends.sysml.writer import Writer
 from sysmlc.ir import Edge, Element, Kind
 
 _KEYWORDS = {
@@ -17,65 +16,78 @@ _KEYWORDS = {
     "body": "bodyCondition",
     "invariant": "invariant",
 }
+"""Keyword of the library ``SysMLC`` by subkind."""
 
 
-def constraint(book: Book, entry: Entry) -> list[Line]:
-    """A constraint that holds; its body as an expression, else in its own language."""
-    element = entry.element
-    assert element is not None
-    if _is_guard(book, element):
+def write_constraint(writer: Writer, member: Member) -> list[Line]:
+    """Write a constraint: the result of its constraint definition, else an asserted constraint.
+
+    The guard of a transition, a flow or an operand has no lines of its own.
+    """
+    element = member.require_element()
+    if writer.graph.sources(element, Edge.GUARD):
         return []
-    above = entry.parent
-    result = _result(book, entry, element)
-    is_definition = above is not None and above.shape.keyword == "constraint def"
-    if is_definition and result and not entry.name and _is_only(book, element):
+    owner = member.parent
+    result = _format_result(writer, member, element)
+    is_in_definition = owner is not None and owner.shape.keyword == "constraint def"
+    if is_in_definition and result and not member.name and _is_only_constraint(writer, element):
         return [Line("", text=[result])]
-    word = "require" if above is not None and above.shape.keyword == "requirement" else "assert"
-    if above is None or above.shape.keyword in ("package", "metadata def", "enum def"):
-        word = ""
-    mark = _KEYWORDS.get(element.subkind)
-    marks = [f"#{book.ours(entry.parent, mark)}"] if mark else []
-    name = quoted(entry.name) if entry.name else ""
-    marked = [word, *marks] if word == "require" else [*marks, word]
-    if above is not None and above.shape.plain.split()[:1] == ["port"]:
-        # What a port has inside is no part of it (SysML v2, 8.3.12).
-        marked.insert(0, "ref")
-    words = [*visibility(book, element), *marked, "constraint", name]
-    body = annotations.of(book, entry) + book.members(entry)
-    body += [Line("", text=[result])] if result else opaque_lines(book, entry, element)
-    head = " ".join(one for one in words if one)
-    lines = [Line(head, body, is_short=len(body) == 1)]
-    return lines + _about(book, entry, element)
+    keyword = _KEYWORDS.get(element.subkind)
+    keywords = [f"#{writer.refer_to_sysmlc(owner, keyword)}"] if keyword else []
+    words = _list_words(owner, keywords)
+    name = quote_name(member.name) if member.name else ""
+    words = [*list_visibility(writer, element), *words, "constraint", name]
+    body = write_annotations(writer, member) + writer.write_members(member)
+    body += [Line("", text=[result])] if result else write_opaque_bodies(writer, element)
+    head = " ".join(word for word in words if word)
+    constraint = Line(head, body, is_short=len(body) == 1)
+    return [constraint, *_write_references(writer, member, element)]
 
 
-def _result(book: Book, entry: Entry, element: Element) -> str | None:
+def _list_words(owner: Member | None, keywords: list[str]) -> list[str]:
+    """Return the words before ``constraint``: ``require`` in a requirement, else ``assert``."""
+    if owner is None or owner.shape.keyword in ("package", "metadata def", "enum def"):
+        words = keywords
+    elif owner.shape.keyword == "requirement":
+        words = ["require", *keywords]
+    else:
+        words = [*keywords, "assert"]
+    if owner is not None and owner.shape.usage_keyword == "port":
+        # A port may own no composite features but ports (SysML 2.0, 8.3.12).
+        return ["ref", *words]
+    return words
+
+
+def _format_result(writer: Writer, member: Member, element: Element) -> str | None:
     text = element.attrs.get("body")
-    if any(one.kind is Kind.DATA_TYPE for one in book.graph.targets(element, Edge.REFERENCES)):
-        # AutomationML calls the values of an attribute type by its name: here it is no feature.
+    references = writer.graph.targets(element, Edge.REFERENCES)
+    if any(target.kind is Kind.DATA_TYPE for target in references):
+        # AutomationML refers to the values of an attribute type by the name of the type, which
+        # no feature of the text has.
         return None
-    return expression(book, entry, str(text)) if text else None
+    return format_expression(writer, member, str(text)) if text else None
 
 
-def _is_guard(book: Book, element: Element) -> bool:
-    """Whether a transition, a flow or a fragment says it as its own condition."""
-    return bool(book.graph.sources(element, Edge.GUARD))
+def _is_only_constraint(writer: Writer, element: Element) -> bool:
+    owner = writer.graph.owner(element)
+    siblings = [] if owner is None else writer.graph.owned(owner)
+    return sum(sibling.kind is element.kind for sibling in siblings) == 1
 
 
-def _is_only(book: Book, element: Element) -> bool:
-    owner = book.graph.owner(element)
-    beside = [] if owner is None else book.graph.owned(owner)
-    return sum(one.kind is element.kind for one in beside) == 1
-
-
-def _about(book: Book, entry: Entry, element: Element) -> list[Line]:
-    """What it constrains besides its owner, when it has a name to refer by."""
-    owner = book.graph.owner(element)
-    others = [one for one in book.graph.targets(element, Edge.REFERENCES) if one is not owner]
-    if not others or not entry.name:
+def _write_references(writer: Writer, member: Member, element: Element) -> list[Line]:
+    """Write a dependency on the constrained elements besides the owner, if there is a name."""
+    owner = writer.graph.owner(element)
+    targets = [t for t in writer.graph.targets(element, Edge.REFERENCES) if t is not owner]
+    if not targets or not member.name:
         return []
-    targets = [book.plan.entry(one) for one in others]
-    names = [None if one is None else qualified(book.plan, entry.parent, one) for one in targets]
-    known = [one for one in names if one is not None]
-    mark = book.ours(entry.parent, "constrains")
-    head = f"#{mark} dependency from {quoted(entry.name)} to {', '.join(known)}"
-    return [Line(head)] if known else []
+    names = []
+    for target in targets:
+        target_member = writer.plan.find(target)
+        if target_member is not None:
+            names.append(format_qualified_name(writer.plan, member.parent, target_member))
+    keyword = writer.refer_to_sysmlc(member.parent, "constrains")
+    known_names = [name for name in names if name is not None]
+    if not known_names:
+        return []
+    source = quote_name(member.name)
+    return [Line(f"#{keyword} dependency from {source} to {', '.join(known_names)}")]

@@ -2,107 +2,24 @@
 
 from dataclasses import dataclass
 
-from sysmlc.backends.sysml.book import Book
-from sysmlc.backends.sysml.entry import Entry, Plan
-from sysmlc.backends.sysml.expressions import expression
-from sysmlc.backends.sysml.library import scalar_of
-from sysmlc.backends.sysml.relating import ends_differ, is_apart, is_unlike
+from sysmlc.backends.sysml.compatibility import (
+    has_incompatible_ends,
+    is_incompatible,
+    is_invalid_subset,
+)
+from sysmlc.backends.sysml.elided_elements import find_specific_feature, iter_types
+from sysmlc.backends.sysml.expressions import format_expression
+from sysmlc.backends.sysml.library import find_scalar_type
+from sysmlc.backends.sysml.plan import Member, Plan
+from sysmlc.backends.sysml.printing import quote_name
 from sysmlc.backends.sysml.rules import UNSAID_ATTRIBUTE
-from sysmlc.backends.sysml.specific import feature_of, types_of
-from sysmlc.backends.sysml.words import quoted
+from sysmlc.backends.sysml.writer import Writer
 from sysmlc.ir import Edge, Element, Kind
 from sysmlc.ir.query import bounds, type_of
 
 _VISIBILITIES = ("private", "protected")
-_REFERENTIAL = frozenset({"port", "attribute", "metadata"})
-"""Keywords of what holds no composite features but ports and attributes."""
-
-
-@dataclass(slots=True)
-class Head:
-    """What a declaration consists of; empty parts are left out."""
-
-    prefixes: list[str]
-    keyword: str
-    name: str = ""
-    types: list[str] | None = None
-    multiplicity: str = ""
-    subsets: list[str] | None = None
-    redefines: list[str] | None = None
-    value: str = ""
-
-    def text(self) -> str:
-        """The declaration."""
-        words = [*self.prefixes, self.keyword, self.name]
-        text = " ".join(word for word in words if word)
-        typed = f" : {', '.join(self.types)}" if self.types else ""
-        redefined = f" :>> {', '.join(self.redefines)}" if self.redefines else ""
-        subset = f" :> {', '.join(self.subsets)}" if self.subsets else ""
-        if not self.name and redefined:
-            return f"{text}{redefined}{typed}{self.multiplicity}{subset}{self.value}".lstrip()
-        return f"{text}{typed}{self.multiplicity}{subset}{redefined}{self.value}".lstrip()
-
-
-def visibility(book: Book, element: Element) -> list[str]:
-    """The prefix for a visibility that is not public, unless the text refers to the element."""
-    found = element.attrs.get("visibility")
-    if found not in _VISIBILITIES:
-        return []
-    if element.id in book.public:
-        book.approximated(element, f"'{found}' of what others refer to", "public")
-        return []
-    return [str(found)]
-
-
-def definition_head(book: Book, entry: Entry, is_quantity: bool = False) -> Head:
-    """Declaration of a definition, or of a usage that stands for one, with its generals.
-
-    Those of a quantity are left to its writer.
-    """
-    element = _element(entry)
-    prefixes = visibility(book, element)
-    prefixes += _kinds_of_life(element)
-    head = Head(prefixes, entry.shape.keyword, quoted(entry.name) if entry.name else "")
-    if not is_quantity:
-        head.types, head.subsets = _generals(book, entry)
-    return head
-
-
-def _generals(book: Book, entry: Entry) -> tuple[list[str], list[str]]:
-    """Types, which a usage has where a definition specialises; and what else is specialised."""
-    element = _element(entry)
-    types: list[str] = []
-    found: list[str] = []
-    for general in book.graph.targets(element, Edge.SPECIALIZES):
-        other = book.plan.entry(general)
-        if scalar_of(general) is not None:
-            found.append(book.library(entry.parent, str(scalar_of(general))))
-        elif other is not None and _is_odd(book.plan, other, entry):
-            book.approximated(element, f"generalization of {entry.shape.keyword}", "dependency")
-            name = book.name(entry, element, Edge.SPECIALIZES, general)
-            if name is not None:
-                mark = book.ours(entry, "generalization")
-                book.beside(entry, f"#{mark} dependency from {quoted(entry.name)} to {name}")
-        else:
-            name = book.name(entry.parent, element, Edge.SPECIALIZES, general)
-            is_definition = other is not None and other.shape.is_definition
-            is_type = is_definition and not entry.shape.is_definition
-            (types if is_type else found).extend([] if name is None else [name])
-    return types, found
-
-
-def _is_odd(plan: Plan, general: Entry, specific: Entry) -> bool:
-    """Whether one kind of definition cannot specialise the other."""
-    if ends_differ(plan, general, specific):
-        return True
-    pair = (specific.shape.plain, general.shape.plain)
-    return (
-        pair[0] != pair[1]
-        and pair not in _CONFORMING
-        and general.shape.is_definition == specific.shape.is_definition
-    )
-
-
+_REFERENTIAL_OWNERS = frozenset({"port", "attribute", "metadata"})
+"""Keywords of owners that may have no composite features but ports and attributes."""
 _CONFORMING = frozenset(
     {
         ("part", "item"),
@@ -119,146 +36,263 @@ _CONFORMING = frozenset(
         ("connection", "occurrence"),
     }
 )
+"""Pairs of different keywords of which the first may specialise the second."""
 
 
-def feature_head(book: Book, entry: Entry) -> Head:
-    """Declaration of a feature, without its value."""
-    element = _element(entry)
-    keyword = entry.shape.keyword
-    head = Head(feature_prefixes(book, entry, keyword), keyword if keyword != "ref" else "")
-    head.types, head.subsets = typing(book, entry.parent, element)
-    head.multiplicity = multiplicity(book, entry.parent, element)
-    _redefine(book, entry, head)
+@dataclass(slots=True)
+class Head:
+    """The parts of a declaration; empty parts are omitted."""
+
+    prefixes: list[str]
+    keyword: str
+    name: str = ""
+    types: list[str] | None = None
+    multiplicity: str = ""
+    subsets: list[str] | None = None
+    redefines: list[str] | None = None
+    value: str = ""
+
+    def format(self) -> str:
+        """Return the declaration as text; a redefinition without a name comes first."""
+        words = [*self.prefixes, self.keyword, self.name]
+        text = " ".join(word for word in words if word)
+        types = f" : {', '.join(self.types)}" if self.types else ""
+        redefines = f" :>> {', '.join(self.redefines)}" if self.redefines else ""
+        subsets = f" :> {', '.join(self.subsets)}" if self.subsets else ""
+        if not self.name and redefines:
+            return f"{text}{redefines}{types}{self.multiplicity}{subsets}{self.value}".lstrip()
+        return f"{text}{types}{self.multiplicity}{subsets}{redefines}{self.value}".lstrip()
+
+
+# -- definitions ---------------------------------------------------------------------------------
+
+
+def make_definition_head(writer: Writer, member: Member, is_quantity: bool = False) -> Head:
+    """Return the head of a definition, or of a usage that stands for one, with its generals.
+
+    With *is_quantity*, the caller adds the generals.
+    """
+    element = member.require_element()
+    prefixes = list_visibility(writer, element)
+    prefixes += _list_modifiers(element)
+    head = Head(prefixes, member.shape.keyword, quote_name(member.name) if member.name else "")
+    if not is_quantity:
+        head.types, head.subsets = _list_generals(writer, member)
     return head
 
 
-def feature_prefixes(book: Book, entry: Entry, keyword: str) -> list[str]:
-    """Visibility, direction, and the other words before the keyword of a feature."""
-    element, attrs = _element(entry), _element(entry).attrs
-    prefixes = visibility(book, element)
-    direction = attrs.get("direction")
-    if direction in ("in", "out", "inout", "return"):
-        prefixes.append("out" if direction == "return" else str(direction))
-    life = _kinds_of_life(element)
-    type_ = type_of(book.graph, element)
-    if type_ is not None and type_.attrs.get("variation"):
-        is_own = feature_of(book.graph, type_) is element
-        life = ["variation"] if is_own else [word for word in life if word != "variation"]
-    prefixes += ["variant"] if attrs.get("variant") else []
-    prefixes += [word for word in ("derived",) if attrs.get(word)]
-    prefixes += [word for word in life if word in ("abstract", "variation")]
-    if attrs.get("readonly"):
-        prefixes.append("constant")
-    is_part = attrs.get("aggregation") == "composite" or element.role == "part"
-    if keyword == "ref" and direction is None:
-        prefixes.append("ref")
-    elif direction is None and keyword not in ("attribute", "port") and not is_part:
-        is_property = element.kind in (Kind.PROPERTY, Kind.FLOW_PROPERTY)
-        prefixes += ["ref"] if is_property or _is_referential(entry) else []
-    elif direction is None and keyword not in ("attribute", "port") and _is_referential(entry):
-        prefixes.append("ref")
-    prefixes += [word for word in life if word not in ("abstract", "variation")]
-    return [*prefixes, *([str(attrs["portion"])] if "portion" in attrs else [])]
+def list_visibility(writer: Writer, element: Element) -> list[str]:
+    """Return the prefix of a visibility; none for public elements and those that must be public."""
+    visibility = element.attrs.get("visibility")
+    if visibility not in _VISIBILITIES:
+        return []
+    if element.id in writer.public_ids:
+        writer.record_approximation(element, f"'{visibility}' of what others refer to", "public")
+        return []
+    return [str(visibility)]
 
 
-def _kinds_of_life(element: Element) -> list[str]:
-    """Whether it is abstract or a choice, and one individual."""
+def _list_modifiers(element: Element) -> list[str]:
     attrs = element.attrs
     choice = "variation" if attrs.get("variation") else "abstract" if attrs.get("abstract") else ""
     return [*([choice] if choice else []), *(["individual"] if attrs.get("individual") else [])]
 
 
-def _is_referential(entry: Entry) -> bool:
-    return entry.parent is not None and entry.parent.shape.plain in _REFERENTIAL
+def _list_generals(writer: Writer, member: Member) -> tuple[list[str], list[str]]:
+    """Return the generals: those that are types of a usage, and those that it specialises."""
+    element = member.require_element()
+    types: list[str] = []
+    specialized: list[str] = []
+    for general in writer.graph.targets(element, Edge.SPECIALIZES):
+        general_member = writer.plan.find(general)
+        scalar = find_scalar_type(general)
+        if scalar is not None:
+            specialized.append(writer.refer_to_library(member.parent, scalar))
+        elif general_member is not None and _is_invalid(writer.plan, general_member, member):
+            _add_generalization(writer, member, element, general)
+        else:
+            name = writer.refer_to(member.parent, element, Edge.SPECIALIZES, general)
+            is_definition = general_member is not None and general_member.shape.is_definition
+            is_type = is_definition and not member.shape.is_definition
+            if name is not None:
+                (types if is_type else specialized).append(name)
+    return types, specialized
 
 
-def typing(book: Book, scope: Entry | None, element: Element) -> tuple[list[str], list[str]]:
-    """Types of a feature, and features that it subsets because they stand for its type."""
+def _add_generalization(writer: Writer, member: Member, element: Element, general: Element) -> None:
+    """Add a dependency in place of a generalisation that SysML v2 does not allow."""
+    said = f"generalization of {member.shape.keyword}"
+    writer.record_approximation(element, said, "dependency")
+    name = writer.refer_to(member, element, Edge.SPECIALIZES, general)
+    if name is not None:
+        keyword = writer.refer_to_sysmlc(member, "generalization")
+        source = quote_name(member.name)
+        writer.add_line(member, f"#{keyword} dependency from {source} to {name}")
+
+
+def _is_invalid(plan: Plan, general: Member, specific: Member) -> bool:
+    """Whether a definition or usage must not specialise one of the other kind."""
+    if has_incompatible_ends(plan, general, specific):
+        return True
+    keywords = (specific.shape.usage_keyword, general.shape.usage_keyword)
+    return (
+        keywords[0] != keywords[1]
+        and keywords not in _CONFORMING
+        and general.shape.is_definition == specific.shape.is_definition
+    )
+
+
+# -- features ------------------------------------------------------------------------------------
+
+
+def make_feature_head(writer: Writer, member: Member) -> Head:
+    """Return the head of a feature, without its value."""
+    element = member.require_element()
+    keyword = member.shape.keyword
+    prefixes = _list_feature_prefixes(writer, member, keyword)
+    head = Head(prefixes, keyword if keyword != "ref" else "")
+    head.types, head.subsets = list_types(writer, member.parent, element)
+    head.multiplicity = format_multiplicity(writer, member.parent, element)
+    _redefine(writer, member, head)
+    return head
+
+
+def _list_feature_prefixes(writer: Writer, member: Member, keyword: str) -> list[str]:
+    """Return visibility, direction, and the other words before the keyword, in their order."""
+    element = member.require_element()
+    attrs = element.attrs
+    direction = attrs.get("direction")
+    modifiers = _list_modifiers(element)
+    type_ = type_of(writer.graph, element)
+    if type_ is not None and type_.attrs.get("variation"):
+        if find_specific_feature(writer.graph, type_) is element:
+            modifiers = ["variation"]
+        else:
+            modifiers = [word for word in modifiers if word != "variation"]
+    prefixes = list_visibility(writer, element)
+    if direction in ("in", "out", "inout", "return"):
+        prefixes.append("out" if direction == "return" else str(direction))
+    prefixes += ["variant"] if attrs.get("variant") else []
+    prefixes += ["derived"] if attrs.get("derived") else []
+    prefixes += [word for word in modifiers if word in ("abstract", "variation")]
+    prefixes += ["constant"] if attrs.get("readonly") else []
+    prefixes += ["ref"] if _needs_ref(member, keyword) else []
+    prefixes += [word for word in modifiers if word not in ("abstract", "variation")]
+    return [*prefixes, *([str(attrs["portion"])] if "portion" in attrs else [])]
+
+
+def _needs_ref(member: Member, keyword: str) -> bool:
+    """Whether a feature is marked as a reference; directed features are references anyway."""
+    element = member.require_element()
+    if element.attrs.get("direction") is not None:
+        return False
+    if keyword == "ref":
+        return True
+    if keyword in ("attribute", "port"):
+        return False
+    owner_is_referential = (
+        member.parent is not None and member.parent.shape.usage_keyword in _REFERENTIAL_OWNERS
+    )
+    is_part = element.attrs.get("aggregation") == "composite" or element.role == "part"
+    is_property = element.kind in (Kind.PROPERTY, Kind.FLOW_PROPERTY)
+    return owner_is_referential or (is_property and not is_part)
+
+
+def list_types(
+    writer: Writer, scope: Member | None, element: Element
+) -> tuple[list[str], list[str]]:
+    """Return the types of a feature, and the features that it subsets.
+
+    A type that is written as a usage is subsetted, too.
+    """
     types, subsets = [], []
-    for type_ in types_of(book.graph, element):
-        name = type_name(book, scope, element, type_)
-        other = book.plan.entry(type_)
+    for type_ in iter_types(writer.graph, element):
+        name = refer_to_type(writer, scope, element, type_)
+        member = writer.plan.find(type_)
         if name is None:
             continue
-        if other is not None and not other.shape.is_definition:
+        if member is not None and not member.shape.is_definition:
             subsets.append(name)
         else:
             types.append(f"~{name}" if element.attrs.get("conjugated") else name)
-    for feature in book.graph.targets(element, Edge.SUBSETS):
+    for feature in writer.graph.targets(element, Edge.SUBSETS):
         if feature is element:
-            book.lost(element, "subsets")
+            writer.record_unreachable(element, "subsets")
             continue
-        if is_apart(book, element, feature):
+        if is_invalid_subset(writer.plan, element, feature):
             continue
-        name = book.name(scope, element, Edge.SUBSETS, feature)
+        name = writer.refer_to(scope, element, Edge.SUBSETS, feature)
         subsets += [] if name is None else [name]
-    return types, [*subsets, *_referred(book, scope, element)]
+    return types, [*subsets, *_list_referenced_features(writer, scope, element)]
 
 
-def _referred(book: Book, scope: Entry | None, element: Element) -> list[str]:
-    """Features of other classifiers that a feature of a model in SysML v2 is one of."""
+def _list_referenced_features(writer: Writer, scope: Member | None, element: Element) -> list[str]:
+    """Return the features that a feature references: ``::>`` in the SysML v2 of the source."""
     is_feature = element.kind in (Kind.PROPERTY, Kind.PORT)
-    found = book.graph.targets(element, Edge.REFERENCES) if is_feature else []
-    names = (book.name(scope, element, Edge.REFERENCES, one) for one in found)
-    return [one for one in names if one is not None]
+    features = writer.graph.targets(element, Edge.REFERENCES) if is_feature else []
+    names = (writer.refer_to(scope, element, Edge.REFERENCES, feature) for feature in features)
+    return [name for name in names if name is not None]
 
 
-def type_name(book: Book, scope: Entry | None, holder: Element, type_: Element) -> str | None:
-    """The name of a type; scalar types are those of the standard library."""
-    scalar = scalar_of(type_)
+def refer_to_type(
+    writer: Writer, scope: Member | None, holder: Element, type_: Element
+) -> str | None:
+    """Return the name of a type; primitive types become those of the standard library."""
+    scalar = find_scalar_type(type_)
     if scalar is not None:
-        return book.library(scope, scalar)
-    return book.name(scope, holder, Edge.TYPED_BY, type_)
+        return writer.refer_to_library(scope, scalar)
+    return writer.refer_to(scope, holder, Edge.TYPED_BY, type_)
 
 
-def multiplicity(book: Book, scope: Entry | None, element: Element) -> str:
-    """Multiplicity in brackets, with ``ordered`` and ``nonunique``; exactly one says nothing."""
-    given = element.attrs.get("multiplicity")
-    text = "" if given is None else _bounds(book, scope, element, str(given))
+def format_multiplicity(writer: Writer, scope: Member | None, element: Element) -> str:
+    """Return the multiplicity in brackets, with ``ordered`` and ``nonunique``; empty for none."""
+    multiplicity = element.attrs.get("multiplicity")
+    text = ""
+    if multiplicity is not None:
+        text = _format_bounds(writer, scope, element, str(multiplicity))
     text += " ordered" if element.attrs.get("ordered") else ""
     return text + (" nonunique" if element.attrs.get("unique") is False else "")
 
 
-def _bounds(book: Book, scope: Entry | None, element: Element, given: str) -> str:
-    if bounds(given) is not None:
-        return f"[{given}]"
-    parts = [expression(book, scope, part) for part in given.split("..")]
-    if all(parts):
-        return f"[{'..'.join(str(part) for part in parts)}]"
+def _format_bounds(
+    writer: Writer, scope: Member | None, element: Element, multiplicity: str
+) -> str:
+    if bounds(multiplicity) is not None:
+        return f"[{multiplicity}]"
+    limits = [format_expression(writer, scope, part) for part in multiplicity.split("..")]
+    if all(limits):
+        return f"[{'..'.join(str(limit) for limit in limits)}]"
     facts = {"attribute": "multiplicity", "kind": str(element.kind)}
-    book.losses.note(UNSAID_ATTRIBUTE, element, **facts)
+    writer.losses.record(UNSAID_ATTRIBUTE, element, **facts)
     return ""
 
 
-def _redefine(book: Book, entry: Entry, head: Head) -> None:
-    element = _element(entry)
+def _redefine(writer: Writer, member: Member, head: Head) -> None:
+    """Add name and redefinitions to a head.
+
+    A feature with the name of a redefined one needs no name, and no type if it has the same.
+    """
+    element = member.require_element()
     head.redefines = []
-    is_same = False
-    redefined = book.graph.targets(element, Edge.REDEFINES)
-    for feature in redefined:
-        if is_unlike(book.plan, element, feature):
+    has_redefined_name = False
+    redefined_features = writer.graph.targets(element, Edge.REDEFINES)
+    for feature in redefined_features:
+        if is_incompatible(writer.plan, element, feature):
             continue
-        other = book.plan.entry(feature)
-        name = book.redefined(entry.parent, feature)
-        if name is None or other is None:
-            book.lost(element, "redefines")
+        feature_member = writer.plan.find(feature)
+        name = writer.refer_to_redefined(member.parent, feature)
+        if name is None or feature_member is None:
+            writer.record_unreachable(element, "redefines")
             continue
-        if other.parent is entry.parent:
-            book.approximated(element, "redefinition within one owner", "a subset")
+        if feature_member.parent is member.parent:
+            writer.record_approximation(element, "redefinition within one owner", "a subset")
             head.subsets = [*(head.subsets or ()), name]
             continue
-        is_same = is_same or other.name == entry.name
+        has_redefined_name = has_redefined_name or feature_member.name == member.name
         head.redefines.append(name)
-    head.name = "" if is_same else quoted(entry.name)
-    if is_same and all(_has_type(book, one, element) for one in redefined):
+    head.name = "" if has_redefined_name else quote_name(member.name)
+    types = list(iter_types(writer.graph, element))
+    if has_redefined_name and all(
+        list(iter_types(writer.graph, feature)) == types for feature in redefined_features
+    ):
         head.types = []
-
-
-def _has_type(book: Book, redefined: Element, element: Element) -> bool:
-    """Whether what is redefined says the type already."""
-    return list(types_of(book.graph, redefined)) == list(types_of(book.graph, element))
-
-
-def _element(entry: Entry) -> Element:
-    assert entry.element is not None
-    return entry.element

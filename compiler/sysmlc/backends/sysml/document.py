@@ -1,145 +1,143 @@
-"""The whole text: the plan, then every member, then what was not said."""
+"""The whole text of a graph: placement, names, the lines of all members, and the losses."""
 
 from sysmlc.backends.sysml import (
     actions,
-    annotations,
-    automation,
+    activity_flows,
     behaviours,
+    comments,
     connections,
     constraints,
-    imports,
+    definitions,
+    dependencies,
+    features,
     instances,
     interactions,
-    objectflows,
-    pins,
-    relations,
     states,
-    structure,
-    texts,
-    usecases,
+    use_cases,
 )
-from sysmlc.backends.sysml.account import account
-from sysmlc.backends.sysml.book import Book, Writer
-from sysmlc.backends.sysml.entry import Entry
-from sysmlc.backends.sysml.hiding import name_apart
-from sysmlc.backends.sysml.naming import name_all
-from sysmlc.backends.sysml.plan import make_plan
-from sysmlc.backends.sysml.printing import Line, printed
-from sysmlc.backends.sysml.profiles import define
+from sysmlc.backends.sysml.annotations import make_annotation
+from sysmlc.backends.sysml.coverage import record_omissions
+from sysmlc.backends.sysml.naming import assign_names, rename_hiding_members
+from sysmlc.backends.sysml.placement import make_plan
+from sysmlc.backends.sysml.plan import Member
+from sysmlc.backends.sysml.printing import Line, print_lines, quote_name
+from sysmlc.backends.sysml.profiles import define_stereotypes
 from sysmlc.backends.sysml.rules import Losses
-from sysmlc.backends.sysml.words import quoted
+from sysmlc.backends.sysml.writer import WriteMember, Writer
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Graph, Kind
 from sysmlc.support.recursion import allow_recursion
 
 
-def document(graph: Graph, sink: Sink) -> tuple[str, bool]:
-    """The text, and whether it uses our library; what it cannot say is reported.
+def print_document(graph: Graph, sink: Sink) -> tuple[str, bool]:
+    """Return the text of a graph, and whether it uses the library ``SysMLC``. Report the losses."""
+    writer, lines = write_document(graph)
+    writer.losses.report(sink)
+    return print_lines(lines), writer.uses_library
 
-    It is written again when it refers to what is private in the model, or to what turned out
-    to have no place.
+
+def write_document(graph: Graph) -> tuple[Writer, list[Line]]:
+    """Return the lines of the text, and the writer with the losses of each element.
+
+    The text is written again until no reference leads to a private or a dropped element: whether
+    the text refers to an element is known only after it is written.
     """
-    book, lines = written(graph)
-    book.losses.report(sink)
-    return printed(lines), book.uses_library
-
-
-def written(graph: Graph) -> tuple[Book, list[Line]]:
-    """What the text is printed from, with the losses of each element."""
-    public: frozenset[str] = frozenset()
+    public_ids: frozenset[str] = frozenset()
     dropped: dict[str, str] = {}
     while True:
-        book, lines = _written(graph, public, frozenset(dropped))
-        if public >= book.plan.shown and dropped.keys() >= book.dropped.keys():
+        writer, lines = _write_once(graph, public_ids, frozenset(dropped))
+        exposed = writer.plan.exposed
+        if public_ids >= exposed and dropped.keys() >= writer.dropped.keys():
             break
-        public, dropped = public | book.plan.shown, dropped | book.dropped
-    account(book, dropped)
-    return book, lines
+        public_ids, dropped = public_ids | exposed, dropped | writer.dropped
+    record_omissions(writer, dropped)
+    return writer, lines
 
 
-def _written(
-    graph: Graph, public: frozenset[str], dropped: frozenset[str]
-) -> tuple[Book, list[Line]]:
+def _write_once(
+    graph: Graph, public_ids: frozenset[str], dropped: frozenset[str]
+) -> tuple[Writer, list[Line]]:
     losses = Losses(graph)
     plan = make_plan(graph, losses, dropped)
-    plan.applied = define(plan)
-    name_all(plan)
-    name_apart(plan)
-    caex = frozenset(one.source for one in graph.of_kind(Kind.DOCUMENT) if one.subkind == "caex")
-    book = Book(graph, plan, losses, WRITERS, public=public, caex=caex)
-    relations.prepare(book)
+    plan.metadata_definitions = define_stereotypes(plan)
+    assign_names(plan)
+    rename_hiding_members(plan)
+    documents = graph.of_kind(Kind.DOCUMENT)
+    caex_files = frozenset(d.source for d in documents if d.subkind == "caex")
+    writer = Writer(graph, plan, losses, WRITERS, public_ids=public_ids, caex_files=caex_files)
+    dependencies.prewrite_dependencies(writer)
     with allow_recursion(plan.depth):
-        return book, [line for top in plan.tops for line in book.member(top)]
+        return writer, [line for root in plan.roots for line in writer.write_member(root)]
 
 
-def _added(book: Book, entry: Entry) -> list[Line]:
-    """A member that no element stands for."""
-    if entry.shape.keyword == "package":
-        return structure.package(book, entry)
-    type_ = book.plan.added.get(id(entry), "")
-    head = f"{entry.shape.keyword} {quoted(entry.name)}{' : ' if type_ else ''}{type_}"
-    profile = book.plan.profiles.get(id(entry))
-    body = [annotations.ours(book, entry, "External", {"href": profile})] if profile else []
-    return [Line(head, body + book.members(entry))]
+def _write_added_member(writer: Writer, member: Member) -> list[Line]:
+    """Write a member without an element: a package, a metadata definition or its attribute."""
+    if member.shape.keyword == "package":
+        return definitions.write_package(writer, member)
+    type_ = writer.plan.added_types.get(id(member), "")
+    head = f"{member.shape.keyword} {quote_name(member.name)}{' : ' if type_ else ''}{type_}"
+    profile = writer.plan.profile_namespaces.get(id(member))
+    body = [make_annotation(writer, member, "External", {"href": profile})] if profile else []
+    return [Line(head, body + writer.write_members(member))]
 
 
-WRITERS: dict[str, Writer] = {
-    "": _added,
-    Kind.PACKAGE: structure.package,
-    Kind.PROFILE: structure.package,
-    Kind.CLASS: relations.class_,
-    Kind.COMPONENT: structure.classifier,
-    Kind.ACTOR: structure.classifier,
-    Kind.INTERFACE: structure.classifier,
-    Kind.DATA_TYPE: structure.value_type,
-    Kind.ENUMERATION: structure.enumeration,
-    Kind.ENUMERATION_LITERAL: structure.enumerated,
-    Kind.SIGNAL: structure.classifier,
-    Kind.ITEM: structure.classifier,
-    Kind.STEREOTYPE: structure.classifier,
-    Kind.PROPERTY: structure.property_,
-    Kind.FLOW_PROPERTY: structure.feature,
-    Kind.PORT: structure.port,
-    Kind.OPERATION: structure.operation,
-    Kind.RECEPTION: structure.reception,
-    Kind.PARAMETER: structure.parameter,
-    Kind.ASSOCIATION: structure.association,
-    Kind.CONNECTOR: connections.connector,
-    Kind.ITEM_FLOW: connections.item_flow,
-    Kind.INSTANCE: instances.instance,
-    Kind.CONSTRAINT: constraints.constraint,
-    Kind.COMMENT: texts.comment,
-    Kind.DEPENDENCY: relations.dependency,
-    Kind.REQUIREMENT: relations.requirement,
-    Kind.IMPORT: imports.import_,
-    Kind.DOCUMENT: automation.facts,
-    Kind.METADATA: automation.facts,
-    Kind.ALIAS: automation.facts,
-    Kind.ACTIVITY: behaviours.behaviour,
-    Kind.STATE_MACHINE: behaviours.behaviour,
-    Kind.TEST_CASE: behaviours.behaviour,
-    Kind.ACTION: actions.action,
-    Kind.STRUCTURED: actions.structured,
-    Kind.CONTROL: actions.control,
-    Kind.PIN: pins.pin,
-    Kind.ACTIVITY_PARAMETER: pins.pin,
-    Kind.OBJECT_NODE: pins.object_node,
-    Kind.DATA_STORE: pins.object_node,
-    Kind.OBJECT_FLOW: objectflows.object_flow,
-    Kind.CONTROL_FLOW: actions.nothing,
-    Kind.INTERACTION: behaviours.behaviour,
-    Kind.LIFELINE: interactions.lifeline,
-    Kind.MESSAGE: interactions.message,
-    Kind.FRAGMENT: interactions.fragment,
-    Kind.OPERAND: interactions.fragment,
-    Kind.USE_CASE: usecases.use_case,
-    Kind.EXTEND: usecases.extend,
-    Kind.EXTENSION_POINT: usecases.extension_point,
-    Kind.STATE: states.state,
-    Kind.REGION: states.region,
-    Kind.PSEUDOSTATE: states.pseudostate,
-    Kind.TRANSITION: states.transition,
-    Kind.FACET: automation.group,
-    Kind.GROUP: automation.group,
+WRITERS: dict[str, WriteMember] = {
+    "": _write_added_member,
+    Kind.PACKAGE: definitions.write_package,
+    Kind.PROFILE: definitions.write_package,
+    Kind.IMPORT: definitions.write_import,
+    Kind.CLASS: definitions.write_class,
+    Kind.COMPONENT: definitions.write_definition,
+    Kind.ACTOR: definitions.write_definition,
+    Kind.INTERFACE: definitions.write_definition,
+    Kind.SIGNAL: definitions.write_definition,
+    Kind.ITEM: definitions.write_definition,
+    Kind.STEREOTYPE: definitions.write_definition,
+    Kind.DATA_TYPE: definitions.write_value_type,
+    Kind.ENUMERATION: definitions.write_enumeration,
+    Kind.ENUMERATION_LITERAL: definitions.write_enumeration_literal,
+    Kind.REQUIREMENT: definitions.write_requirement,
+    Kind.PROPERTY: features.write_property,
+    Kind.FLOW_PROPERTY: features.write_feature,
+    Kind.PORT: features.write_port,
+    Kind.OPERATION: features.write_operation,
+    Kind.RECEPTION: features.write_reception,
+    Kind.PARAMETER: features.write_parameter,
+    Kind.PIN: features.write_pin,
+    Kind.ACTIVITY_PARAMETER: features.write_pin,
+    Kind.OBJECT_NODE: features.write_object_node,
+    Kind.DATA_STORE: features.write_object_node,
+    Kind.ASSOCIATION: connections.write_association,
+    Kind.CONNECTOR: connections.write_connector,
+    Kind.ITEM_FLOW: connections.write_item_flow,
+    Kind.INSTANCE: instances.write_instance,
+    Kind.CONSTRAINT: constraints.write_constraint,
+    Kind.DEPENDENCY: dependencies.write_dependency,
+    Kind.COMMENT: comments.write_comment,
+    Kind.DOCUMENT: comments.write_document,
+    Kind.METADATA: comments.write_document,
+    Kind.ALIAS: comments.write_document,
+    Kind.FACET: comments.write_group,
+    Kind.GROUP: comments.write_group,
+    Kind.ACTIVITY: behaviours.write_behaviour,
+    Kind.STATE_MACHINE: behaviours.write_behaviour,
+    Kind.TEST_CASE: behaviours.write_behaviour,
+    Kind.INTERACTION: behaviours.write_behaviour,
+    Kind.ACTION: actions.write_action,
+    Kind.STRUCTURED: actions.write_structured_node,
+    Kind.CONTROL: actions.write_control_node,
+    Kind.CONTROL_FLOW: actions.write_control_flow,
+    Kind.OBJECT_FLOW: activity_flows.write_object_flow,
+    Kind.STATE: states.write_state,
+    Kind.REGION: states.write_region,
+    Kind.PSEUDOSTATE: states.write_pseudostate,
+    Kind.TRANSITION: states.write_transition,
+    Kind.LIFELINE: interactions.write_lifeline,
+    Kind.MESSAGE: interactions.write_message,
+    Kind.FRAGMENT: interactions.write_fragment,
+    Kind.OPERAND: interactions.write_fragment,
+    Kind.USE_CASE: use_cases.write_use_case,
+    Kind.EXTEND: use_cases.write_extend,
+    Kind.EXTENSION_POINT: use_cases.write_extension_point,
 }
-"""Writer by kind of element; the empty kind is for members that the text adds itself."""
+"""Writer by kind of element; the empty kind is for members that the back end adds itself."""

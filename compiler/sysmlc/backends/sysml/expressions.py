@@ -1,150 +1,222 @@
-"""Expressions of our grammar over the names of the text; other text stays as it is."""
+"""Expressions and values of the model as SysML v2 expressions over the names of the text.
 
-from sysmlc.backends.sysml.book import Book
-from sysmlc.backends.sysml.entry import Entry, Plan
-from sysmlc.backends.sysml.references import lookup, meant, reference
-from sysmlc.backends.sysml.words import quoted, string
-from sysmlc.ir import Kind
-from sysmlc.logic.expressions.expression import (
-    Binary,
-    Call,
-    Conditional,
-    Expression,
-    ExpressionError,
-    Index,
-    Literal,
-    Member,
-    Name,
-    Unary,
-)
+A text that is not an expression of sysmlc's grammar, or that contains an unknown name, has no
+expression: the caller decides what the text becomes instead.
+"""
+
+from sysmlc.backends.sysml.library import find_quantity, find_unit_name
+from sysmlc.backends.sysml.plan import Member, Plan
+from sysmlc.backends.sysml.printing import quote_name, quote_string
+from sysmlc.backends.sysml.references import find_by_model_name, format_reference, look_up
+from sysmlc.backends.sysml.writer import Writer
+from sysmlc.ir import AttrValue, Edge, Element, Kind
+from sysmlc.ir.query import generals, type_of
+from sysmlc.ir.query.classifiers import unit_of
+from sysmlc.logic.expressions import expression as syntax
 from sysmlc.logic.expressions.parsing import parse_expression
 
-
-class UnknownNameError(ValueError):
-    """A name in an expression that no namespace of the text knows."""
-
-
-def expression(book: Book, scope: Entry | None, text: str) -> str | None:
-    """The text as an expression of SysML v2, or None when it is none over the model."""
-    try:
-        return written(book, scope, parse_expression(text))
-    except (ExpressionError, UnknownNameError, RecursionError):
-        return None
-
-
-def written(book: Book, scope: Entry | None, tree: Expression) -> str:
-    """An expression in SysML v2. Raises UnknownNameError."""
-    return _Printer(book.plan, scope).text(tree, 0)
-
-
-def resolved(book: Book, scope: Entry | None, tree: Expression) -> Entry | None:
-    """The feature that a name, or a chain of names, denotes. Raises UnknownNameError."""
-    return _Printer(book.plan, scope).chain(tree)[1]
-
-
-_STRENGTH = {"implies": 2, "or": 3, "xor": 4, "and": 5, "==": 6, "!=": 6} | {
+_PRECEDENCE = {"implies": 2, "or": 3, "xor": 4, "and": 5, "==": 6, "!=": 6} | {
     **dict.fromkeys(("<", "<=", ">", ">="), 8),
     **dict.fromkeys("+-", 9),
     **dict.fromkeys("*/%", 10),
 }
 _UNARY, _POSTFIX = 12, 13
+_WITHOUT_VALUE = frozenset({"transition", "succession", "flow", "comment", "dependency", "start"})
+"""Keywords of members that no expression denotes."""
+_QUALIFIED = (Kind.ENUMERATION_LITERAL, Kind.PROPERTY, Kind.PORT, Kind.OPERATION, Kind.INSTANCE)
+"""Kinds that an incomplete qualified name may denote."""
+_NUMBERS = frozenset({"Integer", "Real", "UnlimitedNatural", "Number"})
 
 
-class _Printer:
-    def __init__(self, plan: Plan, scope: Entry | None) -> None:
+class UnknownNameError(ValueError):
+    """A name in an expression denotes no member of the text."""
+
+
+# -- expressions ---------------------------------------------------------------------------------
+
+
+def format_expression(writer: Writer, scope: Member | None, text: str) -> str | None:
+    """Return the text as an expression of SysML v2; None if it is none over this model."""
+    try:
+        return print_expression(writer, scope, parse_expression(text))
+    except (syntax.ExpressionError, UnknownNameError, RecursionError):
+        return None
+
+
+def print_expression(writer: Writer, scope: Member | None, tree: syntax.Expression) -> str:
+    """Return the SysML v2 text of an expression. Raises UnknownNameError."""
+    return _ExpressionPrinter(writer.plan, scope).print(tree, 0)
+
+
+def resolve_name(writer: Writer, scope: Member | None, tree: syntax.Expression) -> Member | None:
+    """Return the member that a name, or a chain of names, denotes. Raises UnknownNameError."""
+    return _ExpressionPrinter(writer.plan, scope).print_chain(tree)[1]
+
+
+class _ExpressionPrinter:
+    """Prints expressions in one scope, with the fewest parentheses."""
+
+    def __init__(self, plan: Plan, scope: Member | None) -> None:
         self._plan = plan
         self._scope = scope
 
-    def text(self, tree: Expression, strength: int) -> str:
-        text, own = self._printed(tree)
-        return f"({text})" if own < strength else text
+    def print(self, tree: syntax.Expression, precedence: int) -> str:
+        """Return the text of an operand of an operator with this precedence."""
+        text, own_precedence = self._print_node(tree)
+        return f"({text})" if own_precedence < precedence else text
 
-    def _printed(self, tree: Expression) -> tuple[str, int]:  # noqa: PLR0911 - one a kind
+    def print_chain(self, tree: syntax.Expression) -> tuple[str, Member | None]:
+        """Return the text of a name or a chain of names, and the member that it denotes."""
+        if isinstance(tree, syntax.Name):
+            member = self._find_name(tree.path)
+            if member is None:
+                raise UnknownNameError("::".join(tree.path))
+            text = format_reference(self._plan, self._scope, member)
+            if text is None:
+                raise UnknownNameError(member.name)
+            return text, member
+        if isinstance(tree, syntax.Member):
+            base, base_member = (
+                self.print_chain(tree.base)
+                if isinstance(tree.base, syntax.Name | syntax.Member)
+                else (self.print(tree.base, _POSTFIX), None)
+            )
+            feature = None
+            if base_member is not None:
+                feature = find_by_model_name(self._plan, base_member, tree.name)
+            if feature is None:
+                raise UnknownNameError(tree.name)
+            return f"{base}.{quote_name(feature.name)}", feature
+        return self.print(tree, _POSTFIX), None
+
+    def _print_node(self, tree: syntax.Expression) -> tuple[str, int]:  # noqa: PLR0911 - one a kind
+        """Return the text of an expression, and the precedence of its outermost operator."""
         match tree:
-            case Literal(value):
-                return _literal(value), _POSTFIX
-            case Name() | Member():
-                return self.chain(tree)[0], _POSTFIX
-            case Call(function, args):
-                inside = ", ".join(self.text(arg, 0) for arg in args)
-                return f"{self.text(function, _POSTFIX)}({inside})", _POSTFIX
-            case Index(base, index):
-                return f"{self.text(base, _POSTFIX)}#({self.text(index, 0)})", _POSTFIX
-            case Unary(op, operand):
-                return f"{op}{' ' * (op == 'not')}{self.text(operand, _UNARY)}", _UNARY
-            case Binary():
-                return self._binary(tree)
-            case Conditional(condition, then, otherwise):
-                parts = self.text(condition, 2), self.text(then, 1), self.text(otherwise, 1)
+            case syntax.Literal(value):
+                return _print_literal(value), _POSTFIX
+            case syntax.Name() | syntax.Member():
+                return self.print_chain(tree)[0], _POSTFIX
+            case syntax.Call(function, args):
+                arguments = ", ".join(self.print(arg, 0) for arg in args)
+                return f"{self.print(function, _POSTFIX)}({arguments})", _POSTFIX
+            case syntax.Index(base, index):
+                return f"{self.print(base, _POSTFIX)}#({self.print(index, 0)})", _POSTFIX
+            case syntax.Unary(op, operand):
+                return f"{op}{' ' * (op == 'not')}{self.print(operand, _UNARY)}", _UNARY
+            case syntax.Binary():
+                return self._print_binary(tree)
+            case syntax.Conditional(condition, then, otherwise):
+                parts = self.print(condition, 2), self.print(then, 1), self.print(otherwise, 1)
                 return "if {} ? {} else {}".format(*parts), 0
 
-    def _binary(self, tree: Binary) -> tuple[str, int]:
-        own = _STRENGTH[tree.op]
-        to_the_right = tree.op == "implies"
-        left = self.text(tree.left, own + to_the_right)
-        right = self.text(tree.right, own + (not to_the_right))
-        return f"{left} {tree.op} {right}", own
+    def _print_binary(self, tree: syntax.Binary) -> tuple[str, int]:
+        precedence = _PRECEDENCE[tree.op]
+        is_right_associative = tree.op == "implies"
+        left = self.print(tree.left, precedence + is_right_associative)
+        right = self.print(tree.right, precedence + (not is_right_associative))
+        return f"{left} {tree.op} {right}", precedence
 
-    # -- names ---------------------------------------------------------------------------------
-
-    def chain(self, tree: Expression) -> tuple[str, Entry | None]:
-        """The text of a name or a chain of names, and what it denotes."""
-        if isinstance(tree, Name):
-            entry = self._head(tree.path)
-            if entry is None:
-                raise UnknownNameError("::".join(tree.path))
-            text = reference(self._plan, self._scope, entry)
-            if text is None:
-                raise UnknownNameError(entry.name)
-            return text, entry
-        if isinstance(tree, Member):
-            before, entry = (
-                self.chain(tree.base)
-                if isinstance(tree.base, Name | Member)
-                else (self.text(tree.base, _POSTFIX), None)
-            )
-            found = None if entry is None else meant(self._plan, entry, tree.name)
-            if found is None:
-                raise UnknownNameError(tree.name)
-            return f"{before}.{quoted(found.name)}", found
-        return self.text(tree, _POSTFIX), None
-
-    def _head(self, path: tuple[str, ...]) -> Entry | None:
-        entry = self._first(path[0])
+    def _find_name(self, path: tuple[str, ...]) -> Member | None:
+        member = self._find_first_name(path[0])
         for name in path[1:]:
-            entry = None if entry is None else meant(self._plan, entry, name)
-        if entry is None:
-            return self._by_suffix(path)
-        return entry
+            member = None if member is None else find_by_model_name(self._plan, member, name)
+        return self._find_by_suffix(path) if member is None else member
 
-    def _first(self, name: str) -> Entry | None:
+    def _find_first_name(self, name: str) -> Member | None:
         scope = self._scope
-        for space in () if scope is None else (scope, *scope.above):
-            found = meant(self._plan, space, name)
-            if found is not None and found.shape.keyword not in _NO_VALUES:
-                return found
-        return lookup(self._plan, None, name)
+        for namespace in () if scope is None else (scope, *scope.namespaces):
+            member = find_by_model_name(self._plan, namespace, name)
+            if member is not None and member.shape.keyword not in _WITHOUT_VALUE:
+                return member
+        return look_up(self._plan, None, name)
 
-    def _by_suffix(self, path: tuple[str, ...]) -> Entry | None:
-        """A literal that is named alone, or a name that starts in the middle of the path."""
+    def _find_by_suffix(self, path: tuple[str, ...]) -> Member | None:
+        """Return the only member whose qualified name ends with the path.
+
+        A single name may only be that of an enumeration literal.
+        """
         kinds = (Kind.ENUMERATION_LITERAL,) if len(path) == 1 else _QUALIFIED
-        found = []
+        candidates = []
         for element in self._plan.graph.of_kind(*kinds):
-            entry = self._plan.entry(element) if element.name == path[-1] else None
-            if entry is None:
+            member = self._plan.find(element) if element.name == path[-1] else None
+            if member is None:
                 continue
-            names = [one.name for one in (entry, *entry.above)][: len(path)]
+            names = [step.name for step in (member, *member.namespaces)][: len(path)]
             if tuple(reversed(names)) == path:
-                found.append(entry)
-        return found[0] if len(found) == 1 else None
+                candidates.append(member)
+        return candidates[0] if len(candidates) == 1 else None
 
 
-_NO_VALUES = frozenset({"transition", "succession", "flow", "comment", "dependency", "start"})
-"""Keywords of members that no expression means."""
-_QUALIFIED = (Kind.ENUMERATION_LITERAL, Kind.PROPERTY, Kind.PORT, Kind.OPERATION, Kind.INSTANCE)
-
-
-def _literal(value: bool | float | str) -> str:
+def _print_literal(value: bool | float | str) -> str:
     if isinstance(value, str):
-        return string(value)
+        return quote_string(value)
     return str(value).lower()
+
+
+# -- values --------------------------------------------------------------------------------------
+
+
+def format_value(
+    writer: Writer, scope: Member | None, feature: Element, holder: Element, key: str = "value"
+) -> str:
+    """Return the value that attribute *key* of *holder* gives to a feature; empty for none."""
+    value = holder.attrs.get(key)
+    if value is None and key not in holder.attrs:
+        return ""
+    instance = writer.graph.get(str(holder.attrs.get(f"{key}_instance", "")))
+    if instance is not None:
+        name = writer.refer_to(scope, holder, Edge.REFERENCES, instance)
+        return name or quote_string(instance.name)
+    if f"{key}_language" in holder.attrs and isinstance(value, str):
+        expression = format_expression(writer, scope, value)
+        if expression is not None:
+            return expression
+    return format_literal(writer, scope, feature, value)
+
+
+def format_literal(writer: Writer, scope: Member | None, feature: Element, value: AttrValue) -> str:
+    """Return a value as a literal of the type of the feature."""
+    if isinstance(value, tuple):
+        return f"({', '.join(format_literal(writer, scope, feature, item) for item in value)})"
+    if value is None:
+        return "null"
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, int | float):
+        return _format_number(writer, scope, feature, value)
+    return _format_text(writer, scope, feature, value)
+
+
+def _format_number(writer: Writer, scope: Member | None, feature: Element, value: float) -> str:
+    """Return a number with its unit: that of the value, else that of the feature's type."""
+    type_ = type_of(writer.graph, feature)
+    text = repr(value)
+    if text in ("inf", "-inf", "nan"):
+        return quote_string(text)
+    value_unit = feature.attrs.get("value_unit")
+    if isinstance(value_unit, str) and value_unit.isidentifier():
+        return f"{text} [{writer.refer_to_library(scope, f'SI::{value_unit}')}]"
+    if type_ is None or find_quantity(writer.graph, type_) is None:
+        return text
+    unit = find_unit_name(unit_of(writer.graph, type_))
+    return text if unit is None else f"{text} [{writer.refer_to_library(scope, unit)}]"
+
+
+def _format_text(writer: Writer, scope: Member | None, feature: Element, text: str) -> str:
+    """Return a text as an enumeration literal or number if the type allows it, else as a string."""
+    type_ = type_of(writer.graph, feature)
+    for general in () if type_ is None else (type_, *generals(writer.graph, type_)):
+        if general.kind is Kind.ENUMERATION:
+            for literal in writer.graph.owned(general):
+                if literal.kind is Kind.ENUMERATION_LITERAL and literal.name == text:
+                    name = writer.refer_to(scope, feature, Edge.REFERENCES, literal)
+                    return name or quote_string(text)
+        is_primitive = general.name in _NUMBERS and general.attrs.get("external")
+        if is_primitive and _is_number(text):
+            number = float(text) if "." in text else int(text)
+            return _format_number(writer, scope, feature, number)
+    return quote_string(text)
+
+
+def _is_number(text: str) -> bool:
+    return text.isascii() and text.replace(".", "", 1).isdigit() and not text.endswith(".")

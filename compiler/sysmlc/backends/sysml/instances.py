@@ -1,125 +1,127 @@
 """Instances and their slots: usages with bound values."""
 
-from sysmlc.backends.sysml import annotations
-from sysmlc.backends.sysml.book import Book
-from sysmlc.backends.sysml.declarations import type_name, visibility
-from sysmlc.backends.sysml.entry import Entry
-from sysmlc.backends.sysml.printing import Line
-from sysmlc.backends.sysml.values import value as value_text
-from sysmlc.backends.sysml.words import quoted
+from sysmlc.backends.sysml.annotations import make_annotation, write_annotations
+from sysmlc.backends.sysml.declarations import list_visibility, refer_to_type
+from sysmlc.backends.sysml.expressions import format_value
+from sysmlc.backends.sysml.plan import Member
+from sysmlc.backends.sysml.printing import Line, quote_name
+from sysmlc.backends.sysml.writer import Writer
 from sysmlc.ir import Edge, Element, Kind
 
 
-def instance(book: Book, entry: Entry) -> list[Line]:
-    """An instance: a usage of its classifiers; one below a top instance redefines its part."""
-    element = entry.element
-    assert element is not None
+def write_instance(writer: Writer, member: Member) -> list[Line]:
+    """Write an instance: a usage of its classifiers; the instance of a part redefines the part."""
+    element = member.require_element()
     if element.role in ("unit", "quantity kind"):
-        return [_unit(book, entry, element)]
-    part = book.graph.target(element, Edge.REPRESENTS)
+        return [_write_measure(writer, member, element)]
+    part = writer.graph.target(element, Edge.REPRESENTS)
     if element.subkind == "part" and part is not None:
-        return _part(book, entry, element, part)
-    return [Line(_head(book, entry, element), _contents(book, entry, element))]
+        return _write_part(writer, member, element, part)
+    return [Line(_format_head(writer, member, element), _write_body(writer, member, element))]
 
 
-def _head(book: Book, entry: Entry, element: Element) -> str:
-    keyword = entry.shape.keyword
-    words = [*visibility(book, element), keyword, quoted(entry.name) if entry.name else ""]
-    text = " ".join(word for word in words if word)
+def _format_head(writer: Writer, member: Member, element: Element) -> str:
+    keyword, name = member.shape.keyword, quote_name(member.name) if member.name else ""
+    words = [*list_visibility(writer, element), keyword, name]
+    head = " ".join(word for word in words if word)
     types: list[str] = []
     subsets: list[str] = []
-    for one in book.graph.targets(element, Edge.INSTANCE_OF):
-        name = type_name(book, entry.parent, element, one)
-        other = book.plan.entry(one)
-        if name is not None:
-            is_type = other is None or other.shape.is_definition
-            (types if is_type else subsets).append(name)
-    text += f" : {', '.join(types)}" if types else ""
-    return text + (f" :> {', '.join(subsets)}" if subsets else "")
+    for classifier in writer.graph.targets(element, Edge.INSTANCE_OF):
+        type_name = refer_to_type(writer, member.parent, element, classifier)
+        type_member = writer.plan.find(classifier)
+        if type_name is not None:
+            is_type = type_member is None or type_member.shape.is_definition
+            (types if is_type else subsets).append(type_name)
+    head += f" : {', '.join(types)}" if types else ""
+    return head + (f" :> {', '.join(subsets)}" if subsets else "")
 
 
-def _part(book: Book, entry: Entry, element: Element, part: Element) -> list[Line]:
-    """Values for a part, below the parts that lead to it."""
-    body = _contents(book, entry, element)
+def _write_body(writer: Writer, member: Member, element: Element) -> list[Line]:
+    lines = write_annotations(writer, member)
+    for child in writer.graph.owned(element):
+        if child.kind is Kind.SLOT:
+            writer.expressed.add(child.id)
+            lines += _write_slot(writer, member, child)
+    return lines + writer.write_members(member)
+
+
+# -- parts of instances --------------------------------------------------------------------------
+
+
+def _write_part(writer: Writer, member: Member, element: Element, part: Element) -> list[Line]:
+    """Write the values of a part, nested in redefinitions of the parts that lead to it."""
+    body = _write_body(writer, member, element)
     ids = element.attrs.get("path", ())
-    path = [book.graph.get(str(id)) for id in ids] if isinstance(ids, tuple) else []
-    steps = [one for one in path if one is not None and one is not part]
-    name = book.redefined(entry.parent, steps[0] if steps else part)
+    path = [writer.graph.get(str(id)) for id in ids] if isinstance(ids, tuple) else []
+    steps = [*(step for step in path if step is not None and step is not part), part]
+    name = writer.refer_to_redefined(member.parent, steps[0])
     if name is None:
-        return book.drop(entry, "represents")
-    names = [name, *(quoted(one.name) for one in (*steps, part)[1:])]
-    for one in reversed(names[1:]):
-        body = [Line(f"part :>> {one}", body)]
-    return [Line(f"part {_mark(book, entry, element, steps[0] if steps else part)} {name}", body)]
+        return writer.drop(member, "represents")
+    for step in reversed(steps[1:]):
+        body = [Line(f"part :>> {quote_name(step.name)}", body)]
+    return [Line(f"part {_choose_operator(writer, member, element, steps[0])} {name}", body)]
 
 
-def _mark(book: Book, entry: Entry, element: Element, part: Element) -> str:
-    """A member cannot redefine another one of its own owner: it is one of its values."""
-    other = book.plan.entry(part)
-    if other is None or other.parent is None or other.parent is not entry.parent:
+def _choose_operator(writer: Writer, member: Member, element: Element, part: Element) -> str:
+    """Return ``:>>``, or ``:>`` for a sibling: a member must not redefine one of its own owner."""
+    part_member = writer.plan.find(part)
+    if part_member is None or part_member.parent is None:
         return ":>>"
-    book.approximated(element, "values of a part beside it", "a subset of the part")
+    if part_member.parent is not member.parent:
+        return ":>>"
+    writer.record_approximation(element, "values of a part beside it", "a subset of the part")
     return ":>"
 
 
-def _contents(book: Book, entry: Entry, element: Element) -> list[Line]:
-    lines = annotations.of(book, entry)
-    for one in book.graph.owned(element):
-        if one.kind is Kind.SLOT:
-            book.said.add(one.id)
-            lines += _slot(book, entry, one)
-    return lines + book.members(entry)
+# -- slots ---------------------------------------------------------------------------------------
 
 
-def _slot(book: Book, entry: Entry, slot: Element) -> list[Line]:
-    """The value of one feature; a list when there are several."""
-    feature = book.graph.target(slot, Edge.INSTANCE_OF)
-    name = None if feature is None else book.redefined(entry, feature)
-    inner = [line for one in book.graph.owned(slot) for line in _owned(book, one)]
+def _write_slot(writer: Writer, member: Member, slot: Element) -> list[Line]:
+    """Write the redefinition of a feature with its value; a list if there are several values."""
+    feature = writer.graph.target(slot, Edge.INSTANCE_OF)
+    name = None if feature is None else writer.refer_to_redefined(member, feature)
+    children = [line for child in writer.graph.owned(slot) for line in _write_child(writer, child)]
     if name is None or feature is None:
-        if not _is_library(book, slot):
-            book.lost(slot, "instance-of")
-        return inner
-    value = _value(book, entry, slot, feature)
+        if feature is None or not feature.attrs.get("library"):
+            writer.record_unreachable(slot, "instance-of")
+        return children
+    value = _format_slot_value(writer, member, slot, feature)
     keyword = "port " if feature.kind is Kind.PORT else ""
-    given = tuple(
-        f"{key.removeprefix('value.')}={one}"
-        for key, one in slot.attrs.items()
+    values = tuple(
+        f"{key.removeprefix('value.')}={value}"
+        for key, value in slot.attrs.items()
         if key.startswith("value.")
     )
-    body = [annotations.ours(book, entry, "AutomationML", {"values": given})] if given else []
-    return [Line(f"{keyword}:>> {name}{value}", body), *inner]
+    body = [make_annotation(writer, member, "AutomationML", {"values": values})] if values else []
+    return [Line(f"{keyword}:>> {name}{value}", body), *children]
 
 
-def _owned(book: Book, element: Element) -> list[Line]:
-    found = book.plan.entry(element)
-    return [] if found is None else book.member(found)
+def _write_child(writer: Writer, element: Element) -> list[Line]:
+    member = writer.plan.find(element)
+    return [] if member is None else writer.write_member(member)
 
 
-def _is_library(book: Book, slot: Element) -> bool:
-    feature = book.graph.target(slot, Edge.INSTANCE_OF)
-    return feature is not None and bool(feature.attrs.get("library"))
-
-
-def _value(book: Book, entry: Entry, slot: Element, feature: Element) -> str:
-    names = book.names(entry, slot, Edge.REFERENCES)
+def _format_slot_value(writer: Writer, member: Member, slot: Element, feature: Element) -> str:
+    names = writer.refer_to_targets(member, slot, Edge.REFERENCES)
     if "value" in slot.attrs:
-        return f" = {value_text(book, entry, feature, slot)}"
+        return f" = {format_value(writer, member, feature, slot)}"
     if not names:
         return ""
     return f" = {names[0] if len(names) == 1 else '(' + ', '.join(names) + ')'}"
 
 
-def _unit(book: Book, entry: Entry, element: Element) -> Line:
-    """A unit or quantity kind that the model defines itself."""
+# -- units ---------------------------------------------------------------------------------------
+
+
+def _write_measure(writer: Writer, member: Member, element: Element) -> Line:
+    """Write a unit or quantity kind that the model defines itself; its slots are not written."""
     symbol = element.attrs.get("symbol")
-    names = {one.name for one in (entry.parent.members if entry.parent else book.plan.tops)}
-    short = f"<{quoted(str(symbol))}> " if symbol and str(symbol) not in names else ""
+    siblings = member.parent.members if member.parent else writer.plan.roots
+    names = {sibling.name for sibling in siblings}
+    short_name = f"<{quote_name(str(symbol))}> " if symbol and str(symbol) not in names else ""
     is_unit = element.role == "unit"
     type_ = "MeasurementReferences::SimpleUnit" if is_unit else "Quantities::QuantityDimension"
-    for one in book.graph.owned(element):
-        book.said.add(one.id)
-    body = annotations.of(book, entry) + book.members(entry)
-    return Line(
-        f"attribute {short}{quoted(entry.name)} : {book.library(entry.parent, type_)}", body
-    )
+    writer.expressed.update(child.id for child in writer.graph.owned(element))
+    body = write_annotations(writer, member) + writer.write_members(member)
+    type_name = writer.refer_to_library(member.parent, type_)
+    return Line(f"attribute {short_name}{quote_name(member.name)} : {type_name}", body)

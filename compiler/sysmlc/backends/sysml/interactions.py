@@ -1,107 +1,124 @@
 """Interactions: lifelines as references to parts, messages between them, fragments around them."""
 
-from sysmlc.backends.sysml import annotations
-from sysmlc.backends.sysml.book import Book
-from sysmlc.backends.sysml.conditions import condition
-from sysmlc.backends.sysml.declarations import type_name
-from sysmlc.backends.sysml.entry import Entry
-from sysmlc.backends.sysml.printing import Line
-from sysmlc.backends.sysml.references import named
-from sysmlc.backends.sysml.structure import contents
-from sysmlc.backends.sysml.words import quoted, string
+from sysmlc.backends.sysml.annotations import make_annotation
+from sysmlc.backends.sysml.conditions import format_condition
+from sysmlc.backends.sysml.declarations import refer_to_type
+from sysmlc.backends.sysml.definitions import write_contents
+from sysmlc.backends.sysml.plan import Member
+from sysmlc.backends.sysml.printing import Line, quote_name, quote_string
+from sysmlc.backends.sysml.references import format_element_reference
+from sysmlc.backends.sysml.writer import Writer
 from sysmlc.ir import AttrValue, Edge, Element, Kind
 from sysmlc.ir.query import type_of
 
-
-def lifeline(book: Book, entry: Entry) -> list[Line]:
-    """A lifeline: a reference to a part, or to something of its type."""
-    element = entry.element
-    assert element is not None
-    head = f"ref part {quoted(entry.name)}"
-    for one in book.graph.targets(element, Edge.REPRESENTS):
-        type_ = type_of(book.graph, one)
-        shape = book.plan.entry(type_)
-        word = "" if shape is None else _LIFELINES.get(shape.shape.keyword, "")
-        name = None if type_ is None else type_name(book, entry.parent, element, type_)
-        if name is not None:
-            head = f"ref {word}{quoted(entry.name)} : {name}"
-        book.approximated(element, "what a lifeline represents", "a part of the same type")
-    return [Line(head, contents(book, entry))]
+_LIFELINE_KEYWORDS = {"part def": "part ", "item def": "part ", "port def": "port "}
+"""Keyword of a lifeline by that of its type; messages connect occurrences only."""
 
 
-_LIFELINES = {"part def": "part ", "item def": "part ", "port def": "port "}
-"""What a lifeline is by the definition that types it; messages go between occurrences."""
+def write_lifeline(writer: Writer, member: Member) -> list[Line]:
+    """Write a lifeline: a reference to a part of the type that it represents."""
+    element = member.require_element()
+    head = f"ref part {quote_name(member.name)}"
+    for represented in writer.graph.targets(element, Edge.REPRESENTS):
+        type_ = type_of(writer.graph, represented)
+        type_member = writer.plan.find(type_)
+        keyword = ""
+        if type_member is not None:
+            keyword = _LIFELINE_KEYWORDS.get(type_member.shape.keyword, "")
+        if type_ is not None:
+            type_name = refer_to_type(writer, member.parent, element, type_)
+            if type_name is not None:
+                head = f"ref {keyword}{quote_name(member.name)} : {type_name}"
+        said = "what a lifeline represents"
+        writer.record_approximation(element, said, "a part of the same type")
+    return [Line(head, write_contents(writer, member))]
 
 
-def message(book: Book, entry: Entry) -> list[Line]:
-    """A message: a transfer from one lifeline to another."""
-    element = entry.element
-    assert element is not None
-    ends = [_end(book, entry, element, edge) for edge in (Edge.FLOW_SOURCE, Edge.FLOW_TARGET)]
-    head = f"message {quoted(entry.name)}"
-    head += _payload(book, entry, element)
-    if None not in ends:
-        head += f" from {ends[0]} to {ends[1]}"
-    elif any(one is not None for one in ends):
-        book.approximated(element, "a message with one end", "a message without ends")
-    _say_ends(book, element)
-    return [Line(head, _facts(book, entry, element) + contents(book, entry))]
+# -- messages ------------------------------------------------------------------------------------
 
 
-def _payload(book: Book, entry: Entry, element: Element) -> str:
-    """What is transferred: the signal, or the call of an operation."""
-    target = book.graph.target(element, Edge.CALLS)
-    other = book.plan.entry(target)
-    if target is None or other is None:
+def write_message(writer: Writer, member: Member) -> list[Line]:
+    """Write a message: a transfer from one lifeline to another."""
+    element = member.require_element()
+    source, target = (
+        format_element_reference(writer.plan, member.parent, writer.graph.target(element, edge))
+        for edge in (Edge.FLOW_SOURCE, Edge.FLOW_TARGET)
+    )
+    head = f"message {quote_name(member.name)}{_format_payload(writer, member, element)}"
+    if source is not None and target is not None:
+        head += f" from {source} to {target}"
+    elif source is not None or target is not None:
+        said = "a message with one end"
+        writer.record_approximation(element, said, "a message without ends")
+    _record_events(writer, element)
+    body = _write_message_facts(writer, member, element) + write_contents(writer, member)
+    return [Line(head, body)]
+
+
+def _format_payload(writer: Writer, member: Member, element: Element) -> str:
+    """Return the payload of a message: a signal, or the call of an operation."""
+    called = writer.graph.target(element, Edge.CALLS)
+    called_member = writer.plan.find(called)
+    if called is None or called_member is None:
         return ""
-    if other.shape.is_definition:
-        return f" of {book.name(entry.parent, element, Edge.CALLS, target)}"
-    return f" of {book.ours(entry.parent, 'Call')}"
+    if called_member.shape.is_definition:
+        return f" of {writer.refer_to(member.parent, element, Edge.CALLS, called)}"
+    return f" of {writer.refer_to_sysmlc(member.parent, 'Call')}"
 
 
-def _end(book: Book, entry: Entry, element: Element, edge: Edge) -> str | None:
-    target = book.graph.target(element, edge)
-    return None if target is None else named(book.plan, entry.parent, target)
-
-
-def _say_ends(book: Book, element: Element) -> None:
+def _record_events(writer: Writer, message: Element) -> None:
+    """Mark the events of a message as expressed by its ends."""
     for edge in (Edge.SEND_EVENT, Edge.RECEIVE_EVENT):
-        for one in book.graph.targets(element, edge):
-            book.said.add(one.id)
-            book.approximated(one, "an event of a message", "its end")
-            book.approximated(element, "the events of a message", "its ends")
+        for event in writer.graph.targets(message, edge):
+            writer.expressed.add(event.id)
+            writer.record_approximation(event, "an event of a message", "its end")
+            writer.record_approximation(message, "the events of a message", "its ends")
 
 
-def _facts(book: Book, entry: Entry, element: Element) -> list[Line]:
-    given = element.attrs.get("arguments")
-    texts = given if isinstance(given, tuple) else ()
-    lines = [Line(f"attribute argument{n} = {string(str(one))}") for n, one in enumerate(texts, 1)]
-    target = book.graph.target(element, Edge.CALLS)
-    called = book.plan.entry(target)
-    is_operation = called is not None and not called.shape.is_definition and target is not None
+def _write_message_facts(writer: Writer, member: Member, element: Element) -> list[Line]:
+    """Return the sort of a message and the operation that it calls as metadata, and arguments."""
+    arguments = element.attrs.get("arguments")
+    texts = arguments if isinstance(arguments, tuple) else ()
+    lines = [
+        Line(f"attribute argument{number} = {quote_string(str(text))}")
+        for number, text in enumerate(texts, 1)
+    ]
+    called = writer.graph.target(element, Edge.CALLS)
+    called_member = writer.plan.find(called)
+    is_operation = called_member is not None and not called_member.shape.is_definition
+    operation_name = None
+    if called is not None and is_operation:
+        operation_name = writer.graph.qualified_name(called)
     facts: dict[str, AttrValue] = {
         "name": element.subkind or element.attrs.get("message_kind"),
-        "calls": book.graph.qualified_name(target) if is_operation and target else None,
+        "calls": operation_name,
     }
-    return [annotations.ours(book, entry, "Kind", facts), *lines] if any(facts.values()) else lines
+    if any(facts.values()):
+        return [make_annotation(writer, member, "Kind", facts), *lines]
+    return lines
 
 
-def fragment(book: Book, entry: Entry) -> list[Line]:
-    """A combined fragment or one of its operands: an occurrence of its kind."""
-    element = entry.element
-    assert element is not None
+# -- fragments -----------------------------------------------------------------------------------
+
+
+def write_fragment(writer: Writer, member: Member) -> list[Line]:
+    """Write a combined fragment or one of its operands: an occurrence with its kind as metadata."""
+    element = member.require_element()
     kind = element.subkind or str(element.kind).lower()
-    body = [annotations.ours(book, entry, "Kind", {"name": kind})]
+    body = [make_annotation(writer, member, "Kind", {"name": kind})]
     guard = element.attrs.get("guard")
     if guard is not None and str(guard) != "else":
-        book.approximated(element, "the guard of an operand", "a constraint in it")
-        text = condition(book, entry, element, str(guard))
-        body.append(Line("assert constraint", [Line("", text=[text])], is_short=True))
-    for one in book.graph.targets(element, Edge.CALLS):
-        other = book.plan.entry(one)
-        name = book.name(entry, element, Edge.CALLS, one)
-        if name is not None and other is not None:
-            body.append(Line(f"ref {':' if other.shape.is_definition else ':>'} {name}"))
+        said = "the guard of an operand"
+        writer.record_approximation(element, said, "a constraint in it")
+        condition = format_condition(writer, member, element, str(guard))
+        body.append(Line("assert constraint", [Line("", text=[condition])], is_short=True))
+    for called in writer.graph.targets(element, Edge.CALLS):
+        called_member = writer.plan.find(called)
+        name = writer.refer_to(member, element, Edge.CALLS, called)
+        if name is not None and called_member is not None:
+            operator = ":" if called_member.shape.is_definition else ":>"
+            body.append(Line(f"ref {operator} {name}"))
     if element.kind is Kind.FRAGMENT:
-        book.approximated(element, "a fragment of an interaction", "an occurrence of its kind")
-    return [Line(f"occurrence {quoted(entry.name)}", body + contents(book, entry))]
+        said = "a fragment of an interaction"
+        writer.record_approximation(element, said, "an occurrence of its kind")
+    return [Line(f"occurrence {quote_name(member.name)}", body + write_contents(writer, member))]

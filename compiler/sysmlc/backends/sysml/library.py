@@ -1,10 +1,18 @@
-"""What the standard library of SysML v2 already has: scalar types, quantities, units."""
+"""What the standard library of SysML v2 provides: scalar types, quantities, units, member names.
+
+Every usage inherits the features of its base in the library (SysML 2.0, 9.2). They hide members of
+the same name further out: inside a part, which has a shape of its own, a block called ``shape``
+must be named with its package.
+"""
+
+from functools import cache
 
 from sysmlc.ir import Element, Graph, Kind
 from sysmlc.ir.query.classifiers import quantity_kind_of, unit_of
+from sysmlc.support import resources
 
 SHIPPED = "sysmlc:"
-"""What the sources of elements of our own libraries begin with."""
+"""Prefix of the sources of elements that come from the libraries of sysmlc."""
 SCALARS = {
     "Boolean": "ScalarValues::Boolean",
     "Integer": "ScalarValues::Integer",
@@ -39,23 +47,23 @@ _UNITS = """
 """
 
 
-def _units() -> dict[str, tuple[str, str]]:
-    found = {}
-    for entry in _UNITS.replace("\n", " | ").split(" | "):
-        if entry.split():
-            symbol, value, name = entry.split()
-            found[symbol] = (value, name.strip("'"))
-    return found
+def _read_units() -> dict[str, tuple[str, str]]:
+    units = {}
+    for row in _UNITS.replace("\n", " | ").split(" | "):
+        if row.split():
+            symbol, value_type, name = row.split()
+            units[symbol] = (value_type, name.strip("'"))
+    return units
 
 
-UNITS = _units()
-"""Value type of ISQ and name of the unit in SI, by symbol of the unit."""
-_OWN = """
+UNITS = _read_units()
+"""Value type of ISQ and name of the unit, by the symbol of the unit."""
+_SYSMLC_UNIT_NAMES = """
     dm µm mg ms µs kHz MHz GHz kN kPa MPa MW mV kV mA bar mbar rad/s kWh mm/s m/min °C
 """
-_OWN_UNITS = frozenset(_OWN.split())
-"""Units that SI does not have, or not as we need them; our library has them."""
-_QUANTITIES = {
+_SYSMLC_UNITS = frozenset(_SYSMLC_UNIT_NAMES.split())
+"""Units of ``SysMLC::Units``: SI lacks them, or defines them in a way that models cannot use."""
+_VALUE_TYPES_BY_QUANTITY = {
     "length": "LengthValue",
     "area": "AreaValue",
     "volume": "VolumeValue",
@@ -78,7 +86,7 @@ _QUANTITIES = {
     "resistance": "ResistanceValue",
     "thermodynamic temperature": "ThermodynamicTemperatureValue",
 }
-_BY_NAME = {
+_SYMBOLS_BY_UNIT_NAME = {
     "metre": "m",
     "meter": "m",
     "millimetre": "mm",
@@ -125,10 +133,8 @@ _ROOTS = """
     IntegerFunctions BaseFunctions Geometry
 """
 ROOTS = frozenset(_ROOTS.split())
-"""Names of the packages of the standard library, and of ours: no model may have them."""
-
-
-_OURS = """
+"""Names of the packages of the standard library and of ``SysMLC``: no root may have them."""
+_SYSMLC_NAMES = """
     AutomationML Facet Group Kind Named Kept Element ObjectFlow Through External Unit Units
     Requirement Partition Call fullPort blockPort shared realization generalization trace copies
     satisfies verifies derives allocates conforms exposes substitution usage abstraction
@@ -136,7 +142,7 @@ _OURS = """
     precondition postcondition bodyCondition invariant choice junction forking joining
     shallowHistory deepHistory entryPoint exitPoint connectionPoint termination
 """
-_REST = """
+_SYSMLC_LONG_NAMES = """
     FullPort BlockPort SharedAggregation Realization Generalization Trace Copies Satisfies
     Verifies Derives Allocates Conforms Exposes Substitution Usage Abstraction Manifestation
     Deployment RoleBinding Extension InternalLink ProcessLink OrderLink Constrains Precondition
@@ -145,46 +151,101 @@ _REST = """
 """
 _SCALARS = "ScalarValue Boolean String NumericalValue Number Complex Real Rational Integer Natural"
 IMPORTS = {
-    "SysMLC": frozenset(_OURS.split()),
+    "SysMLC": frozenset(_SYSMLC_NAMES.split()),
     "ScalarValues": frozenset([*_SCALARS.split(), "Positive"]),
     "RequirementDerivation": frozenset({"derivation", "original", "derive"}),
     "ModelingMetadata": frozenset({"refinement"}),
 }
-"""Names that are written short, by the package that is then imported."""
-IMPORTED = frozenset().union(*IMPORTS.values(), _REST.split())
-"""All names that such imports may bring."""
+"""Names that are written without their package, which is imported instead."""
+IMPORTED = frozenset().union(*IMPORTS.values(), _SYSMLC_LONG_NAMES.split())
+"""All names that such an import makes visible, also those that no text uses."""
+
+MEMBER_NAMES_FILE = "library-members.txt"
+"""Names by base, in ``metamodels``; ``tests/backends/sysml/library_names.py`` writes it."""
+BASES = {
+    "action": "Actions::Action",
+    "allocation": "Allocations::Allocation",
+    "attribute": "Base::Anything",
+    "connection": "Connections::Connection",
+    "constraint": "Constraints::ConstraintCheck",
+    "enum": "Base::Anything",
+    "flow": "Flows::Message",
+    "interface": "Interfaces::Interface",
+    "item": "Items::Item",
+    "metadata": "Metadata::MetadataItem",
+    "occurrence": "Occurrences::Occurrence",
+    "part": "Parts::Part",
+    "port": "Ports::Port",
+    "ref": "Base::Anything",
+    "requirement": "Requirements::RequirementCheck",
+    "state": "States::StateAction",
+    "use case": "UseCases::UseCase",
+    "verification": "VerificationCases::VerificationCase",
+    "view": "Views::View",
+    "viewpoint": "Views::ViewpointCheck",
+}
+"""Bases of usages by keyword."""
+_CONTROL_NODES = ("decide", "merge", "fork", "join")
+"""Keywords of control nodes, whose base is that of actions."""
 
 
-def scalar_of(element: Element) -> str | None:
-    """Scalar type of the library that a primitive type outside the model is."""
+# -- types and units -----------------------------------------------------------------------------
+
+
+def find_scalar_type(element: Element) -> str | None:
+    """Return the library's scalar type for a primitive type outside of the model, or None."""
     is_primitive = element.kind is Kind.DATA_TYPE and element.attrs.get("external")
     return SCALARS.get(element.name) if is_primitive else None
 
 
-def unit_name(unit: Element | None) -> str | None:
-    """Qualified name of a unit in SI or in our library, by its symbol or else by its name."""
-    found = _known(unit)
-    if found is None:
+def find_unit_name(unit: Element | None) -> str | None:
+    """Return the qualified name of a unit in SI or ``SysMLC``, found by its symbol or its name."""
+    row = _find_unit(unit)
+    if row is None:
         return None
-    return f"{'SysMLC::Units' if found[1] in _OWN_UNITS else 'SI'}::{found[1]}"
+    return f"{'SysMLC::Units' if row[1] in _SYSMLC_UNITS else 'SI'}::{row[1]}"
 
 
-def _known(unit: Element | None) -> tuple[str, str] | None:
+def _find_unit(unit: Element | None) -> tuple[str, str] | None:
+    """Return value type and name of a unit."""
     if unit is None:
         return None
     symbol = str(unit.attrs.get("symbol", "")).replace("*", "·")
-    return UNITS.get(symbol) or UNITS.get(_BY_NAME.get(unit.name.lower(), unit.name))
+    return UNITS.get(symbol) or UNITS.get(_SYMBOLS_BY_UNIT_NAME.get(unit.name.lower(), unit.name))
 
 
-def quantity_of(graph: Graph, type_: Element) -> str | None:
-    """Value type of ISQ for a value type: that of its unit, else of its quantity kind."""
-    known = _known(unit_of(graph, type_))
-    if known is not None:
-        return known[0]
-    kind = quantity_kind_of(graph, type_)
-    return None if kind is None else quantity_of_kind(kind)
+def find_quantity(graph: Graph, type_: Element) -> str | None:
+    """Return the value type of ISQ for a value type, by its unit, else by its quantity kind."""
+    row = _find_unit(unit_of(graph, type_))
+    if row is not None:
+        return row[0]
+    quantity_kind = quantity_kind_of(graph, type_)
+    return None if quantity_kind is None else find_quantity_of_kind(quantity_kind)
 
 
-def quantity_of_kind(kind: Element) -> str | None:
-    """Value type of ISQ for a quantity kind."""
-    return _QUANTITIES.get(kind.name.lower())
+def find_quantity_of_kind(quantity_kind: Element) -> str | None:
+    """Return the value type of ISQ for a quantity kind."""
+    return _VALUE_TYPES_BY_QUANTITY.get(quantity_kind.name.lower())
+
+
+# -- names that members inherit ------------------------------------------------------------------
+
+
+@cache
+def list_inherited_names(keyword: str) -> frozenset[str]:
+    """Return the names that a definition or usage with this keyword inherits from the library."""
+    usage_keyword = keyword.removesuffix(" def")
+    base = BASES.get("action" if usage_keyword in _CONTROL_NODES else usage_keyword)
+    return _read_member_names().get(base or "", frozenset())
+
+
+@cache
+def _read_member_names() -> dict[str, frozenset[str]]:
+    """Return the names by base: a line names a base, and indented lines after it its members."""
+    names_by_base: dict[str, list[str]] = {}
+    for line in resources.read_text("metamodels", MEMBER_NAMES_FILE).splitlines():
+        if not line.startswith(" "):
+            names = names_by_base[line] = []
+        else:
+            names += line.split()
+    return {base: frozenset(names) for base, names in names_by_base.items()}

@@ -1,79 +1,168 @@
-"""Names of members: those of the model where they are free in their namespace, else made."""
+"""Names of members: those of the model, made distinct where SysML v2 requires it.
+
+A member needs a name of its own among its siblings, the names of libraries and the members that its
+namespace inherits (KerML 1.0, validateNamespaceDistinguishability).
+"""
 
 from collections import Counter
+from collections.abc import Iterator
 
-from sysmlc.backends.sysml.entry import Entry, Plan
+from sysmlc.backends.sysml.compatibility import is_incompatible
 from sysmlc.backends.sysml.library import ROOTS
+from sysmlc.backends.sysml.plan import Member, Plan
+from sysmlc.backends.sysml.printing import replace_control_characters
+from sysmlc.backends.sysml.references import is_or_redefines, iter_generals
 from sysmlc.backends.sysml.rules import RENAMED
-from sysmlc.backends.sysml.words import writable
-from sysmlc.ir import Kind
+from sysmlc.ir import Edge, Kind
+
+_INHERITING = (
+    *(Kind.CLASS, Kind.COMPONENT, Kind.INTERFACE, Kind.DATA_TYPE, Kind.STEREOTYPE, Kind.SIGNAL),
+    *(Kind.PROPERTY, Kind.PORT, Kind.INSTANCE, Kind.ACTOR, Kind.ASSOCIATION),
+)
+_MEMBERS = frozenset({Kind.PROPERTY, Kind.PORT, Kind.CLASS, Kind.OPERATION, Kind.INSTANCE})
 
 
-def name_all(plan: Plan) -> None:
-    """Give every member a name of its own in its namespace, if it needs one."""
-    taken = dict.fromkeys(ROOTS)
-    shipped = {one.name: one for one in plan.shipped}
-    plan.globals = _name(plan, plan.tops, {*taken, *shipped}) | shipped
-    stack = list(plan.tops)
+# -- names among siblings ------------------------------------------------------------------------
+
+
+def assign_names(plan: Plan) -> None:
+    """Give every member that needs a name one of its own in its namespace."""
+    library_packages = {member.name: member for member in plan.library_packages}
+    taken = {*ROOTS, *library_packages}
+    plan.root_names = _assign_sibling_names(plan, plan.roots, taken) | library_packages
+    stack = list(plan.roots)
     while stack:
-        top = stack.pop()
-        _name(plan, top.members, set(top.shape.reserved))
-        stack.extend(top.members)
+        namespace = stack.pop()
+        _assign_sibling_names(plan, namespace.members, set(namespace.shape.reserved_names))
+        stack.extend(namespace.members)
 
 
-def _name(plan: Plan, members: list[Entry], taken: set[str]) -> dict[str, Entry]:
-    """Give each member a name of its own; definitions that are second start with a capital."""
-    named: dict[str, Entry] = {}
+def _assign_sibling_names(plan: Plan, members: list[Member], taken: set[str]) -> dict[str, Member]:
+    """Name the members of one namespace and return them by name; *taken* grows by the names."""
+    by_name: dict[str, Member] = {}
     numbers: Counter[str] = Counter()
-    wanting = [one for one in members if one.shape.is_named and not one.name]
-    for one in members:
-        if one.name:
-            one.name = _free(plan, one, writable(one.name), taken, numbers)
-            taken.add(one.name)
-            named[one.name] = one
-    for one in wanting:
-        one.name = _made(one, taken, numbers)
-        taken.add(one.name)
-        named[one.name] = one
-    return named
+    nameless = [member for member in members if member.shape.needs_name and not member.name]
+    for member in members:
+        if member.name:
+            name = replace_control_characters(member.name)
+            member.name = _find_free_name(plan, member, name, taken, numbers)
+            taken.add(member.name)
+            by_name[member.name] = member
+    for member in nameless:
+        member.name = _invent_name(member, taken, numbers)
+        taken.add(member.name)
+        by_name[member.name] = member
+    return by_name
 
 
-def _free(plan: Plan, entry: Entry, name: str, taken: set[str], numbers: Counter[str]) -> str:
+def _find_free_name(
+    plan: Plan, member: Member, name: str, taken: set[str], numbers: Counter[str]
+) -> str:
+    """Return the name if it is free; else it gets a capital letter or a number.
+
+    A capital letter is tried for definitions only: ``Motor`` beside a usage called ``motor``.
+    """
     if name not in taken:
         return name
-    capital = name[:1].upper() + name[1:]
-    if entry.shape.is_definition and capital not in taken:
-        found = capital
+    capitalized = name[:1].upper() + name[1:]
+    if member.shape.is_definition and capitalized not in taken:
+        free_name = capitalized
     else:
         numbers[f"{name}_"] = max(numbers[f"{name}_"], 1)
-        found = _numbered(f"{name}_", taken, numbers)
-    if entry.element is not None:
-        plan.losses.note(RENAMED, entry.element, name=name, written=found)
-    return found
+        free_name = _append_number(f"{name}_", taken, numbers)
+    if member.element is not None:
+        plan.losses.record(RENAMED, member.element, name=name, written=free_name)
+    return free_name
 
 
-def _numbered(base: str, taken: set[str], numbers: Counter[str]) -> str:
-    """The first name of its kind that is not taken; ``numbers`` are those given last."""
+def _append_number(base: str, taken: set[str], numbers: Counter[str]) -> str:
+    """Return the base with the next free number; *numbers* has the last number of each base."""
     numbers[base] += 1
     while f"{base}{numbers[base]}" in taken:
         numbers[base] += 1
     return f"{base}{numbers[base]}"
 
 
-def _made(entry: Entry, taken: set[str], numbers: Counter[str]) -> str:
-    """A name for what has none: of what it is typed by, else of what it is."""
-    element = entry.element
+def _invent_name(member: Member, taken: set[str], numbers: Counter[str]) -> str:
+    """Return a name for a nameless member: its direction, subkind or keyword, with a number."""
+    element = member.element
     is_return = element is not None and element.attrs.get("direction") == "return"
     if is_return and "result" not in taken:
         return "result"
-    words = entry.shape.plain.split()
-    base = words[0] + "".join(word.capitalize() for word in words[1:])
+    base = _join_camel_case(member.shape.usage_keyword.split())
     if element is not None and element.kind in (Kind.PARAMETER, Kind.PIN):
         base = str(element.attrs.get("direction", "in"))
         base = {"in": "input", "out": "output", "return": "result"}.get(base, base)
     if element is not None and element.subkind and element.kind in (Kind.ACTION, Kind.PSEUDOSTATE):
-        first, *rest = element.subkind.split("-")
-        base = first + "".join(word.capitalize() for word in rest)
-    if entry.shape.is_definition:
+        base = _join_camel_case(element.subkind.split("-"))
+    if member.shape.is_definition:
         base = base[:1].upper() + base[1:]
-    return _numbered(base, taken, numbers)
+    return _append_number(base, taken, numbers)
+
+
+def _join_camel_case(words: list[str]) -> str:
+    return words[0] + "".join(word.capitalize() for word in words[1:])
+
+
+# -- names that would hide an inherited member ---------------------------------------------------
+
+
+def rename_hiding_members(plan: Plan) -> None:
+    """Number members that have the name of an inherited member without redefining it."""
+    for namespace in _iter_inheriting_namespaces(plan):
+        inherited: dict[str, Member] = {}
+        for member in _iter_inherited_members(plan, namespace):
+            inherited.setdefault(member.name, member)
+        if not inherited:
+            continue
+        taken = {member.name for member in namespace.members} | inherited.keys()
+        for member in namespace.members:
+            general_member = inherited.get(member.name)
+            if not member.name or general_member is None:
+                continue
+            if _hides(plan, member, general_member):
+                _append_free_number(plan, member, taken)
+
+
+def _iter_inheriting_namespaces(plan: Plan) -> Iterator[Member]:
+    stack = list(plan.roots)
+    while stack:
+        namespace = stack.pop()
+        element = namespace.element
+        if element is not None and element.kind in _INHERITING and namespace.members:
+            yield namespace
+        stack.extend(namespace.members)
+
+
+def _iter_inherited_members(plan: Plan, namespace: Member) -> Iterator[Member]:
+    """Yield inherited members; for an association, also its ends that classes own."""
+    for general in iter_generals(plan, namespace):
+        yield from general.members
+    element = namespace.element
+    if element is not None and element.kind is Kind.ASSOCIATION:
+        for end in plan.graph.targets(element, Edge.END):
+            end_member = plan.find(end)
+            if end_member is not None and end_member.parent is not namespace:
+                yield end_member
+
+
+def _hides(plan: Plan, member: Member, general_member: Member) -> bool:
+    element = member.element
+    if element is None or element.kind not in _MEMBERS:
+        return False
+    has_lost_redefinition = any(
+        feature is general_member.element and is_incompatible(plan, element, feature)
+        for feature in plan.graph.targets(element, Edge.REDEFINES)
+    )
+    return has_lost_redefinition or not is_or_redefines(plan, member, general_member)
+
+
+def _append_free_number(plan: Plan, member: Member, taken: set[str]) -> None:
+    number = 2
+    while f"{member.name}_{number}" in taken:
+        number += 1
+    free_name = f"{member.name}_{number}"
+    taken.add(free_name)
+    if member.element is not None:
+        plan.losses.record(RENAMED, member.element, name=member.name, written=free_name)
+    member.name = free_name

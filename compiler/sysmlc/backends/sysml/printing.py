@@ -1,17 +1,90 @@
-"""Members as they are written: a tree that is printed without recursion, four spaces a level."""
+"""SysML v2 text from a tree of lines, and the spelling of names, strings and comments.
 
+Names and literals follow KerML 1.0, 8.2.2.
+"""
+
+import re
 from collections.abc import Iterable
 from dataclasses import dataclass, field
+from functools import cache
 
-_STEP = "    "
+_WORDS = """
+    about abstract accept action actor after alias all allocate allocation analysis and as assert
+    assign assoc assume at attribute behavior bind binding bool by calc case chains class
+    classifier comment composite concern conjugate conjugates conjugation connect connection
+    connector const constant constraint crosses datatype decide def default defined dependency
+    derived difference differences disjoining disjoint do doc done else end entry enum event
+    exhibit exit expose expr false feature featured featuring filter first flow for fork frame
+    from function hastype if implies import in include individual inout interaction interface
+    intersects inv inverse inverting istype item join language library locale loop member merge
+    message meta metaclass metadata multiplicity namespace new nonunique not null objective
+    occurrence of or ordered out package parallel part perform port portion predicate private
+    protected public redefines redefinition ref references render rendering rep require
+    requirement return satisfy send snapshot specialization specializes stakeholder standard state
+    step struct subclassifier subject subset subsets subtype succession terminate then timeslice to
+    transition true type typed typing unions until use use-case variant variation verification
+    verify via view viewpoint when while xor start
+"""
+RESERVED = frozenset(_WORDS.split()) - {"start", "done", "use-case"}
+"""Reserved words of SysML and KerML; ``start`` and ``done`` are names of library features."""
+_BASIC_NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
+_ESCAPES = {"\\": "\\\\", "\n": "\\n", "\t": "\\t", "\r": "\\r", "\b": "\\b", "\f": "\\f"}
+_ESCAPED = re.compile(r"[\\\n\t\r\b\f'\"]")
+_CONTROL = re.compile("[\x00-\x07\x0b\x0e-\x1f\x7f-\x9f\ud800-\udfff\ufffe\uffff\u2028\u2029]")
+_INDENT = "    "
+_WIDTH = 96
+
+
+# -- names, strings and comments -----------------------------------------------------------------
+
+
+def replace_control_characters(text: str) -> str:
+    """Return the text with U+FFFD for control characters: SysML has no escapes for them."""
+    return _CONTROL.sub("\ufffd", text)
+
+
+@cache
+def quote_name(name: str) -> str:
+    """Return the name, in quotes unless it is a basic name that is not reserved."""
+    if _BASIC_NAME.fullmatch(name) and name not in RESERVED:
+        return name
+    return _enclose(name, "'")
+
+
+def quote_string(text: str) -> str:
+    """Return a string literal."""
+    return _enclose(text, '"')
+
+
+def _enclose(text: str, quote: str) -> str:
+    escapes = _ESCAPES | {quote: f"\\{quote}"}
+    escaped = _ESCAPED.sub(
+        lambda match: escapes.get(match[0], match[0]), replace_control_characters(text)
+    )
+    return f"{quote}{escaped}{quote}"
+
+
+def format_comment(text: str) -> list[str]:
+    """Return the lines of a comment with its marks.
+
+    ``*/`` inside the text would end the comment, so that it gets a space.
+    """
+    text = replace_control_characters(text).replace("*/", "* /").replace("\r\n", "\n")
+    lines = text.strip().splitlines()
+    if len(lines) < 2:
+        return [f"/* {lines[0].strip()} */" if lines else "/* */"]
+    return ["/*", *(f" * {line}".rstrip() for line in lines), " */"]
+
+
+# -- members -------------------------------------------------------------------------------------
 
 
 @dataclass(slots=True, eq=False)
 class Line:
-    """One member: its declaration, and what stands between its braces.
+    """A member of the text: its declaration, and the members between its braces.
 
-    Lines after the first of a declaration are continued one level deeper. ``text`` is a comment
-    body that ends the member; ``depth`` sets a member apart from those before it.
+    A declaration may have several lines; those after the first are indented by one level. *text*
+    is a comment, or a result expression, that ends the member. *depth* adds levels of indentation.
     """
 
     head: str
@@ -19,13 +92,13 @@ class Line:
     text: list[str] = field(default_factory=list)
     depth: int = 0
     tail: str = ""
-    """What of the declaration follows the members."""
+    """The part of the declaration that follows the members (``then`` of a transition)."""
     is_short: bool = False
-    """Whether it is written in one line with its members, if they fit."""
+    """Whether the member and its body stand in one line if they fit."""
 
     @property
     def inline(self) -> str | None:
-        """The whole member in one line, or None when it is not meant to be, or too long."""
+        """The whole member in one line, or None if it needs several."""
         if not self.head and len(self.text) == 1 and not self.text[0].startswith("/*"):
             return self.text[0]
         if self.text or self.tail or "\n" in self.head:
@@ -34,61 +107,62 @@ class Line:
             return f"{self.head};"
         if not self.is_short and not (len(self.body) == 1 and self.body[0].is_short):
             return None
-        inside = [one.inline for one in self.body]
-        if None in inside:
+        body = [line.inline for line in self.body]
+        if None in body:
             return None
-        found = f"{self.head} {{ {' '.join(map(str, inside))} }}"
-        return found if len(found) <= _WIDTH else None
+        text = f"{self.head} {{ {' '.join(map(str, body))} }}"
+        return text if len(text) <= _WIDTH else None
 
 
-_WIDTH = 96
+def print_lines(lines: Iterable[Line]) -> str:
+    """Return the members as text, with empty lines around members of several lines.
 
-
-def printed(lines: Iterable[Line]) -> str:
-    """The members as text; definitions and packages stand apart from one another."""
-    out: list[str] = []
+    An explicit stack replaces recursion: models of any depth are printed.
+    """
+    output: list[str] = []
     stack: list[tuple[Line | str, int]] = []
     _push(stack, list(lines), 0)
     while stack:
         top, depth = stack.pop()
         if isinstance(top, str):
-            out.append(f"{_STEP * depth}{top}" if top else "")
+            output.append(f"{_INDENT * depth}{top}" if top else "")
             continue
-        short = top.inline if len(_STEP) * depth + len(top.head) < _WIDTH else None
-        if short is not None and len(short) + len(_STEP) * depth <= _WIDTH:
-            out.append(f"{_STEP * depth}{short}")
+        inline = top.inline if len(_INDENT) * depth + len(top.head) < _WIDTH else None
+        if inline is not None and len(inline) + len(_INDENT) * depth <= _WIDTH:
+            output.append(f"{_INDENT * depth}{inline}")
             continue
         end = "" if top.text else (" {" if top.body else ";")
-        out += _head(top, depth, end)
+        output += _format_head(top, depth, end)
         if top.body:
             stack.append((f"}} {top.tail};" if top.tail else "}", depth))
             _push(stack, top.body, depth + 1)
-    out.append("")
-    return "\n".join(out)
+    output.append("")
+    return "\n".join(output)
 
 
-def _head(line: Line, depth: int, end: str) -> list[str]:
+def _format_head(line: Line, depth: int, end: str) -> list[str]:
     first, *rest = line.head.split("\n") if line.head else [""]
-    lines = [f"{_STEP * depth}{first}", *(f"{_STEP * (depth + 1)}{one}" for one in rest)]
+    rows = [f"{_INDENT * depth}{first}", *(f"{_INDENT * (depth + 1)}{row}" for row in rest)]
     if not line.text:
-        lines[-1] += end
-        return lines
+        rows[-1] += end
+        return rows
     if len(line.text) == 1:
-        lines[-1] += f" {line.text[0]}" if first else line.text[0]
-        return lines
-    return [*lines, *(f"{_STEP * depth}{one}" for one in line.text)]
+        rows[-1] += f" {line.text[0]}" if first else line.text[0]
+        return rows
+    return [*rows, *(f"{_INDENT * depth}{row}" for row in line.text)]
 
 
 def _push(stack: list[tuple[Line | str, int]], lines: list[Line], depth: int) -> None:
-    for number in range(len(lines) - 1, -1, -1):
-        line = lines[number]
+    """Push the lines in reverse order, with an empty line on each side of a large member."""
+    for index in range(len(lines) - 1, -1, -1):
+        line = lines[index]
         stack.append((line, depth + line.depth))
-        if number and (_is_large(line) or _is_large(lines[number - 1])):
+        if index and (_needs_empty_lines(line) or _needs_empty_lines(lines[index - 1])):
             stack.append(("", 0))
 
 
-def _is_large(line: Line) -> bool:
-    """Whether an empty line sets the member apart: it takes several lines."""
+def _needs_empty_lines(line: Line) -> bool:
+    """Whether the member takes several lines, more than one short annotation."""
     if not line.body or line.inline is not None:
         return False
     return len(line.body) > 1 or line.body[0].inline is None or not line.body[0].is_short

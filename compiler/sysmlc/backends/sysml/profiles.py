@@ -1,74 +1,109 @@
-"""Definitions for applied stereotypes: those of the model, and stand-ins for unknown ones."""
+"""Stereotypes as metadata definitions: those of the model, and added ones for unknown profiles."""
 
 from collections.abc import Iterator
 
-from sysmlc.backends.sysml.entry import Entry, Plan
+from sysmlc.backends.sysml.plan import Member, Plan
 from sysmlc.backends.sysml.shapes import Shape
-from sysmlc.backends.sysml.stereotypes import is_standard
 from sysmlc.ir import AttrValue, Edge, Element, Kind
 from sysmlc.ir.query import generals
 
-_UNKNOWN = "Stereotypes"
+_UNKNOWN_PROFILES = "Stereotypes"
+"""Name of the package for the definitions of stereotypes that no file of the model defines."""
+_SYSML_NAMES = """
+    AbstractRequirement AcceptChangeStructuralFeatureEventAction
+    AddFlowPropertyValueOnNestedPortAction AdjunctProperty Allocate AllocateActivityPartition
+    Allocated BindingConnector Block BlockProperty BoundReference ChangeStructuralFeatureEvent
+    ClassifierBehaviorProperty ConjugatedInterfaceBlock ConnectorProperty Conform ConstraintBlock
+    ConstraintProperty Continuous ControlOperator Copy DeriveReqt DirectedFeature
+    DirectedRelationshipPropertyPath Discrete DistributedProperty ElementGroup
+    ElementPropertyPath EndPathMultiplicity Expose FlowPort FlowProperty FlowSpecification
+    FullPort InterfaceBlock InvocationOnNestedPortAction ItemFlow NestedConnectorEnd NoBuffer
+    Optional Overwrite ParticipantProperty Probability Problem PropertySpecificType ProxyPort
+    QuantityKind Rate Rationale Refine Requirement RequirementRelated Satisfy Stakeholder
+    TestCase Trace TriggerOnNestedPort Unit Dimension ValueType Verify View Viewpoint
+    ~InterfaceBlock PartProperty ReferenceProperty ValueProperty SharedProperty
+    extendedRequirement functionalRequirement interfaceRequirement performanceRequirement
+    physicalRequirement designConstraint
+"""
+_SYSML_STEREOTYPES = frozenset(_SYSML_NAMES.split())
 
 
-def define(plan: Plan) -> dict[str, Entry]:
-    """The metadata definition for each application (by its id); adds those that are missing."""
-    found: dict[str, Entry] = {}
-    made: dict[tuple[str, str], Entry] = {}
-    for one in plan.graph.of_kind(Kind.APPLICATION):
-        if one.attrs.get("external") or is_standard(one):
+def is_standard(application: Element) -> bool:
+    """Whether the stereotype belongs to SysML itself, so that keywords express it."""
+    name = str(application.attrs.get("stereotype", "")) or application.name
+    namespace = str(application.attrs.get("namespace", ""))
+    return name in _SYSML_STEREOTYPES and ("sysml" in namespace.lower() or not namespace)
+
+
+def define_stereotypes(plan: Plan) -> dict[str, Member]:
+    """Return the metadata definition of each stereotype application, by the application's id.
+
+    Missing definitions, and attributes for tags that a definition lacks, are added to the plan.
+    """
+    definitions: dict[str, Member] = {}
+    added: dict[tuple[str, str], Member] = {}
+    for application in plan.graph.of_kind(Kind.APPLICATION):
+        if application.attrs.get("external") or is_standard(application):
             continue
-        definition = plan.entry(plan.graph.target(one, Edge.INSTANCE_OF))
-        found[one.id] = definition or _stand_in(plan, made, one)
-    for id, definition in found.items():
+        definition = plan.find(plan.graph.target(application, Edge.INSTANCE_OF))
+        definitions[application.id] = definition or _add_definition(plan, added, application)
+    for id, definition in definitions.items():
         _add_tags(plan, definition, plan.graph[id])
-    return found
+    return definitions
 
 
-def _stand_in(plan: Plan, made: dict[tuple[str, str], Entry], one: Element) -> Entry:
-    name = str(one.attrs.get("stereotype", "")) or one.name or "Stereotype"
-    key = (str(one.attrs.get("namespace", "")), name)
-    if key not in made:
-        above = made.get(("", ""))
-        if above is None:
-            above = made["", ""] = plan.new(Shape("package"), None, _UNKNOWN, None)
-        made[key] = plan.new(Shape("metadata def"), above, name, None)
-        plan.profiles[id(made[key])] = key[0]
-    return made[key]
+def _add_definition(
+    plan: Plan, added: dict[tuple[str, str], Member], application: Element
+) -> Member:
+    """Return the added definition of an unknown stereotype; *added* maps namespace and name."""
+    name = str(application.attrs.get("stereotype", "")) or application.name or "Stereotype"
+    namespace = str(application.attrs.get("namespace", ""))
+    key = (namespace, name)
+    if key not in added:
+        package = added.get(("", ""))
+        if package is None:
+            package = added["", ""] = plan.add(Shape("package"), None, _UNKNOWN_PROFILES, None)
+        added[key] = plan.add(Shape("metadata def"), package, name, None)
+        plan.profile_namespaces[id(added[key])] = namespace
+    return added[key]
 
 
-def _add_tags(plan: Plan, definition: Entry, one: Element) -> None:
-    known = set(_names(plan, definition))
-    for key, value in one.attrs.items():
+def _add_tags(plan: Plan, definition: Member, application: Element) -> None:
+    """Add attributes for tags that the definition lacks; widen the types of added ones."""
+    names = set(_iter_attribute_names(plan, definition))
+    for key, value in application.attrs.items():
         tag = key.removeprefix("tag.")
         if not key.startswith("tag."):
             continue
-        if tag not in known:
-            plan.new(Shape("attribute"), definition, tag, None)
-        added = next((m for m in definition.members if m.name == tag and m.element is None), None)
-        if added is not None:
-            plan.added[id(added)] = _wider(plan.added.get(id(added)), value)
+        if tag not in names:
+            plan.add(Shape("attribute"), definition, tag, None)
+        candidates = (m for m in definition.members if m.name == tag and m.element is None)
+        attribute = next(candidates, None)
+        if attribute is not None:
+            known_type = plan.added_types.get(id(attribute))
+            plan.added_types[id(attribute)] = _widen_type(known_type, value)
 
 
-def _names(plan: Plan, definition: Entry) -> Iterator[str]:
-    yield from (one.name for one in definition.members)
+def _iter_attribute_names(plan: Plan, definition: Member) -> Iterator[str]:
+    yield from (member.name for member in definition.members)
     if definition.element is not None:
         for general in generals(plan.graph, definition.element):
-            other = plan.entry(general)
-            yield from () if other is None else (one.name for one in other.members)
+            general_definition = plan.find(general)
+            if general_definition is not None:
+                yield from (member.name for member in general_definition.members)
 
 
-def _wider(known: str | None, value: AttrValue) -> str:
-    """Type and multiplicity of an attribute that has all values seen."""
-    several = isinstance(value, tuple) or (known is not None and "[0..*]" in known)
-    first = value[0] if isinstance(value, tuple) and value else value
+def _widen_type(known_type: str | None, value: AttrValue) -> str:
+    """Return type and multiplicity of an attribute that has *value* besides its earlier values."""
+    is_list = isinstance(value, tuple) or (known_type is not None and "[0..*]" in known_type)
+    sample = value[0] if isinstance(value, tuple) and value else value
     type_ = "String"
-    if isinstance(first, bool):
+    if isinstance(sample, bool):
         type_ = "Boolean"
-    elif isinstance(first, int):
+    elif isinstance(sample, int):
         type_ = "Integer"
-    elif isinstance(first, float):
+    elif isinstance(sample, float):
         type_ = "Real"
-    if known is not None and not known.startswith(f"ScalarValues::{type_}"):
+    if known_type is not None and not known_type.startswith(f"ScalarValues::{type_}"):
         type_ = "ScalarValue"
-    return f"ScalarValues::{type_}[0..{'*' if several else '1'}]"
+    return f"ScalarValues::{type_}[0..{'*' if is_list else '1'}]"

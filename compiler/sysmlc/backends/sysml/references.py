@@ -1,18 +1,19 @@
-"""How the text refers to an element: the shortest name that finds it from where it is used.
+"""References: the shortest text that names an element from where it is used.
 
-Names are looked up as KerML 1.0, 8.2.3.5 says: from the namespace outwards, own and inherited
-members first, then the packages of the unit.
+Name lookup follows KerML 1.0, 8.2.3.5: from the namespace outwards, own members before inherited
+ones, then the global scope of roots and libraries. The namespace around a use is called *scope*;
+None is the global scope.
 """
 
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import pairwise
 
-from sysmlc.backends.sysml.entry import Entry, Plan
 from sysmlc.backends.sysml.library import IMPORTED, IMPORTS
-from sysmlc.backends.sysml.words import quoted
+from sysmlc.backends.sysml.plan import Member, Plan
+from sysmlc.backends.sysml.printing import quote_name
 from sysmlc.ir import Edge, Element, Kind
 
-_GENERAL = (
+_GENERALIZATIONS = (
     Edge.REDEFINES,
     Edge.TYPED_BY,
     Edge.SPECIALIZES,
@@ -20,233 +21,256 @@ _GENERAL = (
     Edge.INSTANCE_OF,
     Edge.CALLS,
 )
-"""Edges along which members are inherited in the text."""
+"""Edges along which the text inherits members."""
+_BEHAVIOUR_KEYWORDS = ("action", "state", "occurrence", "connection", "flow", "constraint")
 
 
-def lookup(plan: Plan, scope: Entry | None, name: str) -> Entry | None:
-    """What a name means in a namespace (None: outside of all packages)."""
-    for space in _outwards(scope):
-        found = visible(plan, space).get(name)
-        if found is not None or name in space.shape.inherited:
-            return found
+# -- name lookup ---------------------------------------------------------------------------------
+
+
+def look_up(plan: Plan, scope: Member | None, name: str) -> Member | None:
+    """Return the member that a name denotes in *scope*; None if it denotes none of the plan."""
+    for namespace in _iter_scopes(scope):
+        member = visible_members(plan, namespace).get(name)
+        if member is not None or name in namespace.shape.library_names:
+            return member
     if scope is not None and name in IMPORTED:
         return None
-    return plan.globals.get(name)
+    return plan.root_names.get(name)
 
 
-def visible(plan: Plan, space: Entry) -> dict[str, Entry]:
-    """Own and inherited members of a namespace, by name.
+def visible_members(plan: Plan, namespace: Member) -> dict[str, Member]:
+    """Return own and inherited members by name. The dictionary is shared between all calls.
 
-    Two inherited members of one name hide one another (KerML 1.0, 8.3.2.4).
+    Inherited members of the same name hide one another (KerML 1.0, 8.3.2.4), unless one of them
+    redefines the other.
     """
-    if space.visible is None:
-        space.visible = {one.name: one for one in space.members if one.name}
-        inherited: dict[str, Entry | None] = {}
-        for general in _direct(plan, space):
-            for name, one in visible(plan, general).items():
-                known = inherited.setdefault(name, one)
-                if known is not None and known is not one and not is_same(plan, known, one):
-                    inherited[name] = one if is_same(plan, one, known) else None
-        for name, found in inherited.items():
-            if found is not None:
-                space.visible.setdefault(name, found)
-    return space.visible
+    if namespace.visible_names is None:
+        own = {member.name: member for member in namespace.members if member.name}
+        # Generalisations may form a cycle: then the own members are all that is known so far.
+        namespace.visible_names = own
+        inherited: dict[str, Member | None] = {}
+        for general in _iter_direct_generals(plan, namespace):
+            for name, member in visible_members(plan, general).items():
+                rival = inherited.setdefault(name, member)
+                if rival is None or rival is member or is_or_redefines(plan, rival, member):
+                    continue
+                inherited[name] = member if is_or_redefines(plan, member, rival) else None
+        for name, inherited_member in inherited.items():
+            if inherited_member is not None:
+                namespace.visible_names.setdefault(name, inherited_member)
+    return namespace.visible_names
 
 
-def meant(plan: Plan, space: Entry, name: str) -> Entry | None:
-    """What a text of the model means by a name in a namespace: features before behaviours."""
-    if space.meant is None:
-        found: dict[str, Entry] = {}
-        for one in (space, *_generals(plan, space)):
-            for member in sorted(one.members, key=_is_behaviour):
+def find_by_model_name(plan: Plan, namespace: Member, name: str) -> Member | None:
+    """Return the member that a text of the model means by a name, features before behaviours."""
+    if namespace.model_names is None:
+        names: dict[str, Member] = {}
+        for general in (namespace, *iter_generals(plan, namespace)):
+            for member in sorted(general.members, key=_is_behaviour):
                 if member.element is not None and member.element.name:
-                    found.setdefault(member.element.name, member)
-        # What a model in SysML v2 says has the names of its text, which metadata takes back.
-        for one in (space, *_generals(plan, space)):
-            for member in one.members:
+                    names.setdefault(member.element.name, member)
+        # A model in SysML v2 uses the names of its text, where metadata gave another one back.
+        for general in (namespace, *iter_generals(plan, namespace)):
+            for member in general.members:
                 if member.element is not None and member.name:
-                    found.setdefault(member.name, member)
-        space.meant = found
-    return space.meant.get(name)
+                    names.setdefault(member.name, member)
+        namespace.model_names = names
+    return namespace.model_names.get(name)
 
 
-def _is_behaviour(entry: Entry) -> bool:
-    return entry.shape.keyword in (
-        "action",
-        "state",
-        "occurrence",
-        "connection",
-        "flow",
-        "constraint",
-    )
+def _is_behaviour(member: Member) -> bool:
+    return member.shape.keyword in _BEHAVIOUR_KEYWORDS
 
 
-def _generals(plan: Plan, space: Entry) -> Iterator[Entry]:
-    seen = {id(space)}
-    level = [space]
+def _iter_scopes(scope: Member | None) -> Iterator[Member]:
+    if scope is not None:
+        yield scope
+        yield from scope.namespaces
+
+
+# -- inheritance ---------------------------------------------------------------------------------
+
+
+def iter_generals(plan: Plan, namespace: Member) -> Iterator[Member]:
+    """Yield the namespaces from which a namespace inherits members, the nearest first."""
+    seen = {id(namespace)}
+    level = [namespace]
     while level:
-        above = [one for entry in level for one in _direct(plan, entry)]
+        generals = [g for member in level for g in _iter_direct_generals(plan, member)]
         level = []
-        for one in above:
-            if id(one) not in seen:
-                seen.add(id(one))
-                level.append(one)
-                yield one
+        for general in generals:
+            if id(general) not in seen:
+                seen.add(id(general))
+                level.append(general)
+                yield general
 
 
-def _direct(plan: Plan, space: Entry) -> Iterator[Entry]:
-    element = space.element
+def _iter_direct_generals(plan: Plan, namespace: Member) -> Iterator[Member]:
+    element = namespace.element
     if element is None:
         return
-    edges: tuple[Edge, ...] = _GENERAL
+    edges: tuple[Edge, ...] = _GENERALIZATIONS
     if element.kind is Kind.ACTION and element.subkind not in ("call-behavior", "call-operation"):
-        edges = _GENERAL[:-1]
-    if space.shape.keyword == "part" and element.subkind == "part":
-        edges = (Edge.REPRESENTS, *_GENERAL)
+        edges = tuple(edge for edge in edges if edge is not Edge.CALLS)
+    if namespace.shape.keyword == "part" and element.subkind == "part":
+        edges = (Edge.REPRESENTS, *_GENERALIZATIONS)
     for edge in edges:
         for target in plan.graph.targets(element, edge):
-            found = plan.entry(target)
-            if found is space and target is not element:
-                yield from _direct_of(plan, target)
-            elif found is not None:
-                yield found
+            general = plan.find(target)
+            if general is namespace and target is not element:
+                # The target is the property-specific class of the feature: skip to its generals.
+                yield from _iter_class_generals(plan, target)
+            elif general is not None:
+                yield general
 
 
-def _direct_of(plan: Plan, own: Element) -> Iterator[Entry]:
-    """What the class of a feature's own members specialises."""
-    for target in plan.graph.targets(own, Edge.SPECIALIZES):
-        found = plan.entry(target)
-        if found is not None:
-            yield found
+def _iter_class_generals(plan: Plan, class_: Element) -> Iterator[Member]:
+    for target in plan.graph.targets(class_, Edge.SPECIALIZES):
+        general = plan.find(target)
+        if general is not None:
+            yield general
 
 
-def _outwards(scope: Entry | None) -> Iterator[Entry]:
-    while scope is not None:
-        yield scope
-        scope = scope.parent
+def is_or_redefines(plan: Plan, member: Member | None, wanted: Member) -> bool:
+    """Whether *member* is the wanted one, or redefines it over any number of steps.
 
-
-def path_to(plan: Plan, scope: Entry | None, target: Entry) -> list[Entry] | None:
-    """The entries to name, outermost first; None when one of them has no name.
-
-    The list starts with what lexical lookup finds; when nothing is found so it is the whole
-    path, which is then written from the root (``$::``).
+    The part of an instance counts as a redefinition of the part that it represents.
     """
-    path = [target, *target.above]
-    for number, one in enumerate(path):
-        if not one.name:
-            return None
-        if is_same(plan, lookup(plan, scope, one.name), one):
-            return _shown(plan, scope, path[number::-1])
-    return _shown(plan, scope, path[::-1])
-
-
-def _shown(plan: Plan, scope: Entry | None, path: list[Entry]) -> list[Entry]:
-    """The path; what it reaches from outside of its owner, or inherits, cannot be private."""
-    head = path[0]
-    if head.parent is not None and all(head.parent is not one for one in _outwards(scope)):
-        plan.show(head)
-    for one in path[1:]:
-        plan.show(one)
-    return path
-
-
-def is_same(plan: Plan, found: Entry | None, wanted: Entry) -> bool:
-    """Whether a name leads to an entry, or to one that redefines it where it is used."""
     seen = set()
-    while found is not None and found is not wanted and id(found) not in seen:
-        seen.add(id(found))
-        element = found.element
-        edge = Edge.REPRESENTS if element is not None and element.subkind == "part" else None
-        edge = edge if edge and element and plan.graph.target(element, edge) else Edge.REDEFINES
-        found = None if element is None else plan.entry(plan.graph.target(element, edge))
-    return found is wanted
+    while member is not None and member is not wanted and id(member) not in seen:
+        seen.add(id(member))
+        element = member.element
+        if element is None:
+            return False
+        redefined = None
+        if element.subkind == "part":
+            redefined = plan.graph.target(element, Edge.REPRESENTS)
+        member = plan.find(redefined or plan.graph.target(element, Edge.REDEFINES))
+    return member is wanted
 
 
-def reference(plan: Plan, scope: Entry | None, target: Entry) -> str | None:
-    """The text that names the target from a namespace, or None when nothing names it."""
-    found = path_to(plan, scope, target)
-    if found is None:
-        return None
-    is_found = is_same(plan, lookup(plan, scope, found[0].name), found[0])
-    return ("" if is_found else "$::") + _joined(found)
+def is_accessible(plan: Plan, scope: Member | None, feature: Member) -> bool:
+    """Whether a feature belongs to a namespace around *scope*, so that its bare name is allowed.
 
-
-def qualified(plan: Plan, scope: Entry | None, target: Entry) -> str | None:
-    """The same as a qualified name, where no feature chain may stand."""
-    found = path_to(plan, scope, target)
-    if found is None:
-        return None
-    is_found = is_same(plan, lookup(plan, scope, found[0].name), found[0])
-    return ("" if is_found else "$::") + "::".join(quoted(one.name) for one in found)
-
-
-def _joined(path: Sequence[Entry]) -> str:
-    text = quoted(path[0].name)
-    for before, one in pairwise(path):
-        dot = "." if before.shape.is_usage and one.shape.is_usage else "::"
-        text += f"{dot}{quoted(one.name)}"
-    return text
-
-
-def named(plan: Plan, scope: Entry | None, element: Element | None) -> str | None:
-    """The text that names an element, or None."""
-    entry = plan.entry(element)
-    return None if entry is None else reference(plan, scope, entry)
-
-
-def chain(plan: Plan, scope: Entry | None, steps: Iterable[Element]) -> str | None:
-    """A feature chain through features of several classifiers (``gate.sensor.out``)."""
-    entries = [plan.entry(one) for one in steps]
-    known = [one for one in entries if one is not None and one.name]
-    if not known or len(known) != len(entries):
-        return None
-    for before, one in pairwise(known):
-        if not is_same(plan, visible(plan, before).get(one.name), one):
-            return None
-        plan.show(one)
-    first = reference(plan, scope, known[0])
-    return None if first is None else ".".join([first, *(quoted(one.name) for one in known[1:])])
-
-
-def is_around(plan: Plan, scope: Entry | None, feature: Entry) -> bool:
-    """Whether a feature is one of what is around a namespace, so that it may be used there."""
-    above = feature.parent
-    if above is None or not (above.shape.is_definition or above.shape.is_usage):
+    All other features need a feature chain.
+    """
+    owner = feature.parent
+    if owner is None or not (owner.shape.is_definition or owner.shape.is_usage):
         return True
-    for one in _outwards(scope):
-        if one is above or any(general is above for general in _generals(plan, one)):
+    for namespace in _iter_scopes(scope):
+        if namespace is owner:
+            return True
+        if any(general is owner for general in iter_generals(plan, namespace)):
             return True
     return False
 
 
-def generals_of(plan: Plan, space: Entry) -> Iterator[Entry]:
-    """Namespaces whose members a namespace inherits, the nearest first."""
-    return _generals(plan, space)
+# -- text of references --------------------------------------------------------------------------
 
 
-def library_name(plan: Plan, scope: Entry | None, name: str) -> str:
-    """A name of the standard library or of ours, which packages import when they use it.
+def format_element_reference(
+    plan: Plan, scope: Member | None, element: Element | None
+) -> str | None:
+    """Return the text that names an element; None if it has no member or no name."""
+    member = plan.find(element)
+    return None if member is None else format_reference(plan, scope, member)
 
-    It is short when the model does not hide it, and from the root when the model hides even the
-    name of the package.
+
+def format_reference(plan: Plan, scope: Member | None, target: Member) -> str | None:
+    """Return the text that names a member, as a feature chain where it leads through usages."""
+    path = _find_path(plan, scope, target)
+    return None if path is None else _format_root(plan, scope, path) + _join_path(path)
+
+
+def format_qualified_name(plan: Plan, scope: Member | None, target: Member) -> str | None:
+    """Return the qualified name of a member, for places where no feature chain may stand."""
+    path = _find_path(plan, scope, target)
+    if path is None:
+        return None
+    return _format_root(plan, scope, path) + "::".join(quote_name(m.name) for m in path)
+
+
+def _find_path(plan: Plan, scope: Member | None, target: Member) -> list[Member] | None:
+    """Return the members to name, outermost first; None if one of them has no name.
+
+    The path starts with the innermost member that name lookup finds. If it finds none, the path
+    is complete, and the reference starts at the root (``$::``).
+    """
+    path = [target, *target.namespaces]
+    for index, member in enumerate(path):
+        if not member.name:
+            return None
+        if is_or_redefines(plan, look_up(plan, scope, member.name), member):
+            return _expose_path(plan, scope, path[index::-1])
+    return _expose_path(plan, scope, path[::-1])
+
+
+def _expose_path(plan: Plan, scope: Member | None, path: list[Member]) -> list[Member]:
+    """Return the path after marking the members on it that must be public."""
+    head = path[0]
+    if head.parent is not None and all(head.parent is not space for space in _iter_scopes(scope)):
+        plan.expose(head)
+    for member in path[1:]:
+        plan.expose(member)
+    return path
+
+
+def _format_root(plan: Plan, scope: Member | None, path: Sequence[Member]) -> str:
+    head = path[0]
+    is_visible = is_or_redefines(plan, look_up(plan, scope, head.name), head)
+    return "" if is_visible else "$::"
+
+
+def _join_path(path: Sequence[Member]) -> str:
+    text = quote_name(path[0].name)
+    for namespace, member in pairwise(path):
+        separator = "." if namespace.shape.is_usage and member.shape.is_usage else "::"
+        text += f"{separator}{quote_name(member.name)}"
+    return text
+
+
+def format_chain(plan: Plan, scope: Member | None, steps: Iterable[Element]) -> str | None:
+    """Return a feature chain through features of several classifiers (``gate.sensor.out``).
+
+    None if a step has no name, or another name inside the step before.
+    """
+    members = [plan.find(step) for step in steps]
+    named = [member for member in members if member is not None and member.name]
+    if not named or len(named) != len(members):
+        return None
+    for namespace, member in pairwise(named):
+        if not is_or_redefines(plan, visible_members(plan, namespace).get(member.name), member):
+            return None
+        plan.expose(member)
+    first = format_reference(plan, scope, named[0])
+    if first is None:
+        return None
+    return ".".join([first, *(quote_name(member.name) for member in named[1:])])
+
+
+def format_library_name(plan: Plan, scope: Member | None, name: str) -> str:
+    """Return the text that names an element of a library.
+
+    The package of the text imports the library, so that the bare name suffices. If the model hides
+    that name, the text is the qualified name, from the root if the model hides the library, too.
     """
     package, _, short = name.partition("::")
     if scope is not None and short in IMPORTS.get(package, ()):
-        top = [scope, *scope.above][-1]
-        if top.shape.keyword == "package" and lookup(plan, scope, short) is None:
+        top = [scope, *scope.namespaces][-1]
+        if top.shape.keyword == "package" and look_up(plan, scope, short) is None:
             plan.imports.setdefault(id(top), set()).add(package)
-            return quoted(short)
+            return quote_name(short)
     head, *rest = name.split("::")
-    hidden = "" if lookup(plan, scope, head) is None else "$::"
-    return hidden + "::".join(quoted(one) for one in (head, *rest))
+    root = "" if look_up(plan, scope, head) is None else "$::"
+    return root + "::".join(quote_name(segment) for segment in (head, *rest))
 
 
-def redefined_name(plan: Plan, scope: Entry | None, target: Entry) -> str | None:
-    """The name of a feature that a member of a namespace redefines: it is inherited there."""
+def format_redefined_name(plan: Plan, scope: Member | None, target: Member) -> str | None:
+    """Return the name of a feature that a member of *scope* redefines: short if inherited."""
     if scope is not None and target.name:
-        for general in _generals(plan, scope):
-            if any(one is target for one in general.members):
-                plan.show(target)
-                return quoted(target.name)
-    return reference(plan, None if scope is None else scope.parent, target)
+        for general in iter_generals(plan, scope):
+            if any(member is target for member in general.members):
+                plan.expose(target)
+                return quote_name(target.name)
+    return format_reference(plan, None if scope is None else scope.parent, target)

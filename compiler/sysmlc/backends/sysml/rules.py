@@ -1,4 +1,4 @@
-"""What the textual notation cannot say, or not yet says: each loss once, with its number."""
+"""Losses: what of the graph SysML v2 text cannot express, or expresses in other words."""
 
 from dataclasses import dataclass, field
 
@@ -57,25 +57,29 @@ NAME_LEFT_OUT = rule(
 
 @dataclass(slots=True)
 class Losses:
-    """Counts losses by rule and facts; each is reported once, at the first element."""
+    """Losses of one text, counted by rule and facts.
+
+    A model may lose the same kind of information in thousands of elements: a diagnostic states
+    the number and the first element.
+    """
 
     graph: Graph
-    _found: dict[tuple[str, tuple[tuple[str, str], ...]], tuple[Rule, Element, int]] = field(
+    _counts: dict[tuple[str, tuple[tuple[str, str], ...]], tuple[Rule, Element, int]] = field(
         default_factory=dict
     )
-
-    told: dict[str, list[tuple[str, dict[str, str]]]] = field(default_factory=dict)
+    """Rule, first element and number of elements by code and facts."""
+    by_element: dict[str, list[tuple[str, dict[str, str]]]] = field(default_factory=dict)
     """Code and facts of each loss by the id of the element."""
 
-    def note(self, loss: Rule, element: Element, **facts: str) -> None:
-        """One more element with this loss."""
-        self.told.setdefault(element.id, []).append((loss.code, facts))
+    def record(self, loss: Rule, element: Element, **facts: str) -> None:
+        """Count a loss of *element*; *facts* fill the placeholders of the message."""
+        self.by_element.setdefault(element.id, []).append((loss.code, facts))
         key = (loss.code, tuple(sorted(facts.items())))
-        _, first, count = self._found.get(key, (loss, element, 0))
-        self._found[key] = (loss, first, count + 1)
+        _, first, count = self._counts.get(key, (loss, element, 0))
+        self._counts[key] = (loss, first, count + 1)
 
     def report(self, sink: Sink) -> None:
-        """Report what was counted."""
-        for (_, facts), (lost, first, count) in self._found.items():
-            told: dict[str, object] = {"count": count, **dict(facts)}
-            sink.report(lost, self.graph.subject(first), notes=(), help="", **told)
+        """Report one diagnostic for each combination of rule and facts."""
+        for (_, facts), (loss, first, count) in self._counts.items():
+            values: dict[str, object] = {"count": count, **dict(facts)}
+            sink.report(loss, self.graph.subject(first), notes=(), help="", **values)

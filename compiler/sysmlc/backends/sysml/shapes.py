@@ -1,51 +1,53 @@
-"""From kinds and roles to the keywords of definitions and usages (SysML v2, 8.2.2)."""
+"""The shape of an element in the text: its keyword, and whether it needs a name.
+
+The kind and the role of an element, and the types of a feature, determine the keyword of the
+definition or usage (SysML 2.0, 8.2.2).
+"""
 
 from collections.abc import Callable, Iterator
 
 from msgspec import Struct
 
-from sysmlc.backends.sysml.inherited import inherited
+from sysmlc.backends.sysml.library import list_inherited_names
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.ir.query import type_of
 from sysmlc.ir.query.activities import is_joined
 
 
 class Shape(Struct, frozen=True):
-    """How an element is written: its keyword, and whether it must have a name."""
+    """The keyword of a member, and whether the text has to name the member."""
 
     keyword: str
-    is_named: bool = True
+    needs_name: bool = True
 
     @property
     def is_definition(self) -> bool:
-        """Whether it is a definition, not a usage; packages are neither."""
+        """Whether the member is a definition, not a usage; packages are neither."""
         return self.keyword.endswith(" def")
 
     @property
     def is_usage(self) -> bool:
-        """Whether it is a usage: a feature that chains can lead to."""
+        """Whether the member is a usage: a feature to which feature chains can lead."""
         return not self.is_definition and self.keyword not in _NAMESPACES
 
     @property
-    def plain(self) -> str:
-        """The keyword of the usages of a definition."""
+    def usage_keyword(self) -> str:
+        """The keyword of a usage, also for the definition of such usages."""
         return self.keyword.removesuffix(" def")
 
     @property
-    def inherited(self) -> frozenset[str]:
-        """Names that it has from the standard library, whatever the element specialises."""
-        return inherited(self.keyword)
+    def library_names(self) -> frozenset[str]:
+        """Names that the member inherits from the standard library."""
+        return list_inherited_names(self.keyword)
 
     @property
-    def reserved(self) -> frozenset[str]:
-        """Those of them that mean something where a behaviour is written: no member has them."""
-        return _IN_BEHAVIOURS if self.plain in _RUNNING else frozenset()
+    def reserved_names(self) -> frozenset[str]:
+        """Inherited names with a meaning inside a behaviour, which no member may have."""
+        return _NAMES_IN_BEHAVIOURS if self.usage_keyword in _BEHAVIOUR_KEYWORDS else frozenset()
 
 
-_RUNNING = ("action", "state", "verification", "occurrence")
-_IN_BEHAVIOURS = frozenset({"start", "done", "self", "this", "that"})
-
-
+_BEHAVIOUR_KEYWORDS = ("action", "state", "verification", "occurrence")
+_NAMES_IN_BEHAVIOURS = frozenset({"start", "done", "self", "this", "that"})
 _NAMESPACES = frozenset(
     {"package", "library package", "comment", "doc", "dependency", "import", "start"}
 )
@@ -65,7 +67,7 @@ _DEFINITIONS = {
     Kind.REQUIREMENT: "requirement",
     Kind.TEST_CASE: "verification def",
 }
-_ROLES = {
+_DEFINITIONS_BY_ROLE = {
     "interface block": "port def",
     "constraint block": "constraint def",
     "requirement": "requirement",
@@ -83,29 +85,29 @@ _MEMBERS = {
     Kind.STRUCTURED: Shape("action"),
     Kind.STATE: Shape("state"),
     Kind.REGION: Shape("state"),
-    Kind.CONNECTOR: Shape("connection", is_named=False),
-    Kind.ITEM_FLOW: Shape("flow", is_named=False),
-    Kind.CONSTRAINT: Shape("constraint", is_named=False),
-    Kind.COMMENT: Shape("comment", is_named=False),
-    Kind.DEPENDENCY: Shape("dependency", is_named=False),
-    Kind.CONTROL_FLOW: Shape("succession", is_named=False),
-    Kind.OBJECT_FLOW: Shape("flow", is_named=False),
-    Kind.TRANSITION: Shape("transition", is_named=False),
+    Kind.CONNECTOR: Shape("connection", needs_name=False),
+    Kind.ITEM_FLOW: Shape("flow", needs_name=False),
+    Kind.CONSTRAINT: Shape("constraint", needs_name=False),
+    Kind.COMMENT: Shape("comment", needs_name=False),
+    Kind.DEPENDENCY: Shape("dependency", needs_name=False),
+    Kind.CONTROL_FLOW: Shape("succession", needs_name=False),
+    Kind.OBJECT_FLOW: Shape("flow", needs_name=False),
+    Kind.TRANSITION: Shape("transition", needs_name=False),
     Kind.LIFELINE: Shape("part"),
     Kind.MESSAGE: Shape("message"),
     Kind.FRAGMENT: Shape("occurrence"),
     Kind.OPERAND: Shape("occurrence"),
-    Kind.EXTEND: Shape("dependency", is_named=False),
+    Kind.EXTEND: Shape("dependency", needs_name=False),
     Kind.EXTENSION_POINT: Shape("occurrence"),
-    Kind.IMPORT: Shape("import", is_named=False),
-    Kind.DOCUMENT: Shape("comment", is_named=False),
-    Kind.METADATA: Shape("comment", is_named=False),
-    Kind.ALIAS: Shape("comment", is_named=False),
-    Kind.FACET: Shape("metadata", is_named=False),
-    Kind.GROUP: Shape("metadata", is_named=False),
+    Kind.IMPORT: Shape("import", needs_name=False),
+    Kind.DOCUMENT: Shape("comment", needs_name=False),
+    Kind.METADATA: Shape("comment", needs_name=False),
+    Kind.ALIAS: Shape("comment", needs_name=False),
+    Kind.FACET: Shape("metadata", needs_name=False),
+    Kind.GROUP: Shape("metadata", needs_name=False),
 }
-_CONTROLS = {"decision": "decide", "merge": "merge", "fork": "fork", "join": "join"}
-_USED_BY_KEYWORD = {
+_CONTROL_NODES = {"decision": "decide", "merge": "merge", "fork": "fork", "join": "join"}
+_FEATURES_BY_TYPE = {
     "part def": "part",
     "item def": "item",
     "attribute def": "attribute",
@@ -119,84 +121,79 @@ _USED_BY_KEYWORD = {
     "state": "state",
     "occurrence": "occurrence",
 }
-"""Keyword of features by that of the definition, or behaviour, that types them; else ``ref``."""
-HOLDERS = (Kind.PACKAGE, Kind.PROFILE)
+"""Keyword of a feature by the keyword of its type; ``ref`` for all other types."""
+PACKAGES = (Kind.PACKAGE, Kind.PROFILE)
+_WITH_ROLE = (Kind.CLASS, Kind.DATA_TYPE, Kind.COMPONENT, Kind.PACKAGE)
+"""Kinds whose role may change the keyword."""
+
+_TypeShapes = dict[str, Shape | None]
+"""Shapes of types by id, shared by all calls for a graph; None for types that form a cycle."""
 
 
-_Known = dict[str, Shape | None]
-"""How elements are written that others are typed by, by id: each is looked at once."""
+def find_shape(graph: Graph, element: Element, type_shapes: _TypeShapes) -> Shape | None:
+    """Return the shape of an element; None if the text has no member for it.
 
-
-def shape_of(graph: Graph, element: Element, known: _Known) -> Shape | None:
-    """How an element is written as a member of a namespace; None for what is no member.
-
-    ``known`` is what was found of types before, in the same graph.
+    *type_shapes* memoises the shapes of types in this graph.
     """
     kind = element.kind
     if kind in _DEFINITIONS:
-        role = element.role if kind in _BY_ROLE else ""
-        return Shape(_ROLES.get(role, _DEFINITIONS[kind]))
-    write = _BY_KIND.get(kind)
-    return _MEMBERS.get(kind) if write is None else write(graph, element, known)
+        role = element.role if kind in _WITH_ROLE else ""
+        return Shape(_DEFINITIONS_BY_ROLE.get(role, _DEFINITIONS[kind]))
+    find = _BY_KIND.get(kind)
+    return _MEMBERS.get(kind) if find is None else find(graph, element, type_shapes)
 
 
-_BY_ROLE = (Kind.CLASS, Kind.DATA_TYPE, Kind.COMPONENT, Kind.PACKAGE)
+def is_part_port(graph: Graph, port: Element) -> bool:
+    """Whether a port is written as a part: its type is a block, and it is no flow port."""
+    return _is_part_port(graph, port, {})
 
 
-def _property(graph: Graph, element: Element, known: _Known) -> Shape:
-    keyword = _keyword(graph, element, known)
-    flows = "direction" in element.attrs
-    return Shape("item" if flows and keyword == "part" else keyword)
+# -- features ------------------------------------------------------------------------------------
 
 
-def _port(graph: Graph, element: Element, known: _Known) -> Shape:
-    return Shape("part" if _is_part(graph, element, known) else "port")
+def _find_property_shape(graph: Graph, element: Element, type_shapes: _TypeShapes) -> Shape:
+    keyword = _find_feature_keyword(graph, element, type_shapes)
+    return Shape("item" if "direction" in element.attrs and keyword == "part" else keyword)
 
 
-def _control(graph: Graph, element: Element, _known: _Known) -> Shape | None:
-    """Control nodes; a final node is a member where it ends other flows, or is one of several."""
-    if element.subkind == "initial":
-        return Shape("start", is_named=False)
-    keyword = _CONTROLS.get(element.subkind)
-    if keyword is None and element.subkind == "final" and _is_apart(graph, element):
-        return Shape("action")
-    return Shape(keyword) if keyword else None
+def _find_port_shape(graph: Graph, element: Element, type_shapes: _TypeShapes) -> Shape:
+    return Shape("part" if _is_part_port(graph, element, type_shapes) else "port")
 
 
-def _is_apart(graph: Graph, element: Element) -> bool:
-    owner = graph.owner(element)
-    beside = [] if owner is None else graph.owned(owner)
-    found = [one.subkind for one in beside if one.kind is Kind.CONTROL]
-    return found.count("final") > 1 or not is_joined(graph, element)
+def _is_part_port(graph: Graph, port: Element, type_shapes: _TypeShapes) -> bool:
+    if port.role == "flow port":
+        return False
+    shape = _find_type_shape(graph, port, type_of(graph, port), type_shapes)
+    return shape is not None and shape.keyword == "part def"
 
 
-def _pseudostate(_graph: Graph, element: Element, _known: _Known) -> Shape | None:
-    return None if element.subkind == "initial" else Shape("state")
+def _find_parameter_shape(graph: Graph, element: Element, type_shapes: _TypeShapes) -> Shape | None:
+    """Return the shape of a parameter or pin; None for the node of a parameter, written with it."""
+    if element.kind is Kind.ACTIVITY_PARAMETER and graph.targets(element, Edge.REFERENCES):
+        return None
+    keyword = _find_feature_keyword(graph, element, type_shapes)
+    return Shape("item" if keyword == "part" else keyword)
 
 
-def _object_node(graph: Graph, element: Element, known: _Known) -> Shape:
-    keyword = _keyword(graph, element, known)
+def _find_object_node_shape(graph: Graph, element: Element, type_shapes: _TypeShapes) -> Shape:
+    keyword = _find_feature_keyword(graph, element, type_shapes)
     return Shape(keyword if keyword in ("attribute", "item", "occurrence") else "item")
 
 
-def _behaviour(graph: Graph, element: Element, _known: _Known) -> Shape:
-    """A behaviour of a package is a definition, one of anything else a usage of its owner.
-
-    Only a usage may speak of the features of its owner without a path to them.
-    """
-    keyword = _BEHAVIOURS[element.kind]
-    if element.role == "test case":
-        keyword = "verification"
-    owner = graph.owner(element)
-    is_definition = owner is None or owner.kind in HOLDERS or owner.kind in _BEHAVIOURS
-    return Shape(f"{keyword} def" if is_definition else keyword, is_named=is_definition)
+def _find_instance_shape(graph: Graph, element: Element, type_shapes: _TypeShapes) -> Shape:
+    if element.role in ("unit", "quantity kind"):
+        return Shape("attribute")
+    type_ = graph.target(element, Edge.INSTANCE_OF)
+    shape = _find_type_shape(graph, element, type_, type_shapes)
+    keyword = "part" if shape is None else _FEATURES_BY_TYPE.get(shape.keyword, "ref")
+    return Shape(keyword, needs_name=element.subkind != "part")
 
 
-def _keyword(graph: Graph, feature: Element, known: _Known) -> str:
-    """Keyword of a feature by its type, else by its role."""
-    shape = _shape_of_type(graph, feature, type_of(graph, feature), known)
+def _find_feature_keyword(graph: Graph, feature: Element, type_shapes: _TypeShapes) -> str:
+    """Return the keyword of a feature, derived from its type, else from its role."""
+    shape = _find_type_shape(graph, feature, type_of(graph, feature), type_shapes)
     if shape is not None:
-        return _USED_BY_KEYWORD.get(shape.keyword, "ref")
+        return _FEATURES_BY_TYPE.get(shape.keyword, "ref")
     role = feature.role
     if role == "part" or feature.attrs.get("aggregation") == "composite":
         return "part"
@@ -204,98 +201,121 @@ def _keyword(graph: Graph, feature: Element, known: _Known) -> str:
     return "attribute" if is_value else "ref"
 
 
-def _shape_of_type(
-    graph: Graph, element: Element, type_: Element | None, known: _Known
-) -> Shape | None:
-    """How the type of an element is written; None where types lead in a circle."""
-    if type_ is None or type_.kind in _DEFINITIONS:
-        return None if type_ is None else shape_of(graph, type_, known)
-    if type_.id not in known:
-        for one in _types_of_types(graph, element, known):
-            known[one.id] = shape_of(graph, one, known)
-    return known.get(type_.id)
+# -- behaviours and associations -----------------------------------------------------------------
 
 
-def _types_of_types(graph: Graph, element: Element, known: _Known) -> list[Element]:
-    """What decides how an element is written and is not known yet, each behind its own types.
+def _find_behaviour_shape(graph: Graph, element: Element, _type_shapes: _TypeShapes) -> Shape:
+    """Return a definition for a behaviour of a package, a usage for a behaviour of anything else.
 
-    What leads into a circle is known to be nothing then.
+    Only a usage may refer to the features of its owner without a path to them.
     """
-    found: dict[str, Element] = {}
-    open_: dict[str, Iterator[Element]] = {element.id: iter(_types(graph, element))}
-    way = [element]
-    while way:
-        one = next(open_[way[-1].id], None)
-        if one is None:
-            done = way.pop()
-            del open_[done.id]
-            found[done.id] = done
-        elif one.id in open_:
-            known.update(dict.fromkeys(list(open_)[1:]))
+    keyword = _BEHAVIOURS[element.kind]
+    if element.role == "test case":
+        keyword = "verification"
+    owner = graph.owner(element)
+    is_definition = owner is None or owner.kind in PACKAGES or owner.kind in _BEHAVIOURS
+    return Shape(f"{keyword} def" if is_definition else keyword, needs_name=is_definition)
+
+
+def _find_control_node_shape(
+    graph: Graph, element: Element, _type_shapes: _TypeShapes
+) -> Shape | None:
+    """Return the shape of a control node; None for a final node that ``done`` expresses."""
+    if element.subkind == "initial":
+        return Shape("start", needs_name=False)
+    keyword = _CONTROL_NODES.get(element.subkind)
+    if keyword is None and element.subkind == "final" and _is_terminating(graph, element):
+        return Shape("action")
+    return Shape(keyword) if keyword else None
+
+
+def _is_terminating(graph: Graph, final_node: Element) -> bool:
+    """Whether a final node ends other flows, too, or is one of several."""
+    owner = graph.owner(final_node)
+    siblings = [] if owner is None else graph.owned(owner)
+    subkinds = [sibling.subkind for sibling in siblings if sibling.kind is Kind.CONTROL]
+    return subkinds.count("final") > 1 or not is_joined(graph, final_node)
+
+
+def _find_pseudostate_shape(
+    _graph: Graph, element: Element, _type_shapes: _TypeShapes
+) -> Shape | None:
+    return None if element.subkind == "initial" else Shape("state")
+
+
+def _find_association_shape(graph: Graph, element: Element, type_shapes: _TypeShapes) -> Shape:
+    """Return an interface definition if all ends are ports, else a connection definition."""
+    end_types = (type_of(graph, end) for end in graph.targets(element, Edge.END))
+    types = {"" if type_ is None else type_.id: type_ for type_ in end_types}
+    shapes = [_find_type_shape(graph, element, type_, type_shapes) for type_ in types.values()]
+    joins_ports = bool(shapes) and all(shape and shape.keyword == "port def" for shape in shapes)
+    return Shape("interface def" if joins_ports else "connection def", needs_name=False)
+
+
+# -- shapes of types -----------------------------------------------------------------------------
+
+
+def _find_type_shape(
+    graph: Graph, element: Element, type_: Element | None, type_shapes: _TypeShapes
+) -> Shape | None:
+    """Return the shape of the type of *element*; None where types form a cycle."""
+    if type_ is None or type_.kind in _DEFINITIONS:
+        return None if type_ is None else find_shape(graph, type_, type_shapes)
+    if type_.id not in type_shapes:
+        for dependency in _order_type_dependencies(graph, element, type_shapes):
+            type_shapes[dependency.id] = find_shape(graph, dependency, type_shapes)
+    return type_shapes.get(type_.id)
+
+
+def _order_type_dependencies(
+    graph: Graph, element: Element, type_shapes: _TypeShapes
+) -> list[Element]:
+    """Return the elements that determine the shape of *element*, each after its own types.
+
+    This is a topological sort by depth-first search without recursion: types may lead to types
+    over thousands of steps. In a cycle, the shapes of all types on the path are set to None.
+    """
+    ordered: dict[str, Element] = {}
+    open_types: dict[str, Iterator[Element]] = {element.id: iter(_list_types(graph, element))}
+    path = [element]
+    while path:
+        type_ = next(open_types[path[-1].id], None)
+        if type_ is None:
+            finished = path.pop()
+            del open_types[finished.id]
+            ordered[finished.id] = finished
+        elif type_.id in open_types:
+            type_shapes.update(dict.fromkeys(list(open_types)[1:]))
             return []
-        elif one.kind not in _DEFINITIONS and not (one.id in found or one.id in known):
-            open_[one.id] = iter(_types(graph, one))
-            way.append(one)
-    return list(found.values())[:-1]
+        elif type_.kind not in _DEFINITIONS and not (
+            type_.id in ordered or type_.id in type_shapes
+        ):
+            open_types[type_.id] = iter(_list_types(graph, type_))
+            path.append(type_)
+    return list(ordered.values())[:-1]
 
 
-def _types(graph: Graph, element: Element) -> list[Element]:
-    """What decides how an element is written: its types, or those of its ends."""
+def _list_types(graph: Graph, element: Element) -> list[Element]:
+    """Return the types that determine the shape of an element: its own, or those of its ends."""
     if element.kind is Kind.INSTANCE:
         return graph.targets(element, Edge.INSTANCE_OF)
     ends = graph.targets(element, Edge.END) if element.kind is Kind.ASSOCIATION else [element]
-    found = {type_.id: type_ for end in ends if (type_ := type_of(graph, end)) is not None}
-    return list(found.values())
+    types = {type_.id: type_ for end in ends if (type_ := type_of(graph, end)) is not None}
+    return list(types.values())
 
 
-def is_part_port(graph: Graph, port: Element) -> bool:
-    """Whether a port is written as a part: it is typed by a block, and nothing only flows."""
-    return _is_part(graph, port, {})
-
-
-def _is_part(graph: Graph, port: Element, known: _Known) -> bool:
-    if port.role == "flow port":
-        return False
-    shape = _shape_of_type(graph, port, type_of(graph, port), known)
-    return shape is not None and shape.keyword == "part def"
-
-
-def _parameter(graph: Graph, element: Element, known: _Known) -> Shape | None:
-    if element.kind is Kind.ACTIVITY_PARAMETER and graph.targets(element, Edge.REFERENCES):
-        return None
-    keyword = _keyword(graph, element, known)
-    return Shape("item" if keyword == "part" else keyword)
-
-
-def _association(graph: Graph, element: Element, known: _Known) -> Shape:
-    ends = (type_of(graph, end) for end in graph.targets(element, Edge.END))
-    types = {"" if one is None else one.id: one for one in ends}
-    shapes = [_shape_of_type(graph, element, one, known) for one in types.values()]
-    joins_ports = bool(shapes) and all(one and one.keyword == "port def" for one in shapes)
-    return Shape("interface def" if joins_ports else "connection def", is_named=False)
-
-
-def _instance(graph: Graph, element: Element, known: _Known) -> Shape:
-    if element.role in ("unit", "quantity kind"):
-        return Shape("attribute")
-    type_ = graph.target(element, Edge.INSTANCE_OF)
-    shape = _shape_of_type(graph, element, type_, known)
-    keyword = "part" if shape is None else _USED_BY_KEYWORD.get(shape.keyword, "ref")
-    return Shape(keyword, is_named=element.subkind != "part")
-
-
-_BY_KIND: dict[Kind, Callable[[Graph, Element, _Known], Shape | None]] = {
-    **dict.fromkeys(_BEHAVIOURS, _behaviour),
-    Kind.PROPERTY: _property,
-    Kind.FLOW_PROPERTY: _property,
-    Kind.PARAMETER: _parameter,
-    Kind.PIN: _parameter,
-    Kind.ACTIVITY_PARAMETER: _parameter,
-    Kind.PORT: _port,
-    Kind.ASSOCIATION: _association,
-    Kind.INSTANCE: _instance,
-    Kind.CONTROL: _control,
-    Kind.PSEUDOSTATE: _pseudostate,
-    Kind.OBJECT_NODE: _object_node,
-    Kind.DATA_STORE: _object_node,
+_BY_KIND: dict[Kind, Callable[[Graph, Element, _TypeShapes], Shape | None]] = {
+    **dict.fromkeys(_BEHAVIOURS, _find_behaviour_shape),
+    Kind.PROPERTY: _find_property_shape,
+    Kind.FLOW_PROPERTY: _find_property_shape,
+    Kind.PARAMETER: _find_parameter_shape,
+    Kind.PIN: _find_parameter_shape,
+    Kind.ACTIVITY_PARAMETER: _find_parameter_shape,
+    Kind.PORT: _find_port_shape,
+    Kind.ASSOCIATION: _find_association_shape,
+    Kind.INSTANCE: _find_instance_shape,
+    Kind.CONTROL: _find_control_node_shape,
+    Kind.PSEUDOSTATE: _find_pseudostate_shape,
+    Kind.OBJECT_NODE: _find_object_node_shape,
+    Kind.DATA_STORE: _find_object_node_shape,
 }

@@ -1,16 +1,14 @@
-"""States, pseudostates and transitions."""
+"""States, regions, pseudostates and transitions."""
 
-from sysmlc.backends.sysml import annotations
-from sysmlc.backends.sysml.behaviours import held
-from sysmlc.backends.sysml.book import Book
-from sysmlc.backends.sysml.conditions import condition
-from sysmlc.backends.sysml.declarations import visibility
-from sysmlc.backends.sysml.entry import Entry
-from sysmlc.backends.sysml.events import trigger
-from sysmlc.backends.sysml.printing import Line
-from sysmlc.backends.sysml.references import named
-from sysmlc.backends.sysml.structure import contents
-from sysmlc.backends.sysml.words import quoted
+from sysmlc.backends.sysml.annotations import make_annotation, write_annotations
+from sysmlc.backends.sysml.behaviours import write_subaction
+from sysmlc.backends.sysml.conditions import format_condition, format_trigger
+from sysmlc.backends.sysml.declarations import list_visibility
+from sysmlc.backends.sysml.definitions import write_contents
+from sysmlc.backends.sysml.plan import Member
+from sysmlc.backends.sysml.printing import Line, quote_name
+from sysmlc.backends.sysml.references import format_element_reference
+from sysmlc.backends.sysml.writer import Writer
 from sysmlc.ir import Edge, Element, Kind
 
 _KEYWORDS = {
@@ -25,142 +23,145 @@ _KEYWORDS = {
     "connection-point": "connectionPoint",
     "terminate": "termination",
 }
+"""Keyword of the library ``SysMLC`` by the subkind of a pseudostate."""
 _POINTS = ("entry-point", "exit-point", "connection-point")
 """Pseudostates that states and state machines own themselves (UML 2.5.1, 14.2.4)."""
-_WIDTH = 80
+_TRANSITION_WIDTH = 80
+"""Longest transition in one line."""
 
 
-def state(book: Book, entry: Entry) -> list[Line]:
-    """A state with its actions; one with several regions is parallel."""
-    element = entry.element
-    assert element is not None
-    head = " ".join([*visibility(book, element), "state", quoted(entry.name)])
-    for machine in book.graph.targets(element, Edge.CALLS):
-        other = book.plan.entry(machine)
-        name = book.name(entry.parent, element, Edge.CALLS, machine)
-        if name is not None and other is not None:
-            head += f" {':' if other.shape.is_definition else ':>'} {name}"
-    regions = [one for one in book.graph.owned(element) if one.kind is Kind.REGION]
-    body = annotations.of(book, entry)
+# -- states and pseudostates ---------------------------------------------------------------------
+
+
+def write_state(writer: Writer, member: Member) -> list[Line]:
+    """Write a state with its actions; one with several regions is parallel."""
+    element = member.require_element()
+    head = " ".join([*list_visibility(writer, element), "state", quote_name(member.name)])
+    for machine in writer.graph.targets(element, Edge.CALLS):
+        machine_member = writer.plan.find(machine)
+        name = writer.refer_to(member.parent, element, Edge.CALLS, machine)
+        if name is not None and machine_member is not None:
+            head += f" {':' if machine_member.shape.is_definition else ':>'} {name}"
+    regions = [child for child in writer.graph.owned(element) if child.kind is Kind.REGION]
+    body = write_annotations(writer, member)
     for word, edge in (("entry", Edge.ENTRY), ("do", Edge.DO), ("exit", Edge.EXIT)):
-        body += [held(book, entry, word, one) for one in book.graph.targets(element, edge)]
-    body += book.members(entry)
+        for behaviour in writer.graph.targets(element, edge):
+            body.append(write_subaction(writer, member, word, behaviour))
+    body += writer.write_members(member)
     return [Line(f"{head} parallel" if len(regions) > 1 else head, body)]
 
 
-def region(book: Book, entry: Entry) -> list[Line]:
-    """One of several regions: a state of its own that runs beside the others."""
-    return [Line(f"state {quoted(entry.name)}", contents(book, entry))]
+def write_region(writer: Writer, member: Member) -> list[Line]:
+    """Write one of several regions: a substate of a parallel state."""
+    return [Line(f"state {quote_name(member.name)}", write_contents(writer, member))]
 
 
-def pseudostate(book: Book, entry: Entry) -> list[Line]:
-    """A pseudostate: a state with a keyword of ours."""
-    element = entry.element
-    assert element is not None
-    keyword = _KEYWORDS.get(element.subkind, "choice")
-    mark = f"#{book.ours(entry.parent, keyword)}"
-    owner = book.graph.owner(element)
+def write_pseudostate(writer: Writer, member: Member) -> list[Line]:
+    """Write a pseudostate: a state with a keyword of the library ``SysMLC``."""
+    element = member.require_element()
+    keyword = writer.refer_to_sysmlc(member.parent, _KEYWORDS.get(element.subkind, "choice"))
+    owner = writer.graph.owner(element)
     if owner is not None and owner.kind is Kind.STATE and element.subkind not in _POINTS:
-        book.approximated(element, "a pseudostate that no region owns", "one of the only region")
-    body = contents(book, entry)
-    for one in book.graph.targets(element, Edge.REFERENCES):
-        name = book.name(entry, element, Edge.REFERENCES, one)
+        said = "a pseudostate that no region owns"
+        writer.record_approximation(element, said, "one of the only region")
+    body = write_contents(writer, member)
+    for target in writer.graph.targets(element, Edge.REFERENCES):
+        name = writer.refer_to(member, element, Edge.REFERENCES, target)
         body += [] if name is None else [Line(f"ref :> {name}")]
-    return [Line(f"{mark} state {quoted(entry.name)}", body)]
+    return [Line(f"#{keyword} state {quote_name(member.name)}", body)]
 
 
-def transition(book: Book, entry: Entry) -> list[Line]:
-    """A transition for each of its triggers; the first has the name."""
-    element = entry.element
-    assert element is not None
-    triggers = book.graph.targets(element, Edge.TRIGGER)
-    book.said.update(one.id for one in triggers)
-    ends = [_end(book, entry, element, edge) for edge in (Edge.FLOW_SOURCE, Edge.FLOW_TARGET)]
-    if None in ends:
-        return book.drop(entry, "flow ends")
-    body = annotations.of(book, entry)
+# -- transitions ---------------------------------------------------------------------------------
+
+
+def write_transition(writer: Writer, member: Member) -> list[Line]:
+    """Write a transition for each trigger; only the first has the name and the annotations."""
+    element = member.require_element()
+    triggers = writer.graph.targets(element, Edge.TRIGGER)
+    writer.expressed.update(trigger.id for trigger in triggers)
+    source = _format_end(writer, member, element, Edge.FLOW_SOURCE)
+    target = _format_end(writer, member, element, Edge.FLOW_TARGET)
+    if source is None or target is None:
+        return writer.drop(member, "flow ends")
+    body = write_annotations(writer, member)
     if element.subkind not in ("", "external"):
-        body.append(annotations.ours(book, entry, "Kind", {"name": element.subkind}))
-    body += _owned(book, entry)
+        body.append(make_annotation(writer, member, "Kind", {"name": element.subkind}))
+    # Members besides effect, guard and triggers.
+    body += [line for child in member.members for line in writer.write_member(child)]
     lines = []
-    accepted = [trigger(book, entry, one) for one in triggers] or [""]
-    name = entry.name
-    for one in accepted:
-        lines.append(_line(book, entry, name, (str(ends[0]), str(ends[1])), one, body))
+    accepts = [format_trigger(writer, member, trigger) for trigger in triggers] or [""]
+    name = member.name
+    for accept in accepts:
+        lines.append(_write_transition(writer, member, name, (source, target), accept, body))
         name, body = "", []
     return lines
 
 
-def _owned(book: Book, entry: Entry) -> list[Line]:
-    """What a transition owns besides its effect, its guard and its triggers."""
-    return [line for one in entry.members for line in book.member(one)]
-
-
-def _line(
-    book: Book, entry: Entry, name: str, ends: tuple[str, str], accepted: str, body: list[Line]
+def _write_transition(
+    writer: Writer,
+    member: Member,
+    name: str,
+    ends: tuple[str, str],
+    accept: str,
+    body: list[Line],
 ) -> Line:
-    element = entry.element
-    assert element is not None
-    words = [*visibility(book, element), "transition", quoted(name) if name else ""]
-    parts = [" ".join(word for word in words if word), f"first {ends[0]}"]
-    if not accepted and len(parts[0]) == len("transition") and "guard" not in element.attrs:
-        effects = book.graph.targets(element, Edge.EFFECT)
-        if ends[0] == "start" and not effects and not body:
-            return Line(f"first start then {ends[1]}")
-    parts += [accepted] if accepted else []
+    """Write ``transition first <source> accept ... if ... do ... then <target>``."""
+    element = member.require_element()
+    source, target = ends
+    words = [*list_visibility(writer, element), "transition", quote_name(name) if name else ""]
+    head = " ".join(word for word in words if word)
+    effects = writer.graph.targets(element, Edge.EFFECT)
     guard = element.attrs.get("guard")
+    is_bare = head == "transition" and not accept and "guard" not in element.attrs
+    if is_bare and source == "start" and not effects and not body:
+        return Line(f"first start then {target}")
+    parts = [head, f"first {source}"]
+    parts += [accept] if accept else []
     if guard is not None and str(guard).strip() != "else":
-        parts.append(f"if {condition(book, entry, element, str(guard))}")
+        parts.append(f"if {format_condition(writer, member, element, str(guard))}")
     elif guard is not None:
-        parts.append(f"if {_otherwise(book, entry, element)}")
-    return _with_effect(book, entry, parts, f"then {ends[1]}", body)
+        parts.append(f"if {_format_else(writer, member, element)}")
+    effect = write_subaction(writer, member, "do", effects[0]) if effects else None
+    end = f"then {target}"
+    if effect is not None and effect.body:
+        return Line(_wrap([*parts, effect.head]), effect.body, tail=end)
+    parts += [] if effect is None else [effect.head]
+    return Line(_wrap([*parts, end]), body)
 
 
-def _with_effect(book: Book, entry: Entry, parts: list[str], end: str, body: list[Line]) -> Line:
-    element = entry.element
-    assert element is not None
-    effects = book.graph.targets(element, Edge.EFFECT)
-    done = held(book, entry, "do", effects[0]) if effects else None
-    if done is not None and done.body:
-        return Line(_joined([*parts, done.head], ""), done.body, tail=end)
-    parts += [] if done is None else [done.head]
-    return Line(_joined(parts, end), body)
+def _wrap(parts: list[str]) -> str:
+    """Return the parts of a transition in one line, or one below the other if it is too long."""
+    text = " ".join(parts)
+    return text if len(text) <= _TRANSITION_WIDTH else "\n".join(parts)
 
 
-def _joined(parts: list[str], end: str) -> str:
-    whole = [*parts, end] if end else parts
-    text = " ".join(whole)
-    if len(text) <= _WIDTH:
-        return text
-    return "\n".join(whole)
-
-
-def _otherwise(book: Book, entry: Entry, element: Element) -> str:
-    """The condition that no other transition from the same vertex may be taken."""
-    source = book.graph.target(element, Edge.FLOW_SOURCE)
-    others = [] if source is None else book.graph.sources(source, Edge.FLOW_SOURCE)
-    texts = [
-        f"({condition(book, entry, one, str(one.attrs['guard']))})"
-        for one in others
-        if one is not element and one.attrs.get("guard") not in (None, "else")
+def _format_else(writer: Writer, member: Member, element: Element) -> str:
+    """Return the condition that no other transition from the same vertex is enabled."""
+    source = writer.graph.target(element, Edge.FLOW_SOURCE)
+    siblings = [] if source is None else writer.graph.sources(source, Edge.FLOW_SOURCE)
+    conditions = [
+        f"({format_condition(writer, member, sibling, str(sibling.attrs['guard']))})"
+        for sibling in siblings
+        if sibling is not element and sibling.attrs.get("guard") not in (None, "else")
     ]
-    return f"not ({' or '.join(texts)})" if texts else "true"
+    return f"not ({' or '.join(conditions)})" if conditions else "true"
 
 
-def _end(book: Book, entry: Entry, element: Element, edge: Edge) -> str | None:
-    vertex = book.graph.target(element, edge)
+def _format_end(writer: Writer, member: Member, element: Element, edge: Edge) -> str | None:
+    """Return the name of the source or target; ``start`` and ``done`` for vertices without one."""
+    vertex = writer.graph.target(element, edge)
     if vertex is None:
         return None
-    if book.plan.entry(vertex) is not None:
-        return named(book.plan, entry.parent, vertex)
-    book.said.add(vertex.id)
+    if writer.plan.find(vertex) is not None:
+        return format_element_reference(writer.plan, member.parent, vertex)
+    writer.expressed.add(vertex.id)
     word = "start" if vertex.kind is Kind.PSEUDOSTATE else "done"
-    for above in book.graph.ancestors(vertex):
-        holder = book.plan.entry(above)
-        if holder is None:
+    for ancestor in writer.graph.ancestors(vertex):
+        behaviour = writer.plan.find(ancestor)
+        if behaviour is None:
             continue
-        if holder is entry.parent:
+        if behaviour is member.parent:
             return word
-        name = named(book.plan, entry.parent, holder.element)
+        name = format_element_reference(writer.plan, member.parent, behaviour.element)
         return None if name is None else f"{name}.{word}"
     return word

@@ -1,0 +1,310 @@
+"""Flows of an activity: successions between nodes, and flows of objects between pins and stores.
+
+A control node of SysML v2 has no pins. An object flow that passes a control node therefore becomes
+a succession, for the order, and flows from its source to all targets behind the node.
+"""
+
+from collections.abc import Iterator
+
+from sysmlc.backends.sysml.annotations import make_annotation
+from sysmlc.backends.sysml.conditions import format_condition
+from sysmlc.backends.sysml.declarations import list_visibility
+from sysmlc.backends.sysml.definitions import write_contents
+from sysmlc.backends.sysml.elided_elements import find_step_after_merge
+from sysmlc.backends.sysml.expressions import format_literal
+from sysmlc.backends.sysml.plan import Member
+from sysmlc.backends.sysml.printing import Line, quote_name
+from sysmlc.backends.sysml.references import format_element_reference
+from sysmlc.backends.sysml.rules import UNSAID_ATTRIBUTE
+from sysmlc.backends.sysml.writer import Writer
+from sysmlc.ir import AttrValue, Edge, Element, Kind
+
+_WAITING = "a step that waits for several flows, one of them with a guard,"
+_PAST_CONTROL = "an object flow between a store and a control node"
+_STORES = (Kind.OBJECT_NODE, Kind.DATA_STORE, Kind.ACTIVITY_PARAMETER)
+
+
+# -- successions ---------------------------------------------------------------------------------
+
+
+def write_successions(writer: Writer, member: Member) -> list[Line]:
+    """Write the successions that leave a node, in the order of the model; ``else`` is last."""
+    flows = _list_outgoing_flows(writer, member.require_element())
+    others = [flow for flow in flows if flow.attrs.get("guard") != "else"]
+    else_flows = [flow for flow in flows if flow.attrs.get("guard") == "else"]
+    lines = [_write_succession(writer, member, flow) for flow in (*others, *else_flows)]
+    return [line for line in lines if line is not None]
+
+
+def write_initial_successions(writer: Writer, member: Member, initial: Element) -> list[Line]:
+    """Write the successions that leave an initial node."""
+    lines, scope = [], member.parent
+    for flow in writer.graph.sources(initial, Edge.FLOW_SOURCE):
+        writer.expressed.add(flow.id)
+        target = writer.graph.target(flow, Edge.FLOW_TARGET)
+        end = None if target is None else _refer_to_node(writer, scope, target)
+        if end is None:
+            writer.record_unreachable(flow, "flow-target")
+            continue
+        flow_member = writer.plan.find(flow)
+        name = ""
+        if flow_member is not None and flow_member.name:
+            name = f"succession {quote_name(flow_member.name)} "
+        guard = flow.attrs.get("guard")
+        condition = ""
+        if guard is not None:
+            condition = f"if {format_condition(writer, scope, flow, str(guard))} "
+        body = [] if flow_member is None else write_contents(writer, flow_member)
+        lines.append(Line(f"{name}first start {condition}then {end}", body))
+    return lines
+
+
+def _list_outgoing_flows(writer: Writer, element: Element) -> list[Element]:
+    """Return the control flows that leave a node, and the object flows that order nodes."""
+    graph = writer.graph
+    flows = [
+        flow
+        for flow in graph.sources(element, Edge.FLOW_SOURCE)
+        if flow.kind is Kind.CONTROL_FLOW or _orders_nodes(writer, flow)
+    ]
+    for pin in graph.owned(element):
+        if pin.kind is Kind.PIN:
+            pin_flows = graph.sources(pin, Edge.FLOW_SOURCE)
+            flows += [flow for flow in pin_flows if _orders_nodes(writer, flow)]
+    return flows
+
+
+def _orders_nodes(writer: Writer, flow: Element) -> bool:
+    """Whether an object flow starts or ends at a control node."""
+    if flow.kind is not Kind.OBJECT_FLOW:
+        return False
+    ends = [writer.graph.target(flow, edge) for edge in (Edge.FLOW_SOURCE, Edge.FLOW_TARGET)]
+    return any(end is not None and end.kind is Kind.CONTROL for end in ends)
+
+
+def _write_succession(writer: Writer, member: Member, flow: Element) -> Line | None:
+    """Write a succession after its source as ``then``; one with a name states its source."""
+    writer.expressed.add(flow.id)
+    target = writer.graph.target(flow, Edge.FLOW_TARGET)
+    end = None if target is None else _refer_to_node(writer, member.parent, target)
+    if end is None:
+        if target is None or target.kind not in _STORES:
+            writer.record_unreachable(flow, "flow-target")
+        return None
+    flow_member = writer.plan.find(flow)
+    name = flow_member.name if flow_member is not None else ""
+    if flow_member is not None and flow_member.parent is not member.parent:
+        said = "a flow that another node owns"
+        writer.record_approximation(flow, said, "a succession beside its source")
+    body = [] if flow_member is None else write_contents(writer, flow_member)
+    if flow.kind is not Kind.CONTROL_FLOW:
+        body = [_annotate_pins(writer, member, flow), *body]
+    is_decision = member.shape.keyword == "decide"
+    guard = _format_guard(writer, member, flow)
+    if guard is not None:
+        _record_waiting(writer, target)
+    if guard == "else" and not name and is_decision:
+        return Line(f"else {end}", body, depth=1)
+    condition = "" if guard in (None, "else") else f"if {guard} "
+    if name:
+        start = f"succession {quote_name(name)} first {quote_name(member.name)}"
+        return Line(f"{start} {condition}then {end}", body)
+    return Line(f"{condition}then {end}", body, depth=1 if is_decision else 0)
+
+
+def _record_waiting(writer: Writer, step: Element | None) -> None:
+    """Record that a step of UML waits for all flows, but in SysML v2 not for a false guard."""
+    if step is None or step.kind not in (Kind.ACTION, Kind.STRUCTURED):
+        return
+    incoming = writer.graph.sources(step, Edge.FLOW_TARGET)
+    control_flows = [flow for flow in incoming if flow.kind is Kind.CONTROL_FLOW]
+    recorded = (facts.get("said") for _, facts in writer.losses.by_element.get(step.id, ()))
+    if len(control_flows) > 1 and _WAITING not in recorded:
+        written = "one that waits for those whose guards hold"
+        writer.record_approximation(step, _WAITING, written)
+
+
+def _annotate_pins(writer: Writer, member: Member, flow: Element) -> Line:
+    """Return metadata with the pins at the ends of a succession along which objects flow."""
+    facts: dict[str, AttrValue] = {}
+    for key, edge in (("source", Edge.FLOW_SOURCE), ("target", Edge.FLOW_TARGET)):
+        end = writer.graph.target(flow, edge)
+        pin = writer.plan.find(end) if end is not None and end.kind is Kind.PIN else None
+        facts[key] = "" if pin is None else pin.name
+    return make_annotation(writer, member, "ObjectFlow", facts)
+
+
+# -- guards --------------------------------------------------------------------------------------
+
+
+def _format_guard(writer: Writer, member: Member, flow: Element) -> str | None:
+    """Return the guard of a flow; a literal is compared with the input of the decision."""
+    guard = flow.attrs.get("guard")
+    if guard is None:
+        return None
+    if isinstance(guard, str) and guard.strip() == "else":
+        return "else"
+    if flow.attrs.get("guard_literal") and member.element is not None:
+        decision_input = _format_decision_input(writer, member, member.element)
+        if decision_input is not None:
+            return f"{decision_input} == {_format_guard_literal(writer, member, guard)}"
+    if not isinstance(guard, str):
+        return _format_guard_literal(writer, member, guard)
+    return format_condition(writer, member.parent, flow, guard)
+
+
+def _format_guard_literal(writer: Writer, member: Member, guard: object) -> str:
+    if isinstance(guard, str) and (guard in ("true", "false") or guard.lstrip("-").isdigit()):
+        return guard
+    value = guard if isinstance(guard, str | int | float | bool) else str(guard)
+    return format_literal(writer, member.parent, member.require_element(), value)
+
+
+def _format_decision_input(writer: Writer, member: Member, decision: Element) -> str | None:
+    """Return the only object that flows into a decision, or that the decision names."""
+    flow = writer.graph.get(str(decision.attrs.get("decision_input_flow", "")))
+    if flow is None:
+        incoming = writer.graph.sources(decision, Edge.FLOW_TARGET)
+        object_flows = [flow for flow in incoming if flow.kind is Kind.OBJECT_FLOW]
+        if len(object_flows) != 1:
+            return None
+        flow = object_flows[0]
+    source = writer.graph.target(flow, Edge.FLOW_SOURCE)
+    if source is None or source.kind is Kind.CONTROL:
+        return None
+    return _refer_to_object_node(writer, member.parent, source)
+
+
+# -- references to nodes -------------------------------------------------------------------------
+
+
+def _refer_to_node(writer: Writer, scope: Member | None, node: Element) -> str | None:
+    """Return how a succession names a node: a pin by its action, a final node as ``done``."""
+    if node.kind is Kind.PIN:
+        action = writer.graph.owner(node)
+        return None if action is None else _refer_to_node(writer, scope, action)
+    step = find_step_after_merge(writer.graph, node)
+    if step is not None:
+        writer.expressed.add(node.id)
+        return _refer_to_node(writer, scope, step)
+    if node.kind in _STORES:
+        return None
+    if node.subkind != "initial" and writer.plan.find(node) is not None:
+        return format_element_reference(writer.plan, scope, node)
+    return _refer_to_start_or_done(writer, scope, node)
+
+
+def _refer_to_start_or_done(writer: Writer, scope: Member | None, node: Element) -> str | None:
+    """Return ``start`` or ``done``, with the path to the behaviour if it is not around *scope*."""
+    word = {"initial": "start", "final": "done", "flow-final": "done"}.get(node.subkind)
+    if word is None:
+        return None
+    owners = (writer.plan.find(ancestor) for ancestor in writer.graph.ancestors(node))
+    behaviour = next((owner for owner in owners if owner is not None), None)
+    if behaviour is None or behaviour is scope:
+        return word
+    if scope is not None and any(behaviour is namespace for namespace in scope.namespaces):
+        return word
+    name = format_element_reference(writer.plan, scope, behaviour.element)
+    return None if name is None else f"{name}.{word}"
+
+
+def _refer_to_object_node(writer: Writer, scope: Member | None, node: Element) -> str | None:
+    """Return how a flow names an object node; the node of a parameter by the parameter."""
+    if node.kind is Kind.ACTIVITY_PARAMETER and writer.plan.find(node) is None:
+        node_parameter = writer.graph.target(node, Edge.REFERENCES)
+        return format_element_reference(writer.plan, scope, node_parameter)
+    return format_element_reference(writer.plan, scope, node)
+
+
+# -- object flows --------------------------------------------------------------------------------
+
+
+def write_object_flow(writer: Writer, member: Member) -> list[Line]:
+    """Write the flows from the source of an object flow to all targets behind control nodes.
+
+    An object flow that starts at a control node has no lines: the flows to the node include it.
+    """
+    element = member.require_element()
+    source = writer.graph.target(element, Edge.FLOW_SOURCE)
+    target = writer.graph.target(element, Edge.FLOW_TARGET)
+    if source is None or target is None:
+        return writer.drop(member, "flow ends")
+    if source.kind is Kind.CONTROL:
+        if target.kind in _STORES:
+            writer.record_approximation(element, _PAST_CONTROL, "bindings past it")
+        return []
+    is_direct = target.kind is not Kind.CONTROL
+    if is_direct and "guard" in element.attrs:
+        facts = {"attribute": "guard", "kind": "ObjectFlow"}
+        writer.losses.record(UNSAID_ATTRIBUTE, element, **facts)
+    targets = [target] if is_direct else list(_iter_targets_behind(writer, target))
+    # Successions with pins express a flow from pin to pin over control nodes completely.
+    ends = (source, *targets)
+    is_expressed = not is_direct and bool(targets) and all(end.kind is Kind.PIN for end in ends)
+    if not is_direct and not is_expressed:
+        writer.record_approximation(element, _PAST_CONTROL, "bindings past it")
+    has_own_line = is_direct or source.kind in _STORES
+    source_name = _refer_to_object_node(writer, member.parent, source)
+    name = member.name if has_own_line else ""
+    lines: list[Line] = []
+    for end in targets:
+        target_name = _refer_to_object_node(writer, member.parent, end)
+        if source_name is None or target_name is None:
+            writer.drop(member, "flow ends")
+            continue
+        pair = ((source, source_name), (end, target_name))
+        lines.append(Line(_format_object_flow(writer, element, name, *pair)))
+        name = ""
+    if is_expressed:
+        for line in lines:
+            line.body.append(make_annotation(writer, member, "Through", {}))
+    elif lines and has_own_line:
+        lines[0].body += write_contents(writer, member)
+    return lines
+
+
+def _format_object_flow(
+    writer: Writer,
+    flow: Element,
+    name: str,
+    source: tuple[Element, str],
+    target: tuple[Element, str],
+) -> str:
+    """Return a flow between pins, or a binding; *source* and *target* are nodes with names."""
+    prefixes = list_visibility(writer, flow)
+    if source[0].kind is not Kind.PIN or target[0].kind is not Kind.PIN:
+        _record_shared_node(writer, flow, source[0], target[0])
+        words = ["binding", quote_name(name)] if name else []
+        return " ".join([*prefixes, *words, "bind", target[1], "=", source[1]])
+    words = ["flow", quote_name(name)] if name else ["flow"]
+    return " ".join([*prefixes, *words, "from", source[1], "to", target[1]])
+
+
+def _record_shared_node(writer: Writer, flow: Element, source: Element, target: Element) -> None:
+    """Record a binding of a node with several flows, each of which adds or removes objects.
+
+    A flow connects features of two elements (SysML 2.0, 7.16). A node of the activity itself is
+    not such a feature, so that only a binding can reach it.
+    """
+    for node, edge in ((source, Edge.FLOW_SOURCE), (target, Edge.FLOW_TARGET)):
+        if node.kind is not Kind.PIN and len(writer.graph.sources(node, edge)) > 1:
+            said = "an object flow of a node with several"
+            writer.record_approximation(flow, said, "a binding")
+            return
+
+
+def _iter_targets_behind(writer: Writer, control_node: Element) -> Iterator[Element]:
+    """Yield the object nodes that objects reach from a control node over control nodes only."""
+    seen, stack = {control_node.id}, [control_node]
+    while stack:
+        node = stack.pop()
+        for flow in reversed(writer.graph.sources(node, Edge.FLOW_SOURCE)):
+            target = writer.graph.target(flow, Edge.FLOW_TARGET)
+            if flow.kind is not Kind.OBJECT_FLOW or target is None or target.id in seen:
+                continue
+            seen.add(target.id)
+            if target.kind is Kind.CONTROL:
+                stack.append(target)
+            else:
+                yield target

@@ -1,0 +1,69 @@
+"""Specialisations, subsets and redefinitions of UML that SysML v2 does not allow."""
+
+from sysmlc.backends.sysml.plan import Member, Plan
+from sysmlc.ir import Edge, Element, Graph, Kind
+from sysmlc.ir.query import bounds, conforms, generals, type_of
+
+
+def is_invalid_subset(plan: Plan, feature: Element, subsetted: Element) -> bool:
+    """Whether a feature must not subset another one.
+
+    The owner of the feature has to own or inherit the other feature, and both need compatible
+    kinds and multiplicities.
+    """
+    if is_incompatible(plan, feature, subsetted):
+        return True
+    owner, general = plan.graph.owner(feature), plan.graph.owner(subsetted)
+    return owner is None or not (general is owner or general in generals(plan.graph, owner))
+
+
+def is_incompatible(plan: Plan, feature: Element, general_feature: Element) -> bool:
+    """Whether a feature must not specialise another one.
+
+    A port and a part differ in kind, and a feature may not have more values than its general.
+    """
+    members = [plan.find(element) for element in (feature, general_feature)]
+    keywords = {member.shape.keyword for member in members if member is not None}
+    if "port" in keywords and "part" in keywords:
+        return True
+    general = plan.find(plan.graph.owner(general_feature))
+    specific = plan.find(plan.graph.owner(feature))
+    if has_incompatible_ends(plan, general, specific):
+        return True
+    if Kind.PORT in (feature.kind, general_feature.kind):
+        return False
+    return _upper_bound(feature) > _upper_bound(general_feature)
+
+
+def has_incompatible_ends(plan: Plan, general: Member | None, specific: Member | None) -> bool:
+    """Whether ends of an association have other types than the ends that they would redefine."""
+    graph, ends = plan.graph, []
+    for member in (general, specific):
+        association = None if member is None else member.element
+        if association is None or association.kind is not Kind.ASSOCIATION:
+            return False
+        ends.append(graph.targets(association, Edge.END))
+    for general_end, end in zip(*ends, strict=False):
+        wanted, type_ = type_of(graph, general_end), type_of(graph, end)
+        if wanted is not None and type_ is not None and not conforms(graph, type_, wanted):
+            return True
+    return False
+
+
+def is_without_parameters(graph: Graph, operation: Element, method: Element) -> bool:
+    """Whether an operation states no parameters, although its method has some.
+
+    As a specialisation of the method, the operation would inherit them.
+    """
+    return _has_parameters(graph, method) and not _has_parameters(graph, operation)
+
+
+def _has_parameters(graph: Graph, element: Element) -> bool:
+    return any(child.kind is Kind.PARAMETER for child in graph.owned(element))
+
+
+def _upper_bound(feature: Element) -> float:
+    limits = bounds(str(feature.attrs.get("multiplicity", "1")))
+    if limits is None:
+        return 1
+    return float("inf") if limits[1] is None else limits[1]

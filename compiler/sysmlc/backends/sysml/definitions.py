@@ -1,0 +1,230 @@
+"""Packages, imports and definitions."""
+
+from sysmlc.backends.sysml.annotations import make_annotation, write_annotations
+from sysmlc.backends.sysml.declarations import list_visibility, make_definition_head
+from sysmlc.backends.sysml.library import (
+    find_quantity,
+    find_quantity_of_kind,
+    find_scalar_type,
+    find_unit_name,
+)
+from sysmlc.backends.sysml.plan import Member
+from sysmlc.backends.sysml.printing import Line, format_comment, quote_name
+from sysmlc.backends.sysml.references import format_qualified_name
+from sysmlc.backends.sysml.writer import Writer
+from sysmlc.ir import Edge, Element, Kind
+from sysmlc.ir.query import STRUCTURAL_FEATURES
+from sysmlc.ir.query.classifiers import quantity_kind_of, unit_of
+
+_PRIMITIVE_PACKAGES = ("PrimitiveTypes", "UMLPrimitiveTypes", "PrimitiveValueTypes")
+
+
+# -- packages and imports ------------------------------------------------------------------------
+
+
+def write_package(writer: Writer, member: Member) -> list[Line]:
+    """Write a package, of the model or added for elements outside of it.
+
+    It imports the libraries to which its members refer by short names.
+    """
+    body = [] if member.element is None else write_annotations(writer, member)
+    prefixes = [] if member.element is None else list_visibility(writer, member.element)
+    head = " ".join([*prefixes, member.shape.keyword, quote_name(member.name)])
+    body += writer.write_members(member)
+    own_imports = {line.head.partition(" ")[2] for line in body}
+    libraries = sorted(
+        library
+        for library in writer.plan.imports.get(id(member), ())
+        if f"import {library}::*" not in own_imports
+    )
+    imports = [Line(f"private import {library}::*") for library in libraries]
+    return [Line(head, [*imports, *body])]
+
+
+def write_import(writer: Writer, member: Member) -> list[Line]:
+    """Write an import; without a visibility of its own it is public, as in UML."""
+    element = member.require_element()
+    if element.subkind == "alias":
+        return writer.writers[str(Kind.DOCUMENT)](writer, member)
+    visibility = "private" if element.attrs.get("visibility") == "private" else "public"
+    lines = []
+    for target in writer.graph.targets(element, Edge.REFERENCES):
+        name = _refer_to_imported(writer, member, target)
+        if name is None and target.attrs.get("library"):
+            said = f"the import of the library {target.name}"
+            writer.record_approximation(element, said, "nothing")
+            continue
+        if name is None:
+            writer.record_unreachable(element, "references")
+            continue
+        if target.attrs.get("external") and writer.plan.find(target) is None:
+            said = "an import of primitive types"
+            writer.record_approximation(element, said, "one of those of SysML v2")
+        is_package = target.kind in (Kind.PACKAGE, Kind.PROFILE) and element.subkind != "element"
+        lines.append(Line(f"{visibility} import {name}{'::*' if is_package else ''}"))
+    return lines
+
+
+def _refer_to_imported(writer: Writer, member: Member, target: Element) -> str | None:
+    scalar = find_scalar_type(target)
+    if scalar is not None:
+        return writer.refer_to_library(member.parent, scalar)
+    if target.name in _PRIMITIVE_PACKAGES and target.attrs.get("external"):
+        return writer.refer_to_library(member.parent, "ScalarValues")
+    if writer.plan.find(target) is None:
+        return None
+    return writer.refer_to(member.parent, target, Edge.REFERENCES, target)
+
+
+# -- definitions ---------------------------------------------------------------------------------
+
+
+def write_class(writer: Writer, member: Member) -> list[Line]:
+    """Write a class: a requirement by its stereotype, else a definition."""
+    write = write_requirement if member.shape.keyword == "requirement" else write_definition
+    return write(writer, member)
+
+
+def write_definition(writer: Writer, member: Member) -> list[Line]:
+    """Write a definition with all its members."""
+    head = make_definition_head(writer, member).format()
+    return [Line(head, write_contents(writer, member))]
+
+
+def write_contents(writer: Writer, member: Member) -> list[Line]:
+    """Return the annotations and members of a namespace, and the lines that others add to it."""
+    body = write_annotations(writer, member) + writer.write_members(member)
+    element = member.element
+    if element is None:
+        return body
+    if element.kind in STRUCTURAL_FEATURES:
+        types = writer.graph.targets(element, Edge.TYPED_BY)
+        writer.expressed.update(type_.id for type_ in types if writer.plan.find(type_) is member)
+    body += _write_realizations(writer, member, element)
+    return body + writer.added_lines.pop(id(member), [])
+
+
+def _write_realizations(writer: Writer, member: Member, element: Element) -> list[Line]:
+    """Write dependencies on realised classifiers, unless the model has its own dependency."""
+    supplier_ids = {
+        supplier.id
+        for dependency in writer.graph.sources(element, Edge.CLIENT)
+        for supplier in writer.graph.targets(dependency, Edge.SUPPLIER)
+    }
+    lines = []
+    for target in writer.graph.targets(element, Edge.REALIZES):
+        realized = None if target.id in supplier_ids else writer.plan.find(target)
+        if realized is None:
+            continue
+        name = format_qualified_name(writer.plan, member, realized)
+        if name is not None:
+            keyword = writer.refer_to_sysmlc(member, "realization")
+            source = quote_name(member.name)
+            lines.append(Line(f"#{keyword} dependency from {source} to {name}"))
+    return lines
+
+
+def write_enumeration(writer: Writer, member: Member) -> list[Line]:
+    """Write an enumeration; its generals become a comment, because it may not specialise."""
+    head = make_definition_head(writer, member)
+    if head.subsets and member.element is not None:
+        writer.record_approximation(member.element, "generalization of Enumeration", "comment")
+        comment = Line("", text=["/* :> " + ", ".join(head.subsets) + " */"])
+        head.subsets = []
+        return [Line(head.format(), [comment, *write_contents(writer, member)])]
+    return [Line(head.format(), write_contents(writer, member))]
+
+
+def write_enumeration_literal(writer: Writer, member: Member) -> list[Line]:
+    """Write a literal of an enumeration."""
+    return [Line(f"enum {quote_name(member.name)}", write_contents(writer, member))]
+
+
+# -- value types ---------------------------------------------------------------------------------
+
+
+def write_value_type(writer: Writer, member: Member) -> list[Line]:
+    """Write an attribute definition; one with a known quantity specialises that of ISQ."""
+    element = member.require_element()
+    quantity = find_quantity(writer.graph, element)
+    unit = unit_of(writer.graph, element)
+    head = make_definition_head(writer, member, is_quantity=quantity is not None)
+    body = write_contents(writer, member)
+    if quantity is not None:
+        _record_other_quantity(writer, element, quantity)
+        generals = writer.graph.targets(element, Edge.SPECIALIZES)
+        subsets = _list_non_scalar_generals(writer, member, element)
+        if not any(find_quantity(writer.graph, general) is not None for general in generals):
+            subsets.append(writer.refer_to_library(member.parent, f"ISQ::{quantity}"))
+        head.subsets = subsets
+        unit_name = find_unit_name(unit)
+        if unit_name is not None:
+            reference = writer.refer_to_library(member, unit_name)
+            body.insert(0, Line(f"attribute :>> mRef = {reference}"))
+    elif unit is not None:
+        body.insert(0, _annotate_unit(writer, member, unit))
+    return [Line(head.format(), body)]
+
+
+def _record_other_quantity(writer: Writer, element: Element, quantity: str) -> None:
+    """Record a quantity kind that is not the one of the unit: in ISQ, a unit determines it."""
+    quantity_kind = quantity_kind_of(writer.graph, element)
+    own = None if quantity_kind is None else find_quantity_of_kind(quantity_kind)
+    if own is not None and own != quantity:
+        said = "a quantity kind that has other units"
+        writer.record_approximation(element, said, "that of the unit")
+
+
+def _list_non_scalar_generals(writer: Writer, member: Member, element: Element) -> list[str]:
+    """Return the generals except numbers: a quantity value contains its number."""
+    generals = writer.graph.targets(element, Edge.SPECIALIZES)
+    names = (
+        writer.refer_to(member.parent, element, Edge.SPECIALIZES, general)
+        for general in generals
+        if find_scalar_type(general) is None
+    )
+    return [name for name in names if name is not None]
+
+
+def _annotate_unit(writer: Writer, member: Member, unit: Element) -> Line:
+    """Return metadata with a unit that neither SI nor ``SysMLC`` defines."""
+    facts = {"name": unit.name, "symbol": unit.attrs.get("symbol")}
+    quantity_kind = quantity_kind_of(writer.graph, member.element) if member.element else None
+    facts["quantity"] = None if quantity_kind is None else quantity_kind.name
+    return make_annotation(writer, member, "Unit", facts)
+
+
+# -- requirements --------------------------------------------------------------------------------
+
+
+def write_requirement(writer: Writer, member: Member) -> list[Line]:
+    """Write a requirement: a usage with its id as short name and its text as documentation.
+
+    An id that is not free as a name in the namespace becomes metadata.
+    """
+    element = member.require_element()
+    head = make_definition_head(writer, member)
+    id = str(element.attrs.get("req_id", ""))
+    is_free = bool(id) and _is_free_id(writer, member, id)
+    if is_free:
+        head.name = f"<{quote_name(id)}> {head.name}"
+    body = []
+    if id and not is_free:
+        body.append(make_annotation(writer, member, "Requirement", {"id": id}))
+    text = element.attrs.get("text")
+    if text:
+        body.append(Line("doc", text=format_comment(str(text))))
+    return [Line(head.format(), body + write_contents(writer, member))]
+
+
+def _is_free_id(writer: Writer, requirement: Member, id: str) -> bool:
+    """Whether neither a sibling's name nor the id of an earlier requirement equals the id."""
+    parent = requirement.parent
+    siblings = writer.plan.roots if parent is None else parent.members
+    if any(sibling.name == id for sibling in siblings):
+        return False
+    earlier = siblings[: siblings.index(requirement)]
+    return not any(
+        sibling.element is not None and sibling.element.attrs.get("req_id") == id
+        for sibling in earlier
+    )

@@ -1,0 +1,199 @@
+"""Facts that metadata preserves because SysML v2 has no words for them.
+
+A fact is a line of text: ``key=value`` for an attribute, ``edge->name`` for an edge to a member of
+the text, ``edge=>name`` for an edge to an element outside of the model. The front end for SysML v2
+restores attributes and edges from it. Facts of a part without a member start with the word for the
+part and a dot (``region.visibility=private``).
+"""
+
+import json
+from collections.abc import Iterator
+
+from sysmlc.backends.sysml.attribute_coverage import iter_unexpressed_attributes
+from sysmlc.backends.sysml.edge_coverage import iter_unexpressed_edges
+from sysmlc.backends.sysml.plan import Member
+from sysmlc.backends.sysml.printing import quote_name
+from sysmlc.backends.sysml.writer import Writer
+from sysmlc.ir import AttrValue, Edge, Element, Kind
+
+_NEVER_PRESERVED = frozenset({"external", "library", "unresolved"})
+_PRESERVED_EDGES = tuple(
+    edge for edge in Edge if edge not in (Edge.OWNS, Edge.FEATURE, Edge.SUBJECT)
+)
+_WITH_PARTS = (
+    Kind.ACTION,
+    Kind.TRANSITION,
+    Kind.ACTIVITY,
+    Kind.STRUCTURED,
+    Kind.STATE_MACHINE,
+    Kind.STATE,
+    Kind.REGION,
+)
+_STARTS = ((Kind.CONTROL, "initial"), (Kind.PSEUDOSTATE, "initial"))
+_ENDS = ((Kind.CONTROL, "final"), (Kind.CONTROL, "flow-final"), (Kind.FINAL_STATE, ""))
+_NEVER_IDS = frozenset({"name", "guard", "body", "default", "value", "visibility", "subkind"})
+"""Attributes whose value is never the id of an element, even if it equals one."""
+_MARKS = ("=", "->", '"')
+
+
+# -- facts of an element -------------------------------------------------------------------------
+
+
+def list_unexpressed_facts(writer: Writer, member: Member, element: Element) -> tuple[str, ...]:
+    """Return the facts of an element, and of its parts without a member, that the text lacks."""
+    facts = [*_iter_own_facts(writer, member, element)]
+    for word, part in _iter_parts(writer, element):
+        default_name = {"node": element.name, "start": "start", "done": "done"}.get(word, "")
+        facts += [f"{word}.{fact}" for fact in _iter_part_facts(writer, part, default_name)]
+    return tuple(facts)
+
+
+def list_all_facts(writer: Writer, element: Element) -> tuple[str, ...]:
+    """Return all facts of an element for which SysML v2 has nothing at all."""
+    facts = []
+    for key, value in element.attrs.items():
+        fact = _format_attribute(writer, key, value)
+        if fact is not None and key not in _NEVER_PRESERVED:
+            writer.stored_attributes.add((element.id, key))
+            facts.append(fact)
+    for edge in _PRESERVED_EDGES:
+        for target in writer.graph.targets(element, edge):
+            facts += _iter_edge_facts(writer, element, edge, target)
+    return tuple(facts)
+
+
+def _iter_own_facts(writer: Writer, member: Member, element: Element) -> Iterator[str]:
+    yield from _iter_attribute_facts(writer, member, element)
+    for edge, target in iter_unexpressed_edges(writer, element):
+        yield from _iter_edge_facts(writer, element, edge, target)
+
+
+def _iter_attribute_facts(writer: Writer, member: Member | None, element: Element) -> Iterator[str]:
+    for key in iter_unexpressed_attributes(writer, member, element):
+        fact = _format_attribute(writer, key, element.attrs.get(key))
+        if fact is not None:
+            writer.stored_attributes.add((element.id, key))
+            yield fact
+
+
+def _iter_edge_facts(
+    writer: Writer, element: Element, edge: Edge, target: Element
+) -> Iterator[str]:
+    fact = _format_edge(writer, edge, target)
+    if fact is not None:
+        writer.stored_edges.add((edge, element.id, target.id))
+        yield fact
+
+
+def _iter_part_facts(writer: Writer, part: Element, default_name: str) -> Iterator[str]:
+    """Yield the facts of a part without a member; a reader gives it *default_name*."""
+    writer.stored_attributes.add((part.id, "name"))
+    if part.name != default_name and not part.name and default_name in ("start", "done"):
+        what = "a first or last node without a name"
+        writer.record_approximation(part, what, "start or done")
+    elif part.name != default_name:
+        yield _format_attribute(writer, "name", part.name) or ""
+    if part.kind is Kind.ACTIVITY_PARAMETER and not writer.graph.targets(part, Edge.TYPED_BY):
+        what = "a parameter node without a type"
+        writer.record_approximation(part, what, "one of its parameter's type")
+    yield from _iter_attribute_facts(writer, None, part)
+
+
+def _iter_parts(writer: Writer, element: Element) -> Iterator[tuple[str, Element]]:
+    """Yield the parts of an element that its own member expresses, with words for them.
+
+    ``node`` is the parameter node of a parameter, ``region`` the only region, ``trigger`` the only
+    trigger; ``start`` and ``done`` begin and end a behaviour.
+    """
+    graph = writer.graph
+    if element.kind is Kind.PARAMETER:
+        references = graph.sources(element, Edge.REFERENCES)
+        nodes = [source for source in references if _is_parameter_node(writer, source)]
+        yield from (("node", node) for node in nodes[:1])
+    children = graph.owned(element) if element.kind in _WITH_PARTS else []
+    triggers = [child for child in children if child.kind is Kind.TRIGGER]
+    if len(triggers) == 1 and element.kind is not Kind.STATE:
+        yield "trigger", triggers[0]
+    regions = [child for child in children if child.kind is Kind.REGION]
+    if len(regions) == 1 and writer.plan.find(regions[0]) is None:
+        yield "region", regions[0]
+        children = graph.owned(regions[0])
+    starts = [child for child in children if (child.kind, child.subkind) in _STARTS]
+    for start in starts[:1]:
+        if graph.sources(start, Edge.FLOW_SOURCE):
+            yield "start", start
+    ends = [
+        child
+        for child in children
+        if (child.kind, child.subkind) in _ENDS and writer.plan.find(child) is None
+    ]
+    for end in ends[:1]:
+        if graph.sources(end, Edge.FLOW_TARGET):
+            yield "done", end
+
+
+def _is_parameter_node(writer: Writer, element: Element) -> bool:
+    return element.kind is Kind.ACTIVITY_PARAMETER and writer.plan.find(element) is None
+
+
+# -- the text of a fact --------------------------------------------------------------------------
+
+
+def _format_attribute(writer: Writer, key: str, value: AttrValue) -> str | None:
+    """Return the fact of an attribute; None if the text cannot name an element in the value.
+
+    A string stands as it is unless a reader would take it for JSON; all other values are JSON. A
+    key that contains one of the marks is a JSON string.
+    """
+    name = _format_json(key) if any(mark in key for mark in _MARKS) else key
+    if isinstance(value, str) and key not in _NEVER_IDS and value in writer.graph:
+        path = _format_path(writer, writer.graph[value])
+        return None if path is None else f"{name}->{path}"
+    if isinstance(value, tuple) and _contains_ids(writer, value):
+        return None
+    return f"{name}={_format_value(value)}"
+
+
+def _format_edge(writer: Writer, edge: Edge, target: Element) -> str | None:
+    """Return the fact of an edge; None if the target has no name."""
+    if target.attrs.get("external") and writer.plan.find(target) is None:
+        name = str(target.attrs.get("qualified_name") or target.name)
+        return f"{edge.value}=>{name}" if name else None
+    path = _format_path(writer, target)
+    return None if path is None else f"{edge.value}->{path}"
+
+
+def _format_path(writer: Writer, target: Element) -> str | None:
+    """Return the qualified name of a member, which must be public; None if it has none."""
+    member = writer.plan.find(target)
+    if member is None or member.element is not target:
+        return None
+    path: list[Member] = [member, *member.namespaces]
+    if not all(step.name for step in path):
+        return None
+    for step in path:
+        writer.plan.expose(step)
+    return "::".join(quote_name(step.name) for step in reversed(path))
+
+
+def _contains_ids(writer: Writer, value: AttrValue) -> bool:
+    if isinstance(value, tuple):
+        return any(_contains_ids(writer, item) for item in value)
+    return isinstance(value, str) and value in writer.graph
+
+
+def _format_value(value: AttrValue) -> str:
+    is_plain = isinstance(value, str) and not _is_json(value) and not value.startswith(">")
+    return str(value) if is_plain else _format_json(value)
+
+
+def _format_json(value: AttrValue) -> str:
+    return json.dumps(value, ensure_ascii=False)
+
+
+def _is_json(text: str) -> bool:
+    try:
+        json.loads(text)
+    except ValueError:
+        return False
+    return True

@@ -1,0 +1,228 @@
+"""The state that the functions share which write members, and the order of members."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+from sysmlc.backends.sysml.plan import Member, Plan
+from sysmlc.backends.sysml.printing import Line, quote_name
+from sysmlc.backends.sysml.references import (
+    format_element_reference,
+    format_library_name,
+    format_qualified_name,
+    format_redefined_name,
+    visible_members,
+)
+from sysmlc.backends.sysml.rules import APPROXIMATED, UNREACHABLE, Losses
+from sysmlc.backends.sysml.shapes import Shape
+from sysmlc.ir import Edge, Element, Graph, Kind
+
+WriteMember = Callable[["Writer", Member], list[Line]]
+"""Return the lines of a member: its own, and those that follow it in its namespace."""
+
+_IMPORTS, _COMMENTS, _OTHER_MEMBERS = range(3)
+_BEHAVIOUR_ORDER = {
+    Kind.IMPORT: 0,
+    Kind.COMMENT: 1,
+    Kind.PARAMETER: 2,
+    Kind.ACTIVITY_PARAMETER: 2,
+    Kind.PIN: 2,
+    Kind.PROPERTY: 3,
+    Kind.OBJECT_NODE: 4,
+    Kind.DATA_STORE: 4,
+    Kind.OBJECT_FLOW: 7,
+}
+_INITIAL_NODE = 5
+_STEP = 6
+
+
+@dataclass(slots=True)
+class Writer:
+    """A text in the making: its plan, its losses, and the elements expressed so far."""
+
+    graph: Graph
+    plan: Plan
+    losses: Losses
+    writers: dict[str, WriteMember] = field(default_factory=dict)
+    """Function that writes a member, by the kind of its element."""
+    expressed: set[str] = field(default_factory=set)
+    """Ids of elements that the text expresses."""
+    added_lines: dict[int, list[Line]] = field(default_factory=dict)
+    """Lines that other elements add to a namespace, by the identity of the member."""
+    objective_lines: dict[int, list[Line]] = field(default_factory=dict)
+    """Lines of the objective of a verification case, by the identity of the member."""
+    prewritten: dict[int, list[Line]] = field(default_factory=dict)
+    """Lines of members that were written before their turn, by the identity of the member."""
+    declared_attributes: set[int] = field(default_factory=set)
+    """Identities of members whose declaration another line contains."""
+    dropped: dict[str, str] = field(default_factory=dict)
+    """The edge without a name in the text, by the id of the element that was dropped for it."""
+    collection_loops: set[str] = field(default_factory=set)
+    """Ids of expansion regions that are written as loops over a collection."""
+    stored_attributes: set[tuple[str, str]] = field(default_factory=set)
+    """Id of an element and key of an attribute for each attribute that metadata preserves."""
+    stored_edges: set[tuple[Edge, str, str]] = field(default_factory=set)
+    """Edges that metadata preserves, with the ids of both ends."""
+    public_ids: frozenset[str] = frozenset()
+    """Ids of elements that are written as public because the text refers to them."""
+    caex_files: frozenset[str] = frozenset()
+    """Files in AutomationML: metadata preserves the ids of their elements."""
+    uses_library: bool = False
+    """Whether the text refers to the library ``SysMLC``, so that it is written, too."""
+
+    # -- references ------------------------------------------------------------------------------
+
+    def refer_to(
+        self, scope: Member | None, holder: Element, edge: Edge, target: Element
+    ) -> str | None:
+        """Return the text that names *target* in *scope*; None, and a loss, if nothing does."""
+        text = format_element_reference(self.plan, scope, target)
+        if text is None:
+            self.record_unreachable(holder, str(edge.value))
+        return text
+
+    def refer_to_targets(self, scope: Member | None, holder: Element, edge: Edge) -> list[str]:
+        """Return the qualified names of the targets of all edges of a kind."""
+        names = []
+        for target in self.graph.targets(holder, edge):
+            member = self.plan.find(target)
+            name = None if member is None else format_qualified_name(self.plan, scope, member)
+            if name is None:
+                self.record_unreachable(holder, str(edge.value))
+            else:
+                names.append(name)
+        return names
+
+    def refer_to_redefined(self, scope: Member | None, target: Element) -> str | None:
+        """Return the name of a feature that a member of *scope* redefines."""
+        member = self.plan.find(target)
+        return None if member is None else format_redefined_name(self.plan, scope, member)
+
+    def refer_to_library(self, scope: Member | None, name: str) -> str:
+        """Return the text that names an element of the standard library or of ``SysMLC``."""
+        self.uses_library = self.uses_library or name.startswith("SysMLC::")
+        return format_library_name(self.plan, scope, name)
+
+    def refer_to_sysmlc(self, scope: Member | None, name: str) -> str:
+        """Return the text that names an element of the library ``SysMLC``."""
+        return self.refer_to_library(scope, f"SysMLC::{name}")
+
+    # -- losses ----------------------------------------------------------------------------------
+
+    def record_unreachable(self, holder: Element, edge: str) -> None:
+        """Record the loss of a reference whose target has no name in the text."""
+        self.losses.record(UNREACHABLE, holder, edge=edge, kind=str(holder.kind))
+
+    def record_approximation(self, element: Element, said: str, written: str) -> None:
+        """Record that the text expresses *said* in other words: as *written*."""
+        self.losses.record(APPROXIMATED, element, said=said, written=written)
+
+    def drop(self, member: Member, edge: str) -> list[Line]:
+        """Omit a member because the text cannot name the targets of *edge*. Return no lines.
+
+        Other members may refer to it: ``document`` writes the text again without the member.
+        """
+        if member.element is not None:
+            self.dropped[member.element.id] = edge
+        return []
+
+    # -- lines -----------------------------------------------------------------------------------
+
+    def add_line(self, namespace: Member, head: str) -> None:
+        """Add a line to a namespace, after the members of the model."""
+        self.added_lines.setdefault(id(namespace), []).append(Line(head))
+
+    def declare_attribute(self, namespace: Member, name: str, type_: str) -> str:
+        """Declare an attribute that no element stands for. Return its name as it is written.
+
+        A second declaration of the same name in the namespace reuses the first attribute.
+        """
+        visible = visible_members(self.plan, namespace)
+        for member in namespace.members:
+            if member.element is None and member.name == name:
+                return quote_name(member.name)
+        free_name, number = name, 2
+        while free_name in visible:
+            free_name, number = f"{name}_{number}", number + 1
+        attribute = self.plan.add(Shape("attribute"), namespace, free_name, None)
+        namespace.visible_names = None
+        type_name = self.refer_to_library(namespace, type_)
+        self.add_line(namespace, f"attribute {quote_name(free_name)} : {type_name}")
+        self.declared_attributes.add(id(attribute))
+        return quote_name(free_name)
+
+    def write_members(self, namespace: Member) -> list[Line]:
+        """Return the lines of all members of a namespace: those of the model, then added ones."""
+        members = _order_members(self.graph, namespace)
+        lines = [line for member in members for line in self.write_member(member)]
+        return lines + self.added_lines.pop(id(namespace), [])
+
+    def write_member(self, member: Member) -> list[Line]:
+        """Return the lines of one member; none if another line declares it."""
+        if id(member) in self.declared_attributes:
+            return []
+        if member.element is None:
+            return self.writers[""](self, member)
+        write = self.writers.get(str(member.element.kind))
+        if write is None:
+            return []
+        self.expressed.add(member.element.id)
+        return write(self, member)
+
+
+# -- the order of members ------------------------------------------------------------------------
+
+
+def _order_members(graph: Graph, namespace: Member) -> list[Member]:
+    """Return the members in the order of the text.
+
+    Imports and comments stand first. The members of a behaviour follow one another as they run;
+    all others keep the order of the model.
+    """
+    keyword = namespace.shape.usage_keyword
+    if keyword == "state":
+        return _order_states(graph, sorted(namespace.members, key=_rank_member))
+    if keyword in ("action", "verification"):
+        return sorted(namespace.members, key=_rank_action_member)
+    return sorted(namespace.members, key=_rank_member)
+
+
+def _rank_member(member: Member) -> int:
+    kind = None if member.element is None else member.element.kind
+    if kind is Kind.IMPORT:
+        return _IMPORTS
+    return _COMMENTS if kind is Kind.COMMENT else _OTHER_MEMBERS
+
+
+def _rank_action_member(member: Member) -> int:
+    if member.shape.keyword == "start":
+        return _INITIAL_NODE
+    return _STEP if member.element is None else _BEHAVIOUR_ORDER.get(member.element.kind, _STEP)
+
+
+def _order_states(graph: Graph, members: list[Member]) -> list[Member]:
+    """Move each transition behind its source, and initial transitions before the first state."""
+    ids = {member.element.id for member in members if member.element is not None}
+    by_source: dict[str, list[Member]] = {}
+    initial: list[Member] = []
+    rest: list[Member] = []
+    for member in members:
+        if member.element is None or member.element.kind is not Kind.TRANSITION:
+            rest.append(member)
+            continue
+        source = graph.target(member.element, Edge.FLOW_SOURCE)
+        if source is not None and source.id in ids:
+            by_source.setdefault(source.id, []).append(member)
+        else:
+            (initial if _is_initial(source) else rest).append(member)
+    states = (n for n, member in enumerate(rest) if member.shape.keyword == "state")
+    first_state = next(states, len(rest))
+    ordered: list[Member] = []
+    for member in (*rest[:first_state], *initial, *rest[first_state:]):
+        ordered.append(member)
+        if member.element is not None:
+            ordered += by_source.get(member.element.id, ())
+    return ordered
+
+
+def _is_initial(source: Element | None) -> bool:
+    return source is not None and source.kind is Kind.PSEUDOSTATE and source.subkind == "initial"
