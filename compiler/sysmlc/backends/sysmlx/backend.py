@@ -1,4 +1,8 @@
-"""Interchange files of SysML v2: from the syntax of v2 inputs, else from the text of the graph."""
+"""Interchange files of SysML v2 (XMI): from the syntax trees of v2 inputs, else from v2 text.
+
+For other inputs, the back end ``sysml`` prints the graph as text, which is parsed again: the
+interchange form then contains what the text expresses.
+"""
 
 from collections.abc import Sequence
 from functools import lru_cache, partial
@@ -8,8 +12,7 @@ from msgspec import Struct
 
 from sysmlc.backends.base import EmitOptions
 from sysmlc.backends.sysml import BACKEND as TEXT
-from sysmlc.backends.sysmlx.rules import OWN_TEXT, TOO_DEEP
-from sysmlc.diagnostics import Diagnostic, Sink
+from sysmlc.diagnostics import Diagnostic, Severity, Sink, rule
 from sysmlc.ir import Element, Graph
 from sysmlc.language.interchange import InterchangeFiles, interchange_path, write
 from sysmlc.language.library import SHIPPED, VARIABLE, Library, find_library, load_core
@@ -22,106 +25,128 @@ from sysmlc.language.tree import Document
 from sysmlc.sources import SourceError
 from sysmlc.support.output import Output
 
+TOO_DEEP = rule(
+    "SM748",
+    "sysmlx-too-deep",
+    Severity.ERROR,
+    "'{name}' is nested more than {limit} levels deep: the model is not written as interchange",
+    help="omit the back end sysmlx, or nest fewer elements in one another",
+)
+OWN_TEXT = rule(
+    "SM749",
+    "sysmlx-own-text",
+    Severity.ERROR,
+    "the SysML v2 text generated for '{name}' cannot be read (line {line}: {message}): "
+    "the model is not written as interchange",
+    help="--emit +sysml writes the text; please report it with the model, and omit sysmlx "
+    "until then",
+)
+
 _LIBRARY = "sysml.library.xmi"
-"""The folder of the standard library's interchange files in its releases; references lead there."""
+"""Folder of the standard library's interchange files in its releases; references lead there."""
 
 
 class SysmlxBackend(Struct, frozen=True):
-    """Writes models of SysML v2 as they were read, other models as SysML v2 would say them."""
+    """Writes SysML v2 models as they were read, other models as SysML v2 text expresses them."""
 
     name: str = "sysmlx"
     summary: str = "the model as SysML v2 interchange (XMI), sysmlx/*.sysmlx"
     is_default: bool = False
 
     def emit(self, graph: Graph, output: Output, sink: Sink, options: EmitOptions) -> None:
-        """Add a file for each file of the model; report what cannot be said."""
+        """Add a file for each file of the model; report what the files cannot express."""
         models = graph.derived(Model)
-        if not models or any(one.language != "sysml" for one in options.inputs):
-            said = _said(graph, sink, options)
-            models = [] if said is None else [said]
+        if not models or any(file.language != "sysml" for file in options.inputs):
+            model = _build_model(graph, sink, options)
+            models = [] if model is None else [model]
         for model in models:
             library = _index_library(tuple(model.library.loaded_documents()))
-            known = InterchangeFiles(
+            files = InterchangeFiles(
                 model.documents, library, partial(implied_redefinitions, model)
             )
             for document in model.documents:
-                path = f"sysmlx/{interchange_path(document)}"
-                # As for unresolved names, faults of our libraries are not those of the model.
+                # Faults of the libraries of sysmlc are not faults of the model; the same holds
+                # for unresolved names in them.
                 is_foreign = model.library.is_core and document.path.startswith(SHIPPED)
                 document_sink = Sink() if is_foreign else sink
-                data = write(document, known, document_sink, _Places(model.documents))
+                data = write(document, files, document_sink, _FileLocations(model.documents))
+                path = f"sysmlx/{interchange_path(document)}"
                 output.add(path, data.decode(), (), self.name)
 
 
-class _Places:
-    """Where the interchange files of documents are, relative to the folder of ours."""
+class _FileLocations:
+    """Paths of the interchange files of documents, relative to the output folder ``sysmlx``."""
 
-    def __init__(self, own: Sequence[Document]) -> None:
-        self._own = {document.root for document in own}
+    def __init__(self, documents: Sequence[Document]) -> None:
+        self._roots = {document.root for document in documents}
 
     def __call__(self, document: Document) -> str:
         path = interchange_path(document)
-        return path if document.root in self._own else f"{_LIBRARY}/{path}"
+        return path if document.root in self._roots else f"{_LIBRARY}/{path}"
 
 
-def _said(graph: Graph, sink: Sink, options: EmitOptions) -> Model | None:
-    """The graph as SysML v2 text says it, with names resolved; losses are those of the text.
+def _build_model(graph: Graph, sink: Sink, options: EmitOptions) -> Model | None:
+    """Return the graph as a SysML v2 model with resolved names; report the losses of the text.
 
-    None, and a message, for one that is nested deeper than text is read, and where the text has
-    another syntax error, which is a fault of ours.
+    None, and a diagnostic, for a graph that is nested deeper than the parser allows, and for any
+    other syntax error in the text, which is a fault of the back end ``sysml``.
     """
-
-    written = Output()
-    TEXT.emit(graph, written, sink, options)
-    unseen = Sink()
+    text_output = Output()
+    TEXT.emit(graph, text_output, sink, options)
+    syntax_errors = Sink()
     documents = [
-        parse(one.text, one.path.removeprefix("sysml/"), "sysml", unseen)
-        for one in written.artefacts()
+        parse(file.text, file.path.removeprefix("sysml/"), "sysml", syntax_errors)
+        for file in text_output.artefacts()
     ]
-    if unseen.has_errors():
-        first = next(iter(unseen))
+    if syntax_errors.has_errors():
+        first = next(iter(syntax_errors))
         if first.rule is DEEP:
-            deepest = _deepest(graph)
+            deepest = _find_deepest(graph)
             sink.report(TOO_DEEP, graph.subject(deepest), name=deepest.name, limit=MAX_DEPTH)
         else:
-            _report(graph, documents, first, sink)
+            _report_syntax_error(graph, documents, first, sink)
         return None
-    return resolve(documents, _find_library(environ.get(VARIABLE, "")), unseen)
+    return resolve(documents, _find_library(environ.get(VARIABLE, "")), syntax_errors)
 
 
-def _report(graph: Graph, documents: Sequence[Document], first: Diagnostic, sink: Sink) -> None:
-    """Report a syntax error of our own text at the element that the text is about there."""
-    place = first.subject.place
-    texts = {one.path: one for one in documents}
+def _report_syntax_error(
+    graph: Graph, documents: Sequence[Document], error: Diagnostic, sink: Sink
+) -> None:
+    """Report a syntax error of the printed text at the element whose text contains it."""
+    place = error.subject.place
+    documents_by_path = {document.path: document for document in documents}
     line, name = 0, ""
-    if place is not None and place.file in texts:
-        line, name = _about(texts[place.file], place.offset or 0)
-    element = next((one for one in graph if one.name == name), None) or _deepest(graph)
+    if place is not None and place.file in documents_by_path:
+        line, name = _locate(documents_by_path[place.file], place.offset or 0)
+    namesakes = (element for element in graph if element.name == name)
+    element = next(namesakes, None) or _find_deepest(graph)
     name = element.name or element.kind
-    about = graph.subject(element)
-    sink.report(OWN_TEXT, about, name=name, line=line, message=first.message)
+    subject = graph.subject(element)
+    sink.report(OWN_TEXT, subject, name=name, line=line, message=error.message)
 
 
-def _about(document: Document, offset: int) -> tuple[int, str]:
-    """The line of a byte of a text, and the name of the innermost element around it."""
-    before = document.text.encode()[:offset].decode(errors="replace")
-    at = len(before)
-    names = [one.name for one in document.root.walk() if one.name and one.start <= at < one.end]
+def _locate(document: Document, byte_offset: int) -> tuple[int, str]:
+    """Return the line at an offset, and the name of the innermost element around it."""
+    before = document.text.encode()[:byte_offset].decode(errors="replace")
+    offset = len(before)
+    names = [
+        node.name for node in document.root.walk() if node.name and node.start <= offset < node.end
+    ]
     return before.count("\n") + 1, names[-1] if names else ""
 
 
-def _deepest(graph: Graph) -> Element:
-    """The first of the elements with the most owners."""
+def _find_deepest(graph: Graph) -> Element:
+    """Return the first of the elements with the most owners."""
     level = graph.roots()
-    while below := [one for owner in level for one in graph.owned(owner)]:
-        level = below
+    while children := [child for owner in level for child in graph.owned(owner)]:
+        level = children
     return level[0]
 
 
-def _find_library(asked: str) -> Library:
-    """Return the library at *asked*, else the installed one; the small one if it is missing."""
+def _find_library(path: str) -> Library:
+    """Return the library at *path*, else the installed one; the small one if it is missing."""
     try:
-        return find_library(asked or None)
+        return find_library(path or None)
     except SourceError:
         return load_core()
 
