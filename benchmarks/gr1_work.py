@@ -12,8 +12,7 @@ from sysmlc.synthesis import Limits, Manager
 from sysmlc.synthesis.algebra.fair_systems import DomainError
 from sysmlc.synthesis.algebra.refinement import find_refinement_failures
 from sysmlc.synthesis.controller_synthesis import synthesise_controller
-from sysmlc.synthesis.deadline import find_deadline
-from sysmlc.synthesis.decision import Options, decide
+from sysmlc.synthesis.decision import Options, decide, find_deadline
 from sysmlc.synthesis.games.game import make_game
 from sysmlc.synthesis.unrealizable import unrealizable_core
 

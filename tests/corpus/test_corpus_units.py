@@ -11,8 +11,7 @@ from sysmlc.driver import Request, compile_model
 from sysmlc.frontends.xmi import FRONTEND
 from sysmlc.ir import Edge, Graph, Kind
 from sysmlc.ir.text import print_text
-from sysmlc.passes.resolve.hrefs import find_primitive, is_standard
-from sysmlc.passes.resolve.libraries import load_libraries
+from sysmlc.passes.resolve.libraries import find_primitive, is_standard, load_libraries
 from sysmlc.sources import load
 
 pytestmark = pytest.mark.corpus

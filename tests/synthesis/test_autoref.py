@@ -8,8 +8,7 @@ from test_routes import LIFT, fleet
 
 from sysmlc.diagnostics import Sink, Subject
 from sysmlc.synthesis import Manager, make_game
-from sysmlc.synthesis.deadline import find_deadline
-from sysmlc.synthesis.decision import Options, decide
+from sysmlc.synthesis.decision import Options, decide, find_deadline
 from sysmlc.synthesis.games import search_reductions
 from sysmlc.synthesis.games.solver import solve_by_single_moves
 from sysmlc.synthesis.unrealizable import unrealizable_core

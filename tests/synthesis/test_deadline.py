@@ -11,8 +11,7 @@ from sysmlc.diagnostics import Sink, Subject
 from sysmlc.logic import formats
 from sysmlc.logic.printing import print_formula
 from sysmlc.synthesis import Limits, rules
-from sysmlc.synthesis.deadline import find_deadline, set_bound
-from sysmlc.synthesis.decision import Options
+from sysmlc.synthesis.decision import Options, find_deadline, set_bound
 
 CORPUS = os.environ.get("SYSMLC_CORPUS")
 CART = """

@@ -7,8 +7,8 @@ from msgspec.structs import replace
 
 from sysmlc.logic.contract import Contract
 from sysmlc.synthesis import Manager, OutsideGr1Error
+from sysmlc.synthesis.algebra.composition import conjoin_viewpoints, list_viewpoints
 from sysmlc.synthesis.algebra.refinement import find_refinement_failures
-from sysmlc.synthesis.algebra.viewpoints import conjoin_viewpoints, list_viewpoints
 
 VARIABLES = "env power: bool\nenv door: bool\nsys lit: bool\n"
 POWERED = "assume always power'\nassume at first power\npromise always lit' -> power'"

@@ -15,8 +15,7 @@ if TYPE_CHECKING:
     from sysmlc.cli.contract_files import ContractFile
     from sysmlc.cli.session import Settings
     from sysmlc.synthesis.controller_synthesis import Synthesis
-    from sysmlc.synthesis.deadline import Deadline
-    from sysmlc.synthesis.decision import Options, Verdict
+    from sysmlc.synthesis.decision import Deadline, Options, Verdict
 
 _GIBIBYTE = 1 << 30
 
@@ -146,7 +145,7 @@ def _find_deadlines(
     options: "Options",
 ) -> int:
     from sysmlc.cli.contract_files import select_contracts
-    from sysmlc.synthesis.deadline import find_deadline
+    from sysmlc.synthesis.decision import find_deadline
 
     contracts = select_contracts(read.contracts, component) if read.contracts else ()
     results = [find_deadline(c, timers, read.place, read.sink, options) for c in contracts]

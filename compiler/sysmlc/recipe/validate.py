@@ -1,7 +1,7 @@
 """Validation of recipe models beyond their schema: REC001 to REC012 (SM601 to SM612) and more."""
 
 from sysmlc.diagnostics import Sink
-from sysmlc.recipe import check_data, check_graphs, check_tasks, check_times
+from sysmlc.recipe import check_data, check_graphs, check_tasks
 from sysmlc.recipe.checks import Check, Locate, report_findings
 from sysmlc.recipe.derive import Tables
 from sysmlc.recipe.model import Model
@@ -15,10 +15,10 @@ CHECKS: tuple[Check, ...] = (
     check_data.check_names,
     check_data.check_expressions,
     check_tasks.check_machines,
-    check_times.check_task_times,
-    check_times.check_groups,
-    check_times.check_releases,
-    check_times.check_bounds,
+    check_graphs.check_task_times,
+    check_graphs.check_groups,
+    check_graphs.check_releases,
+    check_graphs.check_bounds,
     check_tasks.check_materials,
     check_tasks.check_opc_ua_calls,
 )
@@ -32,4 +32,4 @@ def validate(model: Model, sink: Sink, locate: Locate, tolerance: float = 0.1) -
     tables = Tables.from_model(model)
     for check in CHECKS:
         report_findings(check(model, tables), sink, locate)
-    report_findings(check_times.check_service_times(model, tables, tolerance), sink, locate)
+    report_findings(check_graphs.check_service_times(model, tables, tolerance), sink, locate)

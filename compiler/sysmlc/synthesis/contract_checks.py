@@ -8,9 +8,9 @@ from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.logic.contract import Contract
 from sysmlc.logic.printing import print_formula
 from sysmlc.logic.reduction.contract_reduction import reduce_contract
+from sysmlc.synthesis.algebra.composition import conjoin_viewpoints
 from sysmlc.synthesis.algebra.fair_systems import DomainError
 from sysmlc.synthesis.algebra.refinement import Failure, find_refinement_failures
-from sysmlc.synthesis.algebra.viewpoints import conjoin_viewpoints
 from sysmlc.synthesis.bdd.limits import LimitError
 from sysmlc.synthesis.bdd.manager import Manager
 from sysmlc.synthesis.decision import Options, Place, Verdict, decide

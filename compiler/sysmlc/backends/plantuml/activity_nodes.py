@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from msgspec import Struct
 
 from sysmlc.backends.plantuml import labels
-from sysmlc.backends.plantuml.allocations import list_node_allocations
+from sysmlc.backends.plantuml.relations import list_node_allocations
 from sysmlc.backends.plantuml.state_machine import format_trigger
 from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind
 from sysmlc.support.plantuml_text import format_label, wrap_lines

@@ -3,8 +3,7 @@
 from collections.abc import Iterable
 
 from sysmlc.backends.plantuml import labels
-from sysmlc.backends.plantuml.aliases import Aliases
-from sysmlc.backends.plantuml.views import Note
+from sysmlc.backends.plantuml.views import Aliases, Note
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.support.plantuml_text import format_label, join_rows, wrap_lines
 

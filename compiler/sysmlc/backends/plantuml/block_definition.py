@@ -5,11 +5,10 @@ from collections.abc import Iterable, Iterator, Mapping
 from msgspec.structs import replace
 
 from sysmlc.backends.plantuml import labels, partitioning, use_case
-from sysmlc.backends.plantuml.aliases import Aliases
 from sysmlc.backends.plantuml.boxes import make_box, make_stub
 from sysmlc.backends.plantuml.layout import arrange_boxes
 from sysmlc.backends.plantuml.relations import Relation, list_relations
-from sysmlc.backends.plantuml.views import Box, BoxView, Compartment, Diagram, Line
+from sysmlc.backends.plantuml.views import Aliases, Box, BoxView, Compartment, Diagram, Line
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.support.plantuml_text import escape_line, format_keyword_label, pad_label, wrap_lines
 

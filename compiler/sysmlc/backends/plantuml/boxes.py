@@ -3,9 +3,8 @@
 from collections.abc import Callable, Iterator, Mapping, Sequence
 
 from sysmlc.backends.plantuml import labels
-from sysmlc.backends.plantuml.aliases import Aliases
-from sysmlc.backends.plantuml.allocations import list_block_allocations
-from sysmlc.backends.plantuml.views import Box, Compartment
+from sysmlc.backends.plantuml.relations import list_block_allocations
+from sysmlc.backends.plantuml.views import Aliases, Box, Compartment
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.ir.query.classifiers import is_quantity_kind, is_unit, quantity_kind_of, unit_of
 from sysmlc.support.plantuml_text import escape_line, join_rows, shrink, wrap_lines

@@ -8,8 +8,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from msgspec import Struct
 
 from sysmlc.backends.plantuml import labels
-from sysmlc.backends.plantuml.allocations import iter_feature_allocations
-from sysmlc.backends.plantuml.relations import format_conveyed
+from sysmlc.backends.plantuml.relations import format_conveyed, iter_feature_allocations
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.ir.query import DOMAINS, runs_both_ways
 from sysmlc.support.plantuml_text import format_keyword_label, format_label, join_rows

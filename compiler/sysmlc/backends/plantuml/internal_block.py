@@ -7,7 +7,6 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 from sysmlc.backends.plantuml import labels, partitioning
-from sysmlc.backends.plantuml.aliases import Aliases
 from sysmlc.backends.plantuml.connections import (
     Connection,
     FreeFlow,
@@ -17,7 +16,7 @@ from sysmlc.backends.plantuml.connections import (
     sort_domains,
 )
 from sysmlc.backends.plantuml.layout import find_port_sides, iter_port_guides
-from sysmlc.backends.plantuml.views import Diagram, InternalView, Line, PartView, PortView
+from sysmlc.backends.plantuml.views import Aliases, Diagram, InternalView, Line, PartView, PortView
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.ir.query import generals, opposite
 from sysmlc.ir.query.classifiers import unit_of

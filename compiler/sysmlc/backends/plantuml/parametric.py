@@ -12,10 +12,9 @@ from msgspec import Struct
 from msgspec.structs import replace
 
 from sysmlc.backends.plantuml import labels, partitioning
-from sysmlc.backends.plantuml.aliases import Aliases
 from sysmlc.backends.plantuml.boxes import format_unit
 from sysmlc.backends.plantuml.connections import Path, is_parametric, path_of
-from sysmlc.backends.plantuml.views import Diagram, InternalView, Line, PartView, PortView
+from sysmlc.backends.plantuml.views import Aliases, Diagram, InternalView, Line, PartView, PortView
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.ir.query import features, type_of
 from sysmlc.support.plantuml_text import escape_line, format_label, join_rows, shrink, wrap_lines

@@ -3,10 +3,9 @@
 from collections.abc import Iterable, Iterator
 
 from sysmlc.backends.plantuml import block_definition, boxes, labels, partitioning
-from sysmlc.backends.plantuml.aliases import Aliases
 from sysmlc.backends.plantuml.layout import arrange_boxes
 from sysmlc.backends.plantuml.relations import REQUIREMENT_ROLES, Relation
-from sysmlc.backends.plantuml.views import Box, BoxView, Compartment, Diagram
+from sysmlc.backends.plantuml.views import Aliases, Box, BoxView, Compartment, Diagram
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.ir.query import is_requirement
 from sysmlc.support.plantuml_text import escape_line, wrap_lines

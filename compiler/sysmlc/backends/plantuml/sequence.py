@@ -4,7 +4,6 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 
 from sysmlc.backends.plantuml import labels
-from sysmlc.backends.plantuml.aliases import Aliases
 from sysmlc.backends.plantuml.execution_bars import balance_operands
 from sysmlc.backends.plantuml.sequence_labels import (
     format_arguments,
@@ -14,7 +13,7 @@ from sysmlc.backends.plantuml.sequence_labels import (
     index_notes,
     index_times,
 )
-from sysmlc.backends.plantuml.views import Diagram, Participant, SequenceView, Step
+from sysmlc.backends.plantuml.views import Aliases, Diagram, Participant, SequenceView, Step
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.ir.query import interactions
 from sysmlc.support.plantuml_text import escape_line, format_label, join_rows, shrink, wrap_lines

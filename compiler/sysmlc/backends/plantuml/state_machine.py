@@ -3,10 +3,9 @@
 from collections.abc import Iterator
 
 from sysmlc.backends.plantuml import labels, partitioning
-from sysmlc.backends.plantuml.aliases import Aliases
 from sysmlc.backends.plantuml.behaviour_notes import make_notes
 from sysmlc.backends.plantuml.partitioning import split_view
-from sysmlc.backends.plantuml.views import Diagram, GraphView, Line, Node
+from sysmlc.backends.plantuml.views import Aliases, Diagram, GraphView, Line, Node
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.support.plantuml_text import escape_line, format_label, join_rows, shrink, wrap_lines
 

@@ -3,9 +3,16 @@
 from collections.abc import Iterator, Sequence
 
 from sysmlc.backends.plantuml import labels, partitioning
-from sysmlc.backends.plantuml.aliases import Aliases
 from sysmlc.backends.plantuml.relations import Relation, iter_use_case_relations, list_relations
-from sysmlc.backends.plantuml.views import Diagram, Figure, Line, Note, SubjectView, UseCaseView
+from sysmlc.backends.plantuml.views import (
+    Aliases,
+    Diagram,
+    Figure,
+    Line,
+    Note,
+    SubjectView,
+    UseCaseView,
+)
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.support.plantuml_text import (
     escape_line,

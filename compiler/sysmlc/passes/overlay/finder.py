@@ -12,7 +12,7 @@ from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind, derived_id
 from sysmlc.ir.query import BEHAVIORS, CLASSIFIERS, generals, type_of
 from sysmlc.overlay.model import Key, Refinement, Spot, Term
 from sysmlc.passes.overlay import rules
-from sysmlc.passes.resolve.hrefs import PRIMITIVE_TYPES
+from sysmlc.passes.resolve.libraries import PRIMITIVE_TYPES
 from sysmlc.support.suggestions import did_you_mean
 
 _SEPARATORS = frozenset("/[]@:")

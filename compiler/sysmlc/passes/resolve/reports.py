@@ -3,7 +3,7 @@
 from sysmlc.diagnostics import Place, Rule, Severity, Sink, Subject, rule
 from sysmlc.ir import Graph, Kind
 from sysmlc.ir.element import is_generated
-from sysmlc.passes.resolve.hrefs import PRIMITIVES, has_primitives_only, is_standard, split_href
+from sysmlc.passes.resolve.libraries import PRIMITIVES, has_primitives_only, is_standard, split_href
 from sysmlc.passes.resolve.resolver import Need, Use, stub_id
 
 BROKEN_REFERENCE = rule(

@@ -14,15 +14,17 @@ from urllib.parse import unquote
 from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind, Reference
 from sysmlc.ir.element import derived_id, is_globally_unique
 from sysmlc.ir.query import ids_in
-from sysmlc.passes.resolve.hrefs import (
+from sysmlc.passes.resolve.libraries import (
     PRIMITIVE_TYPES,
+    LibraryElement,
+    add_stub,
     choose_kind,
+    find_library_element,
     find_primitive,
     is_href,
     read_name,
     split_href,
 )
-from sysmlc.passes.resolve.libraries import LibraryElement, add_stub, find_library_element
 
 _ATTRIBUTES: dict[Kind, dict[str, Kind]] = {
     Kind.CONTROL: {"decision_input": Kind.ACTIVITY, "decision_input_flow": Kind.OBJECT_FLOW},

@@ -21,13 +21,13 @@ from sysmlc.backends.plantuml import (
     state_machine,
     use_case,
 )
-from sysmlc.backends.plantuml.aliases import Aliases
 from sysmlc.backends.plantuml.author import internal_block as author_parts
 from sysmlc.backends.plantuml.author.selection import FEATURES, LINES, Selection
 from sysmlc.backends.plantuml.layout import arrange_boxes
 from sysmlc.backends.plantuml.parametric import Binding, find_bindings
 from sysmlc.backends.plantuml.relations import Relation, iter_use_case_relations, list_relations
 from sysmlc.backends.plantuml.views import (
+    Aliases,
     Box,
     BoxView,
     Diagram,

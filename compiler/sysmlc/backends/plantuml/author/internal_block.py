@@ -4,11 +4,10 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 from sysmlc.backends.plantuml import internal_block, labels
-from sysmlc.backends.plantuml.aliases import Aliases
 from sysmlc.backends.plantuml.author.selection import Selection
 from sysmlc.backends.plantuml.connections import Connection, Path, find_free_flows, list_connections
 from sysmlc.backends.plantuml.layout import iter_port_guides
-from sysmlc.backends.plantuml.views import InternalView, Line, PartView, PortView
+from sysmlc.backends.plantuml.views import Aliases, InternalView, Line, PartView, PortView
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.ir.query import features, generals, type_of
 from sysmlc.support.plantuml_text import (
