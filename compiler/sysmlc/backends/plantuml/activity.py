@@ -9,8 +9,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 from sysmlc.backends.plantuml import activity_nodes, labels
-from sysmlc.backends.plantuml.behaviour_notes import make_notes
 from sysmlc.backends.plantuml.block_definition import ACTIVITY_NODES
+from sysmlc.backends.plantuml.labels import make_notes
 from sysmlc.backends.plantuml.state_machine import draw_parts, format_guard
 from sysmlc.backends.plantuml.views import Aliases, Diagram, GraphView, Line, Node
 from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 from sysmlc.backends.plantuml import labels, partitioning
-from sysmlc.backends.plantuml.behaviour_notes import make_notes
+from sysmlc.backends.plantuml.labels import make_notes
 from sysmlc.backends.plantuml.partitioning import split_view
 from sysmlc.backends.plantuml.views import Aliases, Diagram, GraphView, Line, Node
 from sysmlc.ir import Edge, Element, Graph, Kind

@@ -5,9 +5,9 @@ from types import MappingProxyType
 from typing import NamedTuple
 
 from sysmlc.diagnostics import Subject, Verdict
-from sysmlc.frontends.xmi import dangling, metaclasses, rules, uml_features
+from sysmlc.frontends.xmi import metaclasses, rules, uml_features
 from sysmlc.frontends.xmi import vocabulary as v
-from sysmlc.frontends.xmi.context import Context
+from sysmlc.frontends.xmi.context import Context, select_existing
 from sysmlc.frontends.xmi.document import WrittenReference
 from sysmlc.frontends.xmi.values import parse_bound
 from sysmlc.ir import AttrValue, Element, Kind
@@ -182,7 +182,7 @@ def set_deferred_attributes(context: Context) -> None:
         if row >= 0 and context.elements[row]:
             context.graph[context.element_ids[row]].attrs["subkind"] = subkind
     for element, key, targets, is_href in context.deferred_ids:
-        existing = targets if is_href else dangling.select_existing(context, element, key, targets)
+        existing = targets if is_href else select_existing(context, element, key, targets)
         ids = [context.unit.find_target_id(context.file, target, is_href) for target in existing]
         present = tuple(id for id in ids if id is not None)
         if present:

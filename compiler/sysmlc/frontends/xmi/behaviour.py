@@ -4,8 +4,7 @@ from graphlib import CycleError, TopologicalSorter
 
 from sysmlc.diagnostics import Verdict
 from sysmlc.frontends.xmi import metaclasses, uml_features
-from sysmlc.frontends.xmi.context import Context, RowHandler
-from sysmlc.frontends.xmi.dangling import check_references_inside
+from sysmlc.frontends.xmi.context import Context, RowHandler, check_references_inside
 from sysmlc.frontends.xmi.document import Document, WrittenReference
 from sysmlc.frontends.xmi.folded_elements import report_losses
 from sysmlc.frontends.xmi.unit import Target

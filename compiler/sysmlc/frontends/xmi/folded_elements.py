@@ -11,8 +11,7 @@ from collections.abc import Collection
 from sysmlc.diagnostics import Verdict
 from sysmlc.frontends.xmi import metaclasses, papyrus, uml_features
 from sysmlc.frontends.xmi import vocabulary as v
-from sysmlc.frontends.xmi.context import Context, RowHandler
-from sysmlc.frontends.xmi.dangling import check_references_inside
+from sysmlc.frontends.xmi.context import Context, RowHandler, check_references_inside
 from sysmlc.frontends.xmi.document import WrittenReference
 from sysmlc.frontends.xmi.elements import add_element, make_handler
 from sysmlc.ir import Edge, Element, Kind

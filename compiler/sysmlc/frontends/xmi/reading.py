@@ -7,9 +7,8 @@ from sysmlc.frontends.xmi import papyrus, rules, unknown_names
 from sysmlc.frontends.xmi.applications import lower_applications
 from sysmlc.frontends.xmi.attributes import set_deferred_attributes
 from sysmlc.frontends.xmi.behaviour import complete_behaviour
-from sysmlc.frontends.xmi.context import Context
+from sysmlc.frontends.xmi.context import Context, report_dangling
 from sysmlc.frontends.xmi.coverage import report_coverage
-from sysmlc.frontends.xmi.dangling import report_dangling
 from sysmlc.frontends.xmi.document import Document, read_document
 from sysmlc.frontends.xmi.enterprise_architect import localise_references, read_extensions
 from sysmlc.frontends.xmi.lowering import lower_document, restore_comments

@@ -2,8 +2,7 @@
 
 from sysmlc.diagnostics import Verdict
 from sysmlc.frontends.xmi import metaclasses, rules
-from sysmlc.frontends.xmi.context import Context, RowHandler
-from sysmlc.frontends.xmi.dangling import check_references_inside
+from sysmlc.frontends.xmi.context import Context, RowHandler, check_references_inside
 from sysmlc.frontends.xmi.document import WrittenReference
 from sysmlc.frontends.xmi.elements import add_element
 from sysmlc.frontends.xmi.values import Value, is_natural, parse_bound, read_value

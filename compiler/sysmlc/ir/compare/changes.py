@@ -5,9 +5,8 @@ from collections.abc import Callable, Collection, Container, Iterator
 from functools import partial
 from typing import NamedTuple
 
-from sysmlc.ir.compare.change import Change, Ref, What
 from sysmlc.ir.compare.content import IMPLIED, IN_ORDER, is_external
-from sysmlc.ir.compare.facts import BETWEEN, Fact
+from sysmlc.ir.compare.facts import BETWEEN, Change, Fact, Ref, What
 from sysmlc.ir.compare.pairs import (
     Pairs,
     Token,

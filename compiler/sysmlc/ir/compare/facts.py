@@ -1,9 +1,11 @@
-"""The facts about an element that a comparison compares one by one."""
+"""Facts about elements, which a comparison compares one by one, and the reported changes."""
 
 from collections.abc import Callable, Iterator
+from enum import StrEnum
 from typing import NamedTuple
 
-from sysmlc.ir.compare.change import What
+from msgspec import Struct
+
 from sysmlc.ir.compare.content import ENDS, NOT_CONTENT, TYPES, WIRES, WORDS
 from sysmlc.ir.compare.plants import declared_class, is_own_class, is_part_instance
 from sysmlc.ir.compare.side import Side
@@ -17,6 +19,52 @@ from sysmlc.ir.compare.titles import (
 )
 from sysmlc.ir.element import AttrValue, Element
 from sysmlc.ir.kinds import Edge, Kind
+
+
+class What(StrEnum):
+    """What happened to an element."""
+
+    ADDED = "added"
+    REMOVED = "removed"
+    RENAMED = "renamed"
+    RETYPED = "retyped"
+    REWIRED = "rewired"
+    MOVED = "moved"
+    REORDERED = "reordered"
+    CHANGED = "changed"
+
+
+class Ref(Struct, frozen=True):
+    """A reference to an element of one of the models: id, qualified name and position."""
+
+    id: str
+    qualified_name: str
+    file: str = ""
+    ordinal: int = -1
+
+
+class Change(Struct, frozen=True):
+    """One difference of the element ``name``, whose owner has the qualified name ``owner``.
+
+    ``kind`` is the role or kind of the element in words, ``aspect`` the attribute or relation that
+    differs; ``before`` and ``after`` are texts, empty for an absent value. ``contents`` is the
+    number of elements below an added or removed element. ``old`` or ``new`` is None when only one
+    model has the element.
+    """
+
+    what: What
+    owner: str
+    name: str
+    kind: str
+    aspect: str = ""
+    before: str = ""
+    after: str = ""
+    contents: int = 0
+    old: Ref | None = None
+    new: Ref | None = None
+
+
+# -- facts -------------------------------------------------------------------------------------
 
 FROM_TO = ("from", "to")
 BETWEEN = ("between",)
