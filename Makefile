@@ -28,7 +28,7 @@ test: .venv/.ready ## style, types and all tests but the long ones
 
 test-long: .venv/.ready ## the long tests: random models, crashes, whole corpus
 	@.ci/system-packages
-	.venv/bin/pytest -n 2 -m long
+	SYSMLC_LONG=1 .venv/bin/pytest -n 2 -m "long or hypothesis"
 
 check: .venv/.ready ## the quick half of 'make test': style, types, tests that are not slow
 	.venv/bin/ruff check

@@ -14,11 +14,14 @@ import pytest
 from hypothesis import settings
 
 import plantuml_jar
+from long_runs import examples
 
 os.environ["SYSMLC_CACHE"] = "off"
 """Tests see what the code does, not what an earlier run found."""
 
-settings.register_profile("sysmlc", deadline=None, derandomize="CI" in os.environ)
+settings.register_profile(
+    "sysmlc", deadline=None, derandomize="CI" in os.environ, max_examples=examples(100)
+)
 settings.load_profile("sysmlc")
 """No test asserts on time; continuous integration tries the same examples in every run."""
 

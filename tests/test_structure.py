@@ -47,9 +47,7 @@ REGISTRIES = {"sysmlc", "sysmlc.api", "sysmlc.driver.registry", "sysmlc.ir", "sy
 PLATFORM_MODULES = {"fcntl", "resource"}
 """Modules of the standard library that exist on POSIX systems only."""
 
-UNFINISHED = (
-    "sysmlc.frontends.sysml",
-)
+UNFINISHED = ("sysmlc.frontends.sysml",)
 """Packages whose names and imports are still to be reviewed; remove a line when that is done."""
 
 

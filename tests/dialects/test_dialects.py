@@ -14,7 +14,7 @@ from dialects.enterprise_architect import write_xmi
 from dialects.magicdraw import write_xml
 from dialects.random_models import random_model
 from examples.compiling import EXAMPLES, compile_text, outputs
-from long_runs import quick_first
+from long_runs import examples, quick_first
 from sysmlc.driver import Request, compile_model, select_backends
 
 DEFAULT = ("contracts", "recipe", "plantuml", "reqtable")
@@ -56,7 +56,9 @@ def test_a_random_model_is_the_same_in_every_dialect(seed, dialect, tmp_path):
 
 @pytest.mark.long
 @settings(
-    max_examples=15, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
+    max_examples=examples(15),
+    deadline=None,
+    suppress_health_check=[HealthCheck.function_scoped_fixture],
 )
 @given(st.randoms(use_true_random=False), st.integers(1, 3), st.sampled_from(["xml", "xmi"]))
 def test_any_random_model_has_one_graph(tmp_path, random, size, dialect):

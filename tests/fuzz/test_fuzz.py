@@ -96,6 +96,7 @@ def test_no_half_written_file_is_left(hunter, tmp_path):
     assert not list(hunter.folder.rglob(".sysmlc-*"))
 
 
+@pytest.mark.long
 def test_a_fault_would_be_found(hunter, monkeypatch):
     """The hunter sees what the guard says: killed, a traceback, a fault of ours."""
     from fuzz import hunt

@@ -4,6 +4,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from long_runs import examples
 from sysmlc.logic.expressions.expression import (
     Assignment,
     Binary,
@@ -132,7 +133,7 @@ expressions = st.recursive(_atoms, _compound, max_leaves=12)
 
 
 @given(expressions)
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=examples(150), deadline=None)
 def test_parsing_the_printed_text_gives_an_equal_tree(expression):
     assert parse_expression(print_expression(expression)) == expression
 
@@ -146,7 +147,7 @@ _statements = st.one_of(
 
 
 @given(st.lists(_statements, max_size=3).map(tuple))
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=examples(60), deadline=None)
 def test_effects_survive_printing(effect):
     assert parse_effect(print_effect(effect)) == effect
 
@@ -164,7 +165,7 @@ _soups = st.lists(
 
 
 @given(_soups)
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=examples(300), deadline=None)
 def test_any_text_is_parsed_or_rejected_at_an_offset_in_it(text):
     for parse in (parse_expression, parse_effect):
         assert 0 <= _find_fault(parse, text) <= len(text)

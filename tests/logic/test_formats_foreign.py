@@ -12,6 +12,7 @@ import spot
 from hypothesis import given, settings
 from test_formats_spot import any_contracts, games, meaning
 
+from long_runs import examples
 from sysmlc.logic import formats
 from sysmlc.logic.contract import (
     Class,
@@ -94,7 +95,7 @@ def of_chase(text):
 @pytest.mark.parametrize("contracts", [games, any_contracts], ids=["games", "ltl"])
 def test_others_read_what_the_contract_says(form, read, contracts):
     @given(contract=contracts)
-    @settings(max_examples=25, deadline=None)
+    @settings(max_examples=examples(25), deadline=None)
     def judged(contract):
         assert spot.are_equivalent(meaning(contract), read(formats.write(contract, form)))
 

@@ -9,6 +9,7 @@ import spot
 from contract_cases import canonical, contracts
 from hypothesis import given, settings
 
+from long_runs import examples
 from sysmlc.diagnostics import Sink
 from sysmlc.logic import formats
 from sysmlc.logic.formats import NotExpressibleError
@@ -20,7 +21,7 @@ TEXTS = (*GAMES, "tlsf", "spot", "smv", "chase", "chasejson", "neutral", "contra
 
 @pytest.mark.parametrize("form", TEXTS)
 @given(contract=contracts)
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=examples(60), deadline=None)
 def test_what_was_written_is_read_again(form, contract):
     try:
         text = formats.write(contract, form)
@@ -35,7 +36,7 @@ def test_what_was_written_is_read_again(form, contract):
 
 
 @given(contract=contracts)
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=examples(30), deadline=None)
 def test_spin_s_formula_is_read_again_but_for_ranges(contract):
     text = formats.write(contract, "spin")
     sink = Sink()
@@ -53,7 +54,7 @@ SCHEMAS = {"neutral": "neutral-contract", "chasejson": "chase-contract"}
 
 @pytest.mark.parametrize(("form", "schema"), SCHEMAS.items())
 @given(contract=contracts)
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=examples(25), deadline=None)
 def test_json_is_as_its_schema_says(form, schema, contract):
     rules = json.loads(resources.read_text("metamodels", f"{schema}.schema.json"))
     jsonschema.validate(json.loads(formats.write(contract, form)), rules)

@@ -6,6 +6,7 @@ from contract_cases import ltl
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from long_runs import examples
 from sysmlc.diagnostics import Sink
 from sysmlc.logic import formats
 from sysmlc.logic import formula as f
@@ -107,14 +108,14 @@ any_contracts = st.builds(
 
 @pytest.mark.parametrize("form", ["gr1c", "slugsin", "structured", "tlsf", "smv", "chase"])
 @given(contract=games)
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=examples(25), deadline=None)
 def test_a_game_says_the_same_in_every_form(form, contract):
     same(contract, form)
 
 
 @pytest.mark.parametrize("form", ["tlsf", "spot", "spin", "smv", "chase", "chasejson", "neutral"])
 @given(contract=any_contracts)
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=examples(25), deadline=None)
 def test_general_ltl_says_the_same_in_every_form(form, contract):
     same(contract, form)
 
@@ -136,7 +137,7 @@ def test_what_can_be_reduced_is_written_with_history_bits(form):
 
 @pytest.mark.parametrize("form", ["spot", "spin"])
 @given(contract=any_contracts)
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=examples(40), deadline=None)
 def test_spot_reads_the_formula_itself(form, contract):
     first = formats.write(contract, form).splitlines()[0]
     assert spot.are_equivalent(meaning(contract), spot.formula(first))
@@ -144,7 +145,7 @@ def test_spot_reads_the_formula_itself(form, contract):
 
 @pytest.mark.parametrize("form", ["gr1c", "slugsin", "structured"])
 @given(formula=general)
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=examples(25), deadline=None)
 def test_what_a_form_has_no_words_for_names_the_conjunct(form, formula):
     stable = f.eventually(f.always(f.either(Var("d"), formula)))
     outside = Conjunct(stable, Class.OTHER, "model.uml:3:1")

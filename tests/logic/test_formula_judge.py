@@ -6,6 +6,7 @@ from hypothesis import strategies as st
 from lark.exceptions import UnexpectedInput
 from ltl_judge import judge
 
+from long_runs import examples
 from sysmlc.logic.contract import BooleanDomain, IntegerDomain
 from sysmlc.logic.infix import parse_formula
 from sysmlc.logic.syntax import FormulaError, line_and_column
@@ -21,7 +22,7 @@ MEANING = ("is not Boolean", "is not a number", "be compared", "neither a variab
 
 @given(st.lists(st.sampled_from((*TRUTHS, *TRUTHS, *SIGNS, *NUMBERS)), min_size=1, max_size=9))
 @example(["p", "=", "G"])
-@settings(max_examples=1500, deadline=None)
+@settings(max_examples=examples(1500), deadline=None)
 def test_the_reader_and_the_grammar_agree(words):
     text = " ".join(words)
     try:

@@ -11,6 +11,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from long_runs import examples
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import BooleanDomain, EnumerationDomain, IntegerDomain
 from sysmlc.logic.formula import Apply, Const, Op, Var
@@ -64,7 +65,7 @@ formulas = st.recursive(
 
 
 @given(formulas)
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=examples(200), deadline=None)
 def test_printing_and_reading_again_gives_the_same(formula):
     assert parse_formula(print_formula(formula), VARIABLES) == formula
 
@@ -115,7 +116,7 @@ def _domain(type_):
 
 
 @given(formulas, formulas)
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=examples(100), deadline=None)
 def test_formulas_are_one_object_exactly_when_they_are_equal(left, right):
     assert (left is right) == (repr(left) == repr(right))
     assert pickle.loads(pickle.dumps(left)) is left

@@ -6,6 +6,7 @@ from activity_models import activity, blocks, tokens_of
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from long_runs import examples
 from sysmlc.logic import evaluate
 from sysmlc.logic.activities import interpreter as token_game
 from sysmlc.logic.activities.derivation import derive_contract
@@ -39,14 +40,14 @@ def violated(contract: Contract, trace: Trace) -> list[str]:
     ]
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=examples(150), deadline=None)
 @given(blocks(), st.booleans(), st.integers(0, 2**16))
 def test_every_run_of_the_diagram_satisfies_the_guarantees(block, has_final, seed):
     tokens = tokens_of(activity(block, has_final))
     assert violated(derive_contract(tokens), play(tokens, seed, 60)) == []
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=examples(100), deadline=None)
 @given(blocks(), st.integers(0, 2**16), st.data())
 def test_a_run_with_one_changed_system_value_is_detected(block, seed, data):
     """Any token put somewhere or taken away, any action run or stopped, at any step."""
@@ -59,7 +60,7 @@ def test_a_run_with_one_changed_system_value_is_detected(block, seed, data):
     assert violated(contract, trace)
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=examples(100), deadline=None)
 @given(blocks(), st.integers(0, 2**16), st.data())
 def test_a_changed_input_is_detected_when_it_matters(block, seed, data):
     """A run that goes on as if an action had ended, or a guard had held, that did not."""
@@ -88,7 +89,7 @@ def successors(tokens: TokenGraph, step: dict[str, Literal]) -> list[dict[str, L
     return found
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=examples(100), deadline=None)
 @given(blocks(), st.booleans(), st.integers(0, 2**16))
 def test_a_well_formed_activity_finishes_when_the_environment_is_fair(block, has_final, seed):
     tokens = tokens_of(activity(block, has_final))
@@ -98,7 +99,7 @@ def test_a_well_formed_activity_finishes_when_the_environment_is_fair(block, has
     assert any(evaluate.is_true(finish.formula, step) for step in trace)
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=examples(100), deadline=None)
 @given(blocks(8), st.booleans(), st.integers(0, 2**16))
 def test_collapsed_activities_satisfy_their_contracts_with_fewer_edges(block, has_final, seed):
     whole = tokens_of(activity(block, has_final))

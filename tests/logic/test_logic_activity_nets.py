@@ -6,6 +6,7 @@ from activity_models import Canvas, activity, blocks
 from hypothesis import given, note, settings
 from hypothesis import strategies as st
 
+from long_runs import examples
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Edge, Kind
 from sysmlc.ir.text import parse_text, print_text
@@ -74,7 +75,7 @@ def lines(draw) -> TokenGraph:
     return drawn(canvas)
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=examples(300), deadline=None)
 @given(scribbles())
 def test_reductions_keep_the_answer(tokens):
     """Only an end that forestalls the next firing may make the reduced net more careful."""
@@ -90,7 +91,7 @@ def test_reductions_keep_the_answer(tokens):
         assert quick.dead == whole.dead if not ends else quick.dead <= whole.dead
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=examples(300), deadline=None)
 @given(scribbles(), st.integers(0, 2**16))
 def test_no_run_of_a_safe_activity_brings_a_second_token(tokens, seed):
     if token_net.check_safety(tokens, ACTIVITY_REGION, 100_000).unsafe:
@@ -104,7 +105,7 @@ def test_no_run_of_a_safe_activity_brings_a_second_token(tokens, seed):
         )
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=examples(300), deadline=None)
 @given(scribbles())
 def test_a_single_token_is_followed_as_all_markings_are_searched(tokens):
     found = token_net.check_single_token(tokens, ACTIVITY_REGION)
@@ -112,7 +113,7 @@ def test_a_single_token_is_followed_as_all_markings_are_searched(tokens):
     assert found in (None, whole)
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=examples(100), deadline=None)
 @given(lines())
 def test_where_nothing_forks_or_joins_no_marking_is_built(tokens):
     whole = token_net.search_markings(token_net.build_net(tokens, ACTIVITY_REGION), 100_000)
@@ -128,7 +129,7 @@ def test_two_tokens_that_meet_at_a_merge_before_a_sink_are_found():
     assert token_net.check_safety(drawn(canvas), ACTIVITY_REGION, 1000).unsafe
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=examples(100), deadline=None)
 @given(blocks(12))
 def test_series_and_parallel_parts_leave_next_to_nothing_to_search(block):
     canvas = Canvas()
@@ -202,7 +203,7 @@ def _kind(kind: str) -> Kind:
     return Kind.ACTION if kind in WORKS else Kind.CONTROL
 
 
-@settings(max_examples=250, deadline=None)
+@settings(max_examples=examples(250), deadline=None)
 @given(doodles(), st.integers(0, 2**16))
 def test_whatever_is_drawn_is_played_as_its_contract_says_or_has_a_rule(canvas, seed):
     sink = Sink()

@@ -7,6 +7,7 @@ from activity_models import activity, rich
 from hypothesis import given, note, settings
 from hypothesis import strategies as st
 
+from long_runs import examples
 from sysmlc.diagnostics import Sink
 from sysmlc.ir.text import print_text
 from sysmlc.logic import domains, evaluate
@@ -77,7 +78,7 @@ def following(tokens: TokenGraph, now: Valuation) -> list[Valuation]:
     return found
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=examples(60), deadline=None)
 @given(rich(), st.integers(0, 2**16))
 def test_each_step_is_allowed_and_no_step_that_differs_in_one_variable(block, seed):
     tokens = tokens_of(block)
@@ -94,7 +95,7 @@ def test_each_step_is_allowed_and_no_step_that_differs_in_one_variable(block, se
             assert is_allowed(contract, now, changed) == is_step, name
 
 
-@settings(max_examples=120, deadline=None)
+@settings(max_examples=examples(120), deadline=None)
 @given(rich(), st.integers(0, 2**16))
 def test_every_choice_that_the_interpreter_has_is_allowed(block, seed):
     tokens = tokens_of(block)
@@ -105,7 +106,7 @@ def test_every_choice_that_the_interpreter_has_is_allowed(block, seed):
         assert all(is_allowed(contract, now, {**then, **after}) for after in following(tokens, now))
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=examples(40), deadline=None)
 @given(rich(4))
 def test_the_search_finds_the_states_that_the_interpreter_reaches(block):
     tokens = tokens_of(block)
@@ -141,7 +142,7 @@ def _rests(tokens: TokenGraph, region: str, states) -> bool:
     )
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=examples(60), deadline=None)
 @given(rich(8), st.integers(0, 2**16))
 def test_collapsed_rich_activities_keep_their_contracts(block, seed):
     tokens = tokens_of(block, collapse_over=0)
@@ -151,7 +152,7 @@ def test_collapsed_rich_activities_keep_their_contracts(block, seed):
     assert all(is_allowed(contract, now, then) for now, then in steps(tokens, seed, 60))
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=examples(60), deadline=None)
 @given(rich(), st.integers(0, 2**16))
 def test_a_rich_activity_finishes_when_the_environment_is_fair(block, seed):
     """But for accept actions that nothing starts: by UML they listen again for ever."""

@@ -6,6 +6,7 @@ import pytest
 from contract_cases import VARIABLES, conditions, then_or_now
 from hypothesis import given, settings
 
+from long_runs import examples
 from sysmlc.logic import domains
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import (
@@ -67,7 +68,7 @@ PAIRS = [
 
 
 @given(conditions(then_or_now))
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=examples(60), deadline=None)
 def test_a_lowered_formula_is_true_for_the_same_values(formula):
     contract = Contract("C", "", VARIABLES, (), (Conjunct(formula, Class.SAFETY, "here"),))
     flat = eliminate_arithmetic(contract).guarantees[0].formula
@@ -86,7 +87,7 @@ def as_sums(row):
 
 
 @given(conditions(then_or_now))
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=examples(100), deadline=None)
 def test_sums_of_slugs_are_true_for_the_same_values(formula):
     contract = Contract("C", "", VARIABLES, (), (Conjunct(formula, Class.SAFETY, "here"),))
     sums = lower(contract, "structured").guarantees[0].formula

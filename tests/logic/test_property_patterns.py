@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 from test_formats_spot import for_spot
 from test_reductions import bit_rules, ltl
 
+from long_runs import examples
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import BooleanDomain, IntegerDomain
 from sysmlc.logic.infix import parse_formula
@@ -163,7 +164,7 @@ WORDS = [
 
 
 @given(st.lists(st.sampled_from(WORDS), max_size=12))
-@settings(max_examples=600, deadline=None)
+@settings(max_examples=examples(600), deadline=None)
 def test_any_words_are_a_sentence_or_a_fault_with_a_location(words):
     text = " ".join(words)
     try:

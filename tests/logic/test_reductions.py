@@ -6,6 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from test_formats_spot import for_spot
 
+from long_runs import examples
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import BooleanDomain, Class, Conjunct, Contract, Owner, Variable
 from sysmlc.logic.formula import Apply, Op, Var
@@ -156,7 +157,7 @@ BODIES = st.recursive(
 
 
 @given(BODIES.map(f.always) | BODIES)
-@settings(max_examples=250, deadline=None)
+@settings(max_examples=examples(250), deadline=None)
 def test_every_reduction_is_an_equivalence(formula):
     history = History(DOMAINS)
     try:

@@ -4,6 +4,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from machines import machines
 
+from long_runs import examples
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Edge, Kind
 from sysmlc.logic.contract import Contract
@@ -37,7 +38,7 @@ def _damage(draw, graph):
 
 @given(machines(), st.data())
 @settings(
-    max_examples=50,
+    max_examples=examples(50),
     deadline=None,
     suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large],
 )

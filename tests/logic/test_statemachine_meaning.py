@@ -12,6 +12,7 @@ from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 from machines import machines, rich_machines
 
+from long_runs import examples
 from sysmlc.diagnostics import Sink
 from sysmlc.logic import domains
 from sysmlc.logic.contract import Class
@@ -70,7 +71,7 @@ def _inputs_in(machine, valuation):
 
 
 _quiet = settings(
-    max_examples=30,
+    max_examples=examples(30),
     deadline=None,
     suppress_health_check=[
         HealthCheck.filter_too_much,

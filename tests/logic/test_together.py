@@ -7,6 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from msgspec.structs import replace
 
+from long_runs import examples
 from sysmlc.logic import evaluate
 from sysmlc.logic import formula as f
 from sysmlc.logic.activities import interpreter as token_game
@@ -56,7 +57,7 @@ def played(tokens, dice, steps=80):
         )
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=examples(200), deadline=None)
 @given(rich(7), st.booleans(), st.integers(0, 2**16))
 def test_what_has_tokens_together_in_a_run_is_known_to(block, has_final, seed):
     tokens = drawn(block, has_final)
@@ -71,7 +72,7 @@ def test_what_has_tokens_together_in_a_run_is_known_to(block, has_final, seed):
             assert all(together.are_concurrent(one, other) for other in beside)
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=examples(300), deadline=None)
 @given(rich(7), st.booleans(), st.integers(0, 2**16))
 def test_a_value_that_stops_in_a_run_is_one_that_may(block, has_final, seed):
     tokens, dice = drawn(block, has_final), random.Random(seed)

@@ -39,6 +39,7 @@ def test_the_source_distribution_has_what_the_tests_need(dist):
     assert {"tests/conftest.py", "examples/lego-recipe/lego-recipe.uml"} <= names
 
 
+@pytest.mark.long
 def test_installed_in_an_empty_environment_it_compiles_an_example(environment, tmp_path):
     model = ROOT / "examples/lego-recipe/lego-recipe.uml"
     run = [environment.python, "-m", "sysmlc", str(model), "-o", "out"]

@@ -5,6 +5,7 @@ from hypothesis import strategies as st
 from passing import STRUCTURAL, again, codes, refine
 from structures import hierarchies, structures
 
+from long_runs import examples
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Edge, Graph, Kind
 from sysmlc.ir.text import parse_text, print_text
@@ -12,7 +13,7 @@ from sysmlc.ir.verify import verify
 from sysmlc.passes import pipeline
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=examples(150), deadline=None)
 @given(structures())
 def test_each_pass_leaves_a_valid_graph_and_twice_equals_once(graph):
     assert verify(graph) == []
@@ -23,7 +24,7 @@ def test_each_pass_leaves_a_valid_graph_and_twice_equals_once(graph):
         assert again(graph, name) == once
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=examples(200), deadline=None)
 @given(hierarchies())
 def test_features_are_what_the_definition_says(graph):
     expected = {one.id: set(defined_features(graph, one.id)) for one in graph.of_kind(Kind.CLASS)}
@@ -44,7 +45,7 @@ def defined_features(graph: Graph, id: str) -> list[str]:
     return [one for one in members if one not in hidden]
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=examples(100), deadline=None)
 @given(structures(), st.randoms(use_true_random=False))
 def test_resolving_does_not_depend_on_the_order_of_references(graph, random):
     text = print_text(graph)

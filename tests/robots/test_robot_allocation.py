@@ -7,6 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from small_floors import floor
 
+from long_runs import examples
 from sysmlc.robots.allocation import (
     allocate_greedily,
     allocate_optimally,
@@ -41,7 +42,7 @@ def every_allocation(study):
             yield tuple(tuple(t for t in order if owners[t] == r) for r in range(robots))
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=examples(60), deadline=None)
 @given(missions())
 def test_the_best_is_the_best_of_all(study):
     travel = shortest_travel_times(study)
@@ -54,7 +55,7 @@ def test_the_best_is_the_best_of_all(study):
         assert found.schedule.cost == min(costs)
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=examples(100), deadline=None)
 @given(missions(most=7))
 def test_orders_and_carrying_are_kept_and_the_best_is_no_worse(study):
     travel = shortest_travel_times(study)

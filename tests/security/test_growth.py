@@ -69,6 +69,7 @@ def test_guards_are_compared_up_to_a_bound(tmp_path, monkeypatch):
     assert diagnostic.subject.name == "P::A::m"
 
 
+@pytest.mark.long
 def test_a_long_chain_of_redefinitions_is_read(tmp_path):
     text = families.redefinitions(1200)
     path = tmp_path / "chain.sysml"

@@ -9,6 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from lxml import etree
 
+from long_runs import examples
 from sysmlc.diagnostics import Place
 from sysmlc.diagnostics.locate import locate
 from sysmlc.sources import Source, SourceError, load
@@ -97,7 +98,7 @@ def written(tree):
 
 
 @given(_TREES)
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=examples(200), deadline=None)
 def test_any_document(tree):
     check(f'<root xmlns:p="u" xmlns:q="v">{written(tree)}</root>'.encode())
 

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import pytest
 
+from long_runs import quick_first
 from sysmlc.diagnostics import Sink, Subject
 from sysmlc.logic import formats
 from sysmlc.synthesis import Limits
@@ -52,7 +53,7 @@ def test_what_can_be_kept_has_a_controller(name):
     assert told == ["SM532"] * sum(not one.verdict.is_realizable for one in made)
 
 
-@pytest.mark.parametrize("name", LARGE)
+@pytest.mark.parametrize("name", quick_first(reversed(LARGE)))
 def test_large_contracts_have_machines(name):
     (made,), told = controllers(f"{name}.json")
     assert told == []
@@ -60,6 +61,7 @@ def test_large_contracts_have_machines(name):
     assert made.machine.size <= LARGE[name]
 
 
+@pytest.mark.long
 def test_what_consists_of_parts_has_a_table_of_their_strategies():
     name = "chase/Robotic_Arm_Joints.ltl"
     contracts = formats.read((FOLDER / name).read_text(encoding="utf-8"), name, Sink())

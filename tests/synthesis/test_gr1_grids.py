@@ -51,6 +51,7 @@ def test_a_grid_is_decided_in_the_order_that_its_variables_give(
     assert decided(holistic(5, robots), robots).is_realizable is True
 
 
+@pytest.mark.long
 def test_what_is_computed_does_not_depend_on_hash_seeds():
     path = os.pathsep.join([str(BENCHMARKS), str(Path(__file__).parent)])
     found = {

@@ -40,6 +40,8 @@ UNREALIZABLE = {
     "test_2.ltl test_1.C2": "ours",
 }
 """Outside the folders that say so; whose verdict it is."""
+SLOW = ("ColorSort", "amba", "env_9x3", "hol_16x2")
+"""How the names of contracts begin that take most of the time."""
 OUTSIDE = {
     "HumanoidLTL_713_Humanoid_unrealizable.spectra",
     "HumanoidLTL_NotRealizable2_879_Humanoid_unrealizable.spectra",
@@ -77,7 +79,13 @@ def decided(path: Path) -> Iterator[tuple[str, bool | None, bool, list[str]]]:
 
 
 @pytest.mark.parametrize(
-    "path", [one for folder in COUNTS for one in files(folder)], ids=lambda path: path.name
+    "path",
+    [
+        pytest.param(path, marks=pytest.mark.long if path.name.startswith(SLOW) else ())
+        for folder in COUNTS
+        for path in files(folder)
+    ],
+    ids=lambda path: path.name,
 )
 def test_the_verdict_is_the_recorded_one(path):
     found = list(decided(path))

@@ -7,6 +7,7 @@ from contracts_in_lines import contract
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from long_runs import examples
 from sysmlc.logic import domains
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import IntegerDomain, Owner, Variable
@@ -49,7 +50,7 @@ NUMBERS = st.recursive(
 COMPARISONS = st.sampled_from([Op.EQ, Op.NE, Op.LT, Op.LE, Op.GT, Op.GE])
 
 
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 @given(COMPARISONS, NUMBERS, NUMBERS)
 def test_arithmetic_is_that_of_whole_numbers(op, left, right):
     agrees(symbols(), f.compare(op, left, right))

@@ -11,6 +11,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from long_runs import examples
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import (
     BooleanDomain,
@@ -174,7 +175,7 @@ def test_a_value_beyond_the_range_is_no_proposition_of_its_own(op):
 
 
 @given(formulas, st.sampled_from([Class.SAFETY, Class.LIVENESS]))
-@settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@settings(max_examples=examples(60), deadline=None, suppress_health_check=[HealthCheck.too_slow])
 def test_spot_reads_the_text_and_finds_it_equivalent(formula, class_):
     assert_same(Conjunct(formula, class_, "x"))
 

@@ -10,6 +10,7 @@ from drawing import texts
 from hypothesis import Phase, example, given, settings
 from hypothesis import strategies as st
 
+from long_runs import examples
 from sysmlc.ir.text import parse_text
 from sysmlc.support.plantuml_text import escape_line, wrap_lines
 
@@ -122,6 +123,7 @@ anything = st.text(max_size=60)
 markup = st.text(st.sampled_from("*/_-~\"[]{}<>|&#%$!'@^:;.,=+\\ abn0"), max_size=24)
 
 
+@pytest.mark.long
 @pytest.mark.plantuml
 @settings(max_examples=2, deadline=None, derandomize=True, phases=[Phase.explicit, Phase.generate])
 @given(st.lists(anything | markup, min_size=1, max_size=8))
@@ -169,7 +171,7 @@ def test_only_what_plantuml_would_read_as_markup_is_escaped(written, made):
 WORDS = st.lists(st.text("ab-_/ \t\n\xa0é", max_size=7), max_size=12).map(" ".join)
 
 
-@settings(max_examples=300)
+@settings(max_examples=examples(300))
 @given(WORDS, st.integers(3, 20))
 @example("  two blanks first", 6)
 @example("a b", 3)

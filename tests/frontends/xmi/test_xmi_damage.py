@@ -5,6 +5,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from reading_xmi import magicdraw, papyrus, read
 
+from long_runs import examples
 from sysmlc.frontends.xmi import FRONTEND
 from sysmlc.sources import Source, SourceError
 
@@ -41,7 +42,7 @@ MORE_TYPES = ("LiteralInteger", "Trigger", "Extension", "Property", "Constraint"
 WORDS = (*(f"uml:{name}" for name in TYPES + MORE_TYPES), *"kpnmlexrst")
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=examples(150), deadline=None)
 @given(st.sampled_from(MODELS), st.data())
 def test_damaged_bytes(model, data):
     start = data.draw(st.integers(0, len(model.data)))
@@ -51,7 +52,7 @@ def test_damaged_bytes(model, data):
 
 
 @pytest.mark.long
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=examples(150), deadline=None)
 @given(st.sampled_from(MODELS), st.data())
 def test_exchanged_words(model, data):
     """Well-formed files in which types, ids and references are anything."""
