@@ -67,7 +67,7 @@ _traces = st.lists(
 
 
 @given(_formulas, _traces, st.data())
-@settings(max_examples=120, deadline=None)
+@settings(max_examples=examples(120), deadline=None)
 def test_spot_agrees_on_the_truth_on_lassos(formula, trace, data):
     spot = pytest.importorskip("spot")
     loop = data.draw(st.integers(0, len(trace) - 1))
