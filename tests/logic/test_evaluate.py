@@ -6,6 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from long_runs import examples
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import Class, Conjunct
 from sysmlc.logic.evaluate import compile_evaluation, evaluate_on_lasso, find_violation, value_of
