@@ -34,6 +34,7 @@ def reduce_formula(formula: Formula, history: History, origin: str = "") -> list
 
     Raises NotReducibleError; then the history is unchanged.
     """
+    # A reduction that fails half way must leave no bits behind.
     trial = history.copy()
     parts = list(FormulaReduction(trial, origin).reduce(formula))
     history.adopt(trial)

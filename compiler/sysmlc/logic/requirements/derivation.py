@@ -100,9 +100,11 @@ def add_features(contract: Contract, scope: Scope, formula: Formula) -> Contract
 def _read_statement(graph: Graph, scope: Scope, statement: Statement, sink: Sink) -> Formula | None:
     """Return the formula of a statement, or report why it has none."""
     constraint = statement.constraint
+    # Tools append a version: "OCL2.0", "KerML 1.0".
+    language = _language_of(constraint).rstrip("0123456789. ")
     if _is_temporal(constraint):
         formula = _read_temporal(graph, scope, statement, sink)
-    elif _language_of(constraint).rstrip("0123456789. ") in _EXPRESSION_LANGUAGES:
+    elif language in _EXPRESSION_LANGUAGES:
         formula = _read_condition(graph, scope, statement, sink)
     else:
         formula = None

@@ -31,6 +31,7 @@ def collect_statements(graph: Graph) -> list[tuple[Element, list[Statement]]]:
     for requirement in filter(query.is_requirement, graph.of_kind(Kind.CLASS)):
         new_statements = list(_iter_statements(graph, requirement))
         for subject in _iter_subjects(graph, requirement) if new_statements else ():
+            # A constraint that several requirements inherit counts once.
             by_constraint = statements.setdefault(subject.id, {})
             by_constraint.update(
                 (statement.constraint.id, statement) for statement in new_statements
@@ -81,6 +82,7 @@ def _iter_subjects(graph: Graph, requirement: Element) -> Iterator[Element]:
 
 def _iter_specialisations(graph: Graph, type_: Element, visited: set[str]) -> Iterator[Element]:
     """Yield a type, the operations whose method it is, and both for all its specialisations."""
+    # A faulty model may specialise in a circle.
     if type_.id in visited:
         return
     visited.add(type_.id)
