@@ -47,9 +47,6 @@ REGISTRIES = {"sysmlc", "sysmlc.api", "sysmlc.driver.registry", "sysmlc.ir", "sy
 PLATFORM_MODULES = {"fcntl", "resource"}
 """Modules of the standard library that exist on POSIX systems only."""
 
-UNFINISHED = ("sysmlc.frontends.sysml",)
-"""Packages whose names and imports are still to be reviewed; remove a line when that is done."""
-
 
 def name_module(path: Path) -> str:
     """Return the dotted name of a module of sysmlc."""
@@ -97,11 +94,6 @@ def is_lazy_by_design(module: str) -> bool:
     return is_command or module in REGISTRIES or module.endswith(".frontend")
 
 
-def is_unfinished(module: str) -> bool:
-    """Whether a module is in a package that is still to be reviewed."""
-    return module.startswith(UNFINISHED)
-
-
 def is_participle(name: str) -> bool:
     """Whether a function name is a past participle or a particle (``joined``, ``beside``)."""
     core = name.strip("_")
@@ -114,7 +106,6 @@ def test_no_function_is_named_by_a_participle_or_a_particle():
     names = [
         f"{module}.{node.name}"
         for module, tree in TREES.items()
-        if not is_unfinished(module)
         for node in ast.walk(tree)
         if isinstance(node, ast.FunctionDef) and is_participle(node.name)
     ]
@@ -144,7 +135,7 @@ def test_no_modules_import_one_another():
     assert [cycle for cycle in cycles if len(cycle) > 1] == []
 
 
-@pytest.mark.parametrize("module", sorted(filter(lambda name: not is_unfinished(name), TREES)))
+@pytest.mark.parametrize("module", sorted(TREES))
 def test_imports_stand_at_the_top(module):
     nested = {
         name

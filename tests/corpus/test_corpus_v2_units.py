@@ -4,7 +4,7 @@ import pytest
 
 from sysmlc.diagnostics import Severity
 from sysmlc.driver import Request, compile_model, select_backends
-from sysmlc.frontends.sysml.settled import SEVERITIES
+from sysmlc.frontends.sysml.rules import SEVERITIES
 
 pytestmark = pytest.mark.corpus
 FOLDERS = ("omg-release/training", "omg-release/examples", "showcase")

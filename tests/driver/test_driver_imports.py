@@ -63,9 +63,6 @@ def uml_modules(tmp_path_factory):
 
 
 NOT_IN_A_RUN_OF_SYSML = [
-    "sysmlc.frontends.sysml.interactions",
-    "sysmlc.frontends.sysml.requirements",
-    "sysmlc.frontends.sysml.usecases",
     "sysmlc.frontends.xmi.reading",
     "sysmlc.ir.text",
     "jsonschema",
@@ -82,13 +79,6 @@ def test_a_model_of_sysml_v2_brings_no_readers_of_what_it_does_not_have(tmp_path
     found = imported(model, tmp_path / "out")
     assert {"sysmlc.frontends.sysml.states", "sysmlc.passes.contracts"} <= found
     assert sorted(found.intersection(NOT_IN_A_RUN_OF_SYSML)) == []
-
-
-def test_a_model_with_them_brings_them(tmp_path):
-    model = tmp_path / "lamp.sysml"
-    model.write_text(LAMP.replace("part", "requirement def Lit; use case def Read; part", 1))
-    found = imported(model, tmp_path / "out")
-    assert {"sysmlc.frontends.sysml.requirements", "sysmlc.frontends.sysml.usecases"} <= found
 
 
 def test_a_plant_with_an_overlay_brings_both_readers(tmp_path):

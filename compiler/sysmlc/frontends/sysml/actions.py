@@ -2,11 +2,11 @@
 
 from typing import TYPE_CHECKING
 
-from sysmlc.frontends.sysml import annotations, expressions, nodes, statements, values
-from sysmlc.frontends.sysml.connections import steps_of_value
-from sysmlc.frontends.sysml.definitions import visibility
-from sysmlc.frontends.sysml.events import trigger
-from sysmlc.frontends.sysml.successions import steps
+from sysmlc.frontends.sysml import annotations, expressions, nodes, values
+from sysmlc.frontends.sysml.activities import list_members_beside
+from sysmlc.frontends.sysml.definitions import visibility_attributes
+from sysmlc.frontends.sysml.successions import lower_steps
+from sysmlc.frontends.sysml.triggers import lower_trigger
 from sysmlc.ir import AttrValue, Edge, Element, Kind
 from sysmlc.language.tree import Node
 from sysmlc.logic.expressions.expression import print_statement
@@ -14,10 +14,11 @@ from sysmlc.logic.expressions.expression import print_statement
 if TYPE_CHECKING:
     from sysmlc.frontends.sysml.lowering import Lowering
 
-_STRUCTURED = frozenset(
+_STRUCTURED_SUBKINDS = frozenset(
     {"conditional", "loop", "sequence", "expansion", "interruptible", "structured"}
 )
-_CONTROLS = {
+_PARTITION_KINDS = (Kind.PARTITION, Kind.STRUCTURED)
+_CONTROL_SUBKINDS = {
     "DecisionNode": "decision",
     "MergeNode": "merge",
     "ForkNode": "fork",
@@ -25,196 +26,220 @@ _CONTROLS = {
 }
 
 
-def action(low: "Lowering", node: Node, owner: Element) -> Element:
-    """A step: the call of a behaviour, a group of steps, or an action without a model."""
-    subkind = str(annotations.said(node, "Kind", "name") or "")
+def lower_action(lowering: "Lowering", node: Node, owner: Element) -> Element:
+    """Lower a step: the call of a behaviour, a group of steps, or an opaque action."""
+    subkind = str(annotations.metadata_value(node, "Kind", "name") or "")
     body = nodes.body_of(node)
     has_steps = any(map(_is_step, body))
-    found = statements.sequence(body) if has_steps else None
-    written = None if found is None else statements.effect(found)
-    if written is not None:
-        return _opaque(low, node, owner, written, found or [])
-    if _called(node) is None and (subkind in _STRUCTURED or (has_steps and not subkind)):
-        return _structured(low, node, owner, subkind)
-    return _action(low, node, owner, subkind, body)
+    statements = expressions.list_statements(body) if has_steps else None
+    effect = None if statements is None else expressions.write_effect(statements)
+    if statements is not None and effect is not None:
+        action = _add_action(lowering, node, owner, "opaque", body=effect)
+        lowering.lower_all(list_members_beside(body, statements), action)
+        return action
+    is_group = subkind in _STRUCTURED_SUBKINDS or (has_steps and not subkind)
+    if is_group and _find_called(node) is None:
+        return _lower_group(lowering, node, owner, subkind)
+    return _lower_call(lowering, node, owner, subkind)
 
 
 def _is_step(node: Node) -> bool:
     is_reference = node.kind == "ReferenceUsage" and not node.name
-    return not (nodes.is_text(node) or "direction" in node.attributes or is_reference)
+    return not (nodes.is_annotation(node) or "direction" in node.attributes or is_reference)
 
 
-def _start(
-    low: "Lowering", node: Node, owner: Element, subkind: str, **attrs: AttrValue
+def _add_action(
+    lowering: "Lowering", node: Node, owner: Element, subkind: str, **attrs: AttrValue
 ) -> Element:
-    name = nodes.name_of(node)
-    made = low.add(node, Kind.ACTION, name, owner, subkind=subkind, **visibility(node), **attrs)
-    _partitions(low, node, owner, made)
-    return made
+    attributes = visibility_attributes(node) | attrs
+    action = lowering.add_element(
+        node, Kind.ACTION, nodes.name_of(node), owner, subkind=subkind, **attributes
+    )
+    _assign_partitions(lowering, node, owner, action)
+    return action
 
 
-def _opaque(
-    low: "Lowering", node: Node, owner: Element, written: str, found: list[Node]
-) -> Element:
-    made = _start(low, node, owner, "opaque", body=written)
-    inside = {id(one) for one in found}
-    rest = (one for one in nodes.body_of(node) if one.kind != "SuccessionAsUsage")
-    low.lower_all((one for one in rest if id(one) not in inside), made)
-    return made
+def _lower_group(lowering: "Lowering", node: Node, owner: Element, subkind: str) -> Element:
+    group = lowering.add_element(
+        node,
+        Kind.STRUCTURED,
+        nodes.name_of(node),
+        owner,
+        subkind=subkind or "structured",
+        **visibility_attributes(node),
+    )
+    _assign_partitions(lowering, node, owner, group)
+    lower_steps(lowering, nodes.body_of(node), group)
+    return group
 
 
-def _structured(low: "Lowering", node: Node, owner: Element, subkind: str) -> Element:
-    attrs: dict[str, AttrValue] = {"subkind": subkind or "structured"}
-    made = low.add(node, Kind.STRUCTURED, nodes.name_of(node), owner, **attrs, **visibility(node))
-    _partitions(low, node, owner, made)
-    steps(low, nodes.body_of(node), made)
-    return made
-
-
-def _called(node: Node) -> Node | None:
-    """The behaviour or operation that a step performs."""
-    kinds = ("FeatureTyping", "ReferenceSubsetting", "Subsetting", "Redefinition")
-    return nodes.target(node, *kinds)
-
-
-def _action(low: "Lowering", node: Node, owner: Element, subkind: str, body: list[Node]) -> Element:
-    called = _called(node)
-    made = _start(low, node, owner, subkind or ("opaque" if called is None else "call-behavior"))
-    for one in body:
-        if one.kind == "ReferenceUsage" and not one.name and "direction" not in one.attributes:
-            for found in nodes.references(one, "FeatureTyping", "Subsetting"):
-                low.refer(Edge.CALLS, made, found)
+def _lower_call(lowering: "Lowering", node: Node, owner: Element, subkind: str) -> Element:
+    """Lower a call of a behaviour or an operation, or an opaque action if it calls none."""
+    called = _find_called(node)
+    default_subkind = "opaque" if called is None else "call-behavior"
+    action = _add_action(lowering, node, owner, subkind or default_subkind)
+    for member in nodes.body_of(node):
+        is_reference = member.kind == "ReferenceUsage" and not member.name
+        if is_reference and "direction" not in member.attributes:
+            for reference in nodes.list_references(member, "FeatureTyping", "Subsetting"):
+                lowering.connect_reference(Edge.CALLS, action, reference)
         else:
-            low.lower(one, made)
+            lowering.lower(member, action)
     if called is not None:
-        low.later(lambda: _call(low, made, called))
-    return made
+        lowering.defer_until_elements(lambda: _connect_called(lowering, action, called))
+    return action
 
 
-def _call(low: "Lowering", made: Element, called: Node) -> None:
-    low.lead(Edge.CALLS, made, called)
-    target = low.graph.target(made, Edge.CALLS)
+def _find_called(node: Node) -> Node | None:
+    """Return the behaviour or operation that a step performs."""
+    kinds = ("FeatureTyping", "ReferenceSubsetting", "Subsetting", "Redefinition")
+    return nodes.find_target(node, *kinds)
+
+
+def _connect_called(lowering: "Lowering", action: Element, called: Node) -> None:
+    lowering.connect_node(Edge.CALLS, action, called)
+    target = lowering.graph.target(action, Edge.CALLS)
     if target is not None and target.kind is Kind.OPERATION:
-        low.graph.set(made, subkind="call-operation")
+        lowering.graph.set(action, subkind="call-operation")
 
 
-def _partitions(low: "Lowering", node: Node, owner: Element, made: Element) -> None:
-    """Partitions by the names that metadata of ours gives."""
-    if "Partition" not in annotations.ours(node):
+# -- partitions --------------------------------------------------------------------------------
+
+
+def _assign_partitions(lowering: "Lowering", node: Node, owner: Element, action: Element) -> None:
+    """Assign an action to the partitions that metadata names."""
+    if "Partition" not in annotations.shipped_metadata_of(node):
         return
-    represented = _texts(annotations.said(node, "Partition", "represents"))
-    for number, name in enumerate(_texts(annotations.said(node, "Partition", "names"))):
-        said = represented[number] if number < len(represented) else ""
-        low.later(lambda n=name, s=said: _partition(low, made, owner, (n, s)))  # type: ignore[misc]
+    represented = _list_texts(annotations.metadata_value(node, "Partition", "represents"))
+    for number, name in enumerate(
+        _list_texts(annotations.metadata_value(node, "Partition", "names"))
+    ):
+        element_name = represented[number] if number < len(represented) else ""
+        _defer_partition(lowering, action, owner, name, element_name)
 
 
-def _partition(low: "Lowering", made: Element, owner: Element, said: tuple[str, str]) -> None:
-    """The partition, or interruptible region, with a name; it is made when it is not there."""
-    name, represented = said
-    beside = (one for one in low.graph.owned(owner) if one.kind in _AREAS and one.name == name)
-    found = next(beside, None) or low.below(owner, Kind.PARTITION, name)
-    low.graph.connect(Edge.IN_PARTITION, made, found)
-    known = low.graph.get(low.id_of(represented)) if represented else None
-    if known is not None and found.kind is Kind.PARTITION:
-        low.graph.connect(Edge.REPRESENTS, found, known)
+def _defer_partition(
+    lowering: "Lowering", action: Element, owner: Element, name: str, represented: str
+) -> None:
+    """Assign an action to the partition or interruptible region *name*; add it if it is new.
+
+    ``represented`` is the qualified name of the element that the partition represents, or empty.
+    """
+
+    def assign() -> None:
+        areas = (
+            member
+            for member in lowering.graph.owned(owner)
+            if member.kind in _PARTITION_KINDS and member.name == name
+        )
+        area = next(areas, None) or lowering.add_implied_child(owner, Kind.PARTITION, name)
+        lowering.graph.connect(Edge.IN_PARTITION, action, area)
+        element = lowering.graph.get(lowering.id_of(represented)) if represented else None
+        if element is not None and area.kind is Kind.PARTITION:
+            lowering.graph.connect(Edge.REPRESENTS, area, element)
+
+    lowering.defer_until_elements(assign)
 
 
-_AREAS = (Kind.PARTITION, Kind.STRUCTURED)
-
-
-def _texts(given: AttrValue) -> list[str]:
-    values_ = given if isinstance(given, tuple) else () if given is None else (given,)
-    return [str(one) for one in values_]
+def _list_texts(value: AttrValue) -> list[str]:
+    items = value if isinstance(value, tuple) else () if value is None else (value,)
+    return [str(item) for item in items]
 
 
 # -- sending, accepting, assigning -------------------------------------------------------------
 
 
-def send(low: "Lowering", node: Node, owner: Element) -> Element:
-    """A send action: the signal that it creates, its arguments, the port or receiver."""
-    made = _start(low, node, owner, "send")
-    payload, sender, receiver = [*statements.inputs(node), None, None, None][:3]
+def lower_send(lowering: "Lowering", node: Node, owner: Element) -> Element:
+    """Lower a send action: its signal, the arguments, and the port of sender or receiver."""
+    action = _add_action(lowering, node, owner, "send")
+    payload, sender, receiver = [*expressions.list_inputs(node), None, None, None][:3]
     if payload is not None:
-        _payload(low, made, payload)
+        _lower_payload(lowering, action, payload)
     for end in (sender, receiver):
         if end is not None:
-            low.later(lambda end=end: _to(low, made, end))  # type: ignore[misc]
-    _inside(low, node, made)
-    return made
+            _defer_port(lowering, action, end)
+    _lower_members(lowering, node, action)
+    return action
 
 
-def _payload(low: "Lowering", made: Element, payload: Node) -> None:
-    created = nodes.reference(payload, "Membership", "FeatureTyping")
+def _lower_payload(lowering: "Lowering", action: Element, payload: Node) -> None:
+    """Lower a payload: a new signal with its arguments, or one argument."""
+    signal = nodes.find_reference(payload, "Membership", "FeatureTyping")
     is_new = payload.kind in ("ConstructorExpression", "InvocationExpression")
-    if created is not None and is_new:
-        low.refer(Edge.CALLS, made, created)
-        for one in expressions.in_order(payload):
-            _argument(low, made, one)
-    else:
-        _argument(low, made, payload)
+    if signal is None or not is_new:
+        _add_argument(lowering, action, payload)
+        return
+    lowering.connect_reference(Edge.CALLS, action, signal)
+    for argument in expressions.list_arguments_by_parameter(payload):
+        _add_argument(lowering, action, argument)
 
 
-def _argument(low: "Lowering", made: Element, given: Node) -> None:
-    value = nodes.value_of(given) or given
-    one = low.make(given, Kind.PIN, nodes.name_of(given), made, direction="in", subkind="argument")
-    values.give(low, one, "value", value)
+def _add_argument(lowering: "Lowering", action: Element, argument: Node) -> None:
+    name = nodes.name_of(argument)
+    pin = lowering.add_derived(argument, Kind.PIN, name, action, direction="in", subkind="argument")
+    values.set_value(lowering, pin, "value", nodes.value_of(argument) or argument)
 
 
-def _to(low: "Lowering", made: Element, end: Node) -> None:
-    found = steps_of_value(end)
-    known = low.element(found[-1]) if found else None
-    if known is not None and known.kind is Kind.PORT:
-        low.graph.set(made, on_port=known.id)
+def _defer_port(lowering: "Lowering", action: Element, end: Node) -> None:
+    def set_port() -> None:
+        path = nodes.path_of_expression(end)
+        port = lowering.element_of(path[-1]) if path else None
+        if port is not None and port.kind is Kind.PORT:
+            lowering.graph.set(action, on_port=port.id)
+
+    lowering.defer_until_elements(set_port)
 
 
-def accept(low: "Lowering", node: Node, owner: Element) -> Element:
-    """An accept action with its trigger."""
-    made = _start(low, node, owner, "accept")
-    trigger(low, node, made)
-    _inside(low, node, made)
-    return made
+def lower_accept(lowering: "Lowering", node: Node, owner: Element) -> Element:
+    """Lower an accept action with its trigger."""
+    action = _add_action(lowering, node, owner, "accept")
+    lower_trigger(lowering, node, action)
+    _lower_members(lowering, node, action)
+    return action
 
 
-def _inside(low: "Lowering", node: Node, made: Element) -> None:
-    rest = (one for one in nodes.body_of(node) if one.membership != "ParameterMembership")
-    low.lower_all(rest, made)
+def lower_assignment(lowering: "Lowering", node: Node, owner: Element) -> Element:
+    """Lower an assignment to an opaque action whose body is its text."""
+    statement = expressions.read_statement(node)
+    body = "" if statement is None else print_statement(statement)
+    action = _add_action(lowering, node, owner, "opaque")
+    document = lowering.document_of(node)
+    if body:
+        lowering.set_attributes(action, body=body)
+    elif document is not None and node.end > node.start >= 0:
+        lowering.set_attributes(action, body=nodes.quote_source(node, document.text))
+    _lower_members(lowering, node, action)
+    return action
 
 
-def assign(low: "Lowering", node: Node, owner: Element) -> Element:
-    """An assignment: an opaque action with the text of it."""
-    said = _assigned(node)
-    made = _start(low, node, owner, "opaque")
-    if said:
-        low.set(made, body=said)
-    elif (document := low.document(node)) is not None and node.end > node.start >= 0:
-        low.set(made, body=nodes.quoted(node, document.text))
-    _inside(low, node, made)
-    return made
+def _lower_members(lowering: "Lowering", node: Node, action: Element) -> None:
+    """Lower the members of an action, without its parameters."""
+    for member in nodes.body_of(node):
+        if member.membership != "ParameterMembership":
+            lowering.lower(member, action)
 
 
-def _assigned(node: Node) -> str:
-    found = statements.statement(node)
-    return "" if found is None else print_statement(found)
+# -- control nodes -----------------------------------------------------------------------------
 
 
-# -- control -----------------------------------------------------------------------------------
+def lower_control_node(lowering: "Lowering", node: Node, owner: Element) -> Element:
+    """Lower a decision, merge, fork or join."""
+    subkind, attributes = _CONTROL_SUBKINDS[node.kind], visibility_attributes(node)
+    control_node = lowering.add_element(
+        node, Kind.CONTROL, nodes.name_of(node), owner, subkind=subkind, **attributes
+    )
+    _assign_partitions(lowering, node, owner, control_node)
+    lowering.lower_all(nodes.body_of(node), control_node)
+    return control_node
 
 
-def control(low: "Lowering", node: Node, owner: Element) -> Element:
-    """A decision, merge, fork or join."""
-    subkind = _CONTROLS[node.kind]
-    given: dict[str, AttrValue] = {"subkind": subkind, **visibility(node)}
-    made = low.add(node, Kind.CONTROL, nodes.name_of(node), owner, **given)
-    _partitions(low, node, owner, made)
-    low.lower_all(nodes.body_of(node), made)
-    return made
-
-
-def terminate(low: "Lowering", node: Node, owner: Element) -> Element:
-    """The end of the behaviour; the end of something else is an action."""
-    if any(one is not None for one in statements.inputs(node)):
-        low.approximated(node, "a terminate action for something else", "an opaque action")
-        return _start(low, node, owner, "destroy")
-    made = low.add(node, Kind.CONTROL, nodes.name_of(node), owner, subkind="final")
-    annotations.texts(low, node, made, "a terminate action")
-    return made
+def lower_termination(lowering: "Lowering", node: Node, owner: Element) -> Element:
+    """Lower a terminate action: the end of the behaviour, or an action for another occurrence."""
+    if any(expression is not None for expression in expressions.list_inputs(node)):
+        construct = "a terminate action for something else"
+        lowering.mark_approximated(node, construct, "an opaque action")
+        return _add_action(lowering, node, owner, "destroy")
+    name = nodes.name_of(node)
+    end = lowering.add_element(node, Kind.CONTROL, name, owner, subkind="final")
+    annotations.lower_only_annotations(lowering, node, end, "a terminate action")
+    return end

@@ -1,14 +1,18 @@
-"""Activities: behaviours whose members are steps."""
+"""Activities and operations: behaviours whose members are steps."""
 
 from typing import TYPE_CHECKING
 
-from sysmlc.frontends.sysml import nodes, statements
-from sysmlc.frontends.sysml.allocated import arguments, assign_steps
-from sysmlc.frontends.sysml.definitions import flags, generalize, marked
-from sysmlc.frontends.sysml.features import give_types
+from sysmlc.frontends.sysml import expressions, nodes
+from sysmlc.frontends.sysml.definitions import (
+    connect_generals,
+    declaration_attributes,
+    read_kind,
+)
+from sysmlc.frontends.sysml.features import connect_types
 from sysmlc.frontends.sysml.kinds import BEHAVIOURS, FUNCTIONS
-from sysmlc.frontends.sysml.successions import steps
-from sysmlc.frontends.sysml.values import texts
+from sysmlc.frontends.sysml.relations import allocate_arguments, allocate_steps
+from sysmlc.frontends.sysml.successions import lower_steps
+from sysmlc.frontends.sysml.values import expression_text
 from sysmlc.ir import Edge, Element, Kind
 from sysmlc.ir.query import BEHAVIORS
 from sysmlc.language.tree import Node
@@ -16,155 +20,176 @@ from sysmlc.language.tree import Node
 if TYPE_CHECKING:
     from sysmlc.frontends.sysml.lowering import Lowering
 
+_CONSTRAINTS = ("AssertConstraintUsage", "ConstraintUsage")
+_INHERITED_ATTRIBUTES = ("direction", "multiplicity", "ordered")
 
-def activity_definition(low: "Lowering", node: Node, owner: Element | None) -> None:
-    """An action definition, a calculation or a case."""
+
+def lower_behaviour_definition(lowering: "Lowering", node: Node, owner: Element | None) -> None:
+    """Lower an action definition, a calculation or a case."""
     _, role = BEHAVIOURS[node.kind]
-    activity(low, node, owner, role)
+    lower_activity(lowering, node, owner, role)
 
 
-def activity(low: "Lowering", node: Node, owner: Element | None, role: str = "") -> Element:
-    """The activity that a definition is, or a usage that stands for itself."""
-    _, subkind = marked(node, Kind.ACTIVITY)
-    made = low.add(node, Kind.ACTIVITY, nodes.name_of(node), owner, role=role, subkind=subkind)
-    low.set(made, **flags(node))
-    generalize(low, node, made)
-    fill(low, node, made)
-    return made
+def lower_activity(
+    lowering: "Lowering", node: Node, owner: Element | None, role: str = ""
+) -> Element:
+    """Lower a definition, or a usage that is no step, to an activity."""
+    _, subkind = read_kind(node, Kind.ACTIVITY)
+    activity = lowering.add_element(
+        node, Kind.ACTIVITY, nodes.name_of(node), owner, role=role, subkind=subkind
+    )
+    lowering.set_attributes(activity, **declaration_attributes(node))
+    connect_generals(lowering, node, activity)
+    lower_body(lowering, node, activity)
+    return activity
 
 
-def fill(low: "Lowering", node: Node, made: Element) -> None:
-    """The members of a behaviour: a text, an expression, or nodes with flows between them."""
+def lower_body(lowering: "Lowering", node: Node, activity: Element) -> None:
+    """Lower the members of a behaviour: to a text, to an expression, or to steps and flows."""
     body = nodes.body_of(node)
-    found = statements.sequence(body)
-    written = None if found is None else statements.effect(found)
-    if found is not None and written is not None:
-        low.set(made, subkind="opaque", body=written)
-        inside = {id(one) for one in found}
-        rest = (one for one in body if one.kind != "SuccessionAsUsage")
-        low.lower_all((one for one in rest if id(one) not in inside), made)
+    statements = expressions.list_statements(body)
+    effect = None if statements is None else expressions.write_effect(statements)
+    if statements is not None and effect is not None:
+        lowering.set_attributes(activity, subkind="opaque", body=effect)
+        lowering.lower_all(list_members_beside(body, statements), activity)
         return
     result = nodes.result_of(node)
     if node.kind in FUNCTIONS:
-        low.set(made, subkind="function")
+        lowering.set_attributes(activity, subkind="function")
     if result is not None:
-        low.later(lambda: low.set(made, body=texts(result, low)))
-    steps(low, (one for one in body if one is not result), made)
+        lowering.defer_until_elements(
+            lambda: lowering.set_attributes(activity, body=expression_text(result, lowering))
+        )
+    lower_steps(lowering, (member for member in body if member is not result), activity)
 
 
-def perform(low: "Lowering", node: Node, owner: Element) -> None:
-    """What a classifier performs: its own behaviour, or one that stands elsewhere."""
-    found = nodes.reference(node, "ReferenceSubsetting")
-    if found is not None and not node.name and not nodes.body_of(node):
-        low.later(lambda: _performed(low, node, owner, found.target))
-        return
-    typed = nodes.reference(node, "FeatureTyping")
-    if typed is not None and not node.name and not nodes.body_of(node):
-        low.refer(Edge.CLASSIFIER_BEHAVIOR, owner, typed)
-        return
-    if typed is not None and is_instance(node):
-        low.refer(Edge.CLASSIFIER_BEHAVIOR, owner, typed)
-        arguments(low, node, owner)
-        assign_steps(low, node, owner)
-        return
-    made = activity(low, node, owner)
-    if not low.graph.targets(owner, Edge.CLASSIFIER_BEHAVIOR):
-        low.graph.connect(Edge.CLASSIFIER_BEHAVIOR, owner, made)
+def list_members_beside(body: list[Node], statements: list[Node]) -> list[Node]:
+    """Return the members of a body that are neither among the statements nor successions."""
+    excluded = {id(statement) for statement in statements}
+    return [
+        member
+        for member in body
+        if member.kind != "SuccessionAsUsage" and id(member) not in excluded
+    ]
 
 
-def is_instance(node: Node) -> bool:
-    """Whether a usage only says what its definition has: all members are redefinitions."""
-    inside = [one for one in nodes.body_of(node) if not nodes.is_text(one)]
-    return bool(inside) and all(nodes.reference(one, "Redefinition") is not None for one in inside)
+# -- behaviours of classifiers -----------------------------------------------------------------
 
 
-def _performed(low: "Lowering", node: Node, owner: Element, target: Node | None) -> None:
-    """A behaviour is run by the classifier; a step of one is allocated to it."""
-    known = low.element(target)
-    if known is None or known.kind in BEHAVIORS:
-        low.lead(Edge.CLASSIFIER_BEHAVIOR, owner, target)
-    elif known.kind in (Kind.ACTION, Kind.STRUCTURED):
-        above = low.graph.owner(owner)
-        made = low.add(node, Kind.DEPENDENCY, "", above, role="allocate", subkind="abstraction")
-        low.graph.connect(Edge.CLIENT, made, known)
-        low.graph.connect(Edge.SUPPLIER, made, owner)
-    elif known.kind is Kind.OPERATION:
-        low.approximated(node, "the performance of an operation", "the operation")
+def lower_performance(lowering: "Lowering", node: Node, owner: Element) -> None:
+    """Lower what a classifier performs: its own behaviour, or one that is defined elsewhere."""
+    performed = nodes.find_reference(node, "ReferenceSubsetting")
+    definition = nodes.find_reference(node, "FeatureTyping")
+    has_own_content = node.name or nodes.body_of(node)
+    if performed is not None and not has_own_content:
+        lowering.defer_until_elements(
+            lambda: _connect_performed(lowering, node, owner, performed.target)
+        )
+    elif definition is not None and not has_own_content:
+        lowering.connect_reference(Edge.CLASSIFIER_BEHAVIOR, owner, definition)
+    elif definition is not None and _has_only_redefinitions(node):
+        lowering.connect_reference(Edge.CLASSIFIER_BEHAVIOR, owner, definition)
+        allocate_arguments(lowering, node, owner)
+        allocate_steps(lowering, node, owner)
     else:
-        low.approximated(node, "the performance of what is no action", "nothing")
+        activity = lower_activity(lowering, node, owner)
+        if not lowering.graph.targets(owner, Edge.CLASSIFIER_BEHAVIOR):
+            lowering.graph.connect(Edge.CLASSIFIER_BEHAVIOR, owner, activity)
 
 
-# -- operations --------------------------------------------------------------------------------
+def _has_only_redefinitions(node: Node) -> bool:
+    """Whether a usage only redefines features of its definition."""
+    members = [member for member in nodes.body_of(node) if not nodes.is_annotation(member)]
+    return bool(members) and all(
+        nodes.find_reference(member, "Redefinition") is not None for member in members
+    )
 
 
-def operation(low: "Lowering", node: Node, owner: Element) -> None:
-    """An action of a classifier: an operation, unless it has steps of its own.
-
-    What it specialises, or is typed by, is the behaviour that implements it.
-    """
-    kind, _ = marked(node, Kind.OPERATION)
-    payload = node.kind == "AcceptActionUsage"
-    if payload:
-        _reception(low, node, owner)
-    elif kind is Kind.ACTIVITY or (_has_steps(node) and not _is_operation(node)):
-        activity(low, node, owner)
+def _connect_performed(
+    lowering: "Lowering", node: Node, owner: Element, target: Node | None
+) -> None:
+    """Make a performed behaviour that of the classifier; allocate a performed step to it."""
+    performed = lowering.element_of(target)
+    if performed is None or performed.kind in BEHAVIORS:
+        lowering.connect_node(Edge.CLASSIFIER_BEHAVIOR, owner, target)
+    elif performed.kind in (Kind.ACTION, Kind.STRUCTURED):
+        context = lowering.graph.owner(owner)
+        allocation = lowering.add_element(
+            node, Kind.DEPENDENCY, "", context, role="allocate", subkind="abstraction"
+        )
+        lowering.graph.connect(Edge.CLIENT, allocation, performed)
+        lowering.graph.connect(Edge.SUPPLIER, allocation, owner)
+    elif performed.kind is Kind.OPERATION:
+        lowering.mark_approximated(node, "the performance of an operation", "the operation")
     else:
-        _operation(low, node, owner)
+        lowering.mark_approximated(node, "the performance of what is no action", "nothing")
 
 
-def _is_operation(node: Node) -> bool:
-    """Whether metadata says that it is an operation with its method."""
-    return marked(node, Kind.ACTIVITY)[0] is Kind.OPERATION
+def lower_classifier_action(lowering: "Lowering", node: Node, owner: Element) -> None:
+    """Lower an action of a classifier: an operation, unless it has steps of its own."""
+    kind, _ = read_kind(node, Kind.OPERATION)
+    is_operation_by_metadata = read_kind(node, Kind.ACTIVITY)[0] is Kind.OPERATION
+    if node.kind == "AcceptActionUsage":
+        _lower_reception(lowering, node, owner)
+    elif kind is Kind.ACTIVITY or (_has_steps(node) and not is_operation_by_metadata):
+        lower_activity(lowering, node, owner)
+    else:
+        _lower_operation(lowering, node, owner)
 
 
 def _has_steps(node: Node) -> bool:
-    return any(one.kind == "TextualRepresentation" or _is_step(one) for one in nodes.body_of(node))
+    return any(
+        member.kind == "TextualRepresentation" or _is_step(member) for member in nodes.body_of(node)
+    )
 
 
 def _is_step(node: Node) -> bool:
-    is_constraint = node.kind in ("AssertConstraintUsage", "ConstraintUsage")
-    return not (nodes.is_text(node) or "direction" in node.attributes or is_constraint)
+    is_parameter = "direction" in node.attributes
+    return not (nodes.is_annotation(node) or is_parameter or node.kind in _CONSTRAINTS)
 
 
-def _operation(low: "Lowering", node: Node, owner: Element) -> None:
-    made = low.add(node, Kind.OPERATION, nodes.name_of(node), owner)
-    given = flags(node)
-    low.set(made, **given)
-    methods = nodes.references(node, "FeatureTyping", "Subsetting", "ReferenceSubsetting")
-    for found in nodes.references(node, "Redefinition"):
-        low.refer(Edge.REDEFINES, made, found)
-    for found in methods:
-        low.refer(Edge.METHOD, made, found)
+def _lower_operation(lowering: "Lowering", node: Node, owner: Element) -> None:
+    """Lower an operation; the behaviours that it specialises, or that type it, implement it."""
+    operation = lowering.add_element(node, Kind.OPERATION, nodes.name_of(node), owner)
+    lowering.set_attributes(operation, **declaration_attributes(node))
+    for reference in nodes.list_references(node, "Redefinition"):
+        lowering.connect_reference(Edge.REDEFINES, operation, reference)
+    methods = nodes.list_references(node, "FeatureTyping", "Subsetting", "ReferenceSubsetting")
+    for reference in methods:
+        lowering.connect_reference(Edge.METHOD, operation, reference)
     if methods and methods[0].target is not None:
         definition = methods[0].target
-        low.last(lambda: _inherit_parameters(low, made, definition))
-    if _has_steps(node):
-        low.lower_all((one for one in nodes.body_of(node) if "direction" in one.attributes), made)
-        method = low.make(node, Kind.ACTIVITY, made.name, owner)
-        low.graph.connect(Edge.METHOD, made, method)
-        fill(low, node, method)
+        lowering.defer_until_edges(lambda: _inherit_parameters(lowering, operation, definition))
+    body = nodes.body_of(node)
+    if not _has_steps(node):
+        lowering.lower_all(body, operation)
         return
-    low.lower_all(nodes.body_of(node), made)
+    lowering.lower_all((member for member in body if "direction" in member.attributes), operation)
+    method = lowering.add_derived(node, Kind.ACTIVITY, operation.name, owner)
+    lowering.graph.connect(Edge.METHOD, operation, method)
+    lower_body(lowering, node, method)
 
 
-def _inherit_parameters(low: "Lowering", made: Element, definition: Node) -> None:
-    """An operation that states no parameters has those of the behaviour that defines it."""
-    if any(one.kind is Kind.PARAMETER for one in low.graph.owned(made)):
+def _inherit_parameters(lowering: "Lowering", operation: Element, definition: Node) -> None:
+    """Add the parameters of the implementing behaviour to an operation that states none."""
+    if any(member.kind is Kind.PARAMETER for member in lowering.graph.owned(operation)):
         return
-    for node in definition.members:
-        one = low.element(node)
-        if one is not None and one.kind is Kind.PARAMETER:
-            copy = low.below(made, Kind.PARAMETER, one.name)
-            low.set(copy, **{key: one.attrs[key] for key in _COPIED if key in one.attrs})
-            give_types(low, node, copy)
+    for member in definition.members:
+        parameter = lowering.element_of(member)
+        if parameter is None or parameter.kind is not Kind.PARAMETER:
+            continue
+        copy = lowering.add_implied_child(operation, Kind.PARAMETER, parameter.name)
+        attributes = {
+            key: parameter.attrs[key] for key in _INHERITED_ATTRIBUTES if key in parameter.attrs
+        }
+        lowering.set_attributes(copy, **attributes)
+        connect_types(lowering, member, copy)
 
 
-_COPIED = ("direction", "multiplicity", "ordered")
-
-
-def _reception(low: "Lowering", node: Node, owner: Element) -> None:
-    made = low.add(node, Kind.RECEPTION, nodes.name_of(node), owner)
-    payload = next(nodes.held(node, "ParameterMembership"), None)
-    for found in [] if payload is None else nodes.references(payload, "FeatureTyping"):
-        low.refer(Edge.TYPED_BY, made, found)
-    low.lower_texts(node, made)
+def _lower_reception(lowering: "Lowering", node: Node, owner: Element) -> None:
+    reception = lowering.add_element(node, Kind.RECEPTION, nodes.name_of(node), owner)
+    payload = next(nodes.iter_by_membership(node, "ParameterMembership"), None)
+    if payload is not None:
+        for reference in nodes.list_references(payload, "FeatureTyping"):
+            lowering.connect_reference(Edge.TYPED_BY, reception, reference)
+    lowering.lower_annotations(node, reception)

@@ -1,9 +1,9 @@
-"""Comments, documentation and metadata: what annotates an element."""
+"""Comments, documentation and metadata, including the levels of a recipe."""
 
 from collections.abc import Callable, Collection, Iterator
 from typing import TYPE_CHECKING
 
-from sysmlc.frontends.sysml import kept, nodes, values
+from sysmlc.frontends.sysml import nodes, preserved_facts, values
 from sysmlc.frontends.sysml.libraries import OUR_LIBRARY, PROFILE, RECIPES
 from sysmlc.ir import AttrValue, Edge, Element, Kind
 from sysmlc.language.tree import Node
@@ -11,232 +11,284 @@ from sysmlc.language.tree import Node
 if TYPE_CHECKING:
     from sysmlc.frontends.sysml.lowering import Lowering
 
-_STAND_INS = "Stereotypes"
-"""The package of what the back end writes for stereotypes whose profile is not there."""
+_STUB_PACKAGE = "Stereotypes"
+"""Package in which the back end writes stubs for stereotypes of profiles that are not there."""
+_OWNING = frozenset({"OwningMembership", "FeatureMembership"})
+_READ_WITH_OWNER = nodes.EXPRESSIONS | {"EventOccurrenceUsage"}
+_LEVEL_GENERALS = ("Subclassification", "FeatureTyping", "Specialization")
+_LEVEL_NAMES = {"MaterialUse": "Material"}
+"""A metadata definition cannot have the name of the level, which is a part definition."""
+_KINDS_BY_NAME = {str(kind): kind for kind in Kind}
 
 
-_OWNED = frozenset({"OwningMembership", "FeatureMembership"})
+# -- comments and texts ------------------------------------------------------------------------
 
 
-def texts(
-    low: "Lowering", node: Node, made: Element, what: str, read: Collection[Node] = ()
+def lower_only_annotations(
+    lowering: "Lowering",
+    node: Node,
+    element: Element,
+    description: str,
+    read: Collection[Node] = (),
 ) -> None:
-    """Lower what annotates an element that has no members in the graph; other ones are told.
+    """Lower the annotations of an element without members; report its other members as lost.
 
-    ``what`` is what the element is, in words; ``read`` are members that are read elsewhere.
+    ``description`` names the element in the report; ``read`` has members that are read elsewhere.
     """
-    for one in nodes.body_of(node):
-        if nodes.is_text(one):
-            low.lower(one, made)
-        elif one.membership in _OWNED and one not in read and one.kind not in _EVENTS:
-            low.approximated(one, f"a member of {what}", "nothing")
+    for member in nodes.body_of(node):
+        if nodes.is_annotation(member):
+            lowering.lower(member, element)
+        elif (
+            member.membership in _OWNING
+            and member not in read
+            and member.kind not in _READ_WITH_OWNER
+        ):
+            lowering.mark_approximated(member, f"a member of {description}", "nothing")
 
 
-_EVENTS = nodes.EXPRESSIONS | {"EventOccurrenceUsage"}
-
-
-def documentation(low: "Lowering", node: Node, owner: Element | None) -> None:
-    """A comment about its owner."""
-    made = _comment(low, node, owner)
+def lower_documentation(lowering: "Lowering", node: Node, owner: Element | None) -> None:
+    """Lower a documentation to a comment about its owner."""
+    comment = _add_comment(lowering, node, owner)
     if owner is not None:
-        low.graph.connect(Edge.REFERENCES, made, owner)
+        lowering.graph.connect(Edge.REFERENCES, comment, owner)
 
 
-def comment(low: "Lowering", node: Node, owner: Element | None) -> None:
-    """A comment about what it names, else about its owner (KerML 1.0, 8.3.2.3.2)."""
-    made = _comment(low, node, owner)
-    about = nodes.references(node, "Annotation")
-    for one in about:
-        low.refer(Edge.REFERENCES, made, one)
+def lower_comment(lowering: "Lowering", node: Node, owner: Element | None) -> None:
+    """Lower a comment about the elements it names, else about its owner (KerML 1.0, 8.3.2.3.2)."""
+    comment = _add_comment(lowering, node, owner)
+    about = nodes.list_references(node, "Annotation")
+    for reference in about:
+        lowering.connect_reference(Edge.REFERENCES, comment, reference)
     if not about and owner is not None:
-        low.graph.connect(Edge.REFERENCES, made, owner)
+        lowering.graph.connect(Edge.REFERENCES, comment, owner)
 
 
-def _comment(low: "Lowering", node: Node, owner: Element | None) -> Element:
+def _add_comment(lowering: "Lowering", node: Node, owner: Element | None) -> Element:
     body = str(node.attributes.get("body", "")).strip()
-    return low.add(node, Kind.COMMENT, node.name or "", owner, body=body)
+    return lowering.add_element(node, Kind.COMMENT, node.name or "", owner, body=body)
 
 
-def representation(low: "Lowering", node: Node, owner: Element | None) -> None:
-    """A text in another language: the body of its owner, which an opaque element becomes."""
+def lower_textual_representation(lowering: "Lowering", node: Node, owner: Element | None) -> None:
+    """Lower a text in another language to a body of its owner, which becomes opaque."""
     if owner is None:
-        low.unsupported(node)
+        lowering.mark_unsupported(node)
         return
-    body, language = (
-        str(node.attributes.get("body", "")).strip(),
-        str(node.attributes.get("language", "")),
-    )
+    body = str(node.attributes.get("body", "")).strip()
+    language = str(node.attributes.get("language", ""))
     bodies = owner.attrs.get("bodies", owner.attrs.get("body"))
-    known = bodies if isinstance(bodies, tuple) else () if bodies is None else (bodies,)
-    spoken = owner.attrs.get("languages", owner.attrs.get("language", ""))
-    languages = spoken if isinstance(spoken, tuple) else (spoken,) * len(known)
-    if not known:
-        low.set(owner, body=body, language=language)
+    if not isinstance(bodies, tuple):
+        bodies = () if bodies is None else (bodies,)
+    languages = owner.attrs.get("languages", owner.attrs.get("language", ""))
+    if not isinstance(languages, tuple):
+        languages = (languages,) * len(bodies)
+    if bodies:
+        lowering.set_attributes(owner, bodies=(*bodies, body), languages=(*languages, language))
     else:
-        low.set(owner, bodies=(*known, body), languages=(*languages, language))
+        lowering.set_attributes(owner, body=body, language=language)
     if owner.kind in (Kind.ACTIVITY, Kind.ACTION) and not owner.subkind:
-        low.set(owner, subkind="opaque")
+        lowering.set_attributes(owner, subkind="opaque")
 
 
 # -- metadata ----------------------------------------------------------------------------------
 
 
-def metadata(low: "Lowering", node: Node, owner: Element | None) -> None:
-    """Metadata of ours is read with its owner; any other is an applied stereotype."""
-    name = our_name(node)
-    if name:
-        if owner is not None and name in _READ:
-            _READ[name](low, node, owner)
+def lower_metadata(lowering: "Lowering", node: Node, owner: Element | None) -> None:
+    """Lower metadata to an applied stereotype; metadata of our library describes its owner."""
+    shipped_name = shipped_metadata_name(node)
+    if shipped_name:
+        if owner is not None and shipped_name in _SHIPPED_HANDLERS:
+            _SHIPPED_HANDLERS[shipped_name](lowering, node, owner)
         return
-    about = nodes.references(node, "Annotation")
-    definition = nodes.target(node, "FeatureTyping")
-    name = _definition_name(node, definition)
-    made = low.add(node, Kind.APPLICATION, name, owner, stereotype=name)
-    low.set(made, namespace=_namespace(definition))
+    definition = nodes.find_target(node, "FeatureTyping")
+    name = _stereotype_name(node, definition)
+    application = lowering.add_element(node, Kind.APPLICATION, name, owner, stereotype=name)
+    lowering.set_attributes(application, namespace=_namespace_of(definition))
+    about = nodes.list_references(node, "Annotation")
     if owner is not None and not about:
-        low.graph.connect(Edge.SUBJECT, made, owner)
-    for one in about:
-        low.refer(Edge.SUBJECT, made, one)
-    if definition is not None and low.document(definition) is not None:
-        low.later(lambda: _instance_of(low, made, definition))
-    for key, value in facts_of(node):
-        give_tag(low, made, key, value)
+        lowering.graph.connect(Edge.SUBJECT, application, owner)
+    for reference in about:
+        lowering.connect_reference(Edge.SUBJECT, application, reference)
+    if definition is not None and lowering.document_of(definition) is not None:
+        lowering.defer_until_elements(
+            lambda: _connect_stereotype(lowering, application, definition)
+        )
+    for key, value in iter_values(node):
+        set_tag(lowering, application, key, value)
 
 
-def _named(low: "Lowering", node: Node, owner: Element) -> None:
-    """The name in the source; none where only the text needs one."""
-    low.graph.rename(owner, str(dict(constants_of(node)).get("name", "")))
+def _rename_owner(lowering: "Lowering", node: Node, owner: Element) -> None:
+    """Restore the name in the source; it is empty if only the text needs a name."""
+    lowering.graph.rename(owner, str(dict(iter_constants(node)).get("name", "")))
 
 
-def _kept(low: "Lowering", node: Node, owner: Element) -> None:
-    """Facts that no word of SysML v2 says."""
-    kept.read(low, dict(constants_of(node)), owner)
+def _restore_facts(lowering: "Lowering", node: Node, owner: Element) -> None:
+    """Restore facts that no construct of SysML v2 expresses."""
+    preserved_facts.restore_facts(lowering, dict(iter_constants(node)), owner)
 
 
-def _element(low: "Lowering", node: Node, owner: Element) -> None:
-    """An element for which SysML v2 has nothing."""
-    facts = dict(constants_of(node))
-    kind = _BY_NAME.get(str(facts.get("kind")))
+def _restore_element(lowering: "Lowering", node: Node, owner: Element) -> None:
+    """Restore an element that no construct of SysML v2 expresses."""
+    facts = dict(iter_constants(node))
+    kind = _KINDS_BY_NAME.get(str(facts.get("kind")))
     if kind is not None:
-        made = low.add(node, kind, str(facts.get("name", "")), owner)
-        kept.read(low, facts, made)
+        element = lowering.add_element(node, kind, str(facts.get("name", "")), owner)
+        preserved_facts.restore_facts(lowering, facts, element)
 
 
-_BY_NAME = {str(kind): kind for kind in Kind}
-
-
-def is_of_type(node: Node) -> bool:
-    """Whether metadata stands for an element that the type of its feature owns."""
-    return our_name(node) == "Element" and bool(dict(constants_of(node)).get("isOfType"))
-
-
-_READ: dict[str, Callable[["Lowering", Node, Element], None]] = {
-    "Named": _named,
-    "Kept": _kept,
-    "Element": _element,
+_SHIPPED_HANDLERS: dict[str, Callable[["Lowering", Node, Element], None]] = {
+    "Named": _rename_owner,
+    "Kept": _restore_facts,
+    "Element": _restore_element,
 }
-"""Metadata of ours that is read where it stands; other is read with its owner."""
+"""Metadata of our library that is lowered by itself; other metadata is read with its owner."""
 
 
-def give_tag(low: "Lowering", made: Element, key: str, value: Node) -> None:
-    """Give a tagged value to an applied stereotype, when all elements are there."""
-    low.later(lambda: _tag(low, made, key, value))
+def is_owned_by_type(node: Node) -> bool:
+    """Whether metadata is an element that the class of its feature owns, not the feature."""
+    is_element = shipped_metadata_name(node) == "Element"
+    return is_element and bool(dict(iter_constants(node)).get("isOfType"))
 
 
-_RENAMED = {"MaterialUse": "Material"}
-"""A usage of metadata cannot have the name of the level, which is a part definition."""
-
-
-def _definition_name(node: Node, definition: Node | None) -> str:
+def _stereotype_name(node: Node, definition: Node | None) -> str:
     if definition is not None:
-        return _RENAMED.get(definition.name or "", definition.name or definition.short_name or "")
-    found = nodes.reference(node, "FeatureTyping")
-    return "" if found is None else nodes.last_name(found)
+        name = definition.name or ""
+        return _LEVEL_NAMES.get(name, name or definition.short_name or "")
+    reference = nodes.find_reference(node, "FeatureTyping")
+    return "" if reference is None else nodes.last_name(reference)
 
 
-def _namespace(definition: Node | None) -> str:
-    """The profile of a stand-in, as it says; that of the recipe levels for our own library."""
+def _namespace_of(definition: Node | None) -> str:
+    """Return the profile of a stub as its metadata states it, or that of the recipe levels."""
     if definition is None:
         return ""
-    top = nodes.top_of(definition)
-    if top is not definition and nodes.name_of(top) == RECIPES:
+    root_member = nodes.root_member_of(definition)
+    if root_member is not definition and nodes.name_of(root_member) == RECIPES:
         return PROFILE
-    for one in nodes.members(definition, "MetadataUsage"):
-        if our_name(one) == "External":
-            return str(dict(constants_of(one)).get("href", ""))
+    for member in nodes.iter_by_metaclass(definition, "MetadataUsage"):
+        if shipped_metadata_name(member) == "External":
+            return str(dict(iter_constants(member)).get("href", ""))
     return ""
 
 
-def is_stand_in(node: Node) -> bool:
-    """Whether a definition only stands for the stereotype of a profile that is not there."""
+def is_external_stub(node: Node) -> bool:
+    """Whether a definition is a stub for a stereotype of a profile that is not there."""
     owner = node.owner
-    return owner is not None and owner.name == _STAND_INS and owner.kind == "Package"
+    return owner is not None and owner.name == _STUB_PACKAGE and owner.kind == "Package"
 
 
-def _instance_of(low: "Lowering", made: Element, definition: Node) -> None:
-    stereotype = low.element(definition)
+def _connect_stereotype(lowering: "Lowering", application: Element, definition: Node) -> None:
+    stereotype = lowering.element_of(definition)
     if stereotype is not None:
-        low.graph.connect(Edge.INSTANCE_OF, made, stereotype)
+        lowering.graph.connect(Edge.INSTANCE_OF, application, stereotype)
 
 
-def _tag(low: "Lowering", made: Element, key: str, value: Node) -> None:
-    name = f"tag.{key}"
-    found = values.constant(value)
-    if found is not None:
-        low.graph.set(made, **{name: _tagged(low, found)})
-        return
-    known = low.element(nodes.target(value, "Membership"))
-    low.graph.set(made, **{name: known.id if known is not None else values.texts(value, low)})
+# -- values of metadata ------------------------------------------------------------------------
 
 
-def _tagged(low: "Lowering", value: AttrValue) -> AttrValue:
-    """A tagged value as text; the qualified name of an element of the unit is its id."""
+def set_tag(lowering: "Lowering", application: Element, key: str, value: Node) -> None:
+    """Set a tagged value of an applied stereotype, once all elements exist."""
+    lowering.defer_until_elements(lambda: _set_tag(lowering, application, f"tag.{key}", value))
+
+
+def _set_tag(lowering: "Lowering", application: Element, attribute: str, value: Node) -> None:
+    constant = values.constant_of(value)
+    element = lowering.element_of(nodes.find_target(value, "Membership"))
+    tagged: AttrValue
+    if constant is not None:
+        tagged = _write_tag(lowering, constant)
+    elif element is not None:
+        tagged = element.id
+    else:
+        tagged = values.expression_text(value, lowering)
+    lowering.graph.set(application, **{attribute: tagged})
+
+
+def _write_tag(lowering: "Lowering", value: AttrValue) -> AttrValue:
+    """Return a tagged value as text; the qualified name of an element becomes its id."""
     if isinstance(value, tuple):
-        return tuple(_tagged(low, one) for one in value)
+        return tuple(_write_tag(lowering, item) for item in value)
     if isinstance(value, bool):
         return "true" if value else "false"
     text = str(value)
-    return low.id_of(text) or text if "::" in text else text
+    return lowering.id_of(text) or text if "::" in text else text
 
 
-def facts_of(node: Node) -> Iterator[tuple[str, Node]]:
-    """Names and expressions of the values that metadata gives."""
-    for one in node.members:
-        value = nodes.value_of(one)
-        name = nodes.name_of(one)
+def iter_values(node: Node) -> Iterator[tuple[str, Node]]:
+    """Yield the names and expressions of the values in metadata."""
+    for member in node.members:
+        value = nodes.value_of(member)
+        name = nodes.name_of(member)
         if value is not None and name:
             yield name, value
 
 
-def constants_of(node: Node) -> Iterator[tuple[str, AttrValue]]:
-    """Names and values of what metadata gives as literals."""
-    for name, value in facts_of(node):
-        found = values.constant(value)
-        if found is not None:
-            yield name, found
+def iter_constants(node: Node) -> Iterator[tuple[str, AttrValue]]:
+    """Yield the names and values of the constants in metadata."""
+    for name, expression in iter_values(node):
+        value = values.constant_of(expression)
+        if value is not None:
+            yield name, value
 
 
-def our_name(node: Node) -> str:
-    """Name of the definition in our library that metadata is typed by, or the empty string."""
-    found = nodes.reference(node, "FeatureTyping")
-    if found is None:
+def shipped_metadata_name(node: Node) -> str:
+    """Return the name of the definition in our library that types metadata, else ''."""
+    reference = nodes.find_reference(node, "FeatureTyping")
+    definition = None if reference is None else reference.target
+    owner = None if definition is None else definition.owner
+    if definition is None or owner is None or owner.name != OUR_LIBRARY:
         return ""
-    target = found.target
-    if target is None or target.owner is None or target.owner.name != OUR_LIBRARY:
-        return ""
-    return target.name or target.short_name or ""
+    return definition.name or definition.short_name or ""
 
 
-def ours(node: Node) -> dict[str, Node]:
-    """Metadata of our library that a node has, by the names of the definitions."""
-    found = {}
-    for one in node.members:
-        if one.kind == "MetadataUsage" and (name := our_name(one)):
-            found[name] = one
-    return found
+def shipped_metadata_of(node: Node) -> dict[str, Node]:
+    """Return the metadata of a node that our library defines, by the names of the definitions."""
+    return {
+        name: member
+        for member in node.members
+        if member.kind == "MetadataUsage" and (name := shipped_metadata_name(member))
+    }
 
 
-def said(node: Node, name: str, key: str) -> AttrValue:
-    """A value that metadata of our library gives to a node, or None."""
-    one = ours(node).get(name)
-    return None if one is None else dict(constants_of(one)).get(key)
+def metadata_value(node: Node, name: str, key: str) -> AttrValue:
+    """Return the value *key* in the metadata *name* of our library, or None."""
+    metadata = shipped_metadata_of(node).get(name)
+    return None if metadata is None else dict(iter_constants(metadata)).get(key)
+
+
+# -- recipe levels -----------------------------------------------------------------------------
+
+
+def apply_levels(lowering: "Lowering", node: Node, element: Element) -> None:
+    """Apply the stereotype of each recipe level that a definition directly specialises.
+
+    The members that redefine attributes of the level give its tagged values.
+    """
+    for reference in nodes.list_references(node, *_LEVEL_GENERALS):
+        level = reference.target
+        if level is None or not is_recipe_level(level):
+            continue
+        name = level.name or ""
+        application = lowering.add_derived(
+            node, Kind.APPLICATION, name, element, stereotype=name, namespace=PROFILE
+        )
+        lowering.graph.connect(Edge.SUBJECT, application, element)
+        for member, key in _iter_level_members(node):
+            value = nodes.value_of(member)
+            lowering.skipped.add(id(member))
+            if value is not None:
+                set_tag(lowering, application, key, value)
+
+
+def _iter_level_members(node: Node) -> Iterator[tuple[Node, str]]:
+    """Yield the members that redefine an attribute of a level, with its name."""
+    for member in node.members:
+        attribute = nodes.find_target(member, "Redefinition")
+        level = None if attribute is None else attribute.owner
+        if attribute is not None and level is not None and is_recipe_level(level):
+            yield member, attribute.name or ""
+
+
+def is_recipe_level(node: Node) -> bool:
+    """Whether the node is a definition of our library of recipe levels."""
+    owner = node.owner
+    return owner is not None and owner.name == RECIPES and owner.kind == "LibraryPackage"

@@ -1,12 +1,12 @@
-"""Packages and definitions, and usages that stand for themselves in a package."""
+"""Packages and definitions with their generals, and quantities and units of value types."""
 
+import re
 from typing import TYPE_CHECKING
 
 from sysmlc.frontends.sysml import annotations, nodes
-from sysmlc.frontends.sysml.kinds import CLASSIFIERS, MARKED
-from sysmlc.frontends.sysml.levels import give_levels, is_of_recipes
-from sysmlc.frontends.sysml.libraries import FILES, READ
-from sysmlc.frontends.sysml.measures import give_measures, is_measured
+from sysmlc.frontends.sysml.annotations import apply_levels, is_recipe_level
+from sysmlc.frontends.sysml.kinds import CLASSIFIERS, KINDS_BY_METADATA
+from sysmlc.frontends.sysml.libraries import FILES, LOWERED
 from sysmlc.ir import AttrValue, Edge, Element, Kind
 from sysmlc.language.tree import Node, Reference
 
@@ -14,53 +14,10 @@ if TYPE_CHECKING:
     from sysmlc.frontends.sysml.lowering import Lowering
 
 _GENERALS = ("Subclassification", "Specialization", "Subsetting", "FeatureTyping", "Redefinition")
-
-
-def package(low: "Lowering", node: Node, owner: Element | None) -> None:
-    """A package with its members; our own libraries and stand-ins are no part of the model."""
-    is_ours = node.name in FILES and node.kind == "LibraryPackage"
-    if owner is None and is_ours and node.name not in READ:
-        low.external(node)
-        return
-    inside = [one for one in node.members if not one.kind.endswith("Import")]
-    if owner is None and inside and all(map(_is_outside, inside)):
-        low.external(node)
-        return
-    kind, subkind = marked(node, Kind.PACKAGE)
-    said = visibility(node) | told(node)
-    if inside and all(map(outside, inside)):
-        said["external"] = True
-    made = low.add(node, kind, nodes.name_of(node), owner, subkind=subkind, **said)
-    low.lower_all(node.members, made)
-
-
-def _is_outside(node: Node) -> bool:
-    """Whether a definition stands for what no file of the model has."""
-    return annotations.is_stand_in(node) and node.kind == "MetadataDefinition"
-
-
-def marked(node: Node, kind: Kind) -> tuple[Kind, str]:
-    """Kind and subkind of an element, as metadata of ours says; else ``kind``."""
-    if not annotations.ours(node):
-        return kind, ""
-    name = annotations.said(node, "Kind", "name") or annotations.said(node, "AutomationML", "kind")
-    if isinstance(name, str) and name in MARKED:
-        return MARKED[name], ""
-    return kind, str(name or "")
-
-
-def visibility(node: Node) -> dict[str, AttrValue]:
-    """The attribute for a visibility that is not public."""
-    return {"visibility": node.visibility} if node.visibility in ("private", "protected") else {}
-
-
-def outside(node: Node) -> dict[str, AttrValue]:
-    """What metadata says of an element that no file of the model has."""
-    href = annotations.said(node, "External", "href")
-    return {"external": True, "href": href} if href else {}
-
-
-_AML = {
+_QUANTITY = re.compile(r"(?P<name>\w+)Value")
+_WORD_BOUNDARY = re.compile(r"(?<=[a-z])(?=[A-Z])")
+_LIBRARY: dict[str, AttrValue] = {"external": True, "library": True}
+_AML_ATTRIBUTES = {
     "dataType": "data_type",
     "unit": "unit",
     "category": "category",
@@ -72,27 +29,157 @@ _AML = {
     "associatedFacet": "associated_facet",
     "defaultValue": "default_value",
 }
+"""Attributes of elements by the names that ``@SysMLC::AutomationML`` gives them."""
 
 
-def told(node: Node) -> dict[str, AttrValue]:
-    """What metadata says of an element of another model."""
-    return outside(node) | _of_aml(node) if annotations.ours(node) else {}
+# -- packages and definitions ------------------------------------------------------------------
 
 
-def _of_aml(node: Node) -> dict[str, AttrValue]:
-    """What metadata says of an element of AutomationML."""
-    one = annotations.ours(node).get("AutomationML")
-    if one is None:
+def lower_package(lowering: "Lowering", node: Node, owner: Element | None) -> None:
+    """Lower a package with its members.
+
+    Shipped libraries without contracts and packages of stubs are not part of the model.
+    """
+    is_shipped = node.name in FILES and node.kind == "LibraryPackage"
+    if owner is None and is_shipped and node.name not in LOWERED:
+        lowering.mark_external(node)
+        return
+    members = [member for member in node.members if not member.kind.endswith("Import")]
+    if owner is None and members and all(map(_is_stereotype_stub, members)):
+        lowering.mark_external(node)
+        return
+    kind, subkind = read_kind(node, Kind.PACKAGE)
+    attributes = visibility_attributes(node) | foreign_attributes(node)
+    if members and all(map(external_attributes, members)):
+        attributes["external"] = True
+    name = nodes.name_of(node)
+    package = lowering.add_element(node, kind, name, owner, subkind=subkind, **attributes)
+    lowering.lower_all(node.members, package)
+
+
+def _is_stereotype_stub(node: Node) -> bool:
+    return annotations.is_external_stub(node) and node.kind == "MetadataDefinition"
+
+
+def lower_classifier(lowering: "Lowering", node: Node, owner: Element | None) -> None:
+    """Lower a definition whose members are features."""
+    kind, role = CLASSIFIERS[node.kind]
+    lower_definition(lowering, node, owner, kind, role)
+
+
+def lower_item(lowering: "Lowering", node: Node, owner: Element | None) -> None:
+    """Lower an item definition to a signal or a block."""
+    is_signal = id(node) in lowering.signals
+    kind, role = (Kind.SIGNAL, "") if is_signal else (Kind.CLASS, "block")
+    lower_definition(lowering, node, owner, kind, role)
+
+
+def lower_occurrence(lowering: "Lowering", node: Node, owner: Element | None) -> None:
+    """Lower an occurrence definition: an interaction if it has messages or events, else a class."""
+    is_interaction = any(
+        nodes.is_message(member) or member.kind == "EventOccurrenceUsage" for member in node.members
+    )
+    kind = Kind.INTERACTION if is_interaction else Kind.CLASS
+    lower_definition(lowering, node, owner, kind, "")
+
+
+def lower_definition(
+    lowering: "Lowering",
+    node: Node,
+    owner: Element | None,
+    kind: Kind,
+    role: str,
+    **attrs: AttrValue,
+) -> Element:
+    """Lower a definition with its generals and its members; return its element."""
+    kind, subkind = read_kind(node, kind)
+    attributes: dict[str, AttrValue] = {
+        "role": role,
+        "subkind": subkind,
+        "domain": annotations.metadata_value(node, "Kind", "domain"),
+        **declaration_attributes(node),
+        **attrs,
+    }
+    element = lowering.add_element(node, kind, nodes.name_of(node), owner, **attributes)
+    if kind is Kind.DATA_TYPE:
+        _set_quantity_and_unit(lowering, node, element)
+    connect_generals(lowering, node, element)
+    lowering.lower_all(nodes.body_of(node), element)
+    return element
+
+
+def connect_generals(lowering: "Lowering", node: Node, element: Element) -> None:
+    """Connect a definition to its generals; recipe levels become applied stereotypes instead.
+
+    The quantities that a value type specialises become elements of their own.
+    """
+    if not node.relations:
+        return
+    apply_levels(lowering, node, element)
+    for reference in nodes.list_references(node, *_GENERALS):
+        if reference.target is not None and is_recipe_level(reference.target):
+            continue
+        if element.kind is not Kind.DATA_TYPE or not _is_quantity(reference):
+            _defer_general(lowering, element, reference)
+
+
+def _defer_general(lowering: "Lowering", element: Element, reference: Reference) -> None:
+    def connect() -> None:
+        target = reference.target
+        # Several nodes may be one element (a requirement and its subject): no loop results.
+        if target is None or lowering.element_of(target) is not element:
+            lowering.connect_node(Edge.SPECIALIZES, element, target)
+
+    lowering.defer_until_elements(connect)
+
+
+# -- attributes of declarations ----------------------------------------------------------------
+
+
+def read_kind(node: Node, kind: Kind) -> tuple[Kind, str]:
+    """Return kind and subkind of an element as metadata of our library states them, else *kind*."""
+    if not annotations.shipped_metadata_of(node):
+        return kind, ""
+    name = annotations.metadata_value(node, "Kind", "name")
+    name = name or annotations.metadata_value(node, "AutomationML", "kind")
+    if isinstance(name, str) and name in KINDS_BY_METADATA:
+        return KINDS_BY_METADATA[name], ""
+    return kind, str(name or "")
+
+
+def visibility_attributes(node: Node) -> dict[str, AttrValue]:
+    """Return the attribute for a visibility other than public."""
+    return {"visibility": node.visibility} if node.visibility in ("private", "protected") else {}
+
+
+def external_attributes(node: Node) -> dict[str, AttrValue]:
+    """Return the attributes of an element that metadata marks as outside of the unit."""
+    href = annotations.metadata_value(node, "External", "href")
+    return {"external": True, "href": href} if href else {}
+
+
+def foreign_attributes(node: Node) -> dict[str, AttrValue]:
+    """Return the attributes that metadata preserves of an element of another notation."""
+    if not annotations.shipped_metadata_of(node):
         return {}
-    known = dict(annotations.constants_of(one))
-    found = {_AML[key]: value for key, value in known.items() if key in _AML}
-    if isinstance(found.get("semantics"), str):
-        found["semantics"] = (found["semantics"],)
-    return found
+    return external_attributes(node) | _aml_attributes(node)
 
 
-def variant(node: Node) -> dict[str, AttrValue]:
-    """Whether there is a choice, whether it is a choice, and which portion of a life it is."""
+def _aml_attributes(node: Node) -> dict[str, AttrValue]:
+    metadata = annotations.shipped_metadata_of(node).get("AutomationML")
+    if metadata is None:
+        return {}
+    constants = dict(annotations.iter_constants(metadata))
+    attributes = {
+        _AML_ATTRIBUTES[key]: value for key, value in constants.items() if key in _AML_ATTRIBUTES
+    }
+    if isinstance(attributes.get("semantics"), str):
+        attributes["semantics"] = (attributes["semantics"],)
+    return attributes
+
+
+def variation_attributes(node: Node) -> dict[str, AttrValue]:
+    """Return whether a node is a variation or a variant, and its portion of a life."""
     if not node.attributes and node.membership != "VariantMembership":
         return {}
     return {
@@ -102,70 +189,113 @@ def variant(node: Node) -> dict[str, AttrValue]:
     }
 
 
-def flags(node: Node) -> dict[str, AttrValue]:
-    """What the prefixes of a declaration say."""
+def declaration_attributes(node: Node) -> dict[str, AttrValue]:
+    """Return the attributes for the prefixes of a declaration and for its metadata."""
     return {
         "abstract": bool(node.attributes.get("isAbstract")),
-        **variant(node),
+        **variation_attributes(node),
         "individual": bool(node.attributes.get("isIndividual")),
-        **visibility(node),
-        **told(node),
+        **visibility_attributes(node),
+        **foreign_attributes(node),
     }
 
 
-def classifier(low: "Lowering", node: Node, owner: Element | None) -> None:
-    """A definition whose members are features."""
-    kind, role = CLASSIFIERS[node.kind]
-    define(low, node, owner, kind, role)
+# -- quantities and units of value types -------------------------------------------------------
 
 
-def item(low: "Lowering", node: Node, owner: Element | None) -> None:
-    """An item definition: a signal when it is sent, received or said of nothing else."""
-    is_signal = id(node) in low.accepted
-    kind, role = (Kind.SIGNAL, "") if is_signal else (Kind.CLASS, "block")
-    define(low, node, owner, kind, role)
+def _is_quantity(reference: Reference) -> bool:
+    """Whether a reference leads to a quantity of the standard library (``ISQ::LengthValue``)."""
+    target = reference.target
+    if target is None or target.owner is None or not target.owner.name:
+        # Without the standard library the reference is not resolved: the written name decides.
+        package, name = reference.chain[-1][0], reference.chain[-1][-1]
+        return package == "ISQ" and bool(_QUANTITY.fullmatch(name))
+    is_isq = target.owner.name.startswith("ISQ") and target.owner.kind == "LibraryPackage"
+    return is_isq and bool(_QUANTITY.fullmatch(target.name or ""))
 
 
-def occurrence(low: "Lowering", node: Node, owner: Element | None) -> None:
-    """An occurrence definition: an interaction when it has lifelines or messages, else a class."""
-    is_interaction = any(map(_is_of_interaction, node.members))
-    kind = Kind.INTERACTION if is_interaction else Kind.CLASS
-    define(low, node, owner, kind, "")
+def _set_quantity_and_unit(lowering: "Lowering", node: Node, type_: Element) -> None:
+    """Connect a value type to the quantity kind and the unit that its declaration states.
+
+    Quantities are real numbers unless the declaration states another type.
+    """
+    generals = nodes.list_references(node, "Subclassification", "Subsetting", "FeatureTyping")
+    quantities = [reference for reference in generals if _is_quantity(reference)]
+    for reference in quantities:
+        _defer_quantity_kind(lowering, node, type_, _quantity_kind_name(nodes.last_name(reference)))
+    if quantities and len(generals) == len(quantities):
+        lowering.connect_library_element(
+            Edge.SPECIALIZES, type_, "ScalarValues::Real", Kind.DATA_TYPE
+        )
+    _add_unit_of_metadata(lowering, node, type_)
+    for member in node.members:
+        value = nodes.value_of(member)
+        if nodes.name_of(member) == "mRef" and value is not None:
+            lowering.skipped.add(id(member))
+            unit = nodes.find_reference(value, "Membership")
+            if unit is not None:
+                _defer_unit(lowering, member, type_, unit)
 
 
-def _is_of_interaction(node: Node) -> bool:
-    return nodes.is_message(node) or node.kind == "EventOccurrenceUsage"
-
-
-def define(
-    low: "Lowering", node: Node, owner: Element | None, kind: Kind, role: str, **attrs: AttrValue
-) -> Element:
-    """The element of a definition with its generals and its members."""
-    kind, subkind = marked(node, kind)
-    domain = annotations.said(node, "Kind", "domain")
-    given: dict[str, AttrValue] = {"role": role, "subkind": subkind, "domain": domain}
-    made = low.add(node, kind, nodes.name_of(node), owner, **(given | flags(node) | attrs))
-    if kind is Kind.DATA_TYPE:
-        give_measures(low, node, made)
-    generalize(low, node, made)
-    low.lower_all(nodes.body_of(node), made)
-    return made
-
-
-def generalize(low: "Lowering", node: Node, made: Element) -> None:
-    """Edges to the general classifiers; quantities and recipe levels are told otherwise."""
-    if not node.relations:
+def _add_unit_of_metadata(lowering: "Lowering", node: Node, type_: Element) -> None:
+    """Add the unit and quantity kind that metadata states because the library has no such unit."""
+    metadata = annotations.shipped_metadata_of(node).get("Unit")
+    if metadata is None:
         return
-    give_levels(low, node, made)
-    for found in nodes.references(node, *_GENERALS):
-        if (target := found.target) is not None and is_of_recipes(target):
-            continue
-        if made.kind is not Kind.DATA_TYPE or not is_measured(found):
-            low.later(lambda found=found: _general(low, made, found))  # type: ignore[misc]
+    texts = {key: str(value) for key, value in annotations.iter_constants(metadata)}
+    name, symbol, quantity_name = (texts.get(key, "") for key in ("name", "symbol", "quantity"))
+    unit = lowering.add_derived(metadata, Kind.UNIT, name, type_, symbol=symbol, **_LIBRARY)
+    lowering.graph.connect(Edge.REFERENCES, type_, unit)
+    if quantity_name:
+        kind = Kind.QUANTITY_KIND
+        quantity = lowering.add_derived(metadata, kind, quantity_name, type_, **_LIBRARY)
+        lowering.graph.connect(Edge.REFERENCES, type_, quantity)
+        lowering.graph.connect(Edge.REFERENCES, unit, quantity)
 
 
-def _general(low: "Lowering", made: Element, found: Reference) -> None:
-    target = found.target
-    if target is not None and low.element(target) is made:
-        return
-    low.lead(Edge.SPECIALIZES, made, target)
+def _defer_unit(lowering: "Lowering", node: Node, type_: Element, reference: Reference) -> None:
+    """Connect a value type to a unit that the model defines, else to one of the library."""
+
+    def connect() -> None:
+        name, symbol = _unit_name_and_symbol(reference)
+        unit = lowering.element_of(reference.target)
+        for instance in lowering.graph.of_kind(Kind.INSTANCE) if unit is None else ():
+            is_same = instance.attrs.get("symbol") == symbol or instance.name == name
+            if instance.role == "unit" and is_same:
+                unit = instance
+                break
+        if unit is None:
+            unit = lowering.add_derived(node, Kind.UNIT, name, type_, symbol=symbol, **_LIBRARY)
+        lowering.graph.connect(Edge.REFERENCES, type_, unit)
+
+    lowering.defer_until_elements(connect)
+
+
+def _defer_quantity_kind(lowering: "Lowering", node: Node, type_: Element, name: str) -> None:
+    """Add the quantity kind of a value type, unless a unit that the model defines states it."""
+
+    def connect() -> None:
+        units = lowering.graph.targets(type_, Edge.REFERENCES)
+        if any(unit.kind is Kind.INSTANCE for unit in units):
+            return
+        quantity = lowering.add_derived(node, Kind.QUANTITY_KIND, name, type_, **_LIBRARY)
+        lowering.graph.connect(Edge.REFERENCES, type_, quantity)
+        for unit in units:
+            if unit.kind is Kind.UNIT and unit.owner == type_.id:
+                lowering.graph.connect(Edge.REFERENCES, unit, quantity)
+
+    lowering.defer_until_edges(connect)
+
+
+def _quantity_kind_name(value_type: str) -> str:
+    """Return ``thermodynamic temperature`` for ``ThermodynamicTemperatureValue``."""
+    match = _QUANTITY.fullmatch(value_type)
+    return _WORD_BOUNDARY.sub(" ", match["name"] if match else value_type).lower()
+
+
+def _unit_name_and_symbol(reference: Reference) -> tuple[str, str]:
+    """Return name and symbol of a unit; both are the written name if it is not resolved."""
+    target, written = reference.target, nodes.last_name(reference)
+    if target is None:
+        return written, written
+    return target.name or written, target.short_name or written

@@ -1,20 +1,26 @@
-"""Expressions of KerML in the one grammar of the compiler (grammars/expression.lark)."""
+"""Expressions and statements of KerML in the grammar of the compiler (grammars/expression.lark)."""
 
+from collections.abc import Sequence
 from functools import reduce
 
 from sysmlc.frontends.sysml import nodes
-from sysmlc.frontends.sysml.nodes import arguments
+from sysmlc.language import notation
 from sysmlc.language.tree import Node, Reference
 from sysmlc.logic.expressions.expression import (
+    Assignment,
     Binary,
     Call,
     Conditional,
     Expression,
     Index,
+    Invocation,
     Literal,
     Member,
     Name,
+    Send,
+    Statement,
     Unary,
+    print_effect,
     print_expression,
 )
 
@@ -29,174 +35,285 @@ _BINARY = {
     "===": "==",
     "!=": "!=",
     "!==": "!=",
-    **{op: op for op in ("<", "<=", ">", ">=", "+", "-", "*", "/", "%")},
+    **{operator: operator for operator in ("<", "<=", ">", ">=", "+", "-", "*", "/", "%")},
 }
 _UNARY = {"not": "not", "-": "-", "+": "+"}
+_GLOBAL_SCOPE = "$"
+_SENDABLE = frozenset(
+    {"ConstructorExpression", "InvocationExpression", "FeatureReferenceExpression"}
+)
 
 
-class UnsaidError(ValueError):
-    """An expression that our grammar has no words for."""
+class NotExpressibleError(ValueError):
+    """An expression that the grammar of the compiler cannot express."""
 
 
-def text(node: Node, source: str = "") -> str:
-    """The expression in our grammar, else as ``source``, the text of the document, has it.
+# -- expressions -------------------------------------------------------------------------------
 
-    A document of interchange has no text: its expression is put into the notation of KerML.
+
+def write_expression(node: Node, source: str = "") -> str:
+    """Return an expression as text of our grammar, else as *source*, the document's text, has it.
+
+    A document of interchange has no text: its expression is printed in the notation of KerML.
     """
-    found = read(node)
-    written = None if found is None else _printed(found)
-    if written is not None:
-        return written
-    if not source:
-        from sysmlc.language.notation import write_expression
-
-        return write_expression(node)
-    return nodes.quoted(node, source)
+    expression = read_expression(node)
+    text = None if expression is None else _print(expression)
+    if text is not None:
+        return text
+    return nodes.quote_source(node, source) if source else notation.write_expression(node)
 
 
-def _printed(expression: Expression) -> str | None:
-    """The expression as text; None when it is nested deeper than one can be printed."""
+def _print(expression: Expression) -> str | None:
+    """Return the text of an expression; None if it is nested too deeply to be printed."""
     try:
         return print_expression(expression)
     except RecursionError:
         return None
 
 
-def read(node: Node) -> Expression | None:
-    """The expression as a value of ``logic.expression``; None when it is none of our grammar."""
+def read_expression(node: Node) -> Expression | None:
+    """Return the expression as a value of ``logic.expressions``; None if it has none."""
     try:
         return _read(node)
-    except (UnsaidError, RecursionError):
+    except (NotExpressibleError, RecursionError):
         return None
 
 
 def _read(node: Node) -> Expression:
-    reader = _READERS.get(node.kind)
+    reader = _EXPRESSION_READERS.get(node.kind)
     if reader is None:
-        raise UnsaidError(node.kind)
+        raise NotExpressibleError(node.kind)
     return reader(node)
 
 
-def _literal(node: Node) -> Expression:
+def _read_literal(node: Node) -> Expression:
     value = node.attributes.get("value")
     if value is None:
-        raise UnsaidError(node.kind)
+        raise NotExpressibleError(node.kind)
     return Literal(value)
 
 
-def _operator(node: Node) -> Expression:
+def _read_operation(node: Node) -> Expression:
     operator = str(node.attributes.get("operator", ""))
-    args = arguments(node)
-    if len(args) == 1 and operator in _UNARY:
-        return Unary(_UNARY[operator], _read(args[0]))
-    if len(args) == 2 and operator in _BINARY:
-        return Binary(_BINARY[operator], _read(args[0]), _read(args[1]))
-    if len(args) == 3 and operator == "if":
-        return Conditional(_read(args[0]), _read(args[1]), _read(args[2]))
-    if len(args) == 2 and operator in ("#", "index"):
-        return Index(_read(args[0]), _read(args[1]))
-    raise UnsaidError(operator)
+    arguments = nodes.list_arguments(node)
+    if len(arguments) == 1 and operator in _UNARY:
+        return Unary(_UNARY[operator], _read(arguments[0]))
+    if len(arguments) == 2 and operator in _BINARY:
+        return Binary(_BINARY[operator], _read(arguments[0]), _read(arguments[1]))
+    if len(arguments) == 3 and operator == "if":
+        return Conditional(_read(arguments[0]), _read(arguments[1]), _read(arguments[2]))
+    if len(arguments) == 2 and operator in ("#", "index"):
+        return Index(_read(arguments[0]), _read(arguments[1]))
+    raise NotExpressibleError(operator)
 
 
-def _index(node: Node) -> Expression:
-    base, index = arguments(node)
+def _read_index(node: Node) -> Expression:
+    base, index = nodes.list_arguments(node)
     return Index(_read(base), _read(index))
 
 
-def _feature(node: Node) -> Expression:
-    found = nodes.reference(node, "Membership")
-    if found is None:
-        raise UnsaidError(node.kind)
-    return named(found)
+def _read_feature_reference(node: Node) -> Expression:
+    reference = nodes.find_reference(node, "Membership")
+    if reference is None:
+        raise NotExpressibleError(node.kind)
+    return read_reference(reference)
 
 
-def named(found: Reference) -> Expression:
-    """A reference to a feature, or to a chain of features, as an expression."""
-    return _chain(_first(found), found.chain[1:])
+def read_reference(reference: Reference) -> Expression:
+    """Return the expression for a reference to a feature or to a chain of features."""
+    return _append_members(_read_first_link(reference), reference.chain[1:])
 
 
-def _chain(first: Expression, links: tuple[tuple[str, ...], ...]) -> Expression:
-    return reduce(Member, (link[-1] for link in links), first) if links else first
+def _append_members(base: Expression, links: tuple[tuple[str, ...], ...]) -> Expression:
+    return reduce(Member, (link[-1] for link in links), base) if links else base
 
 
-def _first(found: Reference) -> Expression:
-    """A feature of the context by its own name; literals and the rest by their qualified names.
+def _read_first_link(reference: Reference) -> Expression:
+    """Return the name of the first feature of a chain.
 
-    Inside an action its features are often qualified by its name (``Task::pallet``), which
-    our grammar does not need.
+    Inside an action, its features are often qualified by its name (``Task::pallet``), which our
+    grammar does not need. Literals keep the name of their enumeration.
     """
-    names = found.chain[0]
-    target = found.targets[0] if found.targets else None
+    names = reference.chain[0]
+    target = reference.targets[0] if reference.targets else None
     if target is not None and target.kind == "EnumerationUsage" and len(names) > 1:
         return Name(names[-2:])
     if target is not None and _is_feature(target) and len(names) > 1:
         return Name(names[-1:])
-    return Name(tuple(one for one in names if one != "$") if "$" in names else names)
+    return Name(tuple(name for name in names if name != _GLOBAL_SCOPE))
 
 
 def _is_feature(node: Node) -> bool:
-    """Whether a definition or a behaviour owns the feature, so that its name alone says it."""
+    """Whether a definition or a behaviour owns the node, so that its own name is sufficient."""
     owner = node.owner
     return owner is not None and not owner.kind.endswith(("Package", "Namespace"))
 
 
-def _member(node: Node) -> Expression:
-    found = nodes.reference(node, "Membership")
-    base = arguments(node)
-    if found is None or not base:
-        raise UnsaidError(node.kind)
-    return _chain(_read(base[0]), found.chain)
+def _read_feature_chain(node: Node) -> Expression:
+    reference = nodes.find_reference(node, "Membership")
+    arguments = nodes.list_arguments(node)
+    if reference is None or not arguments:
+        raise NotExpressibleError(node.kind)
+    return _append_members(_read(arguments[0]), reference.chain)
 
 
-def _call(node: Node) -> Expression:
-    found = nodes.reference(node, "Membership", "FeatureTyping")
-    if found is None:
-        raise UnsaidError(node.kind)
-    given = [_read(nodes.value_of(one) or one) for one in _ordered(node)]
-    return Call(_chain(Name(found.chain[0]), found.chain[1:]), tuple(given))
+def _read_call(node: Node) -> Expression:
+    reference = nodes.find_reference(node, "Membership", "FeatureTyping")
+    if reference is None:
+        raise NotExpressibleError(node.kind)
+    arguments = [_read(nodes.value_of(argument) or argument) for argument in _order_arguments(node)]
+    function = _append_members(Name(reference.chain[0]), reference.chain[1:])
+    return Call(function, tuple(arguments))
 
 
-def in_order(node: Node) -> list[Node]:
-    """Arguments in the order of what they are given to, where that is known; else as written."""
+def list_arguments_by_parameter(node: Node) -> list[Node]:
+    """Return the arguments of a call in the order of the parameters if it is known."""
     try:
-        return _ordered(node)
-    except UnsaidError:
-        return arguments(node)
+        return _order_arguments(node)
+    except NotExpressibleError:
+        return nodes.list_arguments(node)
 
 
-def _ordered(node: Node) -> list[Node]:
-    """Arguments in the order of what they are given to; named ones may stand in any order.
+def _order_arguments(node: Node) -> list[Node]:
+    """Return the arguments in the order of the parameters; the text may name them in any order.
 
-    Raises UnsaidError where only some are named, or one before them is left out.
+    Raises NotExpressibleError if only some are named, or if a parameter before them has none.
     """
-    given = arguments(node)
-    formal = [nodes.target(one, "Redefinition") for one in given if one.kind == "Feature"]
-    if not any(nodes.reference(one, "Redefinition") for one in given):
-        return given
-    owner = formal[0].owner if formal and formal[0] is not None else None
-    declared = [] if owner is None else _declared(owner, node.kind == "ConstructorExpression")
-    numbers = [next((n for n, one in enumerate(declared) if one is to), -1) for to in formal]
-    if len(numbers) != len(given) or sorted(numbers) != list(range(len(given))):
-        raise UnsaidError(node.kind)
-    return [given[numbers.index(number)] for number in range(len(given))]
+    arguments = nodes.list_arguments(node)
+    if not any(nodes.find_reference(argument, "Redefinition") for argument in arguments):
+        return arguments
+    parameters = [
+        nodes.find_target(argument, "Redefinition")
+        for argument in arguments
+        if argument.kind == "Feature"
+    ]
+    owner = parameters[0].owner if parameters and parameters[0] is not None else None
+    is_constructor = node.kind == "ConstructorExpression"
+    declared = [] if owner is None else _list_parameters(owner, is_constructor)
+    positions = [
+        next((index for index, declaration in enumerate(declared) if declaration is parameter), -1)
+        for parameter in parameters
+    ]
+    if len(positions) != len(arguments) or sorted(positions) != list(range(len(arguments))):
+        raise NotExpressibleError(node.kind)
+    return [arguments[positions.index(position)] for position in range(len(arguments))]
 
 
-def _declared(owner: Node, is_new: bool) -> list[Node]:
-    """What the arguments of a call, or of a new instance of a type, are given to, in order."""
-    found = [one for one in owner.members if one.membership.endswith("FeatureMembership")]
-    found += [one for one in owner.members if one.membership == "ParameterMembership"]
-    return [one for one in found if is_new or one.attributes.get("direction") in ("in", "inout")]
+def _list_parameters(owner: Node, is_constructor: bool) -> list[Node]:
+    """Return the inputs of a function, or the features that a constructor of a type sets."""
+    features = [
+        member for member in owner.members if member.membership.endswith("FeatureMembership")
+    ]
+    features += nodes.iter_by_membership(owner, "ParameterMembership")
+    return [
+        feature
+        for feature in features
+        if is_constructor or feature.attributes.get("direction") in ("in", "inout")
+    ]
 
 
-_READERS = {
-    "LiteralBoolean": _literal,
-    "LiteralString": _literal,
-    "LiteralInteger": _literal,
-    "LiteralRational": _literal,
-    "OperatorExpression": _operator,
-    "IndexExpression": _index,
-    "FeatureReferenceExpression": _feature,
-    "FeatureChainExpression": _member,
-    "InvocationExpression": _call,
-    "ConstructorExpression": _call,
+_EXPRESSION_READERS = {
+    "LiteralBoolean": _read_literal,
+    "LiteralString": _read_literal,
+    "LiteralInteger": _read_literal,
+    "LiteralRational": _read_literal,
+    "OperatorExpression": _read_operation,
+    "IndexExpression": _read_index,
+    "FeatureReferenceExpression": _read_feature_reference,
+    "FeatureChainExpression": _read_feature_chain,
+    "InvocationExpression": _read_call,
+    "ConstructorExpression": _read_call,
 }
+
+
+# -- statements --------------------------------------------------------------------------------
+
+
+def write_effect(actions: Sequence[Node]) -> str | None:
+    """Return consecutive actions as the text of one effect; None if one is not expressible."""
+    statements = [read_statement(action) for action in actions]
+    if not statements or None in statements:
+        return None
+    return print_effect(tuple(statement for statement in statements if statement is not None))
+
+
+def read_statement(node: Node) -> Statement | None:
+    """Return an assignment, sending or performance as a statement; None if not expressible."""
+    reader = _STATEMENT_READERS.get(node.kind)
+    return None if reader is None else reader(node)
+
+
+def _read_assignment(node: Node) -> Statement | None:
+    reference = nodes.find_reference(node, "Membership")
+    inputs = [expression for expression in list_inputs(node) if expression is not None]
+    if reference is None or not inputs:
+        return None
+    value = read_expression(inputs[-1])
+    target = read_reference(reference)
+    for expression in inputs[:-1]:
+        base = read_expression(expression)
+        target = target if base is None else _prepend_base(base, target)
+    return None if value is None else Assignment(target, value)
+
+
+def _prepend_base(base: Expression, target: Expression) -> Expression:
+    """Return ``base.target``: the feature *target* of the occurrence *base*."""
+    match target:
+        case Member(inner, name):
+            return Member(_prepend_base(base, inner), name)
+        case Name(path):
+            return Member(base, path[-1])
+        case _:
+            return target
+
+
+def _read_send(node: Node) -> Statement | None:
+    payload, *ends = [*list_inputs(node), None, None, None][:3]
+    if payload is None or payload.kind not in _SENDABLE:
+        return None
+    call = read_expression(payload)
+    signal = call.function if isinstance(call, Call) else call
+    arguments = call.args if isinstance(call, Call) else ()
+    receiver = next((end for end in ends if end is not None), None)
+    target = None if receiver is None else read_expression(receiver)
+    return Send(signal, arguments, target) if isinstance(signal, Name) else None
+
+
+def _read_performance(node: Node) -> Statement | None:
+    reference = nodes.find_reference(node, "ReferenceSubsetting")
+    if reference is None or node.name or node.members:
+        return None
+    return Invocation(read_reference(reference))
+
+
+_STATEMENT_READERS = {
+    "AssignmentActionUsage": _read_assignment,
+    "SendActionUsage": _read_send,
+    "PerformActionUsage": _read_performance,
+}
+
+
+def list_inputs(node: Node) -> list[Node | None]:
+    """Return the expressions bound to an action's parameters, in order; None for an unbound one."""
+    inputs: list[Node | None] = []
+    for parameter in nodes.iter_by_membership(node, "ParameterMembership"):
+        own_expression = parameter if parameter.kind in nodes.EXPRESSIONS else None
+        inputs.append(nodes.value_of(parameter) or own_expression)
+    return inputs
+
+
+def list_statements(body: Sequence[Node]) -> list[Node] | None:
+    """Return the actions of a body if all are consecutive statements without names, else None."""
+    actions = []
+    for node in body:
+        if node.kind in _STATEMENT_READERS and not node.name:
+            actions.append(node)
+        elif node.kind == "SuccessionAsUsage" and not _names_end(node):
+            continue
+        elif not nodes.is_annotation(node) and "direction" not in node.attributes:
+            return None
+    return actions or None
+
+
+def _names_end(succession: Node) -> bool:
+    return any(end.relations for end in nodes.ends_of(succession))

@@ -1,10 +1,14 @@
-"""Features of definitions: properties, ports, parameters of constraints, literals."""
+"""Features of classifiers: properties, ports, enumeration literals."""
 
 from typing import TYPE_CHECKING
 
 from sysmlc.frontends.sysml import annotations, nodes, values
-from sysmlc.frontends.sysml.definitions import marked, told, variant, visibility
-from sysmlc.frontends.sysml.types import types_of
+from sysmlc.frontends.sysml.definitions import (
+    foreign_attributes,
+    read_kind,
+    variation_attributes,
+    visibility_attributes,
+)
 from sysmlc.ir import AttrValue, Edge, Element, Kind
 from sysmlc.ir.query import generals
 from sysmlc.language.tree import Node, Relation
@@ -14,50 +18,9 @@ if TYPE_CHECKING:
 
 _COMPOSITE = frozenset({"PartUsage", "ItemUsage", "OccurrenceUsage", "ConstraintUsage"})
 _CLASS_ROLES = {"PortUsage": "interface block", "AttributeUsage": "value type"}
-_OWN_ROLES = frozenset({"block", "interface block", "value type", ""})
-
-
-def property_(low: "Lowering", node: Node, owner: Element) -> Element:
-    """A feature of a classifier; one with members of its own is typed by a class made for it."""
-    kind, subkind = marked(node, Kind.PROPERTY)
-    made = low.add(node, kind, nodes.name_of(node), owner, subkind=subkind, **_attrs(node, owner))
-    describe(low, node, made)
-    _aggregate(node, made)
-    return made
-
-
-def _attrs(node: Node, owner: Element) -> dict[str, AttrValue]:
-    direction = node.attributes.get("direction")
-    found: dict[str, AttrValue] = visibility(node) | told(node) | variant(node)
-    if direction is not None and owner.role != "constraint block":
-        found["direction"] = direction
-        found["role"] = "flow property" if owner.role in _OWN_ROLES else ""
-    return found
-
-
-def _aggregate(node: Node, made: Element) -> None:
-    is_own = not node.attributes.get("isReference") and "direction" not in node.attributes
-    if not {"shared", "SharedAggregation"}.isdisjoint(annotations.ours(node)):
-        made.attrs["aggregation"] = "shared"
-    elif node.kind in _COMPOSITE and is_own and not node.attributes.get("isEnd"):
-        made.attrs["aggregation"] = "composite"
-
-
-def describe(low: "Lowering", node: Node, made: Element) -> None:
-    """What a declaration says of a feature: flags, multiplicity, types, generals, value, texts."""
-    flags, bounds = _flags(node), values.multiplicity(low, node)
-    if flags or bounds:
-        low.set(made, **flags, multiplicity=bounds)
-    if node.attributes.get("isUnique") is False:
-        low.graph.set(made, unique=False)
-    relate(low, node, made)
-    value = nodes.value_of(node)
-    if value is not None:
-        values.give(low, made, "default", value)
-    if node.members:
-        _inside(low, node, made)
-
-
+"""Roles of classes for usages with members of their own; others are blocks."""
+_ROLES_WITH_FLOWS = frozenset({"block", "interface block", "value type", ""})
+"""Roles of owners whose directed features are flow properties."""
 _FLAGS = {
     "isAbstract": "abstract",
     "isDerived": "derived",
@@ -65,193 +28,259 @@ _FLAGS = {
     "isOrdered": "ordered",
     "isIndividual": "individual",
 }
+_RELATIONS_TO_FEATURES = frozenset({"Redefinition", *nodes.SUBSETTINGS})
+_PART_PORTS = {"FullPort": "full port", "BlockPort": "port"}
+"""Roles of ports of SysML v1 that a block types, by the keyword of the part in SysML v2."""
 
 
-def _flags(node: Node) -> dict[str, AttrValue]:
-    """What the facts of a feature are as attributes, in this order."""
+def lower_classifier_feature(lowering: "Lowering", node: Node, owner: Element) -> Element:
+    """Lower a feature of a classifier by its metaclass."""
+    if owner.kind is Kind.ENUMERATION and node.kind in ("EnumerationUsage", "AttributeUsage"):
+        return _lower_literal(lowering, node, owner)
+    if node.kind == "PortUsage":
+        return _lower_port(lowering, node, owner)
+    for keyword in annotations.shipped_metadata_of(node):
+        if keyword in _PART_PORTS:
+            return _lower_part_port(lowering, node, owner, _PART_PORTS[keyword])
+    return lower_property(lowering, node, owner)
+
+
+def lower_property(lowering: "Lowering", node: Node, owner: Element) -> Element:
+    """Lower a feature; if it has members of its own, a class that is added for it types it."""
+    kind, subkind = read_kind(node, Kind.PROPERTY)
+    attributes = _feature_attributes(node, owner)
+    property_ = lowering.add_element(
+        node, kind, nodes.name_of(node), owner, subkind=subkind, **attributes
+    )
+    describe_feature(lowering, node, property_)
+    _set_aggregation(node, property_)
+    return property_
+
+
+def _lower_literal(lowering: "Lowering", node: Node, owner: Element) -> Element:
+    literal = lowering.add_element(node, Kind.ENUMERATION_LITERAL, nodes.name_of(node), owner)
+    value = nodes.value_of(node)
+    if value is not None:
+        values.set_value(lowering, literal, "value", value)
+    annotations.lower_only_annotations(lowering, node, literal, "an enumerated value")
+    return literal
+
+
+def _feature_attributes(node: Node, owner: Element) -> dict[str, AttrValue]:
+    direction = node.attributes.get("direction")
+    attributes = visibility_attributes(node) | foreign_attributes(node) | variation_attributes(node)
+    if direction is not None and owner.role != "constraint block":
+        attributes["direction"] = direction
+        attributes["role"] = "flow property" if owner.role in _ROLES_WITH_FLOWS else ""
+    return attributes
+
+
+def _set_aggregation(node: Node, property_: Element) -> None:
+    keywords = annotations.shipped_metadata_of(node)
+    is_owned = not node.attributes.get("isReference") and "direction" not in node.attributes
+    if "shared" in keywords or "SharedAggregation" in keywords:
+        property_.attrs["aggregation"] = "shared"
+    elif node.kind in _COMPOSITE and is_owned and not node.attributes.get("isEnd"):
+        property_.attrs["aggregation"] = "composite"
+
+
+# -- declarations of features ------------------------------------------------------------------
+
+
+def describe_feature(lowering: "Lowering", node: Node, feature: Element) -> None:
+    """Add what a declaration states: flags, multiplicity, types, generals, value, members."""
+    flags, multiplicity = _flags_of(node), values.multiplicity_of(lowering, node)
+    if flags or multiplicity:
+        lowering.set_attributes(feature, **flags, multiplicity=multiplicity)
+    if node.attributes.get("isUnique") is False:
+        lowering.graph.set(feature, unique=False)
+    _connect_relations(lowering, node, feature)
+    value = nodes.value_of(node)
+    if value is not None:
+        values.set_value(lowering, feature, "default", value)
+    if node.members:
+        _lower_members(lowering, node, feature)
+
+
+def _flags_of(node: Node) -> dict[str, AttrValue]:
     if _FLAGS.keys().isdisjoint(node.attributes):
         return {}
-    return {flag: bool(node.attributes.get(fact)) for fact, flag in _FLAGS.items()}
+    return {flag: bool(node.attributes.get(attribute)) for attribute, flag in _FLAGS.items()}
 
 
-def relate(low: "Lowering", node: Node, made: Element) -> None:
-    """Types, and features that are redefined or subsetted; those of the library give types only."""
+def _connect_relations(lowering: "Lowering", node: Node, feature: Element) -> None:
+    """Connect a feature to its types and to the features that it redefines or subsets."""
     for relation in node.relations:
-        _relate(low, made, relation)
-    own = _own_class(low, node, made) if node.members else None
-    if own is not None:
-        low.graph.connect(Edge.TYPED_BY, made, own)
+        _connect_relation(lowering, feature, relation)
+    class_ = _add_usage_class(lowering, node, feature) if node.members else None
+    if class_ is not None:
+        lowering.graph.connect(Edge.TYPED_BY, feature, class_)
         return
-    low.later(lambda: give_types(low, node, made))
+    lowering.defer_until_elements(lambda: connect_types(lowering, node, feature))
 
 
-def _relate(low: "Lowering", made: Element, relation: Relation) -> None:
+def _connect_relation(lowering: "Lowering", feature: Element, relation: Relation) -> None:
+    """Connect a redefined or subsetted feature; features of the library only give types."""
     if relation.kind == "ConjugatedPortTyping":
-        low.set(made, conjugated=True)
-    if relation.kind not in _ABOUT_FEATURES:
+        lowering.set_attributes(feature, conjugated=True)
+    if relation.kind not in _RELATIONS_TO_FEATURES:
         return
-    found = relation.reference
-    target = found.target
-    if target is not None and low.document(target) is None:
+    reference = relation.reference
+    if reference.target is not None and lowering.document_of(reference.target) is None:
         return
     if relation.kind == "Redefinition":
-        low.refer(Edge.REDEFINES, made, found)
+        lowering.connect_reference(Edge.REDEFINES, feature, reference)
     else:
-        low.last(lambda: _subset(low, made, found.target))
+        lowering.defer_until_edges(lambda: _connect_subsetted(lowering, feature, reference.target))
 
 
-_ABOUT_FEATURES = frozenset({"Redefinition", *nodes.SUBSETTINGS})
-
-
-def _subset(low: "Lowering", made: Element, target: Node | None) -> None:
-    """A feature that the owner has or inherits is subsetted; one of another type is referred to."""
-    known = low.element(target)
-    owner, above = low.graph.owner(made), None if known is None else low.graph.owner(known)
-    if known is None or owner is None or above is None:
-        low.lead(Edge.SUBSETS, made, target)
+def _connect_subsetted(lowering: "Lowering", feature: Element, target: Node | None) -> None:
+    """Connect a feature of the owner, or an inherited one, as subsetted; another as referenced."""
+    subsetted = lowering.element_of(target)
+    classifier = lowering.graph.owner(feature)
+    declaring = None if subsetted is None else lowering.graph.owner(subsetted)
+    if subsetted is None or classifier is None or declaring is None:
+        lowering.connect_node(Edge.SUBSETS, feature, target)
         return
-    is_inherited = above is owner or above in generals(low.graph, owner)
-    low.graph.connect(Edge.SUBSETS if is_inherited else Edge.REFERENCES, made, known)
+    is_inherited = declaring is classifier or declaring in generals(lowering.graph, classifier)
+    edge = Edge.SUBSETS if is_inherited else Edge.REFERENCES
+    lowering.graph.connect(edge, feature, subsetted)
 
 
-def give_types(low: "Lowering", node: Node, made: Element) -> None:
-    """Edges to the types of a feature, stated or inherited; the elements must be there."""
-    stated = nodes.references(node, "FeatureTyping", "ConjugatedPortTyping")
-    for one in stated:
-        low.lead(Edge.TYPED_BY, made, one.target)
-    if not stated:
-        for target in types_of(low, node):
-            low.lead(Edge.TYPED_BY, made, target)
+def connect_types(lowering: "Lowering", node: Node, feature: Element) -> None:
+    """Connect a feature to its types, stated or inherited; their elements must exist."""
+    typings = nodes.list_references(node, "FeatureTyping", "ConjugatedPortTyping")
+    for reference in typings:
+        lowering.connect_node(Edge.TYPED_BY, feature, reference.target)
+    if not typings:
+        lowering.connect_nodes(Edge.TYPED_BY, feature, nodes.types_of(lowering, node))
 
 
-def _inside(low: "Lowering", node: Node, made: Element) -> None:
-    """Texts belong to the feature itself, other members to the class that is made for it."""
-    own = low.made_for.get(id(node))
-    for one in nodes.body_of(node):
-        if _is_of_itself(one, node):
-            low.lower(one, made)
-        elif own is not None and id(one) not in low.repeated:
-            low.lower(one, own)
+def _lower_members(lowering: "Lowering", node: Node, feature: Element) -> None:
+    """Lower annotations as members of the feature, and other members as those of its class."""
+    class_ = lowering.usage_classes.get(id(node))
+    for member in nodes.body_of(node):
+        if _describes_feature(member, node):
+            lowering.lower(member, feature)
+        elif class_ is not None and id(member) not in lowering.redundant:
+            lowering.lower(member, class_)
 
 
-def _own_class(low: "Lowering", node: Node, made: Element) -> Element | None:
-    """A class for what a usage has beyond its type (SysML 1.6 clause 8.3.2.10)."""
-    rest = [one for one in nodes.body_of(node) if not _is_of_itself(one, node)]
-    if not rest:
+def _add_usage_class(lowering: "Lowering", node: Node, feature: Element) -> Element | None:
+    """Add a property-specific type for the members of a usage (SysML 1.6 clause 8.3.2.10)."""
+    members = [
+        member
+        for member in nodes.body_of(node)
+        if not _describes_feature(member, node) and not read_interface_id(lowering, member, feature)
+    ]
+    if not members:
         return None
-    rest = [one for one in rest if not is_interface_id(low, one, made)]
-    if not rest:
-        return None
-    owner = low.graph.owner(made)
     role = _CLASS_ROLES.get(node.kind, "block")
-    kind = Kind.DATA_TYPE if role == "value type" else Kind.CLASS
-    own = low.make(node, kind, made.name, owner, role=role, property_specific=True)
-    if made.attrs.pop("variation", False):
-        low.set(own, variation=True)
-    low.made_for[id(node)] = own
-    low.later(lambda: low.lead_all(Edge.SPECIALIZES, own, types_of(low, node)))
-    # Metadata may say another name of the feature than the text has.
-    low.last(lambda: low.graph.rename(own, made.name))
-    return own
+    class_ = lowering.add_derived(
+        node,
+        Kind.DATA_TYPE if role == "value type" else Kind.CLASS,
+        feature.name,
+        lowering.graph.owner(feature),
+        role=role,
+        property_specific=True,
+    )
+    if feature.attrs.pop("variation", False):
+        lowering.set_attributes(class_, variation=True)
+    lowering.usage_classes[id(node)] = class_
+    lowering.defer_until_elements(
+        lambda: lowering.connect_nodes(Edge.SPECIALIZES, class_, nodes.types_of(lowering, node))
+    )
+    # Metadata may give the feature another name than the text has.
+    lowering.defer_until_edges(lambda: lowering.graph.rename(class_, feature.name))
+    return class_
 
 
-def _is_of_itself(one: Node, feature: Node) -> bool:
-    """Whether a member says something of the feature: a text, or what it realises."""
-    is_realization = one.kind == "Dependency" and "Realization" in annotations.ours(one)
-    is_own = is_realization and not one.name and nodes.target(one, "client") is feature
-    return is_own or (nodes.is_text(one) and not annotations.is_of_type(one))
+def _describes_feature(member: Node, feature: Node) -> bool:
+    """Whether a member is about the feature itself: an annotation, or what it realises."""
+    if nodes.is_annotation(member):
+        return not annotations.is_owned_by_type(member)
+    is_realization = member.kind == "Dependency" and "Realization" in (
+        annotations.shipped_metadata_of(member)
+    )
+    return is_realization and not member.name and nodes.find_target(member, "client") is feature
 
 
-def is_interface_id(low: "Lowering", node: Node, made: Element) -> bool:
-    """Whether a redefined port only says the id that it has in AutomationML."""
-    is_id = node.kind == "PortUsage" and "AutomationML" in annotations.ours(node)
-    if not is_id or len(nodes.body_of(node)) != 1 or nodes.target(node, "Redefinition") is None:
+def read_interface_id(lowering: "Lowering", node: Node, element: Element) -> bool:
+    """Read a redefined port that only states its id in AutomationML; return whether it is one.
+
+    The id becomes part of the attribute ``interface_ids`` of *element*, the usage with the port.
+    """
+    if node.kind != "PortUsage" or "AutomationML" not in annotations.shipped_metadata_of(node):
         return False
-    given = annotations.said(node, "AutomationML", "id")
-    target = nodes.target(node, "Redefinition")
-    low.repeated.add(id(node))
-    low.skipped.update(map(id, nodes.body_of(node)))
-    low.later(lambda: _interface_id(low, made, target, given))
+    target = nodes.find_target(node, "Redefinition")
+    if len(nodes.body_of(node)) != 1 or target is None:
+        return False
+    interface_id = annotations.metadata_value(node, "AutomationML", "id")
+    lowering.redundant.add(id(node))
+    lowering.skipped.update(map(id, nodes.body_of(node)))
+    lowering.defer_until_elements(
+        lambda: _add_interface_id(lowering, element, target, interface_id)
+    )
     return True
 
 
-def _interface_id(low: "Lowering", made: Element, target: Node | None, given: AttrValue) -> None:
-    port = low.element(target)
-    known = made.attrs.get("interface_ids")
-    if port is not None and made.kind is not Kind.CLASS:
-        pairs = known if isinstance(known, tuple) else ()
-        low.graph.set(made, interface_ids=(*pairs, (port.id, given)))
+def _add_interface_id(
+    lowering: "Lowering", element: Element, target: Node, interface_id: AttrValue
+) -> None:
+    port = lowering.element_of(target)
+    if port is not None and element.kind is not Kind.CLASS:
+        interface_ids = element.attrs.get("interface_ids")
+        pairs = interface_ids if isinstance(interface_ids, tuple) else ()
+        lowering.graph.set(element, interface_ids=(*pairs, (port.id, interface_id)))
 
 
 # -- ports -------------------------------------------------------------------------------------
 
 
-def port(low: "Lowering", node: Node, owner: Element) -> Element:
-    """A port; one that only holds what flows through it is a flow port of SysML 1.2."""
-    direction = node.attributes.get("direction")
-    given = _attrs(node, owner) | {"role": "proxy port", "direction": direction}
-    said = annotations.said(node, "Kind", "name")
-    if said == "port" or "AutomationML" in annotations.ours(node):
-        given["role"] = "port"
-    elif "FullPort" in annotations.ours(node):
-        given["role"] = "full port"
-    made = low.add(node, Kind.PORT, nodes.name_of(node), owner, **given)
-    flowing = _flowing(node)
-    if flowing is not None:
-        _flow_port(low, node, flowing, made)
-    else:
-        describe(low, node, made)
-    return made
-
-
-def _flowing(node: Node) -> Node | None:
-    rest = [one for one in nodes.body_of(node) if not nodes.is_text(one)]
-    is_only = len(rest) == 1 and rest[0].kind == "ReferenceUsage" and not nodes.name_of(rest[0])
-    return rest[0] if is_only and not node.relations else None
-
-
-def _flow_port(low: "Lowering", node: Node, flowing: Node, made: Element) -> None:
-    is_plain = annotations.said(node, "Kind", "name") == "port"
-    low.set(
-        made,
-        role="port" if is_plain else "flow port",
-        direction=flowing.attributes.get("direction"),
-        multiplicity=values.multiplicity(low, node),
+def _lower_port(lowering: "Lowering", node: Node, owner: Element) -> Element:
+    """Lower a port; a port that only has a flow without a name is a flow port of SysML 1.2."""
+    keywords = annotations.shipped_metadata_of(node)
+    kind_name = annotations.metadata_value(node, "Kind", "name")
+    role = "proxy port"
+    if kind_name == "port" or "AutomationML" in keywords:
+        role = "port"
+    elif "FullPort" in keywords:
+        role = "full port"
+    attributes = _feature_attributes(node, owner)
+    attributes |= {"role": role, "direction": node.attributes.get("direction")}
+    port = lowering.add_element(node, Kind.PORT, nodes.name_of(node), owner, **attributes)
+    flow = _find_only_flow(node)
+    if flow is None:
+        describe_feature(lowering, node, port)
+        return port
+    lowering.set_attributes(
+        port,
+        role="port" if kind_name == "port" else "flow port",
+        direction=flow.attributes.get("direction"),
+        multiplicity=values.multiplicity_of(lowering, node),
     )
-    for one in nodes.references(flowing, "FeatureTyping"):
-        low.refer(Edge.TYPED_BY, made, one)
-    low.seen.add(id(flowing))
-    for held in (node, flowing):
-        low.lower_texts(held, made)
+    for reference in nodes.list_references(flow, "FeatureTyping"):
+        lowering.connect_reference(Edge.TYPED_BY, port, reference)
+    lowering.lowered.add(id(flow))
+    lowering.lower_annotations(node, port)
+    lowering.lower_annotations(flow, port)
+    return port
 
 
-def part_port(low: "Lowering", node: Node, owner: Element, role: str) -> Element:
-    """A port of SysML v1 that a block types: a part with a keyword of ours."""
-    made = low.add(node, Kind.PORT, nodes.name_of(node), owner, role=role, **visibility(node))
-    describe(low, node, made)
-    return made
+def _find_only_flow(port: Node) -> Node | None:
+    """Return the one member of a port without a type, if it is a reference without a name."""
+    members = [member for member in nodes.body_of(port) if not nodes.is_annotation(member)]
+    if len(members) != 1 or port.relations:
+        return None
+    is_flow = members[0].kind == "ReferenceUsage" and not nodes.name_of(members[0])
+    return members[0] if is_flow else None
 
 
-PART_PORTS = {"FullPort": "full port", "BlockPort": "port"}
-
-
-def literal(low: "Lowering", node: Node, owner: Element) -> Element:
-    """One value of an enumeration."""
-    made = low.add(node, Kind.ENUMERATION_LITERAL, nodes.name_of(node), owner)
-    value = nodes.value_of(node)
-    if value is not None:
-        values.give(low, made, "value", value)
-    annotations.texts(low, node, made, "an enumerated value")
-    return made
-
-
-def in_classifier(low: "Lowering", node: Node, owner: Element) -> Element:
-    """A feature of a classifier by its metaclass."""
-    if owner.kind is Kind.ENUMERATION and node.kind in ("EnumerationUsage", "AttributeUsage"):
-        return literal(low, node, owner)
-    if node.kind == "PortUsage":
-        return port(low, node, owner)
-    mark = next((one for one in annotations.ours(node) if one in PART_PORTS), "")
-    if mark:
-        return part_port(low, node, owner, PART_PORTS[mark])
-    return property_(low, node, owner)
+def _lower_part_port(lowering: "Lowering", node: Node, owner: Element, role: str) -> Element:
+    """Lower a part whose keyword makes it a port of SysML v1 that a block types."""
+    attributes = visibility_attributes(node)
+    port = lowering.add_element(
+        node, Kind.PORT, nodes.name_of(node), owner, role=role, **attributes
+    )
+    describe_feature(lowering, node, port)
+    return port

@@ -1,4 +1,4 @@
-"""The front end for SysML v2 and KerML."""
+"""The front end for SysML v2 and KerML; the modules that read are imported when needed."""
 
 from collections.abc import Sequence
 from typing import ClassVar
@@ -7,14 +7,16 @@ from msgspec import Struct
 
 from sysmlc.diagnostics import Coverage, Sink
 from sysmlc.frontends.base import FileNames
+from sysmlc.frontends.sysml.detection import score_source
 from sysmlc.ir import Graph
 from sysmlc.sources import Source
+from sysmlc.support.garbage_collection import pause_garbage_collection
 
 
 class SysmlFrontend(Struct, frozen=True):
     """Reads texts and interchange files; all files of a unit are one model.
 
-    ``library`` is where the standard library is; empty where it is usually found.
+    ``library`` is the path of the standard library; if it is empty, the installed one is used.
     """
 
     is_folder_unit: ClassVar[bool] = True
@@ -22,31 +24,28 @@ class SysmlFrontend(Struct, frozen=True):
     library: str = ""
 
     def with_library(self, path: str) -> "SysmlFrontend":
-        """The same front end, with the standard library from a folder or an archive."""
+        """Return the same front end with the standard library of a folder or an archive."""
         return SysmlFrontend(self.name, path)
 
     def detect(self, source: Source) -> float:
-        """Sure for text that begins with a word of SysML, and for its XMI."""
-        from sysmlc.frontends.sysml.detect import score
-
-        return score(source)
+        """Return how certain it is, from 0 to 1, that the source is SysML v2 or KerML."""
+        return score_source(source)
 
     def links(self, source: Source) -> Sequence[str]:
-        """Files of a model do not name one another: a folder is a unit."""
+        """Return nothing: files do not name one another, and a folder is a unit."""
         return ()
 
     def read_names(self, source: Source) -> FileNames:
-        """Files refer to one another by the names of their root members."""
-        from sysmlc.frontends.sysml.root_names import read_names
+        """Return the names of the root members, by which files refer to one another."""
+        from sysmlc.frontends.sysml.reading import read_names
 
         return read_names(source)
 
     def read(self, sources: Sequence[Source], graph: Graph, sink: Sink, coverage: Coverage) -> None:
-        """Parse, resolve and lower all files of the unit."""
+        """Parse, resolve and lower all files of the unit, in the order of their names."""
         from sysmlc.frontends.sysml.reading import read
-        from sysmlc.support.garbage_collection import pause_garbage_collection
 
-        ordered = sorted(sources, key=lambda one: one.name)
+        ordered = sorted(sources, key=lambda source: source.name)
         with pause_garbage_collection():
             read(ordered, graph, sink, coverage, library=self.library)
 

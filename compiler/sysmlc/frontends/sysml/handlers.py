@@ -1,267 +1,263 @@
-"""Which part of the lowering reads which metaclass; what a usage is depends on its owner."""
+"""Handlers by metaclass; what a usage is lowered to depends on its owner."""
 
-from importlib import import_module
+from collections.abc import Callable
 
 from sysmlc.frontends.sysml import (
     actions,
     activities,
     annotations,
     connections,
+    control_structures,
     definitions,
-    loops,
+    features,
+    instances,
+    interactions,
     nodes,
-    objectflows,
+    object_nodes,
     relations,
+    requirements,
     states,
-    usages,
+    use_cases,
 )
-from sysmlc.frontends.sysml.definitions import marked
-from sysmlc.frontends.sysml.features import in_classifier
 from sysmlc.frontends.sysml.kinds import ACTIVITIES, BEHAVIOURS, CLASSIFIERS, STRUCTURAL
 from sysmlc.frontends.sysml.lowering import Handler, Lowering
-from sysmlc.frontends.sysml.objects import in_behaviour
 from sysmlc.ir import Element, Kind
 from sysmlc.language.tree import Node
 
 _PACKAGES = frozenset({Kind.PACKAGE, Kind.PROFILE})
-_STEPPED = ACTIVITIES
-_BEHAVING = frozenset({Kind.OPERATION, Kind.STATE_MACHINE, Kind.STATE, Kind.REGION, Kind.RECEPTION})
+_BEHAVIOURS_WITHOUT_STEPS = frozenset(
+    {Kind.OPERATION, Kind.STATE_MACHINE, Kind.STATE, Kind.REGION, Kind.RECEPTION}
+)
+_INTERACTIONS = frozenset({Kind.INTERACTION, Kind.FRAGMENT, Kind.OPERAND})
+
+_MemberHandler = Callable[[Lowering, Node, Element], object]
 
 
-def _late(module: str, name: str) -> Handler:
-    """A reader of what many models do not have, imported with the first that is there."""
-
-    def read(low: Lowering, node: Node, owner: Element | None) -> None:
-        getattr(import_module(f"sysmlc.frontends.sysml.{module}"), name)(low, node, owner)
-
-    return read
-
-
-def _feature(low: Lowering, node: Node, owner: Element | None) -> None:
-    """A structural usage by what owns it."""
-    if node.kind == "OccurrenceUsage" and marked(node, Kind.CLASS)[0] is Kind.INTERACTION:
-        definitions.define(low, node, owner, Kind.INTERACTION, "")
+def _lower_feature(lowering: Lowering, node: Node, owner: Element | None) -> None:
+    """Lower a structural usage."""
+    if node.kind == "OccurrenceUsage" and _is_interaction(node):
+        definitions.lower_definition(lowering, node, owner, Kind.INTERACTION, "")
     elif owner is None or owner.kind in _PACKAGES:
-        usages.in_package(low, node, owner)
+        instances.lower_package_usage(lowering, node, owner)
     elif owner.kind in STRUCTURAL:
-        in_classifier(low, node, owner)
-    elif owner.kind in _STEPPED or owner.kind in _BEHAVING:
-        in_behaviour(low, node, owner)
-    elif owner.kind in _INTERACTING:
-        _late("interactions", "member")(low, node, owner)
+        features.lower_classifier_feature(lowering, node, owner)
+    elif owner.kind in ACTIVITIES or owner.kind in _BEHAVIOURS_WITHOUT_STEPS:
+        object_nodes.lower_behaviour_feature(lowering, node, owner)
+    elif owner.kind in _INTERACTIONS:
+        interactions.lower_interaction_member(lowering, node, owner)
     else:
-        low.unsupported(node)
+        lowering.mark_unsupported(node)
 
 
-_INTERACTING = frozenset({Kind.INTERACTION, Kind.FRAGMENT, Kind.OPERAND})
+def _is_interaction(node: Node) -> bool:
+    kind, _ = definitions.read_kind(node, Kind.CLASS)
+    return kind is Kind.INTERACTION
 
 
-def _action(low: Lowering, node: Node, owner: Element | None) -> None:
+def _lower_action(lowering: Lowering, node: Node, owner: Element | None) -> None:
+    """Lower an action usage to an activity, a step, a parameter or an operation."""
     if owner is None or owner.kind in _PACKAGES:
-        activities.activity(low, node, owner)
-    elif owner.kind in _STEPPED and "direction" in node.attributes:
-        in_behaviour(low, node, owner)
-    elif owner.kind in _STEPPED:
-        actions.action(low, node, owner)
+        activities.lower_activity(lowering, node, owner)
+    elif owner.kind in ACTIVITIES and "direction" in node.attributes:
+        object_nodes.lower_behaviour_feature(lowering, node, owner)
+    elif owner.kind in ACTIVITIES:
+        actions.lower_action(lowering, node, owner)
     elif owner.kind in STRUCTURAL and node.kind == "PerformActionUsage":
-        activities.perform(low, node, owner)
+        activities.lower_performance(lowering, node, owner)
     elif owner.kind in STRUCTURAL:
-        activities.operation(low, node, owner)
-    elif owner.kind in _BEHAVING:
-        activities.activity(low, node, owner)
+        activities.lower_classifier_action(lowering, node, owner)
+    elif owner.kind in _BEHAVIOURS_WITHOUT_STEPS:
+        activities.lower_activity(lowering, node, owner)
     else:
-        low.unsupported(node)
+        lowering.mark_unsupported(node)
 
 
-def _step(inside: "Handler") -> Handler:
-    """What only stands among the steps of an activity."""
+def _as_step(handler: _MemberHandler) -> Handler:
+    """Return a handler for a construct that is special only among the steps of an activity."""
 
-    def read(low: Lowering, node: Node, owner: Element | None) -> None:
-        if owner is not None and owner.kind in _STEPPED:
-            inside(low, node, owner)
+    def lower_step(lowering: Lowering, node: Node, owner: Element | None) -> None:
+        if owner is not None and owner.kind in ACTIVITIES:
+            handler(lowering, node, owner)
         else:
-            _action(low, node, owner)
+            _lower_action(lowering, node, owner)
 
-    return read
+    return lower_step
 
 
-def _connection(low: Lowering, node: Node, owner: Element | None) -> None:
+def _lower_connection(lowering: Lowering, node: Node, owner: Element | None) -> None:
     if relations.is_derivation(node):
-        relations.derivation(low, node, owner)
-    elif owner is not None and connections.linking(node):
-        connections.connector(low, node, owner)
+        relations.lower_derivation(lowering, node, owner)
+    elif owner is not None and connections.list_linked_ends(node):
+        connections.lower_connector(lowering, node, owner)
     elif owner is not None and owner.kind in STRUCTURAL:
-        in_classifier(low, node, owner)
+        features.lower_classifier_feature(lowering, node, owner)
     else:
-        low.unsupported(node)
+        lowering.mark_unsupported(node)
 
 
-def _binding(low: Lowering, node: Node, owner: Element | None) -> None:
-    if owner is not None and owner.kind in _STEPPED:
-        objectflows.binding(low, node, owner)
-    elif owner is not None:
-        connections.connector(low, node, owner, "binding connector")
+def _lower_binding(lowering: Lowering, node: Node, owner: Element | None) -> None:
+    if owner is None:
+        lowering.mark_unsupported(node)
+    elif owner.kind in ACTIVITIES:
+        object_nodes.lower_binding(lowering, node, owner)
     else:
-        low.unsupported(node)
+        connections.lower_connector(lowering, node, owner, "binding connector")
 
 
-def _flow(low: Lowering, node: Node, owner: Element | None) -> None:
-    if owner is not None and owner.kind in _INTERACTING:
-        _late("interactions", "message")(low, node, owner)
-    elif owner is not None and owner.kind in _STEPPED:
-        objectflows.flow(low, node, owner)
+def _lower_flow(lowering: Lowering, node: Node, owner: Element | None) -> None:
+    if owner is not None and owner.kind in _INTERACTIONS:
+        interactions.lower_message(lowering, node, owner)
+    elif owner is not None and owner.kind in ACTIVITIES:
+        object_nodes.lower_object_flow(lowering, node, owner)
     elif nodes.is_message(node) and (owner is None or not nodes.events_of(node)):
-        low.unsupported(node)
+        lowering.mark_unsupported(node)
     else:
-        connections.item_flow(low, node, owner)
+        connections.lower_item_flow(lowering, node, owner)
 
 
-def _event(low: Lowering, node: Node, owner: Element | None) -> None:
-    if owner is not None and owner.kind in _INTERACTING:
-        _late("interactions", "event")(low, node, owner)
+def _lower_event(lowering: Lowering, node: Node, owner: Element | None) -> None:
+    if owner is not None and owner.kind in _INTERACTIONS:
+        interactions.lower_event(lowering, node, owner)
     elif owner is not None and owner.kind is Kind.USE_CASE:
-        _late("usecases", "extension_point")(low, node, owner)
+        use_cases.lower_extension_point(lowering, node, owner)
     else:
-        low.unsupported(node)
+        lowering.mark_unsupported(node)
 
 
-def _succession(low: Lowering, node: Node, owner: Element | None) -> None:
-    if owner is not None and owner.kind in _INTERACTING:
-        _late("interactions", "order")(low, node, owner)
+def _lower_succession(lowering: Lowering, node: Node, owner: Element | None) -> None:
+    """Lower a succession outside of activities, whose steps ``successions`` lowers in order."""
+    if owner is not None and owner.kind in _INTERACTIONS:
+        interactions.lower_event_order(lowering, node, owner)
     else:
-        low.unsupported(node)
+        lowering.mark_unsupported(node)
 
 
-def _state(low: Lowering, node: Node, owner: Element | None) -> None:
+def _lower_state(lowering: Lowering, node: Node, owner: Element | None) -> None:
     if owner is not None and owner.kind is Kind.REGION:
-        states.state(low, node, owner)
-    elif owner is not None and owner.kind in _STEPPED:
-        actions.action(low, node, owner)
+        states.lower_state(lowering, node, owner)
+    elif owner is not None and owner.kind in ACTIVITIES:
+        actions.lower_action(lowering, node, owner)
     else:
-        states.machine(low, node, owner)
+        states.lower_state_machine(lowering, node, owner)
 
 
-def _exhibit(low: Lowering, node: Node, owner: Element | None) -> None:
+def _lower_exhibited_state(lowering: Lowering, node: Node, owner: Element | None) -> None:
     if owner is not None and owner.kind in STRUCTURAL:
-        states.exhibit(low, node, owner)
+        states.lower_exhibited_machine(lowering, node, owner)
     else:
-        _state(low, node, owner)
+        _lower_state(lowering, node, owner)
 
 
-def _case(low: Lowering, node: Node, owner: Element | None) -> None:
-    if owner is not None and owner.kind in _STEPPED:
-        actions.action(low, node, owner)
+def _lower_case(lowering: Lowering, node: Node, owner: Element | None) -> None:
+    if owner is not None and owner.kind in ACTIVITIES:
+        actions.lower_action(lowering, node, owner)
     else:
         role = "test case" if node.kind.startswith("Verification") else ""
-        activities.activity(low, node, owner, role)
+        activities.lower_activity(lowering, node, owner, role)
 
 
-def _definition(role: str) -> Handler:
-    """A usage that stands for itself wherever it is."""
+def _as_class(role: str) -> Handler:
+    """Return a handler for usages that become classes, whatever their owner."""
 
-    def read(low: Lowering, node: Node, owner: Element | None) -> None:
-        definitions.define(low, node, owner, Kind.CLASS, role, usage=True)
+    def lower_to_class(lowering: Lowering, node: Node, owner: Element | None) -> None:
+        definitions.lower_definition(lowering, node, owner, Kind.CLASS, role, usage=True)
 
-    return read
+    return lower_to_class
 
 
-def _expression(low: Lowering, node: Node, owner: Element | None) -> None:
-    """A result expression; any other is read with what it belongs to."""
+def _lower_expression(lowering: Lowering, node: Node, owner: Element | None) -> None:
+    """Lower a result expression; other expressions are read with their owners."""
     if node.membership == "ResultExpressionMembership" and owner is not None:
-        _late("constraints", "result")(low, node, owner)
+        requirements.lower_result(lowering, node, owner)
     elif node.membership == "ElementFilterMembership":
-        low.ignored(node)
+        lowering.mark_ignored(node)
 
 
-def _ignored(low: Lowering, node: Node, owner: Element | None) -> None:
-    low.ignored(node)
-
-
-def _variant(low: Lowering, node: Node, owner: Element | None) -> None:
-    _feature(low, node, owner)
+def _ignore(lowering: Lowering, node: Node, owner: Element | None) -> None:
+    lowering.mark_ignored(node)
 
 
 _FEATURES = """
     AttributeUsage PartUsage ItemUsage PortUsage ReferenceUsage OccurrenceUsage EnumerationUsage
     Feature
 """
-_NODES = "DecisionNode MergeNode ForkNode JoinNode"
+_CONTROL_NODES = "DecisionNode MergeNode ForkNode JoinNode"
 
 HANDLERS: dict[str, Handler] = {
-    **dict.fromkeys(CLASSIFIERS, definitions.classifier),
-    **dict.fromkeys(BEHAVIOURS, activities.activity_definition),
-    **dict.fromkeys(_FEATURES.split(), _feature),
-    **dict.fromkeys(_NODES.split(), _step(actions.control)),  # type: ignore[arg-type]
-    **dict.fromkeys(nodes.EXPRESSIONS, _expression),
-    "Package": definitions.package,
-    "LibraryPackage": definitions.package,
-    "ItemDefinition": definitions.item,
-    "OccurrenceDefinition": definitions.occurrence,
-    "StateDefinition": states.machine,  # type: ignore[dict-item]
-    "ConnectionDefinition": connections.association,
-    "InterfaceDefinition": connections.association,
-    "Association": connections.association,
-    "AssociationStructure": connections.association,
-    "AllocationDefinition": connections.allocation_definition,
-    "FlowDefinition": connections.flow_definition,
-    "UseCaseDefinition": _late("usecases", "use_case"),
-    "UseCaseUsage": _late("usecases", "use_case"),
-    "IncludeUseCaseUsage": _late("usecases", "include"),
-    "EventOccurrenceUsage": _event,
-    "SuccessionAsUsage": _succession,
-    "Succession": _succession,
-    "Usage": _feature,
-    "RequirementDefinition": _late("requirements", "requirement"),
-    "RequirementUsage": _late("requirements", "requirement"),
-    "ConcernDefinition": _late("requirements", "requirement"),
-    "ConcernUsage": _late("requirements", "requirement"),
-    "SatisfyRequirementUsage": _late("requirements", "satisfy"),
-    "ConstraintUsage": _late("constraints", "constraint"),
-    "AssertConstraintUsage": _late("constraints", "constraint"),
-    "Invariant": _late("constraints", "constraint"),
-    "BooleanExpression": _late("constraints", "constraint"),
-    "ActionUsage": _action,
-    "PerformActionUsage": _action,
-    "CalculationUsage": _action,
-    "Step": _action,
-    "Expression": _action,
-    "SendActionUsage": _step(actions.send),  # type: ignore[arg-type]
-    "AcceptActionUsage": _step(actions.accept),  # type: ignore[arg-type]
-    "AssignmentActionUsage": _step(actions.assign),  # type: ignore[arg-type]
-    "TerminateActionUsage": _step(actions.terminate),  # type: ignore[arg-type]
-    "IfActionUsage": _step(loops.if_),  # type: ignore[arg-type]
-    "WhileLoopActionUsage": _step(loops.while_),  # type: ignore[arg-type]
-    "ForLoopActionUsage": _step(loops.for_),  # type: ignore[arg-type]
-    "StateUsage": _state,
-    "ExhibitStateUsage": _exhibit,
-    "VerificationCaseUsage": _case,
-    "AnalysisCaseUsage": _case,
-    "CaseUsage": _case,
-    "ViewUsage": _definition("view"),
-    "ViewpointUsage": _definition("viewpoint"),
-    "ConnectionUsage": _connection,
-    "InterfaceUsage": _connection,
-    "Connector": _connection,
-    "BindingConnectorAsUsage": _binding,
-    "BindingConnector": _binding,
-    "FlowUsage": _flow,
-    "Flow": _flow,
-    "SuccessionFlowUsage": _flow,
-    "SuccessionFlow": _flow,
-    "AllocationUsage": relations.allocation,
-    "Dependency": relations.dependency,
-    "NamespaceImport": relations.import_,
-    "MembershipImport": relations.import_,
-    "Membership": relations.membership,
-    "Documentation": annotations.documentation,
-    "Comment": annotations.comment,
-    "TextualRepresentation": annotations.representation,
-    "MetadataUsage": annotations.metadata,
-    "MetadataFeature": annotations.metadata,
-    "Multiplicity": _ignored,
-    "MultiplicityRange": _ignored,
-    "Expose": _ignored,
-    "MembershipExpose": _ignored,
-    "NamespaceExpose": _ignored,
+    **dict.fromkeys(CLASSIFIERS, definitions.lower_classifier),
+    **dict.fromkeys(BEHAVIOURS, activities.lower_behaviour_definition),
+    **dict.fromkeys(_FEATURES.split(), _lower_feature),
+    **dict.fromkeys(_CONTROL_NODES.split(), _as_step(actions.lower_control_node)),
+    **dict.fromkeys(nodes.EXPRESSIONS, _lower_expression),
+    "Package": definitions.lower_package,
+    "LibraryPackage": definitions.lower_package,
+    "ItemDefinition": definitions.lower_item,
+    "OccurrenceDefinition": definitions.lower_occurrence,
+    "StateDefinition": states.lower_state_machine,
+    "ConnectionDefinition": connections.lower_association,
+    "InterfaceDefinition": connections.lower_association,
+    "Association": connections.lower_association,
+    "AssociationStructure": connections.lower_association,
+    "AllocationDefinition": relations.lower_allocation_definition,
+    "FlowDefinition": connections.lower_flow_definition,
+    "UseCaseDefinition": use_cases.lower_use_case,
+    "UseCaseUsage": use_cases.lower_use_case,
+    "IncludeUseCaseUsage": use_cases.lower_inclusion,
+    "EventOccurrenceUsage": _lower_event,
+    "SuccessionAsUsage": _lower_succession,
+    "Succession": _lower_succession,
+    "Usage": _lower_feature,
+    "RequirementDefinition": requirements.lower_requirement,
+    "RequirementUsage": requirements.lower_requirement,
+    "ConcernDefinition": requirements.lower_requirement,
+    "ConcernUsage": requirements.lower_requirement,
+    "SatisfyRequirementUsage": requirements.lower_satisfaction,
+    "ConstraintUsage": requirements.lower_constraint,
+    "AssertConstraintUsage": requirements.lower_constraint,
+    "Invariant": requirements.lower_constraint,
+    "BooleanExpression": requirements.lower_constraint,
+    "ActionUsage": _lower_action,
+    "PerformActionUsage": _lower_action,
+    "CalculationUsage": _lower_action,
+    "Step": _lower_action,
+    "Expression": _lower_action,
+    "SendActionUsage": _as_step(actions.lower_send),
+    "AcceptActionUsage": _as_step(actions.lower_accept),
+    "AssignmentActionUsage": _as_step(actions.lower_assignment),
+    "TerminateActionUsage": _as_step(actions.lower_termination),
+    "IfActionUsage": _as_step(control_structures.lower_if),
+    "WhileLoopActionUsage": _as_step(control_structures.lower_while),
+    "ForLoopActionUsage": _as_step(control_structures.lower_for),
+    "StateUsage": _lower_state,
+    "ExhibitStateUsage": _lower_exhibited_state,
+    "VerificationCaseUsage": _lower_case,
+    "AnalysisCaseUsage": _lower_case,
+    "CaseUsage": _lower_case,
+    "ViewUsage": _as_class("view"),
+    "ViewpointUsage": _as_class("viewpoint"),
+    "ConnectionUsage": _lower_connection,
+    "InterfaceUsage": _lower_connection,
+    "Connector": _lower_connection,
+    "BindingConnectorAsUsage": _lower_binding,
+    "BindingConnector": _lower_binding,
+    "FlowUsage": _lower_flow,
+    "Flow": _lower_flow,
+    "SuccessionFlowUsage": _lower_flow,
+    "SuccessionFlow": _lower_flow,
+    "AllocationUsage": relations.lower_allocation,
+    "Dependency": relations.lower_dependency,
+    "NamespaceImport": relations.lower_import,
+    "MembershipImport": relations.lower_import,
+    "Membership": relations.lower_alias,
+    "Documentation": annotations.lower_documentation,
+    "Comment": annotations.lower_comment,
+    "TextualRepresentation": annotations.lower_textual_representation,
+    "MetadataUsage": annotations.lower_metadata,
+    "MetadataFeature": annotations.lower_metadata,
+    "Multiplicity": _ignore,
+    "MultiplicityRange": _ignore,
+    "Expose": _ignore,
+    "MembershipExpose": _ignore,
+    "NamespaceExpose": _ignore,
 }
-"""Reader of each metaclass; what is not here is reported as not read."""
+"""The handler of each metaclass. A metaclass without a handler is reported as not read."""

@@ -3,145 +3,176 @@
 from typing import TYPE_CHECKING
 
 from sysmlc.frontends.sysml import annotations, nodes
-from sysmlc.frontends.sysml.connections import payloads, steps_of
-from sysmlc.frontends.sysml.features import property_
-from sysmlc.frontends.sysml.types import types_of
+from sysmlc.frontends.sysml.connections import list_payloads
+from sysmlc.frontends.sysml.features import lower_property
 from sysmlc.ir import Edge, Element, Kind
 from sysmlc.language.tree import Node
 
 if TYPE_CHECKING:
     from sysmlc.frontends.sysml.lowering import Lowering
 
+_MESSAGE_EDGES = (
+    (Edge.FLOW_SOURCE, Edge.SEND_EVENT),
+    (Edge.FLOW_TARGET, Edge.RECEIVE_EVENT),
+)
+"""Edges of a message to a lifeline and to the occurrence on it, for each end."""
 
-def member(low: "Lowering", node: Node, owner: Element) -> None:
-    """A feature of an interaction: a fragment, a lifeline, or a role that the model has beside.
 
-    The back end writes lifelines as references; in other models every feature takes part.
+def lower_interaction_member(lowering: "Lowering", node: Node, owner: Element) -> None:
+    """Lower a feature of an interaction: a fragment, a lifeline, or a property.
+
+    The back end ``sysml`` writes lifelines as references and other properties of an interaction as
+    parts. In other models every feature is a lifeline.
     """
     if node.kind == "OccurrenceUsage":
-        fragment(low, node, owner)
-    elif node.attributes.get("isReference") or not _is_written(node.owner):
-        lifeline(low, node, owner)
+        _lower_fragment(lowering, node, owner)
+    elif node.attributes.get("isReference") or not _is_from_backend(node.owner):
+        _lower_lifeline(lowering, node, owner)
     else:
-        property_(low, node, owner)
+        lower_property(lowering, node, owner)
 
 
-def _is_written(owner: Node | None) -> bool:
-    return owner is not None and annotations.said(owner, "Kind", "name") == "interaction"
+def _is_from_backend(interaction: Node | None) -> bool:
+    if interaction is None:
+        return False
+    return annotations.metadata_value(interaction, "Kind", "name") == "interaction"
 
 
-def lifeline(low: "Lowering", node: Node, owner: Element) -> None:
-    """A lifeline: what takes part in the interaction."""
-    made = low.add(node, Kind.LIFELINE, nodes.name_of(node), owner)
-    low.later(lambda: _represent(low, node, made))
-    for one in nodes.body_of(node):
-        if one.kind == "EventOccurrenceUsage":
-            event(low, one, made)
-        elif nodes.is_text(one):
-            low.lower(one, made)
+def _lower_fragment(lowering: "Lowering", node: Node, owner: Element) -> None:
+    """Lower a combined fragment or an operand; metadata of our library states which it is."""
+    name = str(annotations.metadata_value(node, "Kind", "name") or "seq")
+    kind, subkind = (Kind.OPERAND, "") if name == "operand" else (Kind.FRAGMENT, name)
+    fragment = lowering.add_element(node, kind, nodes.name_of(node), owner, subkind=subkind)
+    lowering.lower_all(nodes.body_of(node), fragment)
+
+
+# -- lifelines ---------------------------------------------------------------------------------
+
+
+def _lower_lifeline(lowering: "Lowering", node: Node, owner: Element) -> None:
+    lifeline = lowering.add_element(node, Kind.LIFELINE, nodes.name_of(node), owner)
+    lowering.defer_until_elements(lambda: _connect_represented(lowering, node, lifeline))
+    for member in nodes.body_of(node):
+        if member.kind == "EventOccurrenceUsage":
+            lower_event(lowering, member, lifeline)
+        elif nodes.is_annotation(member):
+            lowering.lower(member, lifeline)
         else:
-            low.approximated(one, "a feature of a lifeline", "nothing")
+            lowering.mark_approximated(member, "a feature of a lifeline", "nothing")
 
 
-def _represent(low: "Lowering", node: Node, made: Element) -> None:
-    """The feature that is meant; where only its type is said, the one part of that type."""
-    for found in nodes.references(node, "Redefinition", "ReferenceSubsetting", "Subsetting"):
-        low.lead(Edge.REPRESENTS, made, found.target)
+def _connect_represented(lowering: "Lowering", node: Node, lifeline: Element) -> None:
+    """Connect a lifeline to the feature it names, or to the only part of its type.
+
+    If several parts have the type, the one with the name of the lifeline counts.
+    """
+    reference = nodes.find_reference(node, "Redefinition", "ReferenceSubsetting", "Subsetting")
+    if reference is not None:
+        lowering.connect_node(Edge.REPRESENTS, lifeline, reference.target)
         return
-    for type_ in types_of(low, node):
-        known = low.element(type_)
-        users = [] if known is None else low.graph.sources(known, Edge.TYPED_BY)
-        parts = [one for one in users if one.kind is Kind.PROPERTY]
-        named = [one for one in parts if one.name == made.name] or parts
-        if len(named) == 1:
-            low.graph.connect(Edge.REPRESENTS, made, named[0])
-
-
-def message(low: "Lowering", node: Node, owner: Element) -> None:
-    """A message from one lifeline to another."""
-    sort = annotations.said(node, "Kind", "name") or "asynch-signal"
-    made = low.add(node, Kind.MESSAGE, nodes.name_of(node), owner, subkind=str(sort))
-    called = annotations.said(node, "Kind", "calls")
-    for payload in () if called else payloads(node):
-        for found in nodes.references(payload, "FeatureTyping"):
-            low.refer(Edge.CALLS, made, found)
-    if called:
-        low.last(lambda: _call(low, made, str(called)))
-    low.last(lambda: _join(low, node, made))
-    annotations.texts(low, node, made, "a message", payloads(node))
-
-
-def _call(low: "Lowering", made: Element, name: str) -> None:
-    """The operation that a message calls, by the qualified name that metadata of ours says."""
-    known = low.graph.get(low.id_of(name))
-    if known is not None:
-        low.graph.connect(Edge.CALLS, made, known)
-
-
-def _join(low: "Lowering", node: Node, made: Element) -> None:
-    edges = ((Edge.FLOW_SOURCE, Edge.SEND_EVENT), (Edge.FLOW_TARGET, Edge.RECEIVE_EVENT))
-    ends = nodes.ends_of(node) or nodes.events_of(node)
-    for (edge, event), end in zip(edges, ends, strict=False):
-        known = [one for step in steps_of(end) if (one := low.element(step)) is not None]
-        line = next((one for one in known if one.kind is Kind.LIFELINE), None)
-        owner = low.graph.owner(made)
-        if line is None or owner is None:
+    for type_ in nodes.types_of(lowering, node):
+        classifier = lowering.element_of(type_)
+        if classifier is None:
             continue
-        at = _occurrence(low, owner, known[-1] if known[-1] is not line else None)
-        low.graph.connect(Edge.COVERS, at, line)
-        low.graph.connect(edge, made, line)
-        low.graph.connect(event, made, at)
+        typed = lowering.graph.sources(classifier, Edge.TYPED_BY)
+        parts = [element for element in typed if element.kind is Kind.PROPERTY]
+        candidates = [part for part in parts if part.name == lifeline.name] or parts
+        if len(candidates) == 1:
+            lowering.graph.connect(Edge.REPRESENTS, lifeline, candidates[0])
 
 
-def _occurrence(low: "Lowering", owner: Element, event: Element | None) -> Element:
-    """The point at which something happens: an event that the model names, else a new one."""
+# -- messages ----------------------------------------------------------------------------------
+
+
+def lower_message(lowering: "Lowering", node: Node, owner: Element) -> None:
+    """Lower a message from one lifeline to another."""
+    sort = annotations.metadata_value(node, "Kind", "name") or "asynch-signal"
+    message = lowering.add_element(
+        node, Kind.MESSAGE, nodes.name_of(node), owner, subkind=str(sort)
+    )
+    operation = annotations.metadata_value(node, "Kind", "calls")
+    payloads = list_payloads(node)
+    if operation:
+        lowering.defer_until_edges(lambda: _connect_operation(lowering, message, str(operation)))
+    else:
+        for payload in payloads:
+            for reference in nodes.list_references(payload, "FeatureTyping"):
+                lowering.connect_reference(Edge.CALLS, message, reference)
+    lowering.defer_until_edges(lambda: _connect_message(lowering, node, message))
+    annotations.lower_only_annotations(lowering, node, message, "a message", payloads)
+
+
+def _connect_operation(lowering: "Lowering", message: Element, qualified_name: str) -> None:
+    """Connect a message to the operation whose qualified name metadata states."""
+    operation = lowering.graph.get(lowering.id_of(qualified_name))
+    if operation is not None:
+        lowering.graph.connect(Edge.CALLS, message, operation)
+
+
+def _connect_message(lowering: "Lowering", node: Node, message: Element) -> None:
+    """Connect a message to the lifelines at its ends and to the occurrences on them."""
+    owner = lowering.graph.owner(message)
+    ends = nodes.ends_of(node) or nodes.events_of(node)
+    for (flow_edge, event_edge), end in zip(_MESSAGE_EDGES, ends, strict=False):
+        elements = map(lowering.element_of, nodes.path_of_end(end))
+        path = [element for element in elements if element is not None]
+        lifeline = next((element for element in path if element.kind is Kind.LIFELINE), None)
+        if lifeline is None or owner is None:
+            continue
+        event = None if path[-1] is lifeline else path[-1]
+        occurrence = _ensure_occurrence(lowering, owner, event)
+        lowering.graph.connect(Edge.COVERS, occurrence, lifeline)
+        lowering.graph.connect(flow_edge, message, lifeline)
+        lowering.graph.connect(event_edge, message, occurrence)
+
+
+def _ensure_occurrence(lowering: "Lowering", owner: Element, event: Element | None) -> Element:
+    """Return the event that the model names as end of a message, else add an occurrence."""
     if event is not None and event.kind is Kind.OCCURRENCE:
         return event
-    at = low.below(owner, Kind.OCCURRENCE, "")
-    low.set(at, subkind="message")
-    return at
+    occurrence = lowering.add_implied_child(owner, Kind.OCCURRENCE, "")
+    lowering.set_attributes(occurrence, subkind="message")
+    return occurrence
 
 
-def event(low: "Lowering", node: Node, owner: Element) -> None:
-    """An event of a lifeline, or of the interaction itself."""
-    is_line = owner.kind is Kind.LIFELINE
-    home = low.graph.owner(owner) if is_line else owner
-    found = nodes.reference(node, "ReferenceSubsetting")
-    if found is not None and not node.name:
-        low.later(lambda: _same(low, node, found.target))
+# -- events ------------------------------------------------------------------------------------
+
+
+def lower_event(lowering: "Lowering", node: Node, owner: Element) -> None:
+    """Lower an event of a lifeline or of the interaction; it may be another event's name."""
+    is_on_lifeline = owner.kind is Kind.LIFELINE
+    interaction = lowering.graph.owner(owner) if is_on_lifeline else owner
+    reference = nodes.find_reference(node, "ReferenceSubsetting")
+    if reference is not None and not node.name:
+        lowering.defer_until_elements(lambda: _share_element(lowering, node, reference.target))
         return
-    made = low.add(node, Kind.OCCURRENCE, nodes.name_of(node), home, subkind="message")
-    if is_line:
-        low.graph.connect(Edge.COVERS, made, owner)
+    occurrence = lowering.add_element(
+        node, Kind.OCCURRENCE, nodes.name_of(node), interaction, subkind="message"
+    )
+    if is_on_lifeline:
+        lowering.graph.connect(Edge.COVERS, occurrence, owner)
 
 
-def _same(low: "Lowering", node: Node, target: Node | None) -> None:
-    known = low.element(target)
-    if known is not None:
-        low.elements[id(node)] = known
+def _share_element(lowering: "Lowering", node: Node, target: Node | None) -> None:
+    """Make the element of a referenced event that of the node, too."""
+    element = lowering.element_of(target)
+    if element is not None:
+        lowering.elements[id(node)] = element
 
 
-def order(low: "Lowering", node: Node, owner: Element) -> None:
-    """A succession between events: one comes before the other."""
+def lower_event_order(lowering: "Lowering", node: Node, owner: Element) -> None:
+    """Lower a succession between events to a general ordering."""
     ends = nodes.ends_of(node)
     if len(ends) < 2:
-        low.approximated(node, "an order of events without ends", "nothing")
+        lowering.mark_approximated(node, "an order of events without ends", "nothing")
         return
-    made = low.add(node, Kind.GENERAL_ORDERING, node.name or "", owner)
-    low.last(lambda: _order(low, made, ends))
+    ordering = lowering.add_element(node, Kind.GENERAL_ORDERING, node.name or "", owner)
+    lowering.defer_until_edges(lambda: _connect_ordering(lowering, ordering, ends))
 
 
-def _order(low: "Lowering", made: Element, ends: list[Node]) -> None:
+def _connect_ordering(lowering: "Lowering", ordering: Element, ends: list[Node]) -> None:
     for edge, end in zip((Edge.FLOW_SOURCE, Edge.FLOW_TARGET), ends, strict=False):
-        steps = steps_of(end)
-        known = low.element(steps[-1]) if steps else None
-        if known is not None:
-            low.graph.connect(edge, made, known)
-
-
-def fragment(low: "Lowering", node: Node, owner: Element) -> None:
-    """A combined fragment or an operand, as metadata of ours says."""
-    name = str(annotations.said(node, "Kind", "name") or "seq")
-    kind, subkind = (Kind.OPERAND, "") if name == "operand" else (Kind.FRAGMENT, name)
-    made = low.add(node, kind, nodes.name_of(node), owner, subkind=subkind)
-    low.lower_all(nodes.body_of(node), made)
+        path = nodes.path_of_end(end)
+        event = lowering.element_of(path[-1]) if path else None
+        if event is not None:
+            lowering.graph.connect(edge, ordering, event)

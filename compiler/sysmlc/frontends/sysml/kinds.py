@@ -1,4 +1,4 @@
-"""From metaclasses of KerML and SysML v2 to kinds and roles of the graph (docs/ir.md)."""
+"""Kinds and roles of the graph for metaclasses of KerML and SysML v2 (docs/ir.md)."""
 
 from sysmlc.ir import Kind
 
@@ -40,7 +40,7 @@ BEHAVIOURS: dict[str, tuple[Kind, str]] = {
 }
 """Definitions whose members are steps."""
 FUNCTIONS = frozenset({"CalculationDefinition", "Function", "CalculationUsage"})
-MARKED = {
+KINDS_BY_METADATA = {
     "interface": Kind.INTERFACE,
     "component": Kind.COMPONENT,
     "actor": Kind.ACTOR,
@@ -57,7 +57,7 @@ MARKED = {
     "association": Kind.ASSOCIATION,
     "interaction": Kind.INTERACTION,
 }
-"""Kinds that ``@SysMLC::Kind`` names because no keyword says them."""
+"""Kinds that ``@SysMLC::Kind`` names because no keyword of SysML v2 states them."""
 STRUCTURAL = frozenset(
     {
         Kind.CLASS,

@@ -1,15 +1,15 @@
-"""A compile unit on its way into the graph: elements first, then what they refer to."""
+"""Lowering of a compile unit to the graph: elements first, then the edges between them."""
 
 from collections import deque
 from collections.abc import Callable, Iterable, Sequence
 from typing import TYPE_CHECKING
 
 from sysmlc.diagnostics import Place, Sink, Subject
-from sysmlc.frontends.sysml import nodes, stubs
-from sysmlc.frontends.sysml.naming import Names
-from sysmlc.frontends.sysml.places import Home
+from sysmlc.frontends.sysml import libraries, nodes
+from sysmlc.frontends.sysml.coverage import Verdicts
+from sysmlc.frontends.sysml.positions import DocumentPositions
+from sysmlc.frontends.sysml.qualified_names import QualifiedNames
 from sysmlc.frontends.sysml.rules import NOT_IN_GRAPH
-from sysmlc.frontends.sysml.verdicts import Verdicts
 from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind
 from sysmlc.ir import Reference as Pending
 from sysmlc.ir.query.activities import is_joined
@@ -18,323 +18,336 @@ from sysmlc.language.tree import Document, Node, Reference, Relation
 if TYPE_CHECKING:
     from sysmlc.language.names import Model
 
-Handler = Callable[["Lowering", Node, "Element | None"], None]
-"""Adds what a node is to what its owner became."""
+Handler = Callable[["Lowering", Node, "Element | None"], object]
+"""Lowers a node as a member of the element that its owner became."""
 Work = Callable[[], None]
 
 
 class Lowering(Verdicts):
-    """The graph as far as it is made, and which node became which element."""
+    """State of the lowering: the graph so far, and which node became which element.
 
-    # With more than 30 attributes in all each look at one takes longer (Python 3.11: 2 % in all).
+    Tables whose keys are integers use identities of nodes.
+    """
+
     def __init__(
         self,
-        homes: Sequence[Home],
+        documents: Sequence[DocumentPositions],
         model: "Model",
         graph: Graph,
         sink: Sink,
         handlers: dict[str, Handler],
     ) -> None:
         super().__init__()
+        self.documents = documents
         self.model = model
         self.graph = graph
         self.sink = sink
-        self.elements: dict[int, Element] = {}
-        self.accepted: set[int] = set()
-        """Identities of item definitions that are sent or accepted: signals."""
-        self.flowing: set[int] = set()
-        """Identities of features between which objects flow in actions."""
-        self.made_for: dict[int, Element] = {}
-        """Classes that are made for usages with members of their own, by the node's identity."""
-        self.spans: dict[int, tuple[Element, Element]] = {}
-        """Entry and exit of steps that are several nodes, by the identity of the step."""
-        self._controls: dict[tuple[str, str], Element] = {}
-        self.repeated: set[int] = set()
-        """Identities of redefinitions that say nothing that is an element."""
-        self.seen: set[int] = set()
-        """Identities of nodes that were lowered, or that an element was made for."""
-        self.skipped: set[int] = set()
-        """Identities of members that are read with something else."""
         self._handlers = handlers
-        self.homes = homes
-        self._homes: dict[int, Home] = {}
-        self._later: list[Work] = []
-        self._last: deque[Work] = deque()
-        self._brought: dict[str, Node] = {}
-        self._generals: list[tuple[Element, Element]] = []
-        self._waits = False
-        self._scalars: dict[str, list[tuple[str, Kind]]] = {}
-        self._names = Names()
+        self._documents: dict[int, DocumentPositions] = {}
+        self.elements: dict[int, Element] = {}
+        """The element that a node is."""
+        self.usage_classes: dict[int, Element] = {}
+        """Classes that are added for usages with members of their own."""
+        self.spans: dict[int, tuple[Element, Element]] = {}
+        """Entry and exit of steps that become several nodes of an activity."""
+        self.signals: set[int] = set()
+        """Item definitions that are sent or accepted."""
+        self.flow_features: set[int] = set()
+        """Features at which flows start or end."""
+        self.redundant: set[int] = set()
+        """Redefinitions that add nothing to the feature that they redefine."""
+        self.lowered: set[int] = set()
+        """Nodes that were lowered, or for which an element was added."""
+        self.skipped: set[int] = set()
+        """Members that a handler reads together with their owner."""
+        self._until_elements: list[Work] = []
+        self._until_edges: deque[Work] = deque()
+        self._origins: dict[str, Node] = {}
+        """The node for which an element was added, by the element's id."""
+        self._names = QualifiedNames()
+        self._starts_and_ends: dict[tuple[str, str], Element] = {}
+        """Elements for ``start`` and ``done`` by the id of the behaviour or region."""
+        self._generalizations: list[tuple[Element, Element]] = []
+        self._has_pending_general = False
+        self._library_types: dict[str, list[tuple[str, Kind]]] = {}
+        """Names and kinds of scalar types from the library, by the id of the typed element."""
         self._stubs: dict[str, str] = {}
-        self._outer: dict[int, tuple[str, Kind]] = {}
+        self._library_names: dict[int, tuple[str, Kind]] = {}
         """Names and kinds of elements of the library that edges lead to."""
 
     # -- nodes ---------------------------------------------------------------------------------
 
     def lower(self, node: Node, owner: Element | None) -> None:
-        """Lower a member of what ``owner`` is in the graph."""
+        """Lower a member of the element *owner* by the handler of its metaclass."""
         if id(node) in self.skipped:
             return
-        self.seen.add(id(node))
+        self.lowered.add(id(node))
         handler = self._handlers.get(node.kind)
         if handler is None:
-            self.unsupported(node)
+            self.mark_unsupported(node)
         else:
             handler(self, node, owner)
 
-    def lower_all(self, found: Iterable[Node], owner: Element | None) -> None:
+    def lower_all(self, members: Iterable[Node], owner: Element | None) -> None:
         """Lower several members, in order."""
-        for node in found:
+        for node in members:
             self.lower(node, owner)
 
-    def lower_texts(self, node: Node, owner: Element | None) -> None:
-        """Lower what annotates a node, which became the owner of that."""
-        for one in node.members:
-            if one.kind in nodes.TEXTS:
-                self.lower(one, owner)
+    def lower_annotations(self, node: Node, owner: Element | None) -> None:
+        """Lower the annotations of a node as members of *owner*, the element of the node."""
+        for member in node.members:
+            if member.kind in nodes.ANNOTATIONS:
+                self.lower(member, owner)
 
-    def settle_in(self, home: Home, found: Iterable[Node]) -> None:
-        """Say of nodes that they stand in a document of the unit."""
-        self._homes.update(dict.fromkeys(map(id, found), home))
+    def assign_document(self, document: DocumentPositions, members: Iterable[Node]) -> None:
+        """Record that nodes belong to a document of the unit."""
+        self._documents.update(dict.fromkeys(map(id, members), document))
 
-    def document(self, node: Node) -> Document | None:
-        """The document of the unit that the node stands in; None for one of the library."""
-        home = self._homes.get(id(node))
-        return None if home is None else home.document
-
-    def target(self, node: Node, relation: Relation) -> Node | None:
-        """What a relation of a node leads to, in the unit or in the library."""
-        found = relation.reference.target
-        return found if found is not None else self.model.target(node, relation)
-
-    def element(self, node: Node | None) -> Element | None:
-        """What the node became; a redefinition that says nothing is what it redefines."""
-        if node is None:
-            return None
-        known = self.elements.get(id(node))
-        if known is None and id(node) in self.repeated:
-            return self.element(nodes.target(node, "Redefinition"))
-        return known
-
-    def later(self, work: Work) -> None:
-        """Do something when all elements are there."""
-        self._later.append(work)
-
-    def last(self, work: Work) -> None:
-        """Do something when all edges are there."""
-        self._last.append(work)
-
-    def finish(self) -> None:
-        """Do all that waits for elements, in order."""
-        self.work()
-        while self._last:
-            self._last.popleft()()
-            if self._later:
-                self.work()
-        for source, general in self._generals if self._waits else ():
-            self.graph.disconnect(Edge.SPECIALIZES, source, general)
-            self.graph.pending.append(Pending(Edge.SPECIALIZES, source.id, general.id))
-
-    def work(self) -> None:
-        """Do what waits for elements, and what that brings with it."""
-        while self._later:
-            waiting, self._later = self._later, []
-            for one in waiting:
-                one()
-
-    # -- elements ------------------------------------------------------------------------------
-
-    def add(
-        self, node: Node, kind: Kind, name: str, owner: Element | None, **attrs: AttrValue
-    ) -> Element:
-        """The element that the node is."""
-        made = self.elements[id(node)] = self._bring(node, kind, name, owner, attrs)
-        return made
-
-    def make(
-        self, node: Node, kind: Kind, name: str, owner: Element | None, **attrs: AttrValue
-    ) -> Element:
-        """One more element that the node brings with it, at its place."""
-        return self._bring(node, kind, name, owner, attrs)
-
-    def _bring(
-        self,
-        node: Node,
-        kind: Kind,
-        name: str,
-        owner: Element | None,
-        attrs: dict[str, AttrValue],
-    ) -> Element:
-        home = self._homes.get(id(node))
-        source, ordinal = ("", -1) if home is None else (home.path, home.ordinal(node))
-        id_ = self._names.give(kind, name, owner, source)
-        above = None if owner is None else owner.id
-        made = self.graph.add(Element(id_, kind, name, above, ordinal, source, _said(attrs)))
-        self.seen.add(id(node))
-        self._brought[made.id] = node
-        return made
-
-    def is_made(self, element: Element, node: Node) -> bool:
-        """Whether an element is one of those that a node brought with it."""
-        return self._brought.get(element.id) is node
-
-    def below(self, owner: Element, kind: Kind, name: str) -> Element:
-        """An element that nothing in the text stands for, at the place of its owner."""
-        return self._new(owner, kind, name, owner)
-
-    def beside(self, other: Element, kind: Kind, name: str) -> Element:
-        """The same beside an element, with which it shares the owner."""
-        return self._new(other, kind, name, self.graph.owner(other))
-
-    def _new(self, at: Element, kind: Kind, name: str, owner: Element | None) -> Element:
-        id_ = self._names.give(kind, name, owner, at.source)
-        above = None if owner is None else owner.id
-        return self.graph.add(Element(id_, kind, name, above, at.ordinal, at.source))
-
-    def set(self, element: Element, **attrs: AttrValue) -> None:
-        """Give attributes to an element; those that say nothing are left out."""
-        given = _said(attrs)
-        if given:
-            self.graph.set(element, **given)
-
-    # -- edges ---------------------------------------------------------------------------------
-
-    def refer(self, edge: Edge, source: Element, found: Reference | None) -> None:
-        """Let an edge lead to what a reference names, when all elements are there."""
-        if found is not None:
-            self.later(lambda: self.lead(edge, source, found.target))
-
-    def lead(self, edge: Edge, source: Element, target: Node | None) -> None:
-        """Let an edge lead to the element of a node, or to a stub of the library."""
-        if target is None:
-            self._unresolved(source, edge)
-            return
-        known = self.elements.get(id(target))
-        if known is None and id(target) in self.repeated:
-            known = self.element(target)
-        if known is not None:
-            if edge is Edge.SPECIALIZES:
-                self._generals.append((source, known))
-            self.graph.connect(edge, source, known)
-        elif id(target) not in self._homes:
-            self._outside(edge, source, target)
-        else:
-            self._lost(edge, source, target)
-
-    def lead_all(self, edge: Edge, source: Element, targets: Iterable[Node]) -> None:
-        """Let edges lead to the elements of several nodes."""
-        for target in targets:
-            self.lead(edge, source, target)
-
-    def lead_to(self, edge: Edge, source: Element, name: str, kind: Kind) -> None:
-        """Let an edge lead to an element of the library by its qualified name.
-
-        Generalizations inside the unit that were stated later wait for it, to come behind it.
-        """
-        if edge is Edge.SPECIALIZES and not self._waits:
-            self._waits = True
-            self._generals.clear()
-        target = self._stubs.get(name) or self._stub(kind, name)
-        self.graph.pending.append(Pending(edge, source.id, target, kind, name))
-        if edge is Edge.TYPED_BY and name in stubs.SCALARS:
-            self._scalars.setdefault(source.id, []).append((name, kind))
-
-    def share_types(self, known: Element, other: Element) -> None:
-        """Give an element the types of another one, those of the library too."""
-        for type_ in self.graph.targets(known, Edge.TYPED_BY):
-            self.graph.connect(Edge.TYPED_BY, other, type_)
-        for name, kind in self._scalars.get(known.id, ()):
-            self.lead_to(Edge.TYPED_BY, other, name, kind)
-
-    def is_scalar(self, element: Element) -> bool:
-        """Whether a data type of the standard library types the element."""
-        return element.id in self._scalars
-
-    def _stub(self, kind: Kind, name: str) -> str:
-        """Id of the element that stands for one of the standard library; href of a scalar."""
-        found = self._stubs[name] = stubs.stand_in(self.graph, kind, name)
-        return found
-
-    def _outside(self, edge: Edge, source: Element, target: Node) -> None:
-        known = self._outer.get(id(target))
-        if known is None:
-            known = self._outer[id(target)] = (nodes.path_of(target), stubs.kind_of(target))
-        name, kind = known
-        if not stubs.is_base(name):
-            self.lead_to(edge, source, name, kind)
-
-    def _unresolved(self, source: Element, edge: Edge) -> None:
-        known = source.attrs.get("unresolved")
-        names = known if isinstance(known, tuple) else ()
-        if str(edge.value) not in names:
-            self.graph.set(source, unresolved=(*names, str(edge.value)))
-
-    def _lost(self, edge: Edge, source: Element, target: Node) -> None:
-        self._unresolved(source, edge)
-        name = nodes.path_of(target)
-        subject, type_ = self.graph.subject(source), nodes.words(target.kind)
-        self.sink.report(NOT_IN_GRAPH, subject, edge=str(edge.value), name=name, type=type_)
-
-    # -- steps ---------------------------------------------------------------------------------
-
-    def point(self, node: Node, *, is_target: bool) -> Element | None:
-        """The node of an activity at which a step is entered, or the one at which it is left."""
-        entry_and_exit = self.spans.get(id(node))
-        if entry_and_exit is None:
-            return self.elements.get(id(node))
-        return entry_and_exit[0] if is_target else entry_and_exit[1]
-
-    def control(self, owner: Element, name: str, node: Node | None = None) -> Element:
-        """The start or the end of a behaviour; made when a succession needs it."""
-        known = self._controls.get((owner.id, name))
-        if known is None:
-            known = self._made(node, Kind.CONTROL, name, owner)
-            self._controls[owner.id, name] = known
-            self.set(known, subkind="initial" if name == "start" else "final")
-        return known
-
-    def end_branches(self) -> None:
-        """Say of each ``done`` whether it ends the behaviour or, as a flow final, one branch."""
-        for (_, name), end in self._controls.items():
-            if name == "done" and end.kind is Kind.CONTROL and not is_joined(self.graph, end):
-                self.set(end, subkind="flow-final")
-
-    def _made(self, node: Node | None, kind: Kind, name: str, owner: Element) -> Element:
-        return self.make(node, kind, name, owner) if node else self.below(owner, kind, name)
-
-    def vertex(self, region: Element, name: str, node: Node | None = None) -> Element:
-        """The initial pseudostate or the final state of a region; made when it is needed."""
-        known = self._controls.get((region.id, name))
-        if known is None:
-            is_start = name == "start"
-            kind = Kind.PSEUDOSTATE if is_start else Kind.FINAL_STATE
-            known = self._controls[region.id, name] = self._made(node, kind, name, region)
-            self.set(known, subkind="initial" if is_start else "")
-        return known
-
-    def end_of(self, holder: Element, name: str) -> Element | None:
-        """The start or the end of a behaviour or region, if something leads from or to it."""
-        return self._controls.get((holder.id, name))
+    def document_of(self, node: Node) -> Document | None:
+        """Return the document of the unit that contains the node; None for the library."""
+        positions = self._documents.get(id(node))
+        return None if positions is None else positions.document
 
     @property
     def roots(self) -> list[Node]:
-        """What holds the members at the top of each document of the unit."""
-        return [one.document.root for one in self.homes]
+        """The root namespaces of the documents of the unit."""
+        return [positions.document.root for positions in self.documents]
 
-    def id_of(self, name: str) -> str:
-        """Id of the element with a qualified name, or the empty string."""
-        return self._names.id_of(name)
+    def resolve(self, node: Node, relation: Relation) -> Node | None:
+        """Return the target of a relation of a node, in the unit or in the library."""
+        target = relation.reference.target
+        return target if target is not None else self.model.target(node, relation)
 
-    def subject(self, node: Node) -> Subject:
-        """The node as the subject of a diagnostic."""
-        home = self._homes.get(id(node))
-        if home is None:
-            return Subject(nodes.path_of(node))
-        return Subject(nodes.path_of(node), place=Place(home.path, home.ordinal(node)))
+    def element_of(self, node: Node | None) -> Element | None:
+        """Return the element of the node; for a redundant redefinition, of what it redefines."""
+        if node is None:
+            return None
+        element = self.elements.get(id(node))
+        if element is None and id(node) in self.redundant:
+            return self.element_of(nodes.find_target(node, "Redefinition"))
+        return element
+
+    def subject_of(self, node: Node) -> Subject:
+        """Return the node as the subject of a diagnostic."""
+        positions = self._documents.get(id(node))
+        name = nodes.qualified_name_of(node)
+        if positions is None:
+            return Subject(name)
+        return Subject(name, place=Place(positions.path, positions.ordinal_of(node)))
+
+    # -- order of work -------------------------------------------------------------------------
+
+    def defer_until_elements(self, work: Work) -> None:
+        """Run *work* once all elements exist."""
+        self._until_elements.append(work)
+
+    def defer_until_edges(self, work: Work) -> None:
+        """Run *work* once all edges exist."""
+        self._until_edges.append(work)
+
+    def run_deferred(self) -> None:
+        """Run the work that waits for elements, also work that this adds."""
+        while self._until_elements:
+            batch, self._until_elements = self._until_elements, []
+            for work in batch:
+                work()
+
+    def finish(self) -> None:
+        """Run all deferred work, in order."""
+        self.run_deferred()
+        while self._until_edges:
+            self._until_edges.popleft()()
+            if self._until_elements:
+                self.run_deferred()
+        # Edges to stubs are pending until the pass `resolve`. Generalizations stated after one of
+        # them become pending too, so that their order stays that of the text.
+        for source, general in self._generalizations if self._has_pending_general else ():
+            self.graph.disconnect(Edge.SPECIALIZES, source, general)
+            self.graph.pending.append(Pending(Edge.SPECIALIZES, source.id, general.id))
+
+    # -- elements ------------------------------------------------------------------------------
+
+    def add_element(
+        self, node: Node, kind: Kind, name: str, owner: Element | None, **attrs: AttrValue
+    ) -> Element:
+        """Add the element that the node is."""
+        element = self.elements[id(node)] = self.add_derived(node, kind, name, owner, **attrs)
+        return element
+
+    def add_derived(
+        self, node: Node, kind: Kind, name: str, owner: Element | None, **attrs: AttrValue
+    ) -> Element:
+        """Add a further element for the node, at its location."""
+        positions = self._documents.get(id(node))
+        source, ordinal = "", -1
+        if positions is not None:
+            source, ordinal = positions.path, positions.ordinal_of(node)
+        id_ = self._names.add(kind, name, owner, source)
+        owner_id = None if owner is None else owner.id
+        attributes = _drop_empty(attrs)
+        element = self.graph.add(Element(id_, kind, name, owner_id, ordinal, source, attributes))
+        self.lowered.add(id(node))
+        self._origins[element.id] = node
+        return element
+
+    def is_derived_from(self, element: Element, node: Node) -> bool:
+        """Whether an element was added for a node."""
+        return self._origins.get(element.id) is node
+
+    def add_implied_child(self, owner: Element, kind: Kind, name: str) -> Element:
+        """Add an element without a node, at the location of its owner."""
+        return self._add_implied(owner, kind, name, owner)
+
+    def add_implied_sibling(self, sibling: Element, kind: Kind, name: str) -> Element:
+        """Add an element without a node, with the owner and location of *sibling*."""
+        return self._add_implied(sibling, kind, name, self.graph.owner(sibling))
+
+    def _add_implied(
+        self, neighbor: Element, kind: Kind, name: str, owner: Element | None
+    ) -> Element:
+        source = neighbor.source
+        id_ = self._names.add(kind, name, owner, source)
+        owner_id = None if owner is None else owner.id
+        return self.graph.add(Element(id_, kind, name, owner_id, neighbor.ordinal, source))
+
+    def set_attributes(self, element: Element, **attrs: AttrValue) -> None:
+        """Set attributes of an element, without those that have an empty value."""
+        attributes = _drop_empty(attrs)
+        if attributes:
+            self.graph.set(element, **attributes)
+
+    def id_of(self, qualified_name: str) -> str:
+        """Return the id of the element with a qualified name, or the empty string."""
+        return self._names.id_of(qualified_name)
+
+    # -- edges ---------------------------------------------------------------------------------
+
+    def connect_reference(self, edge: Edge, source: Element, reference: Reference | None) -> None:
+        """Connect an element to the target of a reference, once all elements exist."""
+        if reference is not None:
+            self.defer_until_elements(lambda: self.connect_node(edge, source, reference.target))
+
+    def connect_node(self, edge: Edge, source: Element, target: Node | None) -> None:
+        """Connect an element to that of a node, or to a stub if the node is in the library.
+
+        The element records the kind of an edge whose target is not resolved.
+        """
+        if target is None:
+            self._mark_unresolved(source, edge)
+            return
+        element = self.element_of(target)
+        if element is not None:
+            if edge is Edge.SPECIALIZES:
+                self._generalizations.append((source, element))
+            self.graph.connect(edge, source, element)
+        elif id(target) not in self._documents:
+            self._connect_library_node(edge, source, target)
+        else:
+            self._report_unread_target(edge, source, target)
+
+    def connect_nodes(self, edge: Edge, source: Element, targets: Iterable[Node]) -> None:
+        """Connect an element to those of several nodes."""
+        for target in targets:
+            self.connect_node(edge, source, target)
+
+    def connect_library_element(self, edge: Edge, source: Element, name: str, kind: Kind) -> None:
+        """Connect an element to an element of the library, given its qualified name."""
+        if edge is Edge.SPECIALIZES and not self._has_pending_general:
+            self._has_pending_general = True
+            self._generalizations.clear()
+        if name not in self._stubs:
+            self._stubs[name] = libraries.ensure_stub(self.graph, kind, name)
+        self.graph.pending.append(Pending(edge, source.id, self._stubs[name], kind, name))
+        if edge is Edge.TYPED_BY and name in libraries.SCALARS:
+            self._library_types.setdefault(source.id, []).append((name, kind))
+
+    def copy_types(self, source: Element, target: Element) -> None:
+        """Type *target* by the types of *source*, including those of the library."""
+        for type_ in self.graph.targets(source, Edge.TYPED_BY):
+            self.graph.connect(Edge.TYPED_BY, target, type_)
+        for name, kind in self._library_types.get(source.id, ()):
+            self.connect_library_element(Edge.TYPED_BY, target, name, kind)
+
+    def has_scalar_type(self, element: Element) -> bool:
+        """Whether a scalar type of the standard library types the element."""
+        return element.id in self._library_types
+
+    def _connect_library_node(self, edge: Edge, source: Element, target: Node) -> None:
+        if id(target) not in self._library_names:
+            name_and_kind = (nodes.qualified_name_of(target), libraries.stub_kind_of(target))
+            self._library_names[id(target)] = name_and_kind
+        name, kind = self._library_names[id(target)]
+        if not libraries.is_base(name):
+            self.connect_library_element(edge, source, name, kind)
+
+    def _mark_unresolved(self, source: Element, edge: Edge) -> None:
+        unresolved = source.attrs.get("unresolved")
+        edges = unresolved if isinstance(unresolved, tuple) else ()
+        if str(edge.value) not in edges:
+            self.graph.set(source, unresolved=(*edges, str(edge.value)))
+
+    def _report_unread_target(self, edge: Edge, source: Element, target: Node) -> None:
+        self._mark_unresolved(source, edge)
+        self.sink.report(
+            NOT_IN_GRAPH,
+            self.graph.subject(source),
+            edge=str(edge.value),
+            name=nodes.qualified_name_of(target),
+            type=nodes.spell_metaclass(target.kind),
+        )
+
+    # -- starts and ends of behaviours ---------------------------------------------------------
+
+    def flow_node_of(self, step: Node, *, is_target: bool) -> Element | None:
+        """Return the node at which flows enter a step (*is_target*), or at which they leave it."""
+        entry_and_exit = self.spans.get(id(step))
+        if entry_and_exit is None:
+            return self.elements.get(id(step))
+        return entry_and_exit[0] if is_target else entry_and_exit[1]
+
+    def ensure_control_node(self, owner: Element, name: str, node: Node | None = None) -> Element:
+        """Return the ``start`` or ``done`` of a behaviour; add it if it is new."""
+        control_node = self.find_start_or_done(owner, name)
+        if control_node is None:
+            subkind = "initial" if name == "start" else "final"
+            control_node = self._add_start_or_done(node, Kind.CONTROL, name, owner, subkind)
+        return control_node
+
+    def ensure_vertex(self, region: Element, name: str, node: Node | None = None) -> Element:
+        """Return the initial pseudostate or the final state of a region; add it if it is new."""
+        vertex = self.find_start_or_done(region, name)
+        if vertex is None:
+            is_start = name == "start"
+            kind = Kind.PSEUDOSTATE if is_start else Kind.FINAL_STATE
+            subkind = "initial" if is_start else ""
+            vertex = self._add_start_or_done(node, kind, name, region, subkind)
+        return vertex
+
+    def find_start_or_done(self, owner: Element, name: str) -> Element | None:
+        """Return the element for ``start`` or ``done`` of a behaviour or region, if it exists."""
+        return self._starts_and_ends.get((owner.id, name))
+
+    def _add_start_or_done(
+        self, node: Node | None, kind: Kind, name: str, owner: Element, subkind: str
+    ) -> Element:
+        """Add an element at the location of the node that mentions it, if there is one."""
+        if node is None:
+            element = self.add_implied_child(owner, kind, name)
+        else:
+            element = self.add_derived(node, kind, name, owner)
+        self._starts_and_ends[owner.id, name] = element
+        self.set_attributes(element, subkind=subkind)
+        return element
+
+    def mark_flow_finals(self) -> None:
+        """Make each ``done`` that ends only one of several concurrent branches a flow final."""
+        for (_, name), end in self._starts_and_ends.items():
+            if name == "done" and end.kind is Kind.CONTROL and not is_joined(self.graph, end):
+                self.set_attributes(end, subkind="flow-final")
 
 
-def _said(attrs: dict[str, AttrValue]) -> dict[str, AttrValue]:
-    """The attributes that say something: an empty sequence does, no text and no number do not."""
+def _drop_empty(attrs: dict[str, AttrValue]) -> dict[str, AttrValue]:
+    """Return the attributes without false and empty values; an empty sequence is a value."""
     if all(attrs.values()):
         return attrs
     return {key: value for key, value in attrs.items() if value or value == ()}

@@ -1,8 +1,13 @@
-"""Questions about nodes of the tree that every part of the lowering asks."""
+"""Queries on nodes of the syntax tree that several handlers need."""
 
 from collections.abc import Iterator
+from typing import TYPE_CHECKING
 
+from sysmlc.language.text.lexer import join_tokens
 from sysmlc.language.tree import Node, Reference
+
+if TYPE_CHECKING:
+    from sysmlc.frontends.sysml.lowering import Lowering
 
 _EXPRESSIONS = """
     OperatorExpression IndexExpression SelectExpression CollectExpression FeatureChainExpression
@@ -11,157 +16,248 @@ _EXPRESSIONS = """
     LiteralExpression TriggerInvocationExpression
 """
 EXPRESSIONS = frozenset(_EXPRESSIONS.split())
-TEXTS = frozenset({"Documentation", "Comment", "TextualRepresentation", "MetadataUsage"})
-"""Metaclasses of what annotates its owner and gives it no feature."""
-_ARGUMENTS = frozenset({"ParameterMembership", "FeatureMembership", "OwningMembership", ""})
+ANNOTATIONS = frozenset({"Documentation", "Comment", "TextualRepresentation", "MetadataUsage"})
+"""Metaclasses of members that annotate their owner and are no features of it."""
 SUBSETTINGS = ("Subsetting", "ReferenceSubsetting", "CrossSubsetting")
-"""Relations to features that a feature subsets, in whatever way but redefinition."""
+"""Relations of a feature to features that it subsets, redefinition aside."""
+_ARGUMENT_MEMBERSHIPS = frozenset(
+    {"ParameterMembership", "FeatureMembership", "OwningMembership", ""}
+)
+_HEAD_MEMBERSHIPS = frozenset({"FeatureValue", "EndFeatureMembership"})
+_MULTIPLICITIES = frozenset({"MultiplicityRange", "Multiplicity"})
+_TYPINGS = frozenset({"FeatureTyping", "ConjugatedPortTyping"})
+_TYPE_SOURCES = frozenset({"Redefinition", "Subsetting", "ReferenceSubsetting"})
 
 
-def references(node: Node, *kinds: str) -> list[Reference]:
-    """References of the relations of these metaclasses that the text states, in order."""
-    return [one.reference for one in node.relations if one.kind in kinds]
+# -- relations ---------------------------------------------------------------------------------
 
 
-def reference(node: Node, *kinds: str) -> Reference | None:
-    """The first of them."""
-    for one in node.relations:
-        if one.kind in kinds:
-            return one.reference
+def list_references(node: Node, *kinds: str) -> list[Reference]:
+    """Return the references of the node's relations of these metaclasses, in order."""
+    return [relation.reference for relation in node.relations if relation.kind in kinds]
+
+
+def find_reference(node: Node, *kinds: str) -> Reference | None:
+    """Return the reference of the node's first relation of these metaclasses."""
+    for relation in node.relations:
+        if relation.kind in kinds:
+            return relation.reference
     return None
 
 
-def target(node: Node, *kinds: str) -> Node | None:
-    """The element that the first of them leads to."""
-    found = reference(node, *kinds)
-    return None if found is None else found.target
+def find_target(node: Node, *kinds: str) -> Node | None:
+    """Return the target of the node's first relation of these metaclasses."""
+    reference = find_reference(node, *kinds)
+    return None if reference is None else reference.target
 
 
-def subsetted(node: Node) -> list[Reference]:
-    """Features that the node subsets, in whatever way but redefinition."""
-    return references(node, *SUBSETTINGS)
+def list_subsettings(node: Node) -> list[Reference]:
+    """Return the references to features that the node subsets, redefinitions aside."""
+    return list_references(node, *SUBSETTINGS)
 
 
-def members(node: Node, *kinds: str) -> Iterator[Node]:
-    """Members of these metaclasses, in order."""
-    return (one for one in node.members if one.kind in kinds)
+def last_name(reference: Reference) -> str:
+    """Return the last segment of the name in a reference."""
+    return reference.chain[-1][-1] if reference.chain and reference.chain[-1] else ""
 
 
-def held(node: Node, *memberships: str) -> Iterator[Node]:
-    """Members that these memberships own, in order."""
-    return (one for one in node.members if one.membership in memberships)
+def types_of(lowering: "Lowering", node: Node) -> list[Node]:
+    """Return the definitions that type a feature (KerML 1.0, 8.3.3.3.4).
+
+    A feature without types of its own has those of the features that it redefines or subsets. The
+    search is depth-first and follows a chain of redefinitions of any length.
+    """
+    types: dict[int, Node] = {}
+    visited: set[int] = set()
+    pending = [node]
+    while pending:
+        feature = pending.pop()
+        if id(feature) in visited:
+            continue
+        visited.add(id(feature))
+        typings = [relation for relation in feature.relations if relation.kind in _TYPINGS]
+        for relation in typings:
+            type_ = lowering.resolve(feature, relation)
+            if type_ is not None:
+                types.setdefault(id(type_), type_)
+        if not typings:
+            targets = [
+                lowering.resolve(feature, relation)
+                for relation in feature.relations
+                if relation.kind in _TYPE_SOURCES
+            ]
+            pending += [target for target in reversed(targets) if target is not None]
+    return list(types.values())
 
 
-def quoted(node: Node, text: str) -> str:
-    """Return the source text of a node in one line, without notes."""
-    from sysmlc.language.text.lexer import join_tokens
-
-    return join_tokens(text, node.start, node.end) if 0 <= node.start < node.end else ""
+# -- members -----------------------------------------------------------------------------------
 
 
-def arguments(node: Node) -> list[Node]:
-    """The arguments of an operator, an invocation or `new`, in order; named ones as features."""
-    if node.kind == "ConstructorExpression":
-        node = next(held(node, "ReturnParameterMembership"), node)
-    return [one for one in node.members if one.membership in _ARGUMENTS]
+def iter_by_metaclass(node: Node, *kinds: str) -> Iterator[Node]:
+    """Yield the members of these metaclasses, in order."""
+    return (member for member in node.members if member.kind in kinds)
+
+
+def iter_by_membership(node: Node, *memberships: str) -> Iterator[Node]:
+    """Yield the members that the node owns through one of these memberships, in order."""
+    return (member for member in node.members if member.membership in memberships)
+
+
+def body_of(node: Node) -> list[Node]:
+    """Return the members between the braces: no multiplicity, no value and no ends."""
+    if not node.members:
+        return []
+    cross = cross_feature_of(node)
+    return [
+        member
+        for member in node.members
+        if member.membership not in _HEAD_MEMBERSHIPS
+        and member.kind not in _MULTIPLICITIES
+        and member is not cross
+    ]
 
 
 def value_of(node: Node) -> Node | None:
-    """The expression of the node's feature value, bound, initial or default."""
-    for one in node.members:
-        if one.membership == "FeatureValue":
-            return one
+    """Return the expression of the node's feature value, whether bound, initial or default."""
+    for member in node.members:
+        if member.membership == "FeatureValue":
+            return member
     return None
 
 
 def result_of(node: Node) -> Node | None:
-    """The result expression of a constraint, a calculation or a body."""
-    return next(held(node, "ResultExpressionMembership"), None)
+    """Return the result expression of a constraint or a calculation."""
+    return next(iter_by_membership(node, "ResultExpressionMembership"), None)
 
 
 def ends_of(node: Node) -> list[Node]:
-    """The ends of a connector, in order."""
-    return [one for one in node.members if one.membership == "EndFeatureMembership"]
-
-
-def is_message(node: Node) -> bool:
-    """Whether a flow is a message: it has events instead of ends."""
-    return (
-        node.kind == "FlowUsage" and not ends_of(node) and bool(node.attributes.get("isAbstract"))
-    )
+    """Return the ends of a connector, in order."""
+    return [member for member in node.members if member.membership == "EndFeatureMembership"]
 
 
 def events_of(node: Node) -> list[Node]:
-    """The events at which a message is sent and received."""
-    return [one for one in held(node, "ParameterMembership") if one.kind.startswith("Event")]
+    """Return the events at which a message is sent and received."""
+    parameters = iter_by_membership(node, "ParameterMembership")
+    return [parameter for parameter in parameters if parameter.kind.startswith("Event")]
 
 
-def last_name(found: Reference) -> str:
-    """The last name of a reference."""
-    return found.chain[-1][-1] if found.chain and found.chain[-1] else ""
+def list_arguments(node: Node) -> list[Node]:
+    """Return the arguments of an operator, an invocation or ``new``; named ones are features."""
+    if node.kind == "ConstructorExpression":
+        node = next(iter_by_membership(node, "ReturnParameterMembership"), node)
+    return [member for member in node.members if member.membership in _ARGUMENT_MEMBERSHIPS]
 
 
-def name_of(node: Node) -> str:
-    """The effective name (KerML 1.0, 8.3.3.3.4): its own, else that of what it redefines.
-
-    A usage that only refers to another one has the name of that.
-    """
-    own = node.name or node.short_name
-    if own:
-        return own
-    redefined = reference(node, "Redefinition") or reference(node, "ReferenceSubsetting")
-    return "" if redefined is None else last_name(redefined)
-
-
-def body_of(node: Node) -> list[Node]:
-    """What stands between the braces: neither multiplicity, value nor ends."""
-    if not node.members:
-        return []
-    cross = crossed(node)
-    return [
-        one
-        for one in node.members
-        if one.membership not in _HEAD and one.kind not in _RANGE and one is not cross
-    ]
-
-
-def crossed(node: Node) -> Node | None:
-    """The feature of an end that crosses to the other end: ``[*]`` in ``end [*] part b : B``.
+def cross_feature_of(node: Node) -> Node | None:
+    """Return the cross feature of an end: ``[*]`` in ``end [*] part b : B``.
 
     Its multiplicity is that of an end of a UML association (KerML 1.0, 8.3.4.5.3).
     """
-    if not node.attributes.get("isEnd") and node.membership != "EndFeatureMembership":
+    if not is_end(node):
         return None
-    found = held(node, "OwningMembership")
-    return next((one for one in found if one.kind in ("Feature", "ReferenceUsage")), None)
+    for member in iter_by_membership(node, "OwningMembership"):
+        if member.kind in ("Feature", "ReferenceUsage"):
+            return member
+    return None
 
 
-_HEAD = frozenset({"FeatureValue", "EndFeatureMembership"})
-_RANGE = frozenset({"MultiplicityRange", "Multiplicity"})
+def is_end(node: Node) -> bool:
+    """Whether a feature is an end of a connector, or of a definition of connections."""
+    return node.membership == "EndFeatureMembership" or bool(node.attributes.get("isEnd"))
 
 
-def is_text(node: Node) -> bool:
+def is_annotation(node: Node) -> bool:
     """Whether the node only annotates its owner."""
-    return node.kind in TEXTS
+    return node.kind in ANNOTATIONS
 
 
-def top_of(node: Node) -> Node:
-    """The member of the root namespace that the node stands in."""
+def is_message(node: Node) -> bool:
+    """Whether a flow is a message, which has events instead of ends."""
+    is_flow_without_ends = node.kind == "FlowUsage" and not ends_of(node)
+    return is_flow_without_ends and bool(node.attributes.get("isAbstract"))
+
+
+# -- feature paths -----------------------------------------------------------------------------
+
+
+def path_of_end(end: Node) -> list[Node | None]:
+    """Return the features from the outermost to the end of a connector or a flow.
+
+    None stands for a feature that is not resolved.
+    """
+    path: list[Node | None] = []
+    subsettings = list_references(end, "ReferenceSubsetting")
+    for reference in subsettings or list_references(end, "Subsetting", "Redefinition"):
+        path += _path_of_reference(reference)
+    for member in end.members:
+        inner = find_reference(member, "Redefinition", "ReferenceSubsetting")
+        value = value_of(member)
+        if inner is not None:
+            path += _path_of_reference(inner)
+        elif value is not None:
+            path += path_of_expression(value)
+    return path
+
+
+def path_of_expression(expression: Node) -> list[Node | None]:
+    """Return the features that an expression names: one feature, or a chain of features.
+
+    None stands for a feature that is not resolved, and for any other expression.
+    """
+    reference = find_reference(expression, "Membership")
+    if expression.kind == "FeatureChainExpression":
+        path: list[Node | None] = []
+        for member in expression.members:
+            path += path_of_expression(member)
+        return path + ([] if reference is None else _path_of_reference(reference))
+    if expression.kind != "FeatureReferenceExpression" or reference is None:
+        return [None]
+    return _path_of_reference(reference)
+
+
+def _path_of_reference(reference: Reference) -> list[Node | None]:
+    """Return the targets of the chain, with one None for those that are not resolved."""
+    targets: list[Node | None] = list(reference.targets or ())
+    return targets if len(targets) == len(reference.chain) else [*targets, None]
+
+
+# -- names and text ----------------------------------------------------------------------------
+
+
+def name_of(node: Node) -> str:
+    """Return the effective name (KerML 1.0, 8.3.3.3.4): its own, or that of a redefined feature.
+
+    A usage that only refers to another usage has the name of that usage.
+    """
+    own_name = node.name or node.short_name
+    if own_name:
+        return own_name
+    reference = find_reference(node, "Redefinition") or find_reference(node, "ReferenceSubsetting")
+    return "" if reference is None else last_name(reference)
+
+
+def qualified_name_of(node: Node) -> str:
+    """Return the names from the root down, joined by ``::``; ``<metaclass>`` if there is none."""
+    names = []
+    element: Node | None = node
+    while element is not None and element.owner is not None:
+        names.append(name_of(element) or f"<{element.kind}>")
+        element = element.owner
+    return "::".join(reversed(names))
+
+
+def root_member_of(node: Node) -> Node:
+    """Return the member of the root namespace that contains the node."""
     while node.owner is not None and node.owner.owner is not None:
         node = node.owner
     return node
 
 
-def path_of(node: Node) -> str:
-    """Names from the root down, joined by ``::``; what has no name shows its metaclass."""
-    names = []
-    above: Node | None = node
-    while above is not None and above.owner is not None:
-        names.append(name_of(above) or f"<{above.kind}>")
-        above = above.owner
-    return "::".join(reversed(names))
-
-
-def words(metaclass: str) -> str:
-    """A metaclass in words: ``FlowDefinition`` is ``flow definition``."""
+def spell_metaclass(metaclass: str) -> str:
+    """Return a metaclass in words: ``FlowDefinition`` is ``flow definition``."""
     return "".join(f" {c.lower()}" if c.isupper() else c for c in metaclass).strip()
+
+
+def quote_source(node: Node, text: str) -> str:
+    """Return the source text of a node in one line, without notes."""
+    return join_tokens(text, node.start, node.end) if 0 <= node.start < node.end else ""

@@ -1,12 +1,11 @@
-"""Dependencies, derivations, allocations, imports."""
+"""Dependencies, derivations, allocations, imports and aliases."""
 
 from typing import TYPE_CHECKING
 
 from sysmlc.frontends.sysml import annotations, nodes
-from sysmlc.frontends.sysml.connections import steps_of
-from sysmlc.frontends.sysml.definitions import visibility
+from sysmlc.frontends.sysml.definitions import visibility_attributes
 from sysmlc.ir import AttrValue, Edge, Element, Kind
-from sysmlc.language.tree import Node
+from sysmlc.language.tree import Node, Reference
 
 if TYPE_CHECKING:
     from sysmlc.frontends.sysml.lowering import Lowering
@@ -21,6 +20,7 @@ _ROLES = {
     "Conforms": "conform",
     "Exposes": "expose",
 }
+"""Roles of dependencies by keyword."""
 _SUBKINDS = {
     "Realization": "realization",
     "Substitution": "substitution",
@@ -30,162 +30,295 @@ _SUBKINDS = {
     "Deployment": "deployment",
     "RoleBinding": "role-binding",
     "InternalLink": "internal-link",
-    "ProcessLink": "ppr",
     "OrderLink": "succession",
 }
 _EDGES = {"Generalization": Edge.SPECIALIZES, "Constrains": Edge.REFERENCES}
+"""Keywords of dependencies that are edges, not elements."""
 _REFINEMENT = "Refinement"
+_ALLOCATION: dict[str, AttrValue] = {"role": "allocate", "subkind": "abstraction"}
+_DERIVATION: dict[str, AttrValue] = {"role": "derive", "subkind": "abstraction"}
 
 
-def dependency(low: "Lowering", node: Node, owner: Element | None) -> None:
-    """A dependency by what its keyword says; some are no elements but edges."""
-    words = keywords(node)
-    clients, suppliers = nodes.references(node, "client"), nodes.references(node, "supplier")
-    edge = next((_EDGES[one] for one in words if one in _EDGES), None)
-    if "Realization" in words and not node.name and _is_inside(low, clients[:1], owner):
+# -- dependencies ------------------------------------------------------------------------------
+
+
+def lower_dependency(lowering: "Lowering", node: Node, owner: Element | None) -> None:
+    """Lower a dependency by its keyword: to an element, or to edges."""
+    keywords = _list_keywords(node)
+    clients = nodes.list_references(node, "client")
+    edge = next((_EDGES[keyword] for keyword in keywords if keyword in _EDGES), None)
+    if "Realization" in keywords and not node.name and _is_element(lowering, clients[:1], owner):
         edge = Edge.REALIZES
     if edge is not None and clients:
-        low.later(lambda: _edge(low, edge, node))
-        return
-    if "Extension" in words:
-        _extend(low, node, owner)
-        return
-    made = low.add(node, Kind.DEPENDENCY, node.name or "", owner, **_attrs(words))
-    low.set(made, **visibility(node))
-    for client in clients:
-        low.refer(Edge.CLIENT, made, client)
-    for supplier in suppliers:
-        low.refer(Edge.SUPPLIER, made, supplier)
-    low.lower_all((one for one in nodes.body_of(node) if not _is_refinement(one)), made)
+        lowering.defer_until_elements(lambda: _connect_ends(lowering, edge, node))
+    elif "Extension" in keywords:
+        _lower_extension(lowering, node, owner)
+    else:
+        _add_dependency(lowering, node, owner, keywords)
 
 
-def _is_refinement(node: Node) -> bool:
-    """Whether it is the keyword of the standard library that the role of a dependency says."""
-    target = nodes.target(node, "FeatureTyping") if _is_prefix(node) else None
-    if target is None or target.owner is None:
+def _is_element(lowering: "Lowering", references: list[Reference], element: Element | None) -> bool:
+    """Whether the first reference leads to an element."""
+    if not references or element is None:
         return False
-    return (target.owner.name, target.name) == ("ModelingMetadata", _REFINEMENT)
+    return lowering.element_of(references[0].target) is element
 
 
-def keywords(node: Node) -> list[str]:
-    """Names of the metadata definitions that a node has, of our library or of the standard's."""
-    found = list(annotations.ours(node))
-    for one in nodes.members(node, "MetadataUsage"):
-        target = nodes.target(one, "FeatureTyping")
-        named = nodes.reference(one, "FeatureTyping")
-        if target is not None and target.name and one.attributes.get("isPrefix"):
-            found.append(target.name)
-        elif named is not None and one.attributes.get("isPrefix"):
-            found.append(nodes.last_name(named).capitalize())
-    return found
+def _add_dependency(
+    lowering: "Lowering", node: Node, owner: Element | None, keywords: list[str]
+) -> None:
+    attributes = _dependency_attributes(keywords)
+    dependency = lowering.add_element(node, Kind.DEPENDENCY, node.name or "", owner, **attributes)
+    lowering.set_attributes(dependency, **visibility_attributes(node))
+    for client in nodes.list_references(node, "client"):
+        lowering.connect_reference(Edge.CLIENT, dependency, client)
+    for supplier in nodes.list_references(node, "supplier"):
+        lowering.connect_reference(Edge.SUPPLIER, dependency, supplier)
+    members = [member for member in nodes.body_of(node) if not _is_refinement_keyword(member)]
+    lowering.lower_all(members, dependency)
 
 
-def _is_inside(low: "Lowering", clients: "list", owner: Element | None) -> bool:  # type: ignore[type-arg]
-    return bool(clients) and owner is not None and low.element(clients[0].target) is owner
-
-
-def _edge(low: "Lowering", edge: Edge, node: Node) -> None:
-    for client in nodes.references(node, "client"):
-        source = low.element(client.target)
-        for supplier in nodes.references(node, "supplier") if source is not None else ():
-            if source is not None:
-                low.lead(edge, source, supplier.target)
-
-
-def _attrs(words: list[str]) -> dict[str, AttrValue]:
-    role = next((_ROLES[one] for one in words if one in _ROLES), "")
-    if _REFINEMENT in words:
+def _dependency_attributes(keywords: list[str]) -> dict[str, AttrValue]:
+    role = next((_ROLES[keyword] for keyword in keywords if keyword in _ROLES), "")
+    if _REFINEMENT in keywords:
         role = "refine"
-    subkind = next((_SUBKINDS[one] for one in words if one in _SUBKINDS), "")
+    subkind = next((_SUBKINDS[keyword] for keyword in keywords if keyword in _SUBKINDS), "")
     return {"role": role, "subkind": subkind or ("abstraction" if role else "dependency")}
 
 
-def _extend(low: "Lowering", node: Node, owner: Element | None) -> None:
-    made = low.add(node, Kind.EXTEND, node.name or "", owner)
-    low.later(lambda: _extended(low, node, made, owner))
+def _is_refinement_keyword(node: Node) -> bool:
+    """Whether a member is the keyword of the standard library that the role already states."""
+    definition = nodes.find_target(node, "FeatureTyping") if _is_keyword(node) else None
+    if definition is None or definition.owner is None:
+        return False
+    return (definition.owner.name, definition.name) == ("ModelingMetadata", _REFINEMENT)
 
 
-def _extended(low: "Lowering", node: Node, made: Element, owner: Element | None) -> None:
-    for found in nodes.references(node, "supplier"):
-        target = low.element(found.target)
-        is_case = target is not None and target.kind is Kind.USE_CASE
-        low.lead(Edge.EXTENDS if is_case else Edge.REFERENCES, made, found.target)
-        if is_case and owner is not None and owner.kind is Kind.USE_CASE and target is not None:
-            low.graph.connect(Edge.EXTENDS, owner, target)
+def _list_keywords(node: Node) -> list[str]:
+    """Return the names of metadata definitions of our library and of ``#`` keywords of a node."""
+    keywords = list(annotations.shipped_metadata_of(node))
+    for metadata in nodes.iter_by_metaclass(node, "MetadataUsage"):
+        reference = nodes.find_reference(metadata, "FeatureTyping")
+        if reference is None or not _is_keyword(metadata):
+            continue
+        if reference.target is not None and reference.target.name:
+            keywords.append(reference.target.name)
+        else:
+            keywords.append(nodes.last_name(reference).capitalize())
+    return keywords
 
 
-# -- connections that mean a dependency --------------------------------------------------------
-
-
-def derivation(low: "Lowering", node: Node, owner: Element | None) -> None:
-    """A derivation connection of the standard library: derived requirements and their original."""
-    attrs: dict[str, AttrValue] = {"role": "derive", "subkind": "abstraction"}
-    made = low.add(node, Kind.DEPENDENCY, node.name or "", owner, **attrs)
-    for end in nodes.ends_of(node) + [one for one in node.members if one.attributes.get("isEnd")]:
-        is_original = any(one.startswith("Original") for one in keywords(end))
-        edge = Edge.SUPPLIER if is_original else Edge.CLIENT
-        for found in nodes.references(end, "ReferenceSubsetting"):
-            low.refer(edge, made, found)
-    low.lower_all((one for one in node.members if nodes.is_text(one) and not _is_prefix(one)), made)
-
-
-def _is_prefix(node: Node) -> bool:
+def _is_keyword(node: Node) -> bool:
     return bool(node.attributes.get("isPrefix"))
 
 
+def _connect_ends(lowering: "Lowering", edge: Edge, node: Node) -> None:
+    """Connect each client of a dependency to each supplier."""
+    for client in nodes.list_references(node, "client"):
+        source = lowering.element_of(client.target)
+        if source is None:
+            continue
+        for supplier in nodes.list_references(node, "supplier"):
+            lowering.connect_node(edge, source, supplier.target)
+
+
+def _lower_extension(lowering: "Lowering", node: Node, owner: Element | None) -> None:
+    extension = lowering.add_element(node, Kind.EXTEND, node.name or "", owner)
+    lowering.defer_until_elements(lambda: _connect_extended(lowering, node, extension, owner))
+
+
+def _connect_extended(
+    lowering: "Lowering", node: Node, extension: Element, owner: Element | None
+) -> None:
+    """Connect an extension to the extended use cases, and to its extension points."""
+    for reference in nodes.list_references(node, "supplier"):
+        target = lowering.element_of(reference.target)
+        is_case = target is not None and target.kind is Kind.USE_CASE
+        edge = Edge.EXTENDS if is_case else Edge.REFERENCES
+        lowering.connect_node(edge, extension, reference.target)
+        is_owned_by_case = owner is not None and owner.kind is Kind.USE_CASE
+        if is_case and is_owned_by_case and target is not None and owner is not None:
+            lowering.graph.connect(Edge.EXTENDS, owner, target)
+
+
+# -- derivations -------------------------------------------------------------------------------
+
+
 def is_derivation(node: Node) -> bool:
-    """Whether a connection is a derivation."""
-    return any(one.startswith("Derivation") for one in keywords(node))
+    """Whether a connection is a derivation connection of the standard library."""
+    return any(keyword.startswith("Derivation") for keyword in _list_keywords(node))
 
 
-def allocation(low: "Lowering", node: Node, owner: Element | None) -> None:
-    """An allocation between usages."""
-    attrs: dict[str, AttrValue] = {"role": "allocate", "subkind": "abstraction"}
-    made = low.add(node, Kind.DEPENDENCY, node.name or "", owner, **attrs)
-    low.later(lambda: _allocate(low, node, made))
-    inner = list(nodes.members(node, "AllocationUsage"))
-    annotations.texts(low, node, made, "an allocation", inner)
-    low.lower_all(inner, owner)
+def lower_derivation(lowering: "Lowering", node: Node, owner: Element | None) -> None:
+    """Lower a derivation: its clients are the derived requirements, its supplier the original."""
+    derivation = lowering.add_element(node, Kind.DEPENDENCY, node.name or "", owner, **_DERIVATION)
+    ends_in_body = [member for member in node.members if member.attributes.get("isEnd")]
+    for end in nodes.ends_of(node) + ends_in_body:
+        is_original = any(keyword.startswith("Original") for keyword in _list_keywords(end))
+        edge = Edge.SUPPLIER if is_original else Edge.CLIENT
+        for reference in nodes.list_references(end, "ReferenceSubsetting"):
+            lowering.connect_reference(edge, derivation, reference)
+    for member in node.members:
+        if nodes.is_annotation(member) and not _is_keyword(member):
+            lowering.lower(member, derivation)
 
 
-def _allocate(low: "Lowering", node: Node, made: Element) -> None:
+# -- allocations -------------------------------------------------------------------------------
+
+
+def lower_allocation(lowering: "Lowering", node: Node, owner: Element | None) -> None:
+    """Lower an allocation between usages; allocations inside it belong to its owner."""
+    allocation = lowering.add_element(node, Kind.DEPENDENCY, node.name or "", owner, **_ALLOCATION)
+    lowering.defer_until_elements(lambda: _connect_allocation(lowering, node, allocation))
+    nested = list(nodes.iter_by_metaclass(node, "AllocationUsage"))
+    annotations.lower_only_annotations(lowering, node, allocation, "an allocation", nested)
+    lowering.lower_all(nested, owner)
+
+
+def _connect_allocation(lowering: "Lowering", node: Node, allocation: Element) -> None:
     for edge, end in zip((Edge.CLIENT, Edge.SUPPLIER), nodes.ends_of(node), strict=False):
-        steps = steps_of(end)
-        low.lead(edge, made, steps[-1] if steps else None)
+        path = nodes.path_of_end(end)
+        lowering.connect_node(edge, allocation, path[-1] if path else None)
 
 
-def import_(low: "Lowering", node: Node, owner: Element | None) -> None:
-    """An import of a package or an element; those of libraries need no element."""
-    filtered = [one for package in nodes.members(node, "Package") for one in package.members]
-    said = next((one for one in filtered if one.kind.endswith("Import")), node)
-    found = nodes.reference(said, "importedNamespace", "importedMembership")
-    target = None if found is None else found.target
-    if target is None or low.document(target) is None or owner is None:
-        low.external(node)
+def lower_allocation_definition(lowering: "Lowering", node: Node, owner: Element | None) -> None:
+    """Lower an allocation between definitions."""
+    allocation = lowering.add_element(
+        node, Kind.DEPENDENCY, nodes.name_of(node), owner, **_ALLOCATION
+    )
+    edges = iter((Edge.CLIENT, Edge.SUPPLIER))
+    for member in node.members:
+        if not nodes.is_end(member):
+            lowering.lower(member, allocation)
+            continue
+        edge = next(edges, None)
+        if edge is not None:
+            for type_ in nodes.list_references(member, "FeatureTyping"):
+                lowering.connect_reference(edge, allocation, type_)
+
+
+def allocate_steps(lowering: "Lowering", node: Node, owner: Element) -> None:
+    """Allocate steps of a definition to the actions of the plant that a usage binds to them.
+
+    ``action :>> place references cell.place`` states which action performs the step ``place``.
+    """
+    for member in node.walk():
+        if member is node:
+            continue
+        step = nodes.find_target(member, "Redefinition")
+        action = nodes.find_reference(member, "ReferenceSubsetting")
+        if step is not None and action is not None:
+            path = list(action.targets or ())
+            allocation = _add_allocation(lowering, member, owner, step, path)
+            lowering.connect_reference(Edge.SUPPLIER, allocation, action)
+        elif _has_only_members(member):
+            lowering.redundant.add(id(member))
+
+
+def _has_only_members(node: Node) -> bool:
+    """Whether a member only contains members; a value that no handler reads is reported."""
+    is_content = nodes.is_annotation(node) or node.kind in nodes.EXPRESSIONS
+    return not is_content and nodes.value_of(node) is None
+
+
+def allocate_arguments(lowering: "Lowering", node: Node, owner: Element) -> None:
+    """Allocate parameters of a definition to the features of the plant that a usage binds to them.
+
+    ``in :>> machine = cell.robot`` states which machine the parameter ``machine`` is.
+    """
+    for member in nodes.body_of(node):
+        parameter, value = nodes.find_target(member, "Redefinition"), nodes.value_of(member)
+        if parameter is None or value is None or "direction" not in member.attributes:
+            continue
+        path = nodes.path_of_expression(value)
+        features = [feature for feature in path if feature is not None]
+        if len(features) == len(path) and _is_path_of_plant(features):
+            allocation = _add_allocation(lowering, member, owner, parameter, features)
+            _defer_supplier(lowering, allocation, features[-1])
+
+
+def _is_path_of_plant(features: list[Node]) -> bool:
+    return bool(features) and all(feature.kind.endswith("Usage") for feature in features)
+
+
+def _defer_supplier(lowering: "Lowering", allocation: Element, feature: Node) -> None:
+    lowering.defer_until_elements(lambda: lowering.connect_node(Edge.SUPPLIER, allocation, feature))
+
+
+def _add_allocation(
+    lowering: "Lowering", node: Node, owner: Element, client: Node, path: list[Node]
+) -> Element:
+    """Add an allocation of a feature to the last feature of a path, in the context of *owner*."""
+    allocation = lowering.add_element(node, Kind.DEPENDENCY, "", owner, **_ALLOCATION)
+    lowering.defer_until_elements(
+        lambda: lowering.connect_node(
+            Edge.CLIENT, allocation, _find_feature_with_element(lowering, client)
+        )
+    )
+    if len(path) > 1:
+        lowering.defer_until_elements(
+            lambda: _set_target_path(lowering, allocation, owner, path[:-1])
+        )
+    return allocation
+
+
+def _set_target_path(
+    lowering: "Lowering", allocation: Element, owner: Element, path: list[Node]
+) -> None:
+    """Set the path of a DirectedRelationshipPropertyPath (SysML 1.6, 8.3.2.4)."""
+    elements = [lowering.element_of(feature) for feature in path]
+    ids = tuple(element.id for element in elements if element is not None)
+    lowering.set_attributes(allocation, target_context=owner.id, target_path=ids)
+
+
+def _find_feature_with_element(lowering: "Lowering", feature: Node) -> Node:
+    """Return the first feature with an element in a chain of redefinitions."""
+    visited = set()
+    while lowering.elements.get(id(feature)) is None and id(feature) not in visited:
+        visited.add(id(feature))
+        feature = nodes.find_target(feature, "Redefinition") or feature
+    return feature
+
+
+# -- imports and aliases -----------------------------------------------------------------------
+
+
+def lower_import(lowering: "Lowering", node: Node, owner: Element | None) -> None:
+    """Lower an import of a package or an element of the unit; imports of libraries are external."""
+    # The tree of an import with a filter is a package that contains the import.
+    inner = [
+        member for package in nodes.iter_by_metaclass(node, "Package") for member in package.members
+    ]
+    imported = next((member for member in inner if member.kind.endswith("Import")), node)
+    target = nodes.find_target(imported, "importedNamespace", "importedMembership")
+    if target is None or lowering.document_of(target) is None or owner is None:
+        lowering.mark_external(node)
         return
-    subkind = "package" if said.kind == "NamespaceImport" else "element"
-    made = low.add(node, Kind.IMPORT, "", owner, subkind=subkind)
+    subkind = "package" if imported.kind == "NamespaceImport" else "element"
+    import_ = lowering.add_element(node, Kind.IMPORT, "", owner, subkind=subkind)
     if node.visibility != "public":
-        low.set(made, visibility=node.visibility or "private")
-    low.lower_texts(node, made)
-    low.later(lambda: _imported(low, made, target))
-    if said is not node:
-        low.approximated(node, "an import with a filter", "one without")
-        low.skipped.update(id(one) for one in node.walk() if one is not node)
+        lowering.set_attributes(import_, visibility=node.visibility or "private")
+    lowering.lower_annotations(node, import_)
+    lowering.defer_until_elements(lambda: _connect_imported(lowering, import_, target))
+    if imported is not node:
+        lowering.mark_approximated(node, "an import with a filter", "one without")
+        lowering.skipped.update(id(member) for member in node.walk() if member is not node)
 
 
-def _imported(low: "Lowering", made: Element, target: Node) -> None:
-    known = low.element(target)
-    if known is not None:
-        low.graph.connect(Edge.REFERENCES, made, known)
+def _connect_imported(lowering: "Lowering", import_: Element, target: Node) -> None:
+    imported = lowering.element_of(target)
+    if imported is not None:
+        lowering.graph.connect(Edge.REFERENCES, import_, imported)
 
 
-def membership(low: "Lowering", node: Node, owner: Element | None) -> None:
-    """An alias: a second name for an element."""
-    if not node.name and not node.short_name:
-        low.ignored(node)
+def lower_alias(lowering: "Lowering", node: Node, owner: Element | None) -> None:
+    """Lower a membership with a name to an alias; one without a name is notation."""
+    name = node.name or node.short_name
+    if not name:
+        lowering.mark_ignored(node)
         return
-    name = node.name or node.short_name or ""
-    made = low.add(node, Kind.ALIAS, name, owner, **visibility(node))
-    low.lower_texts(node, made)
-    low.refer(Edge.REFERENCES, made, nodes.reference(node, "Membership"))
+    attributes = visibility_attributes(node)
+    alias = lowering.add_element(node, Kind.ALIAS, name, owner, **attributes)
+    lowering.lower_annotations(node, alias)
+    reference = nodes.find_reference(node, "Membership")
+    lowering.connect_reference(Edge.REFERENCES, alias, reference)

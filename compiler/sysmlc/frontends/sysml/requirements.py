@@ -1,124 +1,256 @@
-"""Requirements with subject, text and constraints; what satisfies and verifies them."""
+"""Constraints and requirements, and what satisfies and verifies requirements."""
 
 from typing import TYPE_CHECKING
 
-from sysmlc.frontends.sysml import annotations, nodes
-from sysmlc.frontends.sysml.connections import steps_of_value
-from sysmlc.frontends.sysml.constraints import constraint
-from sysmlc.frontends.sysml.definitions import flags, generalize
-from sysmlc.frontends.sysml.types import types_of
+from sysmlc.frontends.sysml import annotations, nodes, values
+from sysmlc.frontends.sysml.definitions import (
+    connect_generals,
+    declaration_attributes,
+    read_kind,
+    visibility_attributes,
+)
+from sysmlc.frontends.sysml.features import lower_property
 from sysmlc.ir import AttrValue, Edge, Element, Kind
+from sysmlc.language.library import SHIPPED
 from sysmlc.language.tree import Node, Reference
 
 if TYPE_CHECKING:
     from sysmlc.frontends.sysml.lowering import Lowering
 
 _PACKAGES = (Kind.PACKAGE, Kind.PROFILE)
+_CONDITION_SUBKINDS = {
+    "Precondition": "precondition",
+    "Postcondition": "postcondition",
+    "BodyCondition": "body",
+    "Invariant": "invariant",
+}
+"""Subkinds of constraints by the keyword of our library."""
+_SATISFACTION_KIND = "SatisfyRequirementUsage"
+_SATISFACTION: dict[str, AttrValue] = {"role": "satisfy", "subkind": "abstraction"}
+_VERIFICATION: dict[str, AttrValue] = {"role": "verify", "subkind": "abstraction"}
 
 
-def requirement(low: "Lowering", node: Node, owner: Element | None) -> None:
-    """A requirement, of a definition or a usage: its short name is its id, its doc its text."""
+# -- constraints -------------------------------------------------------------------------------
+
+
+def lower_constraint(lowering: "Lowering", node: Node, owner: Element | None) -> None:
+    """Lower a constraint with a condition, or the usage of a constraint definition."""
+    result = nodes.result_of(node)
+    if result is None and owner is not None and nodes.types_of(lowering, node):
+        _lower_constraint_usage(lowering, node, owner)
+        return
+    constraint = lowering.add_element(
+        node, Kind.CONSTRAINT, nodes.name_of(node), owner, subkind=_constraint_subkind(node)
+    )
+    lowering.set_attributes(constraint, **visibility_attributes(node))
+    if result is not None:
+        lowering.defer_until_elements(lambda: _set_body(lowering, node, constraint, result))
+        if _is_unasserted(lowering, node):
+            construct = "a constraint that nothing asserts"
+            lowering.mark_approximated(node, construct, "one that holds")
+    for reference in nodes.list_references(node, "ReferenceSubsetting"):
+        lowering.connect_reference(Edge.REFERENCES, constraint, reference)
+    annotations.lower_only_annotations(lowering, node, constraint, "a constraint")
+
+
+def _constraint_subkind(node: Node) -> str:
+    for keyword in annotations.shipped_metadata_of(node):
+        if keyword in _CONDITION_SUBKINDS:
+            return _CONDITION_SUBKINDS[keyword]
+    name = annotations.metadata_value(node, "Kind", "name")
+    return str(name or read_kind(node, Kind.CONSTRAINT)[1])
+
+
+def _is_unasserted(lowering: "Lowering", node: Node) -> bool:
+    """Whether a constraint only names a condition, which may hold or not (SysML 2.0, 7.20.1)."""
+    is_usage = node.kind == "ConstraintUsage" and node.membership == "FeatureMembership"
+    document = lowering.document_of(node)
+    return is_usage and document is not None and not document.path.startswith(SHIPPED)
+
+
+def _set_body(lowering: "Lowering", node: Node, constraint: Element, result: Node) -> None:
+    text = values.expression_text(result, lowering)
+    is_negated = node.attributes.get("isNegated")
+    lowering.set_attributes(constraint, body=f"not ({text})" if is_negated else text)
+
+
+def lower_result(lowering: "Lowering", node: Node, owner: Element) -> None:
+    """Lower the condition of a constraint definition to a constraint without a name."""
+    constraint = lowering.add_element(node, Kind.CONSTRAINT, "", owner)
+    lowering.defer_until_elements(lambda: values.set_expression(lowering, constraint, "body", node))
+
+
+def _lower_constraint_usage(lowering: "Lowering", node: Node, owner: Element) -> None:
+    """Lower a usage to a constraint property, and values of its parameters to bindings."""
+    arguments = [
+        (member, value) for member in node.members if (value := nodes.value_of(member)) is not None
+    ]
+    lowering.skipped.update(id(parameter) for parameter, _ in arguments)
+    usage = lower_property(lowering, node, owner)
+    for parameter, value in arguments:
+        _defer_argument(lowering, usage, parameter, value)
+
+
+def _defer_argument(lowering: "Lowering", usage: Element, parameter: Node, value: Node) -> None:
+    """Add a binding connector between a parameter of a usage and the features of its value."""
+
+    def add_binding() -> None:
+        path = [lowering.element_of(step) for step in nodes.path_of_expression(value)]
+        features = [feature for feature in path if feature is not None]
+        formal = lowering.element_of(nodes.find_target(parameter, "Redefinition"))
+        if not path or len(features) < len(path) or formal is None:
+            construct = "a value of a constraint's parameter"
+            lowering.mark_approximated(parameter, construct, "nothing")
+            return
+        graph, owner = lowering.graph, lowering.graph.owner(usage)
+        binding = lowering.add_derived(
+            parameter, Kind.CONNECTOR, "", owner, role="binding connector"
+        )
+        for *outer, role in ([usage, formal], features):
+            end = lowering.add_derived(parameter, Kind.CONNECTOR_END, "", binding)
+            graph.connect(Edge.END, binding, end)
+            graph.connect(Edge.ROLE, end, role)
+            for feature in outer:
+                graph.connect(Edge.PATH, end, feature)
+
+    lowering.defer_until_edges(add_binding)
+
+
+# -- requirements ------------------------------------------------------------------------------
+
+
+def lower_requirement(lowering: "Lowering", node: Node, owner: Element | None) -> None:
+    """Lower a requirement: its short name is the id, its first documentation the text."""
     if node.membership == "RequirementVerificationMembership":
-        verify(low, node, owner)
+        lower_verification(lowering, node, owner)
         return
     if node.membership == "ObjectiveMembership":
-        objective(low, node, owner)
+        lower_objective(lowering, node, owner)
         return
-    texts = list(nodes.members(node, "Documentation"))
-    text = str(texts[0].attributes.get("body", "")).strip() if texts else ""
-    given = annotations.said(node, "Requirement", "id")
-    attrs: dict[str, AttrValue] = {"req_id": str(given or node.short_name or ""), "text": text}
+    documentation = next(nodes.iter_by_metaclass(node, "Documentation"), None)
+    text = "" if documentation is None else str(documentation.attributes.get("body", ""))
+    id_ = annotations.metadata_value(node, "Requirement", "id") or node.short_name or ""
+    attributes: dict[str, AttrValue] = {
+        "req_id": str(id_),
+        "text": text.strip(),
+        **declaration_attributes(node),
+    }
     name = node.name or nodes.name_of(node)
-    made = low.add(node, Kind.CLASS, name, owner, role="requirement", **(attrs | flags(node)))
-    generalize(low, node, made)
-    low.skipped.update(id(one) for one in texts[:1])
-    for one in nodes.body_of(node):
-        _member(low, one, made)
+    requirement = lowering.add_element(
+        node, Kind.CLASS, name, owner, role="requirement", **attributes
+    )
+    connect_generals(lowering, node, requirement)
+    if documentation is not None:
+        lowering.skipped.add(id(documentation))
+    for member in nodes.body_of(node):
+        _lower_member(lowering, member, requirement)
 
 
-def _member(low: "Lowering", node: Node, made: Element) -> None:
+def _lower_member(lowering: "Lowering", node: Node, requirement: Element) -> None:
     if node.membership == "SubjectMembership":
-        for type_ in types_of(low, node):
-            low.later(lambda type_=type_: low.lead(Edge.SUBJECT, made, type_))  # type: ignore[misc]
-        low.elements[id(node)] = made
-        if nodes.value_of(node) is not None:
-            low.approximated(node, "the value of a subject", "its type")
+        lower_subject(lowering, node, requirement)
+        lowering.elements[id(node)] = requirement
     elif node.membership == "RequirementConstraintMembership":
-        constraint(low, node, made)
-        edge = Edge.ASSUMES if node.role == "assumption" else Edge.REQUIRES
-        one = low.element(node)
-        if one is not None and node.role == "assumption":
-            low.graph.connect(edge, made, one)
+        lower_constraint(lowering, node, requirement)
+        constraint = lowering.element_of(node)
+        # A constraint that is no assumption is required without an edge.
+        if constraint is not None and node.role == "assumption":
+            lowering.graph.connect(Edge.ASSUMES, requirement, constraint)
     else:
-        low.lower(node, made)
+        lowering.lower(node, requirement)
+
+
+def lower_subject(lowering: "Lowering", node: Node, element: Element) -> None:
+    """Connect a requirement or a use case to the types of its subject."""
+    for type_ in nodes.types_of(lowering, node):
+        _defer_subject(lowering, element, type_)
+    if nodes.value_of(node) is not None:
+        lowering.mark_approximated(node, "the value of a subject", "its type")
+
+
+def _defer_subject(lowering: "Lowering", element: Element, type_: Node) -> None:
+    lowering.defer_until_elements(lambda: lowering.connect_node(Edge.SUBJECT, element, type_))
 
 
 # -- satisfy and verify ------------------------------------------------------------------------
 
 
-def satisfy(low: "Lowering", node: Node, owner: Element | None) -> None:
-    """A satisfaction: by what it names, else by what it stands in."""
-    attrs: dict[str, AttrValue] = {"role": "satisfy", "subkind": "abstraction"}
-    made = low.add(node, Kind.DEPENDENCY, node.name or "", _package(low, owner), **attrs)
-    annotations.texts(low, node, made, "a satisfaction")
-    kinds = ("ReferenceSubsetting", "Subsetting", "FeatureTyping")
-    found = next((one for kind in kinds if (one := nodes.reference(node, kind))), None)
-    low.later(lambda: low.lead(Edge.SUPPLIER, made, _satisfied(found)))
-    by = next(nodes.held(node, "SubjectMembership"), None)
-    value = None if by is None else nodes.value_of(by)
-    low.later(lambda: _client(low, made, owner, value))
+def lower_satisfaction(lowering: "Lowering", node: Node, owner: Element | None) -> None:
+    """Lower a satisfaction by the feature that it names, else by the element that owns it."""
+    package = _find_package(lowering, owner)
+    satisfaction = lowering.add_element(
+        node, Kind.DEPENDENCY, node.name or "", package, **_SATISFACTION
+    )
+    annotations.lower_only_annotations(lowering, node, satisfaction, "a satisfaction")
+    requirement = (
+        nodes.find_reference(node, "ReferenceSubsetting")
+        or nodes.find_reference(node, "Subsetting")
+        or nodes.find_reference(node, "FeatureTyping")
+    )
+    lowering.defer_until_elements(
+        lambda: lowering.connect_node(
+            Edge.SUPPLIER, satisfaction, _find_satisfied_requirement(requirement)
+        )
+    )
+    subject = next(nodes.iter_by_membership(node, "SubjectMembership"), None)
+    value = None if subject is None else nodes.value_of(subject)
+    lowering.defer_until_elements(lambda: _connect_satisfying(lowering, satisfaction, owner, value))
     if node.attributes.get("isNegated"):
-        low.approximated(node, "'not satisfy'", "'satisfy'")
+        lowering.mark_approximated(node, "'not satisfy'", "'satisfy'")
 
 
-def _satisfied(found: Reference | None) -> Node | None:
-    """The requirement that a satisfaction names; a satisfaction beside it has the same name."""
-    target, seen = None if found is None else found.target, set[int]()
-    while target is not None and target.kind == _SATISFY and id(target) not in seen:
-        seen.add(id(target))
-        following = nodes.target(target, "ReferenceSubsetting")
-        target = target if following is None else following
+def _find_satisfied_requirement(reference: Reference | None) -> Node | None:
+    """Return the requirement that a satisfaction names.
+
+    A satisfaction has the name of its requirement, so that the name may lead to a satisfaction in
+    the same namespace.
+    """
+    target, visited = None if reference is None else reference.target, set[int]()
+    while target is not None and target.kind == _SATISFACTION_KIND and id(target) not in visited:
+        visited.add(id(target))
+        target = nodes.find_target(target, "ReferenceSubsetting") or target
     return target
 
 
-_SATISFY = "SatisfyRequirementUsage"
-
-
-def _client(low: "Lowering", made: Element, owner: Element | None, value: Node | None) -> None:
+def _connect_satisfying(
+    lowering: "Lowering", satisfaction: Element, owner: Element | None, value: Node | None
+) -> None:
     if value is not None:
-        steps = steps_of_value(value)
-        low.lead(Edge.CLIENT, made, steps[-1] if steps else None)
+        path = nodes.path_of_expression(value)
+        lowering.connect_node(Edge.CLIENT, satisfaction, path[-1] if path else None)
     elif owner is not None:
-        low.graph.connect(Edge.CLIENT, made, owner)
+        lowering.graph.connect(Edge.CLIENT, satisfaction, owner)
 
 
-def _package(low: "Lowering", owner: Element | None) -> Element | None:
-    """The nearest package: a relation belongs to none of its ends."""
+def _find_package(lowering: "Lowering", owner: Element | None) -> Element | None:
+    """Return the nearest package: a relation belongs to neither of its ends."""
     while owner is not None and owner.kind not in _PACKAGES:
-        owner = low.graph.owner(owner)
+        owner = lowering.graph.owner(owner)
     return owner
 
 
-def objective(low: "Lowering", node: Node, owner: Element | None) -> None:
-    """What a case is for: requirements that it verifies, and texts."""
-    low.skipped.add(id(node))
-    if nodes.reference(node, "FeatureTyping", "ReferenceSubsetting", "Subsetting"):
-        low.approximated(node, "the type of an objective", "nothing")
-    for one in nodes.body_of(node):
-        if one.membership == "RequirementVerificationMembership":
-            verify(low, one, owner)
-        elif nodes.is_text(one):
-            low.lower(one, owner)
-        elif one.membership != "SubjectMembership":
-            low.approximated(one, "a part of an objective", "nothing")
+def lower_objective(lowering: "Lowering", node: Node, owner: Element | None) -> None:
+    """Lower the objective of a case: the requirements that it verifies, and annotations."""
+    lowering.skipped.add(id(node))
+    if nodes.find_reference(node, "FeatureTyping", "ReferenceSubsetting", "Subsetting"):
+        lowering.mark_approximated(node, "the type of an objective", "nothing")
+    for member in nodes.body_of(node):
+        if member.membership == "RequirementVerificationMembership":
+            lower_verification(lowering, member, owner)
+        elif nodes.is_annotation(member):
+            lowering.lower(member, owner)
+        elif member.membership != "SubjectMembership":
+            lowering.mark_approximated(member, "a part of an objective", "nothing")
 
 
-def verify(low: "Lowering", node: Node, owner: Element | None) -> None:
-    """A verification of a requirement by the case that it stands in."""
-    attrs: dict[str, AttrValue] = {"role": "verify", "subkind": "abstraction"}
-    made = low.add(node, Kind.DEPENDENCY, node.name or "", _package(low, owner), **attrs)
+def lower_verification(lowering: "Lowering", node: Node, owner: Element | None) -> None:
+    """Lower the verification of a requirement by the case that contains it."""
+    package = _find_package(lowering, owner)
+    verification = lowering.add_element(
+        node, Kind.DEPENDENCY, node.name or "", package, **_VERIFICATION
+    )
     if owner is not None:
-        low.graph.connect(Edge.CLIENT, made, owner)
-    found = nodes.reference(node, "ReferenceSubsetting", "FeatureTyping", "Subsetting")
-    low.refer(Edge.SUPPLIER, made, found)
-    annotations.texts(low, node, made, "a verification")
+        lowering.graph.connect(Edge.CLIENT, verification, owner)
+    requirement = nodes.find_reference(node, "ReferenceSubsetting", "FeatureTyping", "Subsetting")
+    lowering.connect_reference(Edge.SUPPLIER, verification, requirement)
+    annotations.lower_only_annotations(lowering, node, verification, "a verification")

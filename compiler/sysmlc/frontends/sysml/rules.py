@@ -1,6 +1,9 @@
-"""What the front end for SysML v2 reports."""
+"""Rules of the front end for SysML v2, and severities of shared rules in SysML v2 text."""
 
-from sysmlc.diagnostics import Severity, rule
+from collections.abc import Sequence
+
+from sysmlc.diagnostics import Severity, Sink, rule
+from sysmlc.language.tree import Document
 
 UNSUPPORTED = rule(
     "SM480",
@@ -28,3 +31,30 @@ NO_LIBRARY = rule(
     "the standard library '{path}' cannot be read: {problem}",
     help="give --library the folder or .kpar with the .sysml and .kerml files",
 )
+
+_CHECKED_BY_LANGUAGE = """
+    SM201 SM202 SM203 SM204 SM211 SM212 SM213 SM214 SM301 SM314 SM318 SM401 SM404 SM469
+"""
+"""Rules for SysML v1 that do not apply to SysML v2 text.
+
+The checks of the language report faults of names, specialisation, types and relations by rules of
+their own. Requirements need no short name, ports no type and flows no payload. An action without
+steps is complete. A usage has the parameters that it does not repeat; SM248 and SM249 report
+surplus arguments and parameters. A redefinition has all of its types.
+"""
+_WEAKER_CONTRACT = "SM412 SM413 SM414 SM415 SM421"
+"""Rules for constructs that are valid SysML v2 but lose part of the contract.
+
+The language resolves names and types of expressions, values need not be finite, and a state with
+substates needs no entry transition.
+"""
+
+SEVERITIES: dict[str, Severity | None] = {
+    **dict.fromkeys(_CHECKED_BY_LANGUAGE.split(), None),
+    **dict.fromkeys(_WEAKER_CONTRACT.split(), Severity.WARNING),
+}
+
+
+def apply_severities(documents: Sequence[Document], sink: Sink) -> None:
+    """Give the shared rules the severities of SysML v2 in these documents."""
+    sink.settle((document.path for document in documents), SEVERITIES)

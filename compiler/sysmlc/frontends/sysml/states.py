@@ -2,12 +2,23 @@
 
 from typing import TYPE_CHECKING
 
-from sysmlc.frontends.sysml import annotations, nodes, statements, values
-from sysmlc.frontends.sysml.activities import fill
-from sysmlc.frontends.sysml.allocated import arguments
-from sysmlc.frontends.sysml.definitions import flags, generalize, marked, visibility
-from sysmlc.frontends.sysml.events import trigger
-from sysmlc.frontends.sysml.successions import guard_of, is_of_library
+from sysmlc.frontends.sysml import annotations, expressions, nodes, values
+from sysmlc.frontends.sysml.activities import lower_body
+from sysmlc.frontends.sysml.definitions import (
+    connect_generals,
+    declaration_attributes,
+    read_kind,
+    visibility_attributes,
+)
+from sysmlc.frontends.sysml.relations import allocate_arguments
+from sysmlc.frontends.sysml.successions import (
+    End,
+    guard_of,
+    is_own_end,
+    is_start_or_done,
+    reference_of_end,
+)
+from sysmlc.frontends.sysml.triggers import lower_trigger
 from sysmlc.ir import Edge, Element, Kind
 from sysmlc.language.tree import Node, Reference
 
@@ -26,298 +37,305 @@ _PSEUDOSTATES = {
     "ConnectionPoint": "connection-point",
     "Termination": "terminate",
 }
-_SUBACTIONS = {"entry": Edge.ENTRY, "do": Edge.DO, "exit": Edge.EXIT}
+"""Kinds of pseudostates by the keyword of our library."""
+_CONNECTION_POINTS = ("entry-point", "exit-point", "connection-point")
+_SUBACTION_EDGES = {"entry": Edge.ENTRY, "do": Edge.DO, "exit": Edge.EXIT}
 _STATES = frozenset({"StateUsage", "ExhibitStateUsage"})
+_SUCCESSIONS = frozenset({"SuccessionAsUsage", "Succession"})
+_TRANSITIONS = frozenset({"TransitionUsage", "SuccessionAsUsage"})
 
 
-def machine(low: "Lowering", node: Node, owner: Element | None) -> Element:
-    """A state definition, or a state usage that is no part of another state."""
-    _, subkind = marked(node, Kind.STATE_MACHINE)
-    name = nodes.name_of(node)
-    made = low.add(node, Kind.STATE_MACHINE, name, owner, subkind=subkind, **flags(node))
-    generalize(low, node, made)
-    _content(low, node, made)
-    return made
+# -- state machines ----------------------------------------------------------------------------
 
 
-def exhibit(low: "Lowering", node: Node, owner: Element) -> None:
-    """What a classifier exhibits: its own state machine, or one that stands elsewhere."""
-    inside = [one for one in nodes.body_of(node) if one.kind in _STATES]
-    found = nodes.reference(node, "ReferenceSubsetting", "FeatureTyping", "Subsetting")
-    if found is not None and not inside:
-        low.refer(Edge.CLASSIFIER_BEHAVIOR, owner, found)
-        low.lower_texts(node, owner)
-        arguments(low, node, owner)
+def lower_state_machine(lowering: "Lowering", node: Node, owner: Element | None) -> Element:
+    """Lower a state definition, or a state usage that is no part of another state."""
+    _, subkind = read_kind(node, Kind.STATE_MACHINE)
+    attributes = declaration_attributes(node)
+    machine = lowering.add_element(
+        node, Kind.STATE_MACHINE, nodes.name_of(node), owner, subkind=subkind, **attributes
+    )
+    connect_generals(lowering, node, machine)
+    _lower_content(lowering, node, machine)
+    return machine
+
+
+def lower_exhibited_machine(lowering: "Lowering", node: Node, owner: Element) -> None:
+    """Lower what a classifier exhibits: its own state machine, or one defined elsewhere."""
+    has_states = any(member.kind in _STATES for member in nodes.body_of(node))
+    reference = _find_behaviour_reference(node)
+    if reference is not None and not has_states:
+        lowering.connect_reference(Edge.CLASSIFIER_BEHAVIOR, owner, reference)
+        lowering.lower_annotations(node, owner)
+        allocate_arguments(lowering, node, owner)
         return
-    made = machine(low, node, owner)
-    if not low.graph.targets(owner, Edge.CLASSIFIER_BEHAVIOR):
-        low.graph.connect(Edge.CLASSIFIER_BEHAVIOR, owner, made)
+    machine = lower_state_machine(lowering, node, owner)
+    if not lowering.graph.targets(owner, Edge.CLASSIFIER_BEHAVIOR):
+        lowering.graph.connect(Edge.CLASSIFIER_BEHAVIOR, owner, machine)
 
 
-def _content(low: "Lowering", node: Node, made: Element) -> None:
-    """Parameters and texts belong to the state itself, vertices to its regions."""
-    inside = nodes.body_of(node)
+def _find_behaviour_reference(node: Node) -> Reference | None:
+    return nodes.find_reference(node, "ReferenceSubsetting", "FeatureTyping", "Subsetting")
+
+
+def _lower_content(lowering: "Lowering", node: Node, state: Element) -> None:
+    """Lower the members of a state or state machine: vertices belong to its regions."""
+    body = nodes.body_of(node)
     if node.attributes.get("isParallel"):
-        for one in inside:
-            if one.kind in _STATES:
-                _parallel(low, one, made)
-            elif one.membership not in _NO_VERTEX:
-                low.lower(one, made)
-        _subactions(low, node, made)
+        for member in body:
+            if member.kind in _STATES:
+                _lower_parallel_state(lowering, member, state)
+            elif not _is_subaction(member):
+                lowering.lower(member, state)
+        _lower_subactions(lowering, node, state)
         return
-    vertices = [one for one in inside if _is_of_region(one)]
-    low.lower_all((one for one in inside if not _is_of_region(one) and not _is_sub(one)), made)
-    _subactions(low, node, made)
-    if vertices:
-        region = low.make(node, Kind.REGION, "", made)
-        _vertices(low, node, region)
+    for member in body:
+        if not _belongs_to_region(member) and not _is_subaction(member):
+            lowering.lower(member, state)
+    _lower_subactions(lowering, node, state)
+    if any(map(_belongs_to_region, body)):
+        region = lowering.add_derived(node, Kind.REGION, "", state)
+        _lower_vertices(lowering, node, region)
 
 
-_NO_VERTEX = frozenset({"StateSubactionMembership"})
-_FLOWS = frozenset({"TransitionUsage", "SuccessionAsUsage", "Membership"})
+def _lower_parallel_state(lowering: "Lowering", node: Node, owner: Element) -> None:
+    """Lower a state of a parallel state to a region with its substates.
+
+    A state with subactions or parallel substates is itself the only state of the region.
+    """
+    region = lowering.add_derived(node, Kind.REGION, nodes.name_of(node), owner)
+    body = nodes.body_of(node)
+    has_substates = any(map(_belongs_to_region, body))
+    has_subactions = any(_is_subaction(member) and not _is_empty(member) for member in body)
+    if has_subactions or not has_substates or node.attributes.get("isParallel"):
+        state = lower_state(lowering, node, region)
+        start = lowering.ensure_vertex(region, "start", node)
+        transition = lowering.add_derived(node, Kind.TRANSITION, "", region)
+        lowering.graph.connect(Edge.FLOW_SOURCE, transition, start)
+        lowering.graph.connect(Edge.FLOW_TARGET, transition, state)
+        return
+    lowering.elements[id(node)] = region
+    for member in body:
+        if not _belongs_to_region(member) and not _is_subaction(member):
+            lowering.lower(member, region)
+    _lower_vertices(lowering, node, region)
 
 
-def _is_sub(node: Node) -> bool:
-    return node.membership in _NO_VERTEX
+def _is_subaction(node: Node) -> bool:
+    return node.membership == "StateSubactionMembership"
 
 
-def _is_of_region(node: Node) -> bool:
-    return node.kind in _STATES or (node.kind in _FLOWS and not _is_alias(node))
+def _belongs_to_region(node: Node) -> bool:
+    is_first = node.kind == "Membership" and not _is_alias(node)
+    return node.kind in _STATES or node.kind in _TRANSITIONS or is_first
 
 
 def _is_alias(node: Node) -> bool:
     return node.kind == "Membership" and bool(node.name or node.short_name)
 
 
-def _parallel(low: "Lowering", node: Node, owner: Element) -> None:
-    """A state that runs beside others: a region with its substates, or with itself alone."""
-    region = low.make(node, Kind.REGION, nodes.name_of(node), owner)
-    inside = [one for one in nodes.body_of(node) if _is_of_region(one)]
-    own = [one for one in nodes.body_of(node) if _is_sub(one) and not _is_empty(one)]
-    if own or not inside or node.attributes.get("isParallel"):
-        made = state(low, node, region)
-        start = low.vertex(region, "start", node)
-        _transition(low, node, region, start, made)
-        return
-    low.elements[id(node)] = region
-    rest = (one for one in nodes.body_of(node) if not (_is_of_region(one) or _is_sub(one)))
-    low.lower_all(rest, region)
-    _vertices(low, node, region)
+def _is_empty(subaction: Node) -> bool:
+    """Whether a subaction is only the source of the first succession (``entry; then a``)."""
+    has_content = subaction.name or subaction.members or subaction.relations
+    return subaction.kind == "ActionUsage" and not has_content
 
 
-def _is_empty(node: Node) -> bool:
-    """Whether a subaction says nothing but when something starts (``entry; then a``)."""
-    return node.kind == "ActionUsage" and not (node.name or node.members or _stated(node))
+# -- states and what they do -------------------------------------------------------------------
 
 
-def _stated(node: Node) -> bool:
-    return bool(node.relations)
+def lower_state(lowering: "Lowering", node: Node, region: Element) -> Element:
+    """Lower a state with its behaviours and substates; a keyword may make it a pseudostate."""
+    for keyword in annotations.shipped_metadata_of(node):
+        if keyword in _PSEUDOSTATES:
+            return _lower_pseudostate(lowering, node, region, _PSEUDOSTATES[keyword])
+    attributes = visibility_attributes(node)
+    state = lowering.add_element(node, Kind.STATE, nodes.name_of(node), region, **attributes)
+    for reference in nodes.list_references(
+        node, "FeatureTyping", "Subsetting", "ReferenceSubsetting"
+    ):
+        lowering.connect_reference(Edge.CALLS, state, reference)
+    _lower_content(lowering, node, state)
+    return state
 
 
-def _transition(
-    low: "Lowering", node: Node, region: Element, start: Element, end: Element
-) -> Element:
-    made = low.make(node, Kind.TRANSITION, "", region)
-    low.graph.connect(Edge.FLOW_SOURCE, made, start)
-    low.graph.connect(Edge.FLOW_TARGET, made, end)
-    return made
-
-
-def state(low: "Lowering", node: Node, region: Element) -> Element:
-    """A state with what it does and what is inside it; a keyword of ours makes a pseudostate."""
-    subkind = next(
-        (_PSEUDOSTATES[one] for one in annotations.ours(node) if one in _PSEUDOSTATES), ""
+def _lower_pseudostate(lowering: "Lowering", node: Node, region: Element, subkind: str) -> Element:
+    """Lower a pseudostate; a connection point belongs to the state that owns the region."""
+    owner = lowering.graph.owner(region) if subkind in _CONNECTION_POINTS else region
+    pseudostate = lowering.add_element(
+        node, Kind.PSEUDOSTATE, nodes.name_of(node), owner or region, subkind=subkind
     )
-    if subkind:
-        return _pseudostate(low, node, region, subkind)
-    made = low.add(node, Kind.STATE, nodes.name_of(node), region, **visibility(node))
-    for found in nodes.references(node, "FeatureTyping", "Subsetting", "ReferenceSubsetting"):
-        low.refer(Edge.CALLS, made, found)
-    _content(low, node, made)
-    return made
-
-
-def _pseudostate(low: "Lowering", node: Node, region: Element, subkind: str) -> Element:
-    is_point = subkind in ("entry-point", "exit-point", "connection-point")
-    owner = low.graph.owner(region) if is_point else region
-    made = low.add(node, Kind.PSEUDOSTATE, nodes.name_of(node), owner or region, subkind=subkind)
-    for one in nodes.body_of(node):
-        if one.kind == "ReferenceUsage":
-            for found in nodes.references(one, "Subsetting", "ReferenceSubsetting"):
-                low.refer(Edge.REFERENCES, made, found)
+    for member in nodes.body_of(node):
+        if member.kind == "ReferenceUsage":
+            for reference in nodes.list_references(member, "Subsetting", "ReferenceSubsetting"):
+                lowering.connect_reference(Edge.REFERENCES, pseudostate, reference)
         else:
-            low.lower(one, made)
-    return made
+            lowering.lower(member, pseudostate)
+    return pseudostate
 
 
-# -- what states do ----------------------------------------------------------------------------
+def _lower_subactions(lowering: "Lowering", node: Node, state: Element) -> None:
+    for member in node.members:
+        if _is_subaction(member):
+            edge = _SUBACTION_EDGES.get(member.role, Edge.DO)
+            _lower_behaviour(lowering, member, state, edge)
 
 
-def _subactions(low: "Lowering", node: Node, made: Element) -> None:
-    for one in node.members:
-        if _is_sub(one):
-            held(low, one, made, _SUBACTIONS.get(one.role, Edge.DO))
-
-
-def held(low: "Lowering", node: Node, owner: Element, edge: Edge) -> None:
-    """A behaviour of a state or a transition: its own, or one that stands elsewhere."""
-    written = statements.statement(node)
-    if written is not None:
-        made = low.add(node, Kind.ACTIVITY, node.name or "", owner, subkind="opaque")
-        low.set(made, body=statements.effect([node]))
-        low.graph.connect(edge, owner, made)
+def _lower_behaviour(lowering: "Lowering", node: Node, owner: Element, edge: Edge) -> None:
+    """Lower a behaviour of a state or a transition: its own, or one defined elsewhere."""
+    if expressions.read_statement(node) is not None:
+        name = node.name or ""
+        activity = lowering.add_element(node, Kind.ACTIVITY, name, owner, subkind="opaque")
+        lowering.set_attributes(activity, body=expressions.write_effect([node]))
+        lowering.graph.connect(edge, owner, activity)
         return
-    found = nodes.reference(node, "ReferenceSubsetting", "FeatureTyping", "Subsetting")
+    reference = _find_behaviour_reference(node)
     if _is_empty(node):
-        low.skipped.add(id(node))
-    elif found is not None and not nodes.body_of(node):
-        low.refer(edge, owner, found)
+        lowering.skipped.add(id(node))
+    elif reference is not None and not nodes.body_of(node):
+        lowering.connect_reference(edge, owner, reference)
     else:
-        _own(low, node, owner, edge)
+        behaviour = _lower_own_behaviour(lowering, node, owner)
+        lowering.graph.connect(edge, owner, behaviour)
 
 
-_NO_EFFECT = "an action without effect"
-
-
-def _own(low: "Lowering", node: Node, owner: Element, edge: Edge) -> None:
-    only = nodes.body_of(node)
+def _lower_own_behaviour(lowering: "Lowering", node: Node, owner: Element) -> Element:
     if node.kind == "TerminateActionUsage":
-        # It ends the state itself or what it names; the effect has no words.
-        low.approximated(node, "a terminate action of a state or a transition", _NO_EFFECT)
-    if len(only) == 1 and only[0].kind in _STATES and not node.name:
-        made = machine(low, only[0], owner)
-    elif node.kind == "SendActionUsage" or node.kind == "AcceptActionUsage":
-        made = low.make(node, Kind.ACTIVITY, node.name or "", owner)
-        low.lower(node, made)
-    else:
-        made = low.add(node, Kind.ACTIVITY, node.name or "", owner)
-        generalize(low, node, made)
-        fill(low, node, made)
-    low.graph.connect(edge, owner, made)
+        # It ends the state itself or what it names; the grammar of effects cannot express this.
+        lowering.mark_approximated(
+            node, "a terminate action of a state or a transition", "an action without effect"
+        )
+    body, name = nodes.body_of(node), node.name or ""
+    if len(body) == 1 and body[0].kind in _STATES and not name:
+        return lower_state_machine(lowering, body[0], owner)
+    if node.kind in ("SendActionUsage", "AcceptActionUsage"):
+        activity = lowering.add_derived(node, Kind.ACTIVITY, name, owner)
+        lowering.lower(node, activity)
+        return activity
+    activity = lowering.add_element(node, Kind.ACTIVITY, name, owner)
+    connect_generals(lowering, node, activity)
+    lower_body(lowering, node, activity)
+    return activity
 
 
 # -- transitions -------------------------------------------------------------------------------
 
 
-def _vertices(low: "Lowering", node: Node, region: Element) -> None:
-    """States, then transitions: what is not stated of one is the state before it."""
-    previous: Node | Reference | None = None
-    waiting: list[tuple[Node | Reference | None, Node]] = []
-    for one in node.members:
-        if one.kind in _STATES:
-            state(low, one, region)
+def _lower_vertices(lowering: "Lowering", node: Node, region: Element) -> None:
+    """Lower the states and transitions of a region in the order of the text.
+
+    A transition without a source leaves the state before it.
+    """
+    previous: End = None
+    # Sources and nodes of successions whose target is the next state.
+    waiting: list[tuple[End, Node]] = []
+    for member in node.members:
+        if member.kind in _STATES:
+            lower_state(lowering, member, region)
             for source, succession in waiting:
-                _step(low, succession, region, source, one)
+                _lower_succession(lowering, succession, region, source, member)
             waiting.clear()
-            previous = one
-        elif _is_sub(one) and one.role == "entry":
-            previous = one
-        elif one.kind == "Membership" and not _is_alias(one):
-            previous = nodes.reference(one, "Membership")
-        elif one.kind == "TransitionUsage":
-            transition(low, one, region, previous)
-        elif one.kind == "SuccessionAsUsage":
-            source, target = _succession(one)
+            previous = member
+        elif _is_subaction(member) and member.role == "entry":
+            previous = member
+        elif member.kind == "Membership" and not _is_alias(member):
+            previous = nodes.find_reference(member, "Membership")
+        elif member.kind == "TransitionUsage":
+            _lower_transition(lowering, member, region, previous)
+        elif member.kind == "SuccessionAsUsage":
+            source, target = _read_ends(member)
             if target is None:
-                waiting.append((source or previous, one))
+                waiting.append((source or previous, member))
             else:
-                _step(low, one, region, source or previous, target)
+                _lower_succession(lowering, member, region, source or previous, target)
         elif waiting:
             # A `then` stands before its target, and only states are vertices.
-            low.unsupported(waiting.pop()[1])
+            _, succession = waiting.pop()
+            lowering.mark_unsupported(succession)
 
 
-def _succession(node: Node) -> tuple[Reference | None, Reference | None]:
-    ends = nodes.ends_of(node)
+def _read_ends(succession: Node) -> tuple[Reference | None, Reference | None]:
+    ends = nodes.ends_of(succession)
     if len(ends) < 2:
         return None, None
-    found = [nodes.reference(end, "ReferenceSubsetting", "Subsetting") for end in ends[:2]]
-    return found[0], found[1]
+    return reference_of_end(ends[0]), reference_of_end(ends[1])
 
 
-def _step(
-    low: "Lowering",
-    node: Node,
-    region: Element,
-    source: "Node | Reference | None",
-    target: "Node | Reference",
+def _lower_succession(
+    lowering: "Lowering", node: Node, region: Element, source: End, target: End
 ) -> None:
-    for point in (source, target):
-        _mention(low, region, point, node)
-    made = low.add(node, Kind.TRANSITION, node.name or "", region)
-    low.last(lambda: _ends(low, made, source, target))
+    """Lower a succession between states to a transition without trigger."""
+    _add_mentioned_vertex(lowering, region, source, node)
+    _add_mentioned_vertex(lowering, region, target, node)
+    transition = lowering.add_element(node, Kind.TRANSITION, node.name or "", region)
+    lowering.defer_until_edges(lambda: _connect_ends(lowering, transition, source, target))
 
 
-def transition(
-    low: "Lowering", node: Node, region: Element, previous: "Node | Reference | None"
-) -> None:
-    """A transition with its trigger, guard and effect."""
-    _, subkind = marked(node, Kind.TRANSITION)
-    name = node.name or ""
-    source = nodes.reference(node, "Membership") or previous
-    _mention(low, region, source, node)
-    made = low.add(node, Kind.TRANSITION, name, region, subkind=subkind, **visibility(node))
+def _lower_transition(lowering: "Lowering", node: Node, region: Element, previous: End) -> None:
+    """Lower a transition with its trigger, guard and effect."""
+    _, subkind = read_kind(node, Kind.TRANSITION)
+    source = nodes.find_reference(node, "Membership") or previous
+    _add_mentioned_vertex(lowering, region, source, node)
+    attributes = visibility_attributes(node)
+    transition = lowering.add_element(
+        node, Kind.TRANSITION, node.name or "", region, subkind=subkind, **attributes
+    )
     guard = guard_of(node)
     if guard is not None:
-        low.later(lambda: values.say(low, made, "guard", guard))
-    target: Node | Reference | None = None
-    for one in node.members:
-        if one.role == "trigger":
-            trigger(low, one, made)
-        elif one.role == "effect":
-            held(low, one, made, Edge.EFFECT)
-        elif one.kind in ("SuccessionAsUsage", "Succession"):
-            target = _succession(one)[1] or target
-        elif nodes.is_text(one) or one.kind.endswith("ConstraintUsage"):
-            low.lower(one, made)
-    low.last(lambda: _ends(low, made, source, target))
+        lowering.defer_until_elements(
+            lambda: values.set_expression(lowering, transition, "guard", guard)
+        )
+    target: End = None
+    for member in node.members:
+        if member.role == "trigger":
+            lower_trigger(lowering, member, transition)
+        elif member.role == "effect":
+            _lower_behaviour(lowering, member, transition, Edge.EFFECT)
+        elif member.kind in _SUCCESSIONS:
+            target = _read_ends(member)[1] or target
+        elif nodes.is_annotation(member) or member.kind.endswith("ConstraintUsage"):
+            lowering.lower(member, transition)
+    lowering.defer_until_edges(lambda: _connect_ends(lowering, transition, source, target))
 
 
-def _mention(
-    low: "Lowering", region: Element, point: "Node | Reference | None", node: Node
-) -> None:
-    """Make the start of a region, or its end, where the text first names it."""
-    if isinstance(point, Reference) and len(point.chain) == 1 and is_of_library(low, point):
-        low.vertex(region, nodes.last_name(point), node)
-    elif isinstance(point, Node) and _is_sub(point):
-        low.vertex(region, "start", node)
+def _add_mentioned_vertex(lowering: "Lowering", region: Element, end: End, node: Node) -> None:
+    """Add the start or the end of a region at the node that first mentions it."""
+    if isinstance(end, Reference) and is_own_end(lowering, end):
+        lowering.ensure_vertex(region, nodes.last_name(end), node)
+    elif isinstance(end, Node) and _is_subaction(end):
+        lowering.ensure_vertex(region, "start", node)
 
 
-def _ends(
-    low: "Lowering",
-    made: Element,
-    source: "Node | Reference | None",
-    target: "Node | Reference | None",
-) -> None:
-    region = low.graph.owner(made)
+def _connect_ends(lowering: "Lowering", transition: Element, source: End, target: End) -> None:
+    region = lowering.graph.owner(transition)
     assert region is not None
-    for edge, point in ((Edge.FLOW_SOURCE, source), (Edge.FLOW_TARGET, target)):
-        found = _vertex(low, region, point)
-        if found is None:
-            low.lead(edge, made, None)
+    for edge, end in ((Edge.FLOW_SOURCE, source), (Edge.FLOW_TARGET, target)):
+        vertex = _find_vertex(lowering, region, end)
+        if vertex is None:
+            lowering.connect_node(edge, transition, None)
         else:
-            low.graph.connect(edge, made, found)
+            lowering.graph.connect(edge, transition, vertex)
 
 
-def _vertex(low: "Lowering", region: Element, point: "Node | Reference | None") -> Element | None:
-    """The vertex that an end means: a state, the start or the end of a region."""
-    if point is None:
+def _find_vertex(lowering: "Lowering", region: Element, end: End) -> Element | None:
+    """Return the vertex that an end means: a state, or the start or the end of a region."""
+    if end is None:
         return None
-    if isinstance(point, Node):
-        return low.vertex(region, "start") if _is_sub(point) else low.element(point)
-    target, name = point.target, nodes.last_name(point)
-    if target is not None and _is_sub(target):
-        return low.vertex(region, "start")
-    if is_of_library(low, point):
-        before = [low.element(one) for one in (point.targets or [])[:-1]]
-        holder = before[-1] if before and len(point.chain) > 1 else None
-        inside = region if holder is None else _region_in(low, holder)
-        return None if inside is None else low.vertex(inside, name)
-    return low.element(target)
+    target = end if isinstance(end, Node) else end.target
+    if target is not None and _is_subaction(target):
+        return lowering.ensure_vertex(region, "start")
+    if isinstance(end, Node) or not is_start_or_done(lowering, end):
+        return lowering.element_of(target)
+    holders = (end.targets or [])[:-1]
+    holder = lowering.element_of(holders[-1]) if holders and len(end.chain) > 1 else None
+    inner_region = region if holder is None else _find_region(lowering, holder)
+    if inner_region is None:
+        return None
+    return lowering.ensure_vertex(inner_region, nodes.last_name(end))
 
 
-def _region_in(low: "Lowering", holder: Element) -> Element | None:
+def _find_region(lowering: "Lowering", holder: Element) -> Element | None:
+    """Return a region itself, or the first region of a state."""
     if holder.kind is Kind.REGION:
         return holder
-    inside = (one for one in low.graph.owned(holder) if one.kind is Kind.REGION)
-    return next(inside, None)
+    members = lowering.graph.owned(holder)
+    return next((member for member in members if member.kind is Kind.REGION), None)

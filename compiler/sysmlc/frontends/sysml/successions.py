@@ -12,216 +12,231 @@ from sysmlc.language.tree import Node, Reference
 if TYPE_CHECKING:
     from sysmlc.frontends.sysml.lowering import Lowering
 
+End = Node | Reference | None
+"""An end of a succession: a step beside it in the text, the name of a step, or none."""
+
 _SUCCESSIONS = frozenset({"SuccessionAsUsage", "Succession"})
-_NAMES = """
+_STEP_NAMES = """
     ActionUsage PerformActionUsage SendActionUsage AcceptActionUsage AssignmentActionUsage
     IfActionUsage WhileLoopActionUsage ForLoopActionUsage TerminateActionUsage DecisionNode
     MergeNode ForkNode JoinNode CalculationUsage StateUsage ExhibitStateUsage Step Expression
     VerificationCaseUsage AnalysisCaseUsage CaseUsage UseCaseUsage IncludeUseCaseUsage
     ConstraintUsage AssertConstraintUsage EventOccurrenceUsage ItemUsage
 """
-_STEPS = frozenset(_NAMES.split())
+_STEPS = frozenset(_STEP_NAMES.split())
 """Members at which the next succession without a source may start."""
 
 
 @dataclass(slots=True)
-class _Run:
-    """Where the reading of a body is."""
+class _Body:
+    """State of the lowering of the steps of one behaviour or block."""
 
     owner: Element
-    ends: list[Element] | None = None
-    """Entry and exit, where the steps are those of a block within the behaviour."""
-    previous: "Node | Reference | None" = None
-    waiting: "list[tuple[Node | Reference | None, Node, str]]" = field(default_factory=list)
-    """Successions whose target is the next step: source, node, guard."""
+    entry_and_exit: list[Element] | None = None
+    """Entry and exit of a block whose steps are those of the behaviour around it."""
+    previous: End = None
+    """The step before the current member."""
+    waiting: list[tuple[End, Node]] = field(default_factory=list)
+    """Sources and nodes of successions whose target is the next step."""
 
 
-def steps(
-    low: "Lowering", found: Iterable[Node], owner: Element, ends: list[Element] | None = None
+def lower_steps(
+    lowering: "Lowering",
+    members: Iterable[Node],
+    owner: Element,
+    entry_and_exit: list[Element] | None = None,
 ) -> None:
     """Lower the members of a behaviour with the successions between them.
 
-    Steps of a block that stand in the behaviour around it have the ``ends`` of the block as
-    ``start`` and ``done``; they may be added to the list afterwards.
+    For a block whose steps are those of the behaviour around it, ``start`` and ``done`` mean the
+    entry and exit of the block. The caller may append them to the list later.
     """
-    run = _Run(owner, ends)
-    for node in found:
+    body = _Body(owner, entry_and_exit)
+    for node in members:
         if node.kind in _SUCCESSIONS:
-            _succession(low, node, run)
+            _lower_succession(lowering, node, body)
         elif node.kind == "TransitionUsage":
-            _guarded(low, node, run)
+            _lower_guarded_succession(lowering, node, body)
         elif node.kind == "Membership" and not node.name and not node.short_name:
-            run.previous = nodes.reference(node, "Membership")
-            _mention(low, run, run.previous, node)
+            # `first x;` only names the step that the next succession leaves.
+            body.previous = nodes.find_reference(node, "Membership")
+            _add_mentioned_end(lowering, body, body.previous, node)
         else:
-            low.lower(node, owner)
+            lowering.lower(node, owner)
             if node.kind in _STEPS and "direction" not in node.attributes:
-                _arrive(low, node, run)
-            elif run.waiting:
+                for source, succession in body.waiting:
+                    _add_flow(lowering, body, succession, source, node)
+                body.waiting.clear()
+                body.previous = node
+            elif body.waiting:
                 # A `then` stands before its target, which is no step of the graph.
-                low.unsupported(run.waiting.pop()[1])
+                _, succession = body.waiting.pop()
+                lowering.mark_unsupported(succession)
 
 
-def _arrive(low: "Lowering", node: Node, run: _Run) -> None:
-    for source, flow, _ in run.waiting:
-        _flow(low, run, flow, source, node, None)
-    run.waiting.clear()
-    run.previous = node
-
-
-def _succession(low: "Lowering", node: Node, run: _Run) -> None:
-    """A succession; ends that are not stated are the steps before and behind it."""
+def _lower_succession(lowering: "Lowering", node: Node, body: _Body) -> None:
+    """Lower a succession; an end that is not stated is the step before or after it."""
     ends = nodes.ends_of(node)
-    if len(ends) < 2:
-        run.waiting.append((run.previous, node, ""))
-        return
-    source, target = (_end(end) for end in ends[:2])
+    source, target = map(reference_of_end, ends[:2]) if len(ends) > 1 else (None, None)
     if target is None:
-        run.waiting.append((source or run.previous, node, ""))
+        body.waiting.append((source or body.previous, node))
     else:
-        _flow(low, run, node, source or run.previous, target, None)
+        _add_flow(lowering, body, node, source or body.previous, target)
 
 
-def _end(end: Node) -> Reference | None:
-    return nodes.reference(end, "ReferenceSubsetting", "Subsetting")
+def reference_of_end(end: Node) -> Reference | None:
+    """Return the reference by which an end of a succession names a step."""
+    return nodes.find_reference(end, "ReferenceSubsetting", "Subsetting")
 
 
-def _guarded(low: "Lowering", node: Node, run: _Run) -> None:
-    """A succession with a guard, or the one for else."""
-    source = nodes.reference(node, "Membership") or run.previous
-    inner = next(nodes.members(node, *_SUCCESSIONS), None)
-    ends = [] if inner is None else nodes.ends_of(inner)
-    target = _end(ends[-1]) if ends else None
-    guard = guard_of(node)
+def _lower_guarded_succession(lowering: "Lowering", node: Node, body: _Body) -> None:
+    """Lower a succession with a guard; without a guard it is the one for ``else``."""
+    source = nodes.find_reference(node, "Membership") or body.previous
+    succession = next(nodes.iter_by_metaclass(node, *_SUCCESSIONS), None)
+    ends = [] if succession is None else nodes.ends_of(succession)
+    target = reference_of_end(ends[-1]) if ends else None
     if target is not None:
-        _flow(low, run, node, source, target, guard or node)
+        _add_flow(lowering, body, node, source, target, guard_of(node) or "else")
 
 
-def guard_of(node: Node) -> Node | None:
-    """The condition of a transition."""
-    found = [one for one in node.members if one.role == "guard"]
-    return found[0] if found else None
+def guard_of(transition: Node) -> Node | None:
+    """Return the condition of a transition."""
+    return next((member for member in transition.members if member.role == "guard"), None)
 
 
-def _flow(
-    low: "Lowering",
-    run: _Run,
+# -- control flows -----------------------------------------------------------------------------
+
+
+def _add_flow(
+    lowering: "Lowering",
+    body: _Body,
     node: Node,
-    source: "Node | Reference | None",
-    target: "Node | Reference",
-    guard: Node | None,
+    source: End,
+    target: End,
+    guard: Node | str | None = None,
 ) -> None:
-    """A control flow; without a guard of its own a guarded succession is the one for else."""
-    if _is_elsewhere(low, source) or _is_elsewhere(low, target):
-        low.unsupported(node)
+    """Add a control flow for a succession; metadata may make it an object flow."""
+    if _is_action_of_package(lowering, source) or _is_action_of_package(lowering, target):
+        lowering.mark_unsupported(node)
         return
-    _mention(low, run, source, node)
-    _mention(low, run, target, node)
-    is_objects = "ObjectFlow" in annotations.ours(node)
-    kind = Kind.OBJECT_FLOW if is_objects else Kind.CONTROL_FLOW
-    made = low.add(node, kind, node.name or "", run.owner)
-    if guard is node:
-        low.set(made, guard="else")
+    _add_mentioned_end(lowering, body, source, node)
+    _add_mentioned_end(lowering, body, target, node)
+    is_object_flow = "ObjectFlow" in annotations.shipped_metadata_of(node)
+    kind = Kind.OBJECT_FLOW if is_object_flow else Kind.CONTROL_FLOW
+    flow = lowering.add_element(node, kind, node.name or "", body.owner)
+    if isinstance(guard, str):
+        lowering.set_attributes(flow, guard=guard)
     elif guard is not None:
-        low.later(lambda: values.say(low, made, "guard", guard))
-    low.lower_texts(node, made)
-    low.last(lambda: _join(low, made, (source, target), run))
-    if is_objects:
-        low.last(lambda: _flow_between_pins(low, node, made))
+        lowering.defer_until_elements(lambda: values.set_expression(lowering, flow, "guard", guard))
+    lowering.lower_annotations(node, flow)
+    lowering.defer_until_edges(lambda: _connect_ends(lowering, flow, (source, target), body))
+    if is_object_flow:
+        lowering.defer_until_edges(lambda: _move_ends_to_pins(lowering, node, flow))
     if guard is not None:
-        low.last(lambda: low.last(lambda: _meet(low, low.graph.target(made, Edge.FLOW_TARGET))))
+        # Deferred twice: all flows must have their targets.
+        lowering.defer_until_edges(
+            lambda: lowering.defer_until_edges(lambda: _add_merge(lowering, flow))
+        )
 
 
-def _flow_between_pins(low: "Lowering", node: Node, made: Element) -> None:
-    """Let an object flow begin and end at pins of the steps that the succession names."""
+def _move_ends_to_pins(lowering: "Lowering", node: Node, flow: Element) -> None:
+    """Move the ends of an object flow from steps to the pins that metadata names."""
     for key, edge in (("source", Edge.FLOW_SOURCE), ("target", Edge.FLOW_TARGET)):
-        step, name = low.graph.target(made, edge), annotations.said(node, "ObjectFlow", key)
-        inside = [] if step is None or not name else low.graph.owned(step)
-        pin = next((one for one in inside if one.kind is Kind.PIN and one.name == name), None)
+        step = lowering.graph.target(flow, edge)
+        name = annotations.metadata_value(node, "ObjectFlow", key)
+        members = [] if step is None or not name else lowering.graph.owned(step)
+        pins = (member for member in members if member.kind is Kind.PIN and member.name == name)
+        pin = next(pins, None)
         if step is not None and pin is not None:
-            low.graph.disconnect(edge, made, step)
-            low.graph.connect(edge, made, pin)
+            lowering.graph.disconnect(edge, flow, step)
+            lowering.graph.connect(edge, flow, pin)
 
 
-def _meet(low: "Lowering", step: Element | None) -> None:
-    """A merge before a step that more than one succession leads to, one of them guarded.
+def _add_merge(lowering: "Lowering", guarded_flow: Element) -> None:
+    """Add a merge before the target of a guarded flow if other control flows lead there, too.
 
-    A guarded succession that is not taken is none (SysML 2.0, 8.4.13.5); the step waits for those
-    that are. A step of UML would wait for all (UML 2.5.1, 15.2.3.4).
+    A guarded succession that is not taken does not occur (SysML 2.0, 8.4.13.5); the step waits for
+    those that are taken. A step of UML would wait for all (UML 2.5.1, 15.2.3.4).
     """
+    step = lowering.graph.target(guarded_flow, Edge.FLOW_TARGET)
     if step is None or step.kind not in (Kind.ACTION, Kind.STRUCTURED):
         return
-    ways = [
-        one for one in low.graph.sources(step, Edge.FLOW_TARGET) if one.kind is Kind.CONTROL_FLOW
+    flows = [
+        flow
+        for flow in lowering.graph.sources(step, Edge.FLOW_TARGET)
+        if flow.kind is Kind.CONTROL_FLOW
     ]
-    if len(ways) < 2:
+    if len(flows) < 2:
         return
-    merge = low.beside(step, Kind.CONTROL, "")
-    low.set(merge, subkind="merge")
-    for one in ways:
-        low.graph.disconnect(Edge.FLOW_TARGET, one, step)
-        low.graph.connect(Edge.FLOW_TARGET, one, merge)
-    flow = low.beside(step, Kind.CONTROL_FLOW, "")
-    low.graph.connect(Edge.FLOW_SOURCE, flow, merge)
-    low.graph.connect(Edge.FLOW_TARGET, flow, step)
+    merge = lowering.add_implied_sibling(step, Kind.CONTROL, "")
+    lowering.set_attributes(merge, subkind="merge")
+    for flow in flows:
+        lowering.graph.disconnect(Edge.FLOW_TARGET, flow, step)
+        lowering.graph.connect(Edge.FLOW_TARGET, flow, merge)
+    merged_flow = lowering.add_implied_sibling(step, Kind.CONTROL_FLOW, "")
+    lowering.graph.connect(Edge.FLOW_SOURCE, merged_flow, merge)
+    lowering.graph.connect(Edge.FLOW_TARGET, merged_flow, step)
 
 
-def _is_elsewhere(low: "Lowering", point: "Node | Reference | None") -> bool:
-    """Whether an end is an action of a package, which is no step of any behaviour."""
-    if not isinstance(point, Reference) or len(point.chain) > 1 or (target := point.target) is None:
-        return False
-    owner = target.owner
-    is_package = owner is not None and (owner.kind == "Namespace" or is_a(owner.kind, "Package"))
-    return is_package and not is_of_library(low, point)
-
-
-def _mention(low: "Lowering", run: _Run, point: "Node | Reference | None", node: Node) -> None:
-    """Make the start or the end of a behaviour where the text first names it."""
-    if run.ends is None and isinstance(point, Reference) and _is_own_end(low, point):
-        low.control(run.owner, nodes.last_name(point), node)
-
-
-def _is_own_end(low: "Lowering", point: Reference) -> bool:
-    return len(point.chain) == 1 and is_of_library(low, point)
-
-
-def is_of_library(low: "Lowering", point: Reference) -> bool:
-    """Whether an end is the start or the end that every behaviour has."""
-    if nodes.last_name(point) not in ("start", "done"):
-        return False
-    target = point.target
-    return target is None or low.document(target) is None
-
-
-def _join(
-    low: "Lowering",
-    made: Element,
-    points: "tuple[Node | Reference | None, Node | Reference]",
-    run: _Run,
-) -> None:
-    ends = run.ends
-    for edge, point in zip((Edge.FLOW_SOURCE, Edge.FLOW_TARGET), points, strict=True):
-        if ends and isinstance(point, Reference) and _is_own_end(low, point):
-            found: Element | None = ends[nodes.last_name(point) == "done"]
+def _connect_ends(lowering: "Lowering", flow: Element, ends: tuple[End, End], body: _Body) -> None:
+    for edge, end in zip((Edge.FLOW_SOURCE, Edge.FLOW_TARGET), ends, strict=True):
+        if body.entry_and_exit and isinstance(end, Reference) and is_own_end(lowering, end):
+            entry, exit_ = body.entry_and_exit
+            node: Element | None = exit_ if nodes.last_name(end) == "done" else entry
         else:
-            found = vertex(low, run.owner, point, is_target=edge is Edge.FLOW_TARGET)
-        if found is None:
-            low.lead(edge, made, None)
+            is_target = edge is Edge.FLOW_TARGET
+            node = _find_flow_node(lowering, body.owner, end, is_target=is_target)
+        if node is None:
+            lowering.connect_node(edge, flow, None)
         else:
-            low.graph.connect(edge, made, found)
+            lowering.graph.connect(edge, flow, node)
 
 
-def vertex(
-    low: "Lowering", owner: Element, point: "Node | Reference | None", *, is_target: bool
+def _find_flow_node(
+    lowering: "Lowering", owner: Element, end: End, *, is_target: bool
 ) -> Element | None:
-    """The node of the activity that an end of a succession means."""
-    if point is None:
+    """Return the node of an activity that an end of a succession means."""
+    if end is None:
         return None
-    if isinstance(point, Node):
-        return low.point(point, is_target=is_target)
-    if is_of_library(low, point):
-        before = (point.targets or [])[:-1]
-        holder = low.element(before[-1]) if before and len(point.chain) > 1 else owner
-        return None if holder is None else low.control(holder, nodes.last_name(point))
-    target = point.target
-    return None if target is None else low.point(target, is_target=is_target)
+    if isinstance(end, Node):
+        return lowering.flow_node_of(end, is_target=is_target)
+    if is_start_or_done(lowering, end):
+        holders = (end.targets or [])[:-1]
+        has_holder = holders and len(end.chain) > 1
+        holder = lowering.element_of(holders[-1]) if has_holder else owner
+        if holder is None:
+            return None
+        return lowering.ensure_control_node(holder, nodes.last_name(end))
+    target = end.target
+    return None if target is None else lowering.flow_node_of(target, is_target=is_target)
+
+
+# -- starts and ends ---------------------------------------------------------------------------
+
+
+def _is_action_of_package(lowering: "Lowering", end: End) -> bool:
+    """Whether an end is an action of a package, which is no step of any behaviour."""
+    if not isinstance(end, Reference) or len(end.chain) > 1 or end.target is None:
+        return False
+    owner = end.target.owner
+    is_in_package = owner is not None and (owner.kind == "Namespace" or is_a(owner.kind, "Package"))
+    return is_in_package and not is_start_or_done(lowering, end)
+
+
+def _add_mentioned_end(lowering: "Lowering", body: _Body, end: End, node: Node) -> None:
+    """Add the start or the end of a behaviour at the node that first mentions it."""
+    if body.entry_and_exit is None and isinstance(end, Reference) and is_own_end(lowering, end):
+        lowering.ensure_control_node(body.owner, nodes.last_name(end), node)
+
+
+def is_own_end(lowering: "Lowering", reference: Reference) -> bool:
+    """Whether a reference is ``start`` or ``done`` of the behaviour that contains it."""
+    return len(reference.chain) == 1 and is_start_or_done(lowering, reference)
+
+
+def is_start_or_done(lowering: "Lowering", reference: Reference) -> bool:
+    """Whether a reference is the start or the end that every behaviour inherits."""
+    if nodes.last_name(reference) not in ("start", "done"):
+        return False
+    target = reference.target
+    return target is None or lowering.document_of(target) is None

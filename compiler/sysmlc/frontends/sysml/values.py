@@ -9,126 +9,152 @@ from sysmlc.language.tree import Node
 if TYPE_CHECKING:
     from sysmlc.frontends.sysml.lowering import Lowering
 
-
-def give(low: "Lowering", element: Element, key: str, node: Node) -> None:
-    """Set the attribute ``key`` from an expression, with what is known of it beside.
-
-    Enumeration values have the attribute ``<key>_instance``, other expressions
-    ``<key>_language``.
-    """
-    literal = constant(node)
-    if literal is not None:
-        low.graph.set(element, **{key: literal})
-        return
-    low.last(lambda: _refer(low, element, key, node))
-
-
-def _refer(low: "Lowering", element: Element, key: str, node: Node) -> None:
-    target = _literal_of(node)
-    known = low.element(target)
-    if target is not None and target.kind == "EnumerationUsage" and known is not None:
-        _literal(low, element, key, known)
-        return
-    written = _written(node, low)
-    low.graph.set(element, **{key: written, f"{key}_language": ""})
-
-
-def say(low: "Lowering", element: Element, key: str, node: Node) -> None:
-    """Set the attribute ``key`` to a condition, or another expression, as text."""
-    low.set(element, **{key: texts(node, low)})
-
-
-def _written(node: Node, low: "Lowering") -> str:
-    document = low.document(node)
-    return expressions.text(node, "" if document is None else document.text)
-
-
-def _literal(low: "Lowering", element: Element, key: str, known: Element) -> None:
-    """A literal of an enumeration; for a feature of another type the value that it has."""
-    types = low.graph.targets(element, Edge.TYPED_BY)
-    is_other = low.is_scalar(element) or (types and low.graph.owner(known) not in types)
-    value = known.attrs.get("value") if is_other else None
-    given = known.name if value is None else value
-    low.graph.set(element, **{key: given, f"{key}_instance": known.id})
-
-
-def _literal_of(node: Node) -> Node | None:
-    if node.kind != "FeatureReferenceExpression":
-        return None
-    return nodes.target(node, "Membership")
-
-
-def constant(node: Node) -> AttrValue:
-    """The literal that an expression is; None when it must be computed.
-
-    The number of a quantity is its value: the unit is that of the type (``measure``).
-    """
-    if node.kind in _LITERALS:
-        return node.attributes.get("value")
-    if node.kind == "OperatorExpression":
-        return _operation(node)
-    return () if node.kind == "NullExpression" else None
-
-
-def _operation(node: Node) -> AttrValue:
-    operator, args = node.attributes.get("operator"), nodes.arguments(node)
-    if operator == "-" and len(args) == 1:
-        found = constant(args[0])
-        is_number = isinstance(found, int | float) and not isinstance(found, bool)
-        return -found if is_number and isinstance(found, int | float) else None
-    if operator == "[" and len(args) == 2:
-        return constant(args[0])
-    if operator == "," and len(args) == 2:
-        return _sequence(args)
-    return None
-
-
-def _sequence(args: list[Node]) -> AttrValue:
-    """The values of ``(a, b, c)``, which nests to the right as deep as it is long."""
-    found: list[AttrValue] = []
-    while len(args) == 2:
-        left, right = args
-        if not _add(constant(left), found):
-            return None
-        args = nodes.arguments(right) if right.attributes.get("operator") == "," else [right]
-    return tuple(found) if all(_add(constant(one), found) for one in args) else None
-
-
-def _add(value: AttrValue, found: list[AttrValue]) -> bool:
-    """Take a value, or the values of a sequence within; False when there is none."""
-    if value is None:
-        return False
-    found += value if isinstance(value, tuple) else [value]
-    return True
-
-
 _LITERALS = frozenset({"LiteralBoolean", "LiteralString", "LiteralInteger", "LiteralRational"})
 
 
-def measure(node: Node) -> str:
-    """Name of the unit of a quantity (``5 [SI::mm]`` gives ``mm``), or the empty string."""
-    if node.kind == "OperatorExpression" and node.attributes.get("operator") == "[":
-        args = nodes.arguments(node)
-        found = nodes.reference(args[1], "Membership") if len(args) == 2 else None
-        return "" if found is None else nodes.last_name(found)
+def set_value(lowering: "Lowering", element: Element, key: str, expression: Node) -> None:
+    """Set the attribute *key* to the value of an expression.
+
+    An enumeration value also sets ``<key>_instance``, any other expression that must be computed
+    ``<key>_language``.
+    """
+    constant = constant_of(expression)
+    if constant is not None:
+        lowering.graph.set(element, **{key: constant})
+        return
+    lowering.defer_until_edges(lambda: _set_computed(lowering, element, key, expression))
+
+
+def _set_computed(lowering: "Lowering", element: Element, key: str, expression: Node) -> None:
+    target = _referenced_feature(expression)
+    literal = lowering.element_of(target)
+    if target is not None and target.kind == "EnumerationUsage" and literal is not None:
+        _set_literal(lowering, element, key, literal)
+        return
+    text = _write(expression, lowering)
+    lowering.graph.set(element, **{key: text, f"{key}_language": ""})
+
+
+def _set_literal(lowering: "Lowering", element: Element, key: str, literal: Element) -> None:
+    """Set a literal of an enumeration; a feature of another type gets the value of the literal."""
+    types = lowering.graph.targets(element, Edge.TYPED_BY)
+    has_other_type = lowering.has_scalar_type(element) or (
+        types and lowering.graph.owner(literal) not in types
+    )
+    value = literal.attrs.get("value") if has_other_type else None
+    written = literal.name if value is None else value
+    lowering.graph.set(element, **{key: written, f"{key}_instance": literal.id})
+
+
+def set_expression(
+    lowering: "Lowering", element: Element, key: str, expression: Node | None
+) -> None:
+    """Set the attribute *key* to the text of a condition or another expression."""
+    lowering.set_attributes(element, **{key: expression_text(expression, lowering)})
+
+
+def expression_text(expression: Node | None, lowering: "Lowering") -> str:
+    """Return an expression as text of our grammar.
+
+    A feature whose name is no identifier stands for a condition in prose: its name is the text.
+    """
+    if expression is None:
+        return ""
+    target = _referenced_feature(expression)
+    if target is not None and target.name and not target.name.isidentifier():
+        return target.name
+    return _write(expression, lowering)
+
+
+def _write(expression: Node, lowering: "Lowering") -> str:
+    document = lowering.document_of(expression)
+    return expressions.write_expression(expression, "" if document is None else document.text)
+
+
+def _referenced_feature(expression: Node) -> Node | None:
+    if expression.kind != "FeatureReferenceExpression":
+        return None
+    return nodes.find_target(expression, "Membership")
+
+
+# -- constants ---------------------------------------------------------------------------------
+
+
+def constant_of(expression: Node) -> AttrValue:
+    """Return the value of a literal, a quantity or a sequence; None if it must be computed.
+
+    The value of a quantity is its number. Its unit is that of the type, or ``unit_of``.
+    """
+    if expression.kind in _LITERALS:
+        return expression.attributes.get("value")
+    if expression.kind == "OperatorExpression":
+        return _constant_of_operation(expression)
+    return () if expression.kind == "NullExpression" else None
+
+
+def _constant_of_operation(expression: Node) -> AttrValue:
+    operator, arguments = expression.attributes.get("operator"), nodes.list_arguments(expression)
+    if operator == "-" and len(arguments) == 1:
+        number = constant_of(arguments[0])
+        is_number = isinstance(number, int | float) and not isinstance(number, bool)
+        return -number if is_number and isinstance(number, int | float) else None
+    if operator == "[" and len(arguments) == 2:
+        return constant_of(arguments[0])
+    if operator == "," and len(arguments) == 2:
+        return _constant_of_sequence(arguments)
+    return None
+
+
+def _constant_of_sequence(arguments: list[Node]) -> AttrValue:
+    """Return the values of ``(a, b, c)``, whose tree nests to the right for each value."""
+    sequence: list[AttrValue] = []
+    while len(arguments) == 2:
+        first, rest = arguments
+        if not _append(constant_of(first), sequence):
+            return None
+        is_longer = rest.attributes.get("operator") == ","
+        arguments = nodes.list_arguments(rest) if is_longer else [rest]
+    is_constant = all(_append(constant_of(argument), sequence) for argument in arguments)
+    return tuple(sequence) if is_constant else None
+
+
+def _append(value: AttrValue, sequence: list[AttrValue]) -> bool:
+    """Append a value, or the values of a nested sequence; return False if there is none."""
+    if value is None:
+        return False
+    sequence += value if isinstance(value, tuple) else [value]
+    return True
+
+
+def unit_of(expression: Node) -> str:
+    """Return the name of the unit of a quantity (``mm`` of ``5 [SI::mm]``), or ''."""
+    if expression.kind == "OperatorExpression" and expression.attributes.get("operator") == "[":
+        arguments = nodes.list_arguments(expression)
+        unit = nodes.find_reference(arguments[1], "Membership") if len(arguments) == 2 else None
+        return "" if unit is None else nodes.last_name(unit)
     return ""
 
 
-def multiplicity(low: "Lowering", node: Node) -> str:
-    """The multiplicity of a feature in UML notation; empty when it is exactly one."""
+# -- multiplicities ----------------------------------------------------------------------------
+
+
+def multiplicity_of(lowering: "Lowering", node: Node) -> str:
+    """Return the multiplicity of a feature in the notation of UML; '' if it is exactly one."""
     if not node.members:
         return ""
-    for one in node.members:
-        if one.kind == "MultiplicityRange":
-            return _bounds(low, one)
-    cross = nodes.crossed(node)
-    return "" if cross is None else multiplicity(low, cross)
+    for member in node.members:
+        if member.kind == "MultiplicityRange":
+            return _write_range(lowering, member)
+    cross = nodes.cross_feature_of(node)
+    return "" if cross is None else multiplicity_of(lowering, cross)
 
 
-def _bounds(low: "Lowering", range_: Node) -> str:
-    document = low.document(range_)
+def _write_range(lowering: "Lowering", range_: Node) -> str:
+    document = lowering.document_of(range_)
     source = "" if document is None else document.text
-    bounds = [_bound(one, source) for one in range_.members if one.kind in nodes.EXPRESSIONS]
+    bounds = [
+        _write_bound(bound, source) for bound in range_.members if bound.kind in nodes.EXPRESSIONS
+    ]
     if not bounds:
         return ""
     if len(bounds) == 1 or bounds[0] == bounds[1]:
@@ -136,15 +162,6 @@ def _bounds(low: "Lowering", range_: Node) -> str:
     return "*" if bounds == ["0", "*"] else "..".join(bounds)
 
 
-def _bound(node: Node, source: str) -> str:
-    return "*" if node.kind == "LiteralInfinity" else expressions.text(node, source)
-
-
-def texts(node: Node | None, low: "Lowering") -> str:
-    """A condition as text in our grammar; the name of a text feature is that text."""
-    if node is None:
-        return ""
-    target = _literal_of(node)
-    if target is not None and target.name and not target.name.isidentifier():
-        return target.name
-    return _written(node, low)
+def _write_bound(bound: Node, source: str) -> str:
+    is_infinite = bound.kind == "LiteralInfinity"
+    return "*" if is_infinite else expressions.write_expression(bound, source)

@@ -4,7 +4,7 @@ from reading_v2 import read
 
 from sysmlc.diagnostics import Coverage, Place, Severity, Sink, Subject, catalogue
 from sysmlc.frontends.sysml import FRONTEND
-from sysmlc.frontends.sysml.settled import SEVERITIES
+from sysmlc.frontends.sysml.rules import SEVERITIES
 from sysmlc.ir import Graph
 from sysmlc.logic.contract import Contract, EnumerationDomain, IntegerDomain
 from sysmlc.logic.printing import print_formula

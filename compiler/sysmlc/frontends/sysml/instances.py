@@ -1,0 +1,136 @@
+"""Usages in packages: instances if they only give values, else classes."""
+
+from typing import TYPE_CHECKING
+
+from sysmlc.frontends.sysml import nodes, values
+from sysmlc.frontends.sysml.definitions import (
+    external_attributes,
+    lower_definition,
+    read_kind,
+    visibility_attributes,
+)
+from sysmlc.frontends.sysml.features import read_interface_id
+from sysmlc.ir import Edge, Element, Kind
+from sysmlc.language.tree import Node
+
+if TYPE_CHECKING:
+    from sysmlc.frontends.sysml.lowering import Lowering
+
+_UNIT_ROLES = {"SimpleUnit": "unit", "DerivedUnit": "unit", "QuantityDimension": "quantity kind"}
+"""Roles of instances by their type in the standard library."""
+_CLASS_ROLES = {"PortUsage": "interface block", "AttributeUsage": "value type"}
+_LINK_NAMES = """
+    ConnectionUsage InterfaceUsage BindingConnectorAsUsage FlowUsage Dependency AllocationUsage
+"""
+_LINKS = frozenset(_LINK_NAMES.split())
+
+
+def lower_package_usage(lowering: "Lowering", node: Node, owner: Element | None) -> None:
+    """Lower a usage that no definition owns: to a unit, an instance or a class."""
+    type_names = [type_.name or "" for type_ in nodes.types_of(lowering, node)]
+    unit_role = next((_UNIT_ROLES[name] for name in type_names if name in _UNIT_ROLES), "")
+    if unit_role:
+        _lower_unit(lowering, node, owner, unit_role)
+    elif _is_instance(node):
+        _lower_instance(lowering, node, owner)
+    else:
+        kind = Kind.DATA_TYPE if node.kind == "AttributeUsage" else Kind.CLASS
+        role = _CLASS_ROLES.get(node.kind, "block")
+        class_ = lower_definition(lowering, node, owner, kind, role, usage=True)
+        multiplicity = values.multiplicity_of(lowering, node)
+        lowering.set_attributes(class_, multiplicity=multiplicity)
+
+
+def _lower_unit(lowering: "Lowering", node: Node, owner: Element | None, role: str) -> None:
+    unit = lowering.add_element(
+        node, Kind.INSTANCE, node.name or "", owner, role=role, symbol=node.short_name
+    )
+    lowering.lower_annotations(node, unit)
+
+
+def _is_instance(node: Node) -> bool:
+    """Whether a usage only gives values to features of its type and links them."""
+    return all(
+        member.kind in _LINKS or (_is_redefinition(member) and _is_instance(member))
+        for member in nodes.body_of(node)
+        if not nodes.is_annotation(member)
+    )
+
+
+def _is_redefinition(node: Node) -> bool:
+    """Whether a member redefines a structural feature."""
+    is_structural = not node.kind.startswith(("Action", "State", "Perform", "Exhibit"))
+    return nodes.find_reference(node, "Redefinition") is not None and is_structural
+
+
+# -- instances and slots -----------------------------------------------------------------------
+
+
+def _lower_instance(lowering: "Lowering", node: Node, owner: Element | None) -> None:
+    """Lower a usage to an instance of its types, with a slot for each value."""
+    _, subkind = read_kind(node, Kind.INSTANCE)
+    attributes = visibility_attributes(node) | external_attributes(node)
+    instance = lowering.add_element(
+        node, Kind.INSTANCE, nodes.name_of(node), owner, subkind=subkind, **attributes
+    )
+    value = nodes.value_of(node)
+    if value is not None:
+        values.set_value(lowering, instance, "value", value)
+    lowering.defer_until_elements(lambda: _connect_types(lowering, node, instance))
+    _lower_members(lowering, node, instance)
+
+
+def _connect_types(lowering: "Lowering", node: Node, instance: Element) -> None:
+    lowering.connect_nodes(Edge.INSTANCE_OF, instance, nodes.types_of(lowering, node))
+    for reference in nodes.list_subsettings(node):
+        subsetted = lowering.element_of(reference.target)
+        if subsetted is not None:
+            lowering.graph.connect(Edge.INSTANCE_OF, instance, subsetted)
+
+
+def _lower_members(lowering: "Lowering", node: Node, instance: Element) -> None:
+    for member in nodes.body_of(node):
+        if nodes.is_annotation(member) or member.kind in _LINKS:
+            lowering.lower(member, instance)
+        elif read_interface_id(lowering, member, instance):
+            continue
+        elif _is_part(member):
+            _lower_part(lowering, member, instance)
+        else:
+            _lower_slot(lowering, member, instance)
+
+
+def _is_part(node: Node) -> bool:
+    """Whether a member of an instance has values of its own, or is a part without a value."""
+    is_part_usage = node.kind == "PartUsage" and nodes.value_of(node) is None
+    return is_part_usage or not all(map(nodes.is_annotation, nodes.body_of(node)))
+
+
+def _lower_part(lowering: "Lowering", node: Node, owner: Element) -> None:
+    """Lower values for a part of an instance to an instance inside it."""
+    part = lowering.add_element(node, Kind.INSTANCE, nodes.name_of(node), owner, subkind="part")
+    reference = nodes.find_reference(node, "Redefinition")
+    lowering.connect_reference(Edge.REPRESENTS, part, reference)
+    lowering.defer_until_elements(lambda: _connect_types(lowering, node, part))
+    _lower_members(lowering, node, part)
+
+
+def _lower_slot(lowering: "Lowering", node: Node, owner: Element) -> None:
+    slot = lowering.add_element(node, Kind.SLOT, nodes.name_of(node), owner)
+    reference = nodes.find_reference(node, "Redefinition")
+    lowering.connect_reference(Edge.INSTANCE_OF, slot, reference)
+    value = nodes.value_of(node)
+    if value is not None:
+        _set_slot_value(lowering, slot, value)
+    lowering.lower_annotations(node, slot)
+
+
+def _set_slot_value(lowering: "Lowering", slot: Element, value: Node) -> None:
+    """Set the value of a slot, or connect it to another instance of the unit."""
+    is_reference = value.kind == "FeatureReferenceExpression"
+    target = nodes.find_target(value, "Membership") if is_reference else None
+    is_literal = target is not None and target.kind == "EnumerationUsage"
+    if target is None or is_literal or lowering.document_of(target) is None:
+        values.set_value(lowering, slot, "value", value)
+        return
+    lowering.defer_until_elements(lambda: lowering.connect_node(Edge.REFERENCES, slot, target))

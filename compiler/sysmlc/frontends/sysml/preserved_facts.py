@@ -1,0 +1,131 @@
+"""Facts of a model in another notation that metadata preserves: ``name=value``, ``edge->element``.
+
+The back end ``sysml`` writes such facts as strings where no construct of SysML v2 expresses them.
+"""
+
+import json
+import re
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
+from sysmlc.frontends.sysml import nodes
+from sysmlc.ir import AttrValue, Edge, Element, Kind
+from sysmlc.language.tree import Node
+
+if TYPE_CHECKING:
+    from sysmlc.frontends.sysml.lowering import Lowering
+
+_FACT = re.compile(
+    r'(?:(node|region|trigger|start|done)\.)?("(?:[^"\\]|\\.)*"|[^="]*?)(=>|=|->)(.*)', re.DOTALL
+)
+"""Part of the element, key, operator and text; ``=>`` leads to an element outside of the model."""
+_NAME_SEGMENT = re.compile(r"'((?:[^'\\]|\\.)*)'|([^:']+)")
+_ESCAPED = re.compile(r"\\(.)", re.DOTALL)
+_ESCAPES = {"n": "\n", "t": "\t", "r": "\r", "b": "\b", "f": "\f"}
+_EDGES = {edge.value: edge for edge in Edge}
+_EXTERNAL_KINDS = {Edge.APPLIES: Kind.PROFILE}
+"""Kinds of the external targets of edges; other edges lead to classes."""
+_ATTEMPTS = 3
+"""How often a fact waits for a part of its element."""
+
+
+def restore_facts(lowering: "Lowering", facts: Mapping[str, AttrValue], element: Element) -> None:
+    """Apply the facts in ``attributes`` to an element, once all its edges exist."""
+    attributes = facts.get("attributes")
+    if not isinstance(attributes, tuple):
+        attributes = () if attributes is None else (attributes,)
+    for attribute in attributes:
+        _defer_fact(lowering, element, str(attribute), _ATTEMPTS)
+
+
+def _defer_fact(lowering: "Lowering", element: Element, fact: str, attempts: int) -> None:
+    lowering.defer_until_edges(lambda: _restore_fact(lowering, element, fact, attempts))
+
+
+def _restore_fact(lowering: "Lowering", element: Element, fact: str, attempts: int) -> None:
+    """Apply one fact; a start or an end of a behaviour exists only when a flow has needed it."""
+    match = _FACT.fullmatch(fact)
+    if match is None or element.id not in lowering.graph:
+        return
+    part, name, operator, text = match.groups()
+    holder = element if part is None else _find_part(lowering, element, part)
+    key = str(json.loads(name)) if name.startswith('"') else name
+    if holder is None:
+        if attempts:
+            _defer_fact(lowering, element, fact, attempts - 1)
+    elif key == "name":
+        lowering.graph.rename(holder, str(_parse_value(text)))
+    elif operator == "=":
+        lowering.graph.set(holder, **{key: _parse_value(text)})
+    elif operator == "=>":
+        _connect_external(lowering, holder, key, text)
+    else:
+        _connect(lowering, holder, key, text)
+
+
+def _connect_external(lowering: "Lowering", holder: Element, key: str, name: str) -> None:
+    edge = _EDGES.get(key)
+    if edge is not None:
+        kind = _EXTERNAL_KINDS.get(edge, Kind.CLASS)
+        lowering.connect_library_element(edge, holder, name, kind)
+
+
+def _connect(lowering: "Lowering", holder: Element, key: str, name: str) -> None:
+    """Add an edge, or an attribute whose value is the id of an element."""
+    target = lowering.element_of(_find_node(lowering, name))
+    if target is None:
+        return
+    edge = _EDGES.get(key)
+    if edge is not None:
+        lowering.graph.connect(edge, holder, target)
+    else:
+        lowering.graph.set(holder, **{key: target.id})
+
+
+def _find_node(lowering: "Lowering", qualified_name: str) -> Node | None:
+    """Return the node with a qualified name from the root."""
+    members = [member for root in lowering.roots for member in root.members]
+    node: Node | None = None
+    for segment in _NAME_SEGMENT.finditer(qualified_name):
+        quoted, plain = segment.groups()
+        name = plain if quoted is None else _unescape(quoted)
+        node = next((member for member in members if nodes.name_of(member) == name), None)
+        if node is None:
+            return None
+        members = node.members
+    return node
+
+
+def _unescape(text: str) -> str:
+    return _ESCAPED.sub(lambda match: _ESCAPES.get(match[1], match[1]), text)
+
+
+def _parse_value(text: str) -> AttrValue:
+    """Return the JSON value of a text, or the text itself if it is no JSON."""
+    try:
+        return _freeze(json.loads(text))
+    except ValueError:
+        return text
+
+
+def _freeze(value: object) -> AttrValue:
+    """Return lists as tuples, and None for what is no value of an attribute."""
+    if isinstance(value, list):
+        return tuple(_freeze(item) for item in value)
+    return value if isinstance(value, str | int | float | bool) else None
+
+
+def _find_part(lowering: "Lowering", element: Element, word: str) -> Element | None:
+    """Return the part of an element that the prefix of a fact names, if it exists."""
+    graph = lowering.graph
+    if word == "node":
+        for node in graph.sources(element, Edge.REFERENCES):
+            if node.kind is Kind.ACTIVITY_PARAMETER:
+                return node
+        return None
+    members = graph.owned(element)
+    if word == "trigger":
+        return next((member for member in members if member.kind is Kind.TRIGGER), None)
+    regions = [member for member in members if member.kind is Kind.REGION]
+    region = regions[0] if len(regions) == 1 else None
+    return region if word == "region" else lowering.find_start_or_done(region or element, word)

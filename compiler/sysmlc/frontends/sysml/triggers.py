@@ -1,0 +1,122 @@
+"""Triggers of accept actions and transitions: signals, calls, times and changes."""
+
+from typing import TYPE_CHECKING
+
+from sysmlc.frontends.sysml import nodes, values
+from sysmlc.ir import Edge, Element, Kind
+from sysmlc.language.tree import Node
+
+if TYPE_CHECKING:
+    from sysmlc.frontends.sysml.lowering import Lowering
+
+_CALL = "SysMLC::Call"
+_IS_RELATIVE = {"after": True, "at": False}
+"""Kinds of time triggers."""
+
+
+def lower_trigger(lowering: "Lowering", accept: Node, owner: Element) -> Element:
+    """Lower the trigger of an accept action; *owner* is the action or transition that waits."""
+    parameters = list(nodes.iter_by_membership(accept, "ParameterMembership"))
+    payload = parameters[0] if parameters else None
+    port = nodes.value_of(parameters[1]) if len(parameters) > 1 else None
+    trigger = lowering.add_derived(payload or accept, Kind.TRIGGER, "", owner)
+    lowering.graph.connect(Edge.TRIGGER, owner, trigger)
+    value = None if payload is None else nodes.value_of(payload)
+    if value is not None and value.kind == "TriggerInvocationExpression":
+        _describe_invocation(lowering, trigger, value)
+    elif payload is not None:
+        _describe_payload(lowering, trigger, payload)
+    if port is not None:
+        lowering.defer_until_elements(lambda: _set_port(lowering, trigger, port))
+    return trigger
+
+
+def _describe_invocation(lowering: "Lowering", trigger: Element, invocation: Node) -> None:
+    """Describe a trigger by ``after``, ``at`` or ``when``."""
+    kind = str(invocation.attributes.get("kind", ""))
+    argument = next(iter(nodes.list_arguments(invocation)), None)
+    if kind in _IS_RELATIVE:
+        when = "" if argument is None else _write_time(lowering, argument)
+        is_relative = _IS_RELATIVE[kind]
+        lowering.set_attributes(trigger, subkind="time", when=when, relative=is_relative)
+        return
+    lowering.set_attributes(trigger, subkind="change")
+    lowering.defer_until_elements(
+        lambda: values.set_expression(lowering, trigger, "condition", argument)
+    )
+
+
+def _write_time(lowering: "Lowering", expression: Node) -> str:
+    """Return a point in time or a duration as text: ``5 s``."""
+    unit = values.unit_of(expression)
+    number = values.constant_of(expression)
+    if unit and number is not None:
+        return f"{number} {unit}"
+    return values.expression_text(expression, lowering)
+
+
+def _describe_payload(lowering: "Lowering", trigger: Element, payload: Node) -> None:
+    """Describe a trigger by the type of its payload: a call, any event or a signal."""
+    types = nodes.types_of(lowering, payload)
+    names = [nodes.qualified_name_of(type_) for type_ in types]
+    if _CALL in names:
+        lowering.set_attributes(trigger, subkind="call")
+        operation = nodes.name_of(payload)
+        lowering.defer_until_elements(lambda: _connect_operation(lowering, trigger, operation))
+    elif names == ["Base::Anything"] or not payload.relations:
+        lowering.set_attributes(trigger, subkind="any")
+    else:
+        name = nodes.name_of(payload)
+        lowering.set_attributes(trigger, subkind="signal", payload=name)
+        lowering.defer_until_elements(lambda: lowering.connect_nodes(Edge.TYPED_BY, trigger, types))
+        if not types:
+            lowering.connect_node(Edge.TYPED_BY, trigger, None)
+        lowering.defer_until_elements(lambda: _mark_call(lowering, trigger))
+
+
+def _mark_call(lowering: "Lowering", trigger: Element) -> None:
+    """Make a trigger that accepts an action a call."""
+    type_ = lowering.graph.target(trigger, Edge.TYPED_BY)
+    if type_ is not None and type_.kind in (Kind.ACTIVITY, Kind.OPERATION):
+        lowering.set_attributes(trigger, subkind="call")
+
+
+def _connect_operation(lowering: "Lowering", trigger: Element, name: str) -> None:
+    """Connect a call to the operation *name* of the nearest classifier that has one.
+
+    If none has, the operation may be that of any classifier, unless several have the name.
+    """
+    for ancestor in lowering.graph.ancestors(trigger):
+        for operation in _list_operations(lowering, ancestor):
+            if operation.name == name:
+                lowering.graph.connect(Edge.TYPED_BY, trigger, operation)
+                return
+    operations = [
+        operation for operation in lowering.graph.of_kind(Kind.OPERATION) if operation.name == name
+    ]
+    if len(operations) == 1:
+        lowering.graph.connect(Edge.TYPED_BY, trigger, operations[0])
+    else:
+        lowering.graph.set(trigger, unresolved=("typed-by",))
+
+
+def _list_operations(lowering: "Lowering", classifier: Element) -> list[Element]:
+    """Return the operations of a classifier and of its generals."""
+    visited, stack = {classifier.id}, [classifier]
+    operations: list[Element] = []
+    while stack:
+        current = stack.pop()
+        owned = lowering.graph.owned(current)
+        operations += [member for member in owned if member.kind is Kind.OPERATION]
+        for general in lowering.graph.targets(current, Edge.SPECIALIZES):
+            if general.id not in visited:
+                visited.add(general.id)
+                stack.append(general)
+    return operations
+
+
+def _set_port(lowering: "Lowering", trigger: Element, expression: Node) -> None:
+    path = nodes.path_of_expression(expression)
+    port = lowering.element_of(path[-1]) if path else None
+    if port is not None:
+        lowering.graph.set(trigger, port=port.id)
