@@ -1,4 +1,8 @@
-"""Comments, documentation and metadata, including the levels of a recipe."""
+"""Comments, documentation and metadata, including the levels of a recipe.
+
+"Our library" is ``SysMLC``, which is shipped with the compiler. Its metadata states facts for which
+SysML v2 has no construct; the back end ``sysml`` writes it.
+"""
 
 from collections.abc import Callable, Collection, Iterator
 from typing import TYPE_CHECKING

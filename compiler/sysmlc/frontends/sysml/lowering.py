@@ -1,4 +1,9 @@
-"""Lowering of a compile unit to the graph: elements first, then the edges between them."""
+"""Lowering of a compile unit to the graph: elements first, then the edges between them.
+
+Handlers add elements in the order of the text. Since a reference may lead to a later element, they
+defer work: by ``defer_until_elements`` for edges to other elements, by ``defer_until_edges`` for
+work that reads such edges. Work that must follow other deferred work is deferred twice.
+"""
 
 from collections import deque
 from collections.abc import Callable, Iterable, Sequence

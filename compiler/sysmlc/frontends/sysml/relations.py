@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 from sysmlc.frontends.sysml import annotations, nodes
 from sysmlc.frontends.sysml.definitions import visibility_attributes
 from sysmlc.ir import AttrValue, Edge, Element, Kind
-from sysmlc.language.tree import Node, Reference
+from sysmlc.language.tree import Node
 
 if TYPE_CHECKING:
     from sysmlc.frontends.sysml.lowering import Lowering
@@ -47,7 +47,9 @@ def lower_dependency(lowering: "Lowering", node: Node, owner: Element | None) ->
     keywords = _list_keywords(node)
     clients = nodes.list_references(node, "client")
     edge = next((_EDGES[keyword] for keyword in keywords if keyword in _EDGES), None)
-    if "Realization" in keywords and not node.name and _is_element(lowering, clients[:1], owner):
+    client = lowering.element_of(clients[0].target) if clients else None
+    is_from_owner = client is not None and client is owner
+    if "Realization" in keywords and not node.name and is_from_owner:
         edge = Edge.REALIZES
     if edge is not None and clients:
         lowering.defer_until_elements(lambda: _connect_ends(lowering, edge, node))
@@ -55,13 +57,6 @@ def lower_dependency(lowering: "Lowering", node: Node, owner: Element | None) ->
         _lower_extension(lowering, node, owner)
     else:
         _add_dependency(lowering, node, owner, keywords)
-
-
-def _is_element(lowering: "Lowering", references: list[Reference], element: Element | None) -> bool:
-    """Whether the first reference leads to an element."""
-    if not references or element is None:
-        return False
-    return lowering.element_of(references[0].target) is element
 
 
 def _add_dependency(
