@@ -18,21 +18,21 @@ class Block:
 
     def walk(self) -> "Iterator[Block]":
         yield self
-        for one in self.inside:
-            yield from one.walk()
+        for child in self.inside:
+            yield from child.walk()
 
     def find(self, pattern: str) -> "Iterator[tuple[re.Match[str], Block]]":
-        for one in self.walk():
-            found = re.fullmatch(pattern, one.head)
-            if found:
-                yield found, one
+        for block in self.walk():
+            match = re.fullmatch(pattern, block.head)
+            if match:
+                yield match, block
 
 
-def uncommented(text: str) -> str:
+def blank_comments(text: str) -> str:
     """The text with blanks where comments are, so that lines and columns stay."""
 
-    def blank(found: re.Match[str]) -> str:
-        return found[0] if found[0][0] == '"' else re.sub(r"[^\n]", " ", found[0])
+    def blank(match: re.Match[str]) -> str:
+        return match[0] if match[0][0] == '"' else re.sub(r"[^\n]", " ", match[0])
 
     return _COMMENT.sub(blank, text)
 
@@ -40,38 +40,38 @@ def uncommented(text: str) -> str:
 def read(path: Path) -> Block:
     """A file as one block."""
     # Braces and semicolons in texts between quotes (``ns=2;s=Busy``) separate nothing.
-    text = re.sub(_TEXT, lambda m: m[0].replace(";", "\x01"), uncommented(path.read_text()))
-    found, _ = _statements(text, 0)
-    return Block("", found)
+    text = re.sub(_TEXT, lambda m: m[0].replace(";", "\x01"), blank_comments(path.read_text()))
+    statements, _ = _read_statements(text, 0)
+    return Block("", statements)
 
 
-def _statements(text: str, at: int) -> tuple[list[Block], int]:
-    found: list[Block] = []
-    while mark := _TOKEN.search(text, at):
-        head = text[at : mark.start()].replace("\x01", ";")
-        at = mark.end()
-        if mark[0] == "}":
-            return found, at
-        inside: list[Block] = []
-        if mark[0] == "{":
-            inside, at = _statements(text, at)
-        found.append(Block(head, inside))
-    return found, at
+def _read_statements(text: str, start: int) -> tuple[list[Block], int]:
+    statements: list[Block] = []
+    while token := _TOKEN.search(text, start):
+        head = text[start : token.start()].replace("\x01", ";")
+        start = token.end()
+        if token[0] == "}":
+            return statements, start
+        children: list[Block] = []
+        if token[0] == "{":
+            children, start = _read_statements(text, start)
+        statements.append(Block(head, children))
+    return statements, start
 
 
-def arguments(block: Block) -> dict[str, str]:
+def read_arguments(block: Block) -> dict[str, str]:
     """``in ref :>> name = value;`` of a step, by name."""
     pattern = r"in (?:ref |constant )*:>> (\w+) = (.+)"
-    found = (re.fullmatch(pattern, one.head) for one in block.inside)
-    return {m[1]: m[2] for m in found if m}
+    matches = (re.fullmatch(pattern, child.head) for child in block.inside)
+    return {match[1]: match[2] for match in matches if match}
 
 
-def literals(enums: Block) -> dict[str, int | str]:
+def read_literals(enums: Block) -> dict[str, int | str]:
     """``Enumeration::literal`` with its number, or its name when it has none."""
-    found: dict[str, int | str] = {}
+    numbers: dict[str, int | str] = {}
     for name, block in enums.find(r"enum def (\w+)(?: :> \w+)?"):
-        for one in block.inside:
-            literal = re.fullmatch(r"(?:enum )?(\w+)(?: = (-?\d+))?", one.head)
+        for child in block.inside:
+            literal = re.fullmatch(r"(?:enum )?(\w+)(?: = (-?\d+))?", child.head)
             if literal:
-                found[f"{name[1]}::{literal[1]}"] = int(literal[2]) if literal[2] else literal[1]
-    return found
+                numbers[f"{name[1]}::{literal[1]}"] = int(literal[2]) if literal[2] else literal[1]
+    return numbers

@@ -11,7 +11,7 @@ PASSES = ("resolve", "inherit", "classify", "ports")
 
 
 class Reading:
-    """The graph of some texts, with what was found and counted."""
+    """The graph of some texts, with the diagnostics and the coverage."""
 
     def __init__(self, *texts, passes=("resolve",), names=("model.sysml",)):
         self.graph, self.sink, self.coverage = Graph(), Sink(), Coverage()
@@ -21,51 +21,52 @@ class Reading:
         assert verify(self.graph) == []
         pipeline.build_pipeline(passes).run(self.graph, self.sink, verify_each=True)
 
-    def named(self, name, kind=None):
-        """The only element with a qualified name."""
-        found = [one for one in self.graph if self.graph.qualified_name(one) == name]
-        found = [one for one in found if kind is None or one.kind is Kind(kind)]
-        assert len(found) == 1, (name, found)
-        return found[0]
+    def find_element(self, name, kind=None):
+        """Return the only element with a qualified name, and the kind if it is given."""
+        elements = [element for element in self.graph if self.graph.qualified_name(element) == name]
+        elements = [element for element in elements if kind is None or element.kind is Kind(kind)]
+        assert len(elements) == 1, (name, elements)
+        return elements[0]
 
-    def owned(self, name, kind=None):
-        """Kind and name of what an element owns, one a line."""
+    def list_owned(self, name, kind=None):
+        """Return kind and name of each element that an element owns."""
         return [
-            f"{one.kind} {one.name}".rstrip() for one in self.graph.owned(self.named(name, kind))
+            f"{member.kind} {member.name}".rstrip()
+            for member in self.graph.owned(self.find_element(name, kind))
         ]
 
-    def to(self, name, edge, kind=None):
-        """Qualified names of what the edges of an element lead to."""
-        found = self.graph.targets(self.named(name, kind), Edge(edge))
-        return [self.graph.qualified_name(one) for one in found]
+    def list_targets(self, name, edge, kind=None):
+        """Return the qualified names of the targets of an element's edges."""
+        targets = self.graph.targets(self.find_element(name, kind), Edge(edge))
+        return [self.graph.qualified_name(target) for target in targets]
 
-    def flows(self, name):
-        """The control flows of an activity: ``a -> b [guard]``."""
+    def list_flows(self, name):
+        """Return the flows and transitions that an element owns, as ``a -> b [guard]``."""
         graph = self.graph
         lines = []
-        for one in graph.owned(self.named(name)):
-            if one.kind in (Kind.CONTROL_FLOW, Kind.OBJECT_FLOW, Kind.TRANSITION):
-                ends = [graph.target(one, e) for e in (Edge.FLOW_SOURCE, Edge.FLOW_TARGET)]
-                shown = " -> ".join("?" if e is None else e.name or e.subkind for e in ends)
-                guard = one.attrs.get("guard")
-                lines.append(shown + (f" [{guard}]" if guard is not None else ""))
+        for flow in graph.owned(self.find_element(name)):
+            if flow.kind in (Kind.CONTROL_FLOW, Kind.OBJECT_FLOW, Kind.TRANSITION):
+                ends = [graph.target(flow, end) for end in (Edge.FLOW_SOURCE, Edge.FLOW_TARGET)]
+                text = " -> ".join("?" if end is None else end.name or end.subkind for end in ends)
+                guard = flow.attrs.get("guard")
+                lines.append(text + (f" [{guard}]" if guard is not None else ""))
         return lines
 
-    def codes(self):
-        """Codes of what was found."""
-        return [found.rule.code for found in self.sink]
+    def list_codes(self):
+        """Return the codes of the diagnostics."""
+        return [diagnostic.rule.code for diagnostic in self.sink]
 
-    def totals(self):
-        """Number of nodes for each verdict that occurs."""
+    def count_verdicts(self):
+        """Return the number of nodes for each verdict that occurs."""
         total = self.coverage.as_json()["total"]
         return {key: number for key, number in total.items() if number}
 
 
-def read(*texts, **given):
+def read(*texts, **options):
     """Read texts that are files of one unit."""
-    return Reading(*texts, **given)
+    return Reading(*texts, **options)
 
 
-def classified(*texts):
-    """Read texts and find the roles of their elements."""
+def read_classified(*texts):
+    """Read texts and classify their elements."""
     return Reading(*texts, passes=PASSES)

@@ -15,25 +15,29 @@ ENGINE = """
 """
 
 
-def told(text):
+def list_lost(text):
     """What is said to be lost, without the number."""
     sink = read(f"package P {{ {text} }}").sink
-    return [one.message.partition(" (")[0] for one in sink if one.rule.code in ("SM480", "SM481")]
+    return [
+        diagnostic.message.partition(" (")[0]
+        for diagnostic in sink
+        if diagnostic.rule.code in ("SM480", "SM481")
+    ]
 
 
-def listed(text):
+def list_reported_losses(text):
     """What the report lists: type, verdict, elements, reason."""
     coverage = Coverage(is_detailed=True)
     FRONTEND.read([Source("m.sysml", text.encode())], Graph(), Sink(), coverage)
     (file,) = coverage.files()
-    lost = [(one.type, str(one.verdict), one.elements, one.reason) for one in file.losses]
+    lost = [(loss.type, str(loss.verdict), loss.elements, loss.reason) for loss in file.losses]
     unmapped = file.elements - file.totals()["mapped"]
-    assert sum(one.elements for one in file.losses) == unmapped
+    assert sum(loss.elements for loss in file.losses) == unmapped
     return lost
 
 
 @pytest.mark.parametrize(
-    ("text", "said"),
+    ("text", "beginning"),
     [
         (
             "requirement r : Mass { subject = engine; }",
@@ -50,9 +54,9 @@ def listed(text):
         ("package A; private import A::*[@SysML::PartDefinition];", "an import with a filter"),
     ],
 )
-def test_what_is_lost_is_told(text, said):
-    (one,) = told(ENGINE + text)
-    assert one.startswith(said)
+def test_what_is_lost_is_told(text, beginning):
+    (message,) = list_lost(ENGINE + text)
+    assert message.startswith(beginning)
 
 
 @pytest.mark.parametrize(
@@ -66,14 +70,14 @@ def test_what_is_lost_is_told(text, said):
     ],
 )
 def test_what_is_kept_is_not(text):
-    assert told(ENGINE + text) == []
+    assert list_lost(ENGINE + text) == []
 
 
 def test_a_loss_is_listed_with_what_is_in_it():
     text = f"package P {{ {ENGINE} analysis a {{ subject e : Engine;"
     text += " objective { assume constraint { e.mass > 2 } verify engine2; } }"
     text += " requirement engine2 : Mass; private import ScalarValues::*; }"
-    assert listed(text) == [
+    assert list_reported_losses(text) == [
         ("ConstraintUsage", "approximated", 5, "a part of an objective is read as nothing"),
         ("NamespaceImport", "external", 1, "stands for what is in a library"),
     ]
@@ -81,8 +85,8 @@ def test_a_loss_is_listed_with_what_is_in_it():
 
 def test_an_import_with_a_filter_is_in_the_graph():
     reading = read("package P { package A; private import A::*[@SysML::PartDefinition]; }")
-    (found,) = [one for one in reading.graph if str(one.kind) == "Import"]
-    assert reading.to(reading.graph.qualified_name(found), "references") == ["P::A"]
+    (import_,) = [element for element in reading.graph if str(element.kind) == "Import"]
+    assert reading.list_targets(reading.graph.qualified_name(import_), "references") == ["P::A"]
 
 
 @pytest.mark.parametrize(
@@ -100,7 +104,11 @@ def test_an_import_with_a_filter_is_in_the_graph():
 def test_what_follows_from_an_unknown_name_is_not_told(text):
     passes = (*PASSES, "behaviours", "activities", "contracts")
     reading = read(f"package P {{ {text} }}", passes=passes)
-    errors = [one.rule.code for one in reading.sink if str(one.rule.severity) != "info"]
+    errors = [
+        diagnostic.rule.code
+        for diagnostic in reading.sink
+        if str(diagnostic.rule.severity) != "info"
+    ]
     assert set(errors) == {"SM205"}
 
 
@@ -115,7 +123,9 @@ package P {{
     connection def C {{ end a : A; end b : A; end c : A; }}
     part def Cell {{ part x : A; part y : A; part z : A; connection k : C {{ {ends} }} }}
 }}""")
-    assert reading.codes() == []
-    made = reading.graph.targets(reading.named("P::Cell::k", "Connector"), Edge.END)
-    roles = [reading.graph.target(one, Edge.ROLE).name for one in made]
+    assert reading.list_codes() == []
+    connector_ends = reading.graph.targets(
+        reading.find_element("P::Cell::k", "Connector"), Edge.END
+    )
+    roles = [reading.graph.target(end, Edge.ROLE).name for end in connector_ends]
     assert roles == ["x", "y", "z"]

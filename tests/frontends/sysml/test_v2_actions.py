@@ -42,48 +42,51 @@ NAMES = {
 """What the corpus calls the variables of each action, and the library."""
 
 
-def contracts(text=CELL):
+def read_contracts_of(text=CELL):
     reading = read(text)
     pipeline.run(reading.graph, reading.sink)
-    assert [one.rule.code for one in reading.sink] == []
-    return {one.component: one for one in reading.graph.derived(Contract)}
+    assert [diagnostic.rule.code for diagnostic in reading.sink] == []
+    return {contract.component: contract for contract in reading.graph.derived(Contract)}
 
 
 def test_every_usage_has_the_contract_of_its_action_and_nothing_else_has_one():
-    found = contracts()
+    contracts = read_contracts_of()
     actions = [f"Cells::Cell.{name}" for name in sorted(NAMES)]
-    assert sorted(found) == [*actions, "Cells::Machine", "Cells::Small.turn"]
+    assert sorted(contracts) == [*actions, "Cells::Machine", "Cells::Small.turn"]
 
 
 def test_a_usage_has_constants_of_its_own():
-    found = contracts()
+    contracts = read_contracts_of()
     for component, high in (("Cells::Cell.turn", 11), ("Cells::Small.turn", 5)):
-        domains = {one.name: one.domain for one in found[component].variables}
+        domains = {variable.name: variable.domain for variable in contracts[component].variables}
         assert domains["angle"] == domains["desired"] == IntegerDomain(0, high)
 
 
 def test_inputs_are_the_environments_and_outputs_the_machines():
-    owners = {one.name: one.owner for one in contracts()["Cells::Cell.turn"].variables}
+    owners = {
+        variable.name: variable.owner
+        for variable in read_contracts_of()["Cells::Cell.turn"].variables
+    }
     inputs = {name for name, owner in owners.items() if owner is Owner.ENVIRONMENT}
     assert inputs == {"command", "grip", "desired"}
     assert set(owners) - inputs == {"angle", "turning", "executed"}
 
 
-def conjuncts(contract, names):
+def list_conjuncts(contract, names):
     sides = {"assumed": contract.assumptions, "guaranteed": contract.guarantees}
     return {
-        (side, str(part.class_), print_formula(renamed(part.formula, names)))
+        (side, str(part.class_), print_formula(rename_variables(part.formula, names)))
         for side, parts in sides.items()
         for part in parts
     }
 
 
-def renamed(formula, names):
+def rename_variables(formula, names):
     match formula:
         case f.Var(name, primed):
             return f.Var(names.get(name, name), primed)
         case f.Apply(op, args):
-            return rebuild(op, tuple(renamed(arg, names) for arg in args))
+            return rebuild(op, tuple(rename_variables(arg, names) for arg in args))
         case _:
             return formula
 
@@ -102,11 +105,11 @@ def test_contracts_are_those_that_other_solvers_decided(action):
     path = Path(corpus) / "gr1" / "din8580" / f"{action}.json"
     (theirs,) = read_contracts(path.read_text(), path.name, Sink())
     component = "Cells::Machine" if action == "coordinator" else f"Cells::Cell.{action}"
-    ours = contracts()[component]
+    ours = read_contracts_of()[component]
     names = NAMES.get(action, {})
-    assert conjuncts(ours, {}) == set(filter(is_possible, conjuncts(theirs, names)))
-    known = {names.get(one.name, one.name): one for one in theirs.variables}
-    for one in ours.variables:
-        assert one.owner is known[one.name].owner
-        if not isinstance(one.domain, EnumerationDomain):
-            assert one.domain == known[one.name].domain
+    assert list_conjuncts(ours, {}) == set(filter(is_possible, list_conjuncts(theirs, names)))
+    expected = {names.get(variable.name, variable.name): variable for variable in theirs.variables}
+    for variable in ours.variables:
+        assert variable.owner is expected[variable.name].owner
+        if not isinstance(variable.domain, EnumerationDomain):
+            assert variable.domain == expected[variable.name].domain

@@ -2,16 +2,16 @@
 
 import pytest
 from reading_v2 import Reading
-from test_v2_roundtrip import PASSES, differences
+from test_v2_roundtrip import PASSES, list_differences
 
 from sysmlc.backends.sysml.document import print_document
 from sysmlc.diagnostics import Sink
 
 
-def written(text):
+def write_lines(text):
     """The lines of the text that the back end writes of a text, without indentation."""
-    made, _ = print_document(Reading(text, passes=PASSES).graph, Sink())
-    return [line.strip() for line in made.splitlines() if line.strip()]
+    written, _ = print_document(Reading(text, passes=PASSES).graph, Sink())
+    return [line.strip() for line in written.splitlines() if line.strip()]
 
 
 MEMBERS = """
@@ -40,10 +40,10 @@ package P {
 
 
 def test_members_of_usages_stay_in_them():
-    lines = written(MEMBERS)
+    lines = write_lines(MEMBERS)
     assert lines.count("part :>> robot {") == lines.count("part robot : Robot {") == 1
     assert not any(line.startswith("part def R") for line in lines[8:])
-    assert differences(Reading(MEMBERS, passes=PASSES).graph) == []
+    assert list_differences(Reading(MEMBERS, passes=PASSES).graph) == []
 
 
 LOOP = """
@@ -66,18 +66,18 @@ package P {
 
 
 def test_a_loop_over_a_collection_is_one_again():
-    assert "action each for p in belt.pallets {" in written(LOOP)
-    assert differences(Reading(LOOP, passes=PASSES).graph) == []
+    assert "action each for p in belt.pallets {" in write_lines(LOOP)
+    assert list_differences(Reading(LOOP, passes=PASSES).graph) == []
 
 
 def test_a_loop_over_what_no_expression_says_keeps_its_words():
     reading = Reading(LOOP, passes=PASSES)
-    (region,) = [one for one in reading.graph if one.subkind == "expansion"]
+    (region,) = [element for element in reading.graph if element.subkind == "expansion"]
     reading.graph.set(region, collection="the pallets of the belt")
-    made, _ = print_document(reading.graph, Sink())
-    assert "for p in" not in made
-    assert '"collection=the pallets of the belt"' in made
-    assert differences(reading.graph) == []
+    written, _ = print_document(reading.graph, Sink())
+    assert "for p in" not in written
+    assert '"collection=the pallets of the belt"' in written
+    assert list_differences(reading.graph) == []
 
 
 JOINED = """
@@ -101,10 +101,10 @@ package P {
 
 
 def test_actors_ends_and_steps_that_several_lead_to_are_as_they_were():
-    lines = written(JOINED)
+    lines = write_lines(JOINED)
     assert "actor pilot : Pilot;" in lines
     assert not any(line.startswith("merge") for line in lines)
-    assert differences(Reading(JOINED, passes=PASSES).graph) == []
+    assert list_differences(Reading(JOINED, passes=PASSES).graph) == []
 
 
 SHIPPED = """
@@ -116,14 +116,14 @@ package P {
 
 
 def test_what_a_library_of_ours_has_is_referred_to_and_not_written():
-    lines = written(SHIPPED)
+    lines = write_lines(SHIPPED)
     assert "action pick : DIN8580::Pick {" in lines
     assert [line for line in lines if line.startswith("package")] == ["package P {"]
-    assert differences(Reading(SHIPPED, passes=PASSES).graph) == []
+    assert list_differences(Reading(SHIPPED, passes=PASSES).graph) == []
 
 
 @pytest.mark.parametrize("text", [MEMBERS, LOOP, JOINED, SHIPPED])
 def test_no_error_is_told_of_what_is_written(text):
-    made, _ = print_document(Reading(text, passes=PASSES).graph, Sink())
-    again = Reading(made, passes=PASSES)
-    assert [one.message for one in again.sink if one.is_error] == []
+    written, _ = print_document(Reading(text, passes=PASSES).graph, Sink())
+    again = Reading(written, passes=PASSES)
+    assert [diagnostic.message for diagnostic in again.sink if diagnostic.is_error] == []

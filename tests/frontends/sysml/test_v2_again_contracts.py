@@ -72,33 +72,33 @@ package P {
 EXAMPLES = sorted((ROOT / "examples").rglob("*.sysml"))
 
 
-def contracts(reading):
+def list_contracts(reading):
     """What each component assumes and guarantees."""
     return {
-        one.component: (
-            [conjunct.formula for conjunct in one.assumptions],
-            [conjunct.formula for conjunct in one.guarantees],
+        contract.component: (
+            [conjunct.formula for conjunct in contract.assumptions],
+            [conjunct.formula for conjunct in contract.guarantees],
         )
-        for one in reading.graph.derived(Contract)
+        for contract in reading.graph.derived(Contract)
     }
 
 
-def comes_back(text):
+def check_round_trip(text):
     """The contracts, once graph, text and contracts are found to be the same again."""
-    once = Reading(text, passes=PASSES)
-    made, _ = print_document(once.graph, Sink())
-    again = Reading(made, passes=PASSES)
-    assert [str(one) for one in compare(once.graph, again.graph, ("id",))] == []
-    assert print_document(again.graph, Sink())[0] == made
-    assert contracts(once) == contracts(again)
-    assert [one.message for one in again.sink if one.is_error] == []
-    return contracts(once)
+    original = Reading(text, passes=PASSES)
+    written, _ = print_document(original.graph, Sink())
+    again = Reading(written, passes=PASSES)
+    assert [str(difference) for difference in compare(original.graph, again.graph, ("id",))] == []
+    assert print_document(again.graph, Sink())[0] == written
+    assert list_contracts(original) == list_contracts(again)
+    assert [diagnostic.message for diagnostic in again.sink if diagnostic.is_error] == []
+    return list_contracts(original)
 
 
 def test_machines_forks_and_usages_of_operations_come_back():
-    assert len(comes_back(MACHINES)) == 4
+    assert len(check_round_trip(MACHINES)) == 4
 
 
 @pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
 def test_examples_in_sysml_v2_come_back(path):
-    comes_back(path.read_text())
+    check_round_trip(path.read_text())

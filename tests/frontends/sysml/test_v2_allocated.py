@@ -37,9 +37,9 @@ package P {
 
 
 def allocations(reading):
-    """From what to what, with the path on the way, of each allocation of the line."""
+    """Yield client, path and supplier of each allocation of the line."""
     graph = reading.graph
-    for one in graph.owned(reading.named("P::Line")):
+    for one in graph.owned(reading.find_element("P::Line")):
         if one.role == "allocate":
             client, supplier = graph.target(one, Edge.CLIENT), graph.target(one, Edge.SUPPLIER)
             path = [graph[id].name for id in one.attrs.get("target_path", ())]
@@ -59,13 +59,13 @@ def test_parameters_and_steps_are_allocated_with_the_way_from_the_block():
 def test_an_argument_that_is_no_feature_is_told(value):
     reading = read(LINE % value)
     assert len(list(allocations(reading))) == 3
-    assert "SM481" in reading.codes()
+    assert "SM481" in reading.list_codes()
 
 
 def test_a_value_that_a_performed_step_is_given_is_told():
     text = LINE.replace(
         "in ref robot : Robot;", "in ref robot : Robot; in n : ScalarValues::Integer;"
     )
-    given = text.replace("references cell.place;", "references cell.place { in :>> n = 5; }")
-    assert "SM481" not in read(text % "spare.busy").codes()
-    assert "SM481" in read(given % "spare.busy").codes()
+    with_value = text.replace("references cell.place;", "references cell.place { in :>> n = 5; }")
+    assert "SM481" not in read(text % "spare.busy").list_codes()
+    assert "SM481" in read(with_value % "spare.busy").list_codes()

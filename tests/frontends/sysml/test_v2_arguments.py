@@ -15,7 +15,7 @@ package P {
 
 
 @pytest.mark.parametrize(
-    ("written", "kept"),
+    ("written", "expected"),
     [
         ("F(u, 1)", "F(u, 1)"),
         ("F(b = 1, a = u)", "F(u, 1)"),
@@ -25,24 +25,24 @@ package P {
         ("new Sig()", "Sig()"),
     ],
 )
-def test_arguments_stand_in_the_order_of_what_they_are_given_to(written, kept):
+def test_arguments_stand_in_the_order_of_what_they_are_given_to(written, expected):
     reading = read(AROUND % f"attribute v = {written};")
-    assert reading.codes() == []
-    assert reading.named("P::D::v").attrs["default"] == kept
+    assert reading.list_codes() == []
+    assert reading.find_element("P::D::v").attrs["default"] == expected
 
 
 @pytest.mark.parametrize("written", ["new Sig(u, 2)", "new Sig(m = 2, n = u)"])
 def test_what_is_sent_has_a_pin_for_each_argument(written):
     reading = read(AROUND % f"action a {{ first start; then action s send {written} to self; }}")
-    assert reading.codes() == []
-    assert [one.attrs["value"] for one in reading.graph.of_kind(Kind.PIN)] == ["u", 2]
+    assert reading.list_codes() == []
+    assert [pin.attrs["value"] for pin in reading.graph.of_kind(Kind.PIN)] == ["u", 2]
 
 
 def test_an_effect_that_sends_keeps_what_it_sends():
     member = "state s { entry; then a; state a;"
     member += " transition first a do send new Sig(u, 2) to self then a; }"
     reading = read(AROUND % member)
-    bodies = [one.attrs.get("body") for one in reading.graph.of_kind(Kind.ACTIVITY)]
+    bodies = [activity.attrs.get("body") for activity in reading.graph.of_kind(Kind.ACTIVITY)]
     assert "send Sig(u, 2) to self" in bodies
 
 

@@ -50,45 +50,52 @@ Package p "P"
       Control e "done" subkind="final"
 FLOWS  DataType int "Integer"
 """
-_WAYS = ("i m", "m f", "f w", "w d", "d q", "q m n < 3", "q e else")
+_FLOWS = ("i m", "m f", "f w", "w d", "d q", "q m n < 3", "q e else")
 
 
-def v1(text=V1):
+def compile_v1(text=V1):
     flows = ""
-    for number, way in enumerate(_WAYS):
-        source, target, *guard = way.split(" ", 2)
-        shown = f' guard="{guard[0]}"' if guard else ""
-        flows += f"      ControlFlow f{number}{shown}\n"
+    for number, flow in enumerate(_FLOWS):
+        source, target, *guard = flow.split(" ", 2)
+        attribute = f' guard="{guard[0]}"' if guard else ""
+        flows += f"      ControlFlow f{number}{attribute}\n"
         flows += f"        -> flow-source {source}\n        -> flow-target {target}\n"
     graph, sink = parse_text(text.replace("FLOWS", flows)), Sink()
     pipeline.run(graph, sink)
     return graph, sink
 
 
-def v2(text=V2):
+def compile_v2(text=V2):
     reading = read(text)
     pipeline.run(reading.graph, reading.sink)
     return reading.graph, reading.sink
 
 
-def contract(graph):
-    return next(one for one in graph.derived(Contract) if one.component.endswith("::Cell.work"))
+def find_contract(graph):
+    return next(
+        find_contract
+        for find_contract in graph.derived(Contract)
+        if find_contract.component.endswith("::Cell.work")
+    )
 
 
-def said(made):
+def describe_assignments(contract):
     """What the contract says of the variables that actions assign."""
-    names = {one.name for one in made.variables if one.name in ("n", "total")}
+    names = {variable.name for variable in contract.variables if variable.name in ("n", "total")}
     return [
-        one.text
-        for one in made.guarantees
-        if one.class_ is not Class.LIVENESS and any(f"'{name}'" in one.text for name in names)
+        guarantee.text
+        for guarantee in contract.guarantees
+        if guarantee.class_ is not Class.LIVENESS
+        and any(f"'{name}'" in guarantee.text for name in names)
     ]
 
 
 def test_what_actions_assign_is_decided_by_the_component():
-    made = contract(v2()[0])
-    assert [one.name for one in made.variables if one.owner is Owner.SYSTEM][:2] == ["n", "total"]
-    assert said(made) == [
+    contract = find_contract(compile_v2()[0])
+    assert [variable.name for variable in contract.variables if variable.owner is Owner.SYSTEM][
+        :2
+    ] == ["n", "total"]
+    assert describe_assignments(contract) == [
         "At the start 'n' is 0.",
         "At the start 'total' is 0.",
         "When action 'count' is done and n>2, 'n' becomes 3.",
@@ -102,41 +109,47 @@ def test_what_actions_assign_is_decided_by_the_component():
 
 
 def test_a_loop_that_a_counter_ends_needs_no_assumption():
-    made = contract(v2()[0])
-    assert [one.text for one in made.assumptions] == [
+    contract = find_contract(compile_v2()[0])
+    assert [assumption.text for assumption in contract.assumptions] == [
         f"Whenever action '{name}' runs, the environment ends it sooner or later."
         for name in ("fill", "count", "add")
     ]
-    assert decided(made, v2()[0]) is True
+    assert is_realizable(contract, compile_v2()[0]) is True
 
 
-def decided(made, graph):
-    (found,) = check_contracts(
-        [made], [made], lambda id: graph.subject(graph[id]), Sink(), Options()
+def is_realizable(contract, graph):
+    (result,) = check_contracts(
+        [contract], [contract], lambda id: graph.subject(graph[id]), Sink(), Options()
     )
-    return found.verdict.is_realizable
+    return result.verdict.is_realizable
 
 
 def test_a_loop_that_its_counter_never_ends_cannot_be_finished():
-    graph, _ = v2(V2.replace("n := n + 1", "n := 0"))
-    assert decided(contract(graph), graph) is False
+    graph, _ = compile_v2(V2.replace("n := n + 1", "n := 0"))
+    assert is_realizable(find_contract(graph), graph) is False
 
 
 def test_both_notations_say_the_same():
-    shown = [
+    descriptions = [
         [
-            [(one.name, one.owner, one.domain) for one in made.variables],
-            [(one.class_, print_formula(one.formula)) for one in made.assumptions],
-            [(one.class_, print_formula(one.formula), one.text) for one in made.guarantees],
+            [(variable.name, variable.owner, variable.domain) for variable in contract.variables],
+            [
+                (assumption.class_, print_formula(assumption.formula))
+                for assumption in contract.assumptions
+            ],
+            [
+                (guarantee.class_, print_formula(guarantee.formula), guarantee.text)
+                for guarantee in contract.guarantees
+            ],
         ]
-        for made in (contract(v1()[0]), contract(v2()[0]))
+        for contract in (find_contract(compile_v1()[0]), find_contract(compile_v2()[0]))
     ]
-    assert shown[0] == shown[1]
+    assert descriptions[0] == descriptions[1]
 
 
 def test_only_what_can_leave_its_range_is_told():
     """The loop ends before the counter does; the total goes on in the next run."""
-    assert [one.message for one in v2()[1]] == [
+    assert [diagnostic.message for diagnostic in compile_v2()[1]] == [
         "action 'add' can take 'total' out of its range; it stops at the bound"
     ]
 
@@ -149,27 +162,29 @@ def test_only_what_can_leave_its_range_is_told():
     ],
 )
 def test_what_cannot_be_followed_is_told_with_the_reason(old, new, reason):
-    graph, sink = v2(V2.replace(old, new))
-    assert next(one.message for one in sink if one.rule.code == "SM544") == (
+    graph, sink = compile_v2(V2.replace(old, new))
+    assert next(diagnostic.message for diagnostic in sink if diagnostic.rule.code == "SM544") == (
         f"the contract of 'work' treats 'n' as an input although action 'count' assigns it: "
         f"{reason}"
     )
-    owners = {one.name: one.owner for one in contract(graph).variables}
+    owners = {variable.name: variable.owner for variable in find_contract(graph).variables}
     assert owners["n"] is Owner.ENVIRONMENT
 
 
 def test_what_two_behaviours_write_is_nobodys_own():
-    other = "action reset { first start; then action clear assign total := 0; then done; }"
-    text = V2.replace("action work {", f"{other}\n        action work {{")
-    graph, sink = v2(text.replace("if n < 3", "if total < 9"))
-    assert [one.message for one in sink if one.rule.code == "SM544"] == [
+    second_action = "action reset { first start; then action clear assign total := 0; then done; }"
+    text = V2.replace("action work {", f"{second_action}\n        action work {{")
+    graph, sink = compile_v2(text.replace("if n < 3", "if total < 9"))
+    assert [diagnostic.message for diagnostic in sink if diagnostic.rule.code == "SM544"] == [
         "the contract of 'reset' treats 'total' as an input although action 'clear' assigns "
         "it: 'add' assigns it too",
         "the contract of 'work' treats 'total' as an input although action 'add' assigns it: "
         "'clear' assigns it too",
     ]
     assert "total" not in [
-        one.name for one in contract(graph).variables if one.owner is Owner.SYSTEM
+        variable.name
+        for variable in find_contract(graph).variables
+        if variable.owner is Owner.SYSTEM
     ]
 
 
@@ -183,10 +198,10 @@ WRITES = V1.replace(
 
 
 def test_a_structural_feature_gets_the_value_of_its_pin():
-    graph, sink = v1(WRITES)
-    texts = said(contract(graph))
+    graph, sink = compile_v1(WRITES)
+    texts = describe_assignments(find_contract(graph))
     assert "When action 'count' is done, 'n' becomes 3." in texts
-    assert "SM544" not in [one.rule.code for one in sink]
+    assert "SM544" not in [diagnostic.rule.code for diagnostic in sink]
 
 
 def test_what_a_state_machine_of_the_block_writes_is_not_the_activitys():
@@ -195,34 +210,38 @@ def test_what_a_state_machine_of_the_block_writes_is_not_the_activitys():
             state idle;
             transition first idle accept after 1 do assign total := 0 then idle;
         }"""
-    graph, sink = v2(V2.replace("action work {", f"{machine}\n        action work {{"))
-    assert [one.message.rpartition(": ")[2] for one in sink if one.rule.code == "SM544"] == [
-        "'life' assigns it too"
-    ]
-    assert "SM546" in [one.rule.code for one in sink]
+    graph, sink = compile_v2(V2.replace("action work {", f"{machine}\n        action work {{"))
+    assert [
+        diagnostic.message.rpartition(": ")[2]
+        for diagnostic in sink
+        if diagnostic.rule.code == "SM544"
+    ] == ["'life' assigns it too"]
+    assert "SM546" in [diagnostic.rule.code for diagnostic in sink]
     owners = [
-        one.owner
-        for made in graph.derived(Contract)
-        for one in made.variables
-        if one.name == "total"
+        variable.owner
+        for find_contract in graph.derived(Contract)
+        for variable in find_contract.variables
+        if variable.name == "total"
     ]
     assert Owner.SYSTEM not in owners
 
 
 def test_assignments_in_a_row_are_one_value_as_long_as_they_have_few_cases():
-    def of(body, bound="total <= 9"):
-        graph, sink = v1(V1.replace("n := n + 1", body).replace("total <= 9", bound))
-        told = [one.message for one in sink if one.rule.code == "SM544"]
-        return [one for one in said(contract(graph)) if "'count'" in one], told
+    def assign(body, bound="total <= 9"):
+        graph, sink = compile_v1(V1.replace("n := n + 1", body).replace("total <= 9", bound))
+        messages = [diagnostic.message for diagnostic in sink if diagnostic.rule.code == "SM544"]
+        return [
+            effect for effect in describe_assignments(find_contract(graph)) if "'count'" in effect
+        ], messages
 
-    assert of("n := 2; n := n + 1") == (["When action 'count' is done, 'n' becomes 3."], [])
-    made, told = of("; ".join(["n := n + 1"] * 80))
-    assert (len(made), told) == (4, [])
+    assert assign("n := 2; n := n + 1") == (["When action 'count' is done, 'n' becomes 3."], [])
+    effects, messages = assign("; ".join(["n := n + 1"] * 80))
+    assert (len(effects), messages) == (4, [])
     primes = (2, 3, 5, 7, 11, 13)
-    body = "; ".join(f"n := if (total + n) % {one} == 1 ? n + 1 else 0" for one in primes)
-    _, told = of(body, "total <= 999")
-    assert len(told) == 1
-    assert told[0].endswith("is not known, or has too many cases")
+    body = "; ".join(f"n := if (total + n) % {prime} == 1 ? n + 1 else 0" for prime in primes)
+    _, messages = assign(body, "total <= 999")
+    assert len(messages) == 1
+    assert messages[0].endswith("is not known, or has too many cases")
 
 
 BODY = """
@@ -244,27 +263,31 @@ package Plant {
 """
 
 
-def told_of(body):
-    graph, sink = v2(BODY.replace("BODY", body))
-    (made,) = graph.derived(Contract)
-    becomes = [one.text for one in made.guarantees if "becomes" in one.text]
-    return [f"{one.rule.code} {one.severity}: {one.message}" for one in sink], becomes
+def compile_body(body):
+    graph, sink = compile_v2(BODY.replace("BODY", body))
+    (contract,) = graph.derived(Contract)
+    becomes = [guarantee.text for guarantee in contract.guarantees if "becomes" in guarantee.text]
+    return [
+        f"{diagnostic.rule.code} {diagnostic.severity}: {diagnostic.message}" for diagnostic in sink
+    ], becomes
 
 
 def test_a_value_that_is_always_outside_is_told_and_the_contract_says_what_it_becomes():
-    told, becomes = told_of("assign n := 12;")
-    assert told == ["SM414 warning: assignment 'n := 12': 12 is outside 0..9"]
+    messages, becomes = compile_body("assign n := 12;")
+    assert messages == ["SM414 warning: assignment 'n := 12': 12 is outside 0..9"]
     assert becomes == ["When action 'up' is done, 'n' becomes 9."]
 
 
 def test_it_is_an_error_where_state_machines_have_one():
-    _, sink = v1(V1.replace("n := n + 1", "n := 12"))
-    assert [str(one.severity) for one in sink if one.rule.code == "SM414"] == ["error"]
+    _, sink = compile_v1(V1.replace("n := n + 1", "n := 12"))
+    assert [str(diagnostic.severity) for diagnostic in sink if diagnostic.rule.code == "SM414"] == [
+        "error"
+    ]
 
 
 def test_each_of_several_assignments_stops_at_the_bound_for_itself():
-    told, becomes = told_of("assign n := n + 2; assign n := n - 2;")
-    assert told == [
+    messages, becomes = compile_body("assign n := n + 2; assign n := n - 2;")
+    assert messages == [
         "SM428 warning: action 'up' can take 'n' out of its range; it stops at the bound"
     ]
     assert becomes == [
@@ -274,8 +297,8 @@ def test_each_of_several_assignments_stops_at_the_bound_for_itself():
 
 
 def test_an_assignment_to_a_constant_is_told():
-    told, becomes = told_of("assign full := true;")
-    assert told[0] == (
+    messages, becomes = compile_body("assign full := true;")
+    assert messages[0] == (
         "SM415 warning: 'full := true' assigns to 'full', which is not a changeable property "
         "of Cell with finitely many values"
     )
@@ -283,8 +306,8 @@ def test_an_assignment_to_a_constant_is_told():
 
 
 def test_a_value_of_another_type_is_told():
-    told, becomes = told_of("assign mode := Color::red;")
-    assert told == [
+    messages, becomes = compile_body("assign mode := Color::red;")
+    assert messages == [
         "SM544 info: the contract of 'work' treats 'mode' as an input although action 'up' "
         "assigns it: 'Color::red' is not known, or has too many cases",
         "SM413 warning: assignment 'mode := Color::red': 'Color::red' is one of red, blue, not of "
@@ -307,8 +330,12 @@ def test_a_value_of_another_type_is_told():
 def test_what_the_block_has_is_told_where_no_guard_reads_it_too(attribute, value, reason):
     text = BODY.replace("attribute mode", f"attribute {attribute};\n        attribute mode")
     text = text.replace("};\n", "}\n").replace("action work", "calc def Measure;\n action work")
-    _, sink = v2(text.replace("BODY", f"assign m := {value};"))
-    assert [one.message.rpartition(": ")[2] for one in sink if one.rule.code == "SM544"] == [reason]
+    _, sink = compile_v2(text.replace("BODY", f"assign m := {value};"))
+    assert [
+        diagnostic.message.rpartition(": ")[2]
+        for diagnostic in sink
+        if diagnostic.rule.code == "SM544"
+    ] == [reason]
 
 
 COUNTING = """
@@ -370,17 +397,25 @@ COUNTS = {
 def test_only_what_is_not_ruled_out_on_the_way_can_leave_its_range(case):
     (start, most, steps), expected = COUNTS[case]
     text = COUNTING.replace("STEPS", steps).replace("START", start).replace("MOST", str(most))
-    _, sink = v2(text.replace("UP", UP))
-    found = [one.message.partition(" take ")[0] for one in sink if one.rule.code == "SM428"]
-    assert found == expected
-    assert not [one for one in sink if one.severity == "error"]
+    _, sink = compile_v2(text.replace("UP", UP))
+    messages = [
+        diagnostic.message.partition(" take ")[0]
+        for diagnostic in sink
+        if diagnostic.rule.code == "SM428"
+    ]
+    assert messages == expected
+    assert not [diagnostic for diagnostic in sink if diagnostic.severity == "error"]
 
 
 def test_writes_name_each_other_only_where_they_can_meet():
     def sizes(number):
         steps = "".join(f"then action a{n} {{ assign n := {n % 10}; }} " for n in range(number))
         text = COUNTING.replace("STEPS", steps).replace("START", "").replace("MOST", "9")
-        made = contract(v2(text)[0]).guarantees
-        return [len(print_formula(one.formula)) for one in made if "becomes" in one.text]
+        guarantees = find_contract(compile_v2(text)[0]).guarantees
+        return [
+            len(print_formula(guarantee.formula))
+            for guarantee in guarantees
+            if "becomes" in guarantee.text
+        ]
 
     assert max(sizes(30)) < 1.1 * max(sizes(10))

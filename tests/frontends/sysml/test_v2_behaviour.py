@@ -18,7 +18,7 @@ package P {
         attribute count : ScalarValues::Integer = 0;
     }
 }""")
-    assert reading.flows("P::Build") == [
+    assert reading.list_flows("P::Build") == [
         "start -> merge",
         "pick -> decision",
         "decision -> merge [count < 3]",
@@ -26,9 +26,9 @@ package P {
         "place -> done",
         "merge -> pick",
     ]
-    assert reading.to("P::Build::pick", "calls") == ["P::Pick"]
-    assert reading.named("P::Build::pick").subkind == "call-behavior"
-    assert reading.named("P::Build::place").subkind == "opaque"
+    assert reading.list_targets("P::Build::pick", "calls") == ["P::Pick"]
+    assert reading.find_element("P::Build::pick").subkind == "call-behavior"
+    assert reading.find_element("P::Build::place").subkind == "opaque"
 
 
 FORKED = """
@@ -46,7 +46,7 @@ package P {
 
 def test_the_end_behind_the_join_of_all_branches_is_the_end_of_the_activity():
     reading = read(FORKED % "then j;")
-    assert reading.flows("P::A") == [
+    assert reading.list_flows("P::A") == [
         "start -> f",
         "f -> x",
         "f -> y",
@@ -54,11 +54,11 @@ def test_the_end_behind_the_join_of_all_branches_is_the_end_of_the_activity():
         "y -> j",
         "j -> done",
     ]
-    assert reading.named("P::A::done").subkind == "final"
+    assert reading.find_element("P::A::done").subkind == "final"
 
 
 def test_the_end_beside_a_branch_that_goes_on_ends_only_its_own_flow():
-    assert read(FORKED % "").named("P::A::done").subkind == "flow-final"
+    assert read(FORKED % "").find_element("P::A::done").subkind == "flow-final"
 
 
 def test_calls_of_operations_with_pins():
@@ -74,14 +74,14 @@ package P {
         }
     }
 }""")
-    assert reading.owned("P::Robot") == ["Operation move"]
-    assert reading.owned("P::Cell") == ["Property robot", "Activity work"]
-    go = reading.named("P::Cell::work::go")
-    assert (go.subkind, reading.to("P::Cell::work::go", "calls")) == (
+    assert reading.list_owned("P::Robot") == ["Operation move"]
+    assert reading.list_owned("P::Cell") == ["Property robot", "Activity work"]
+    go = reading.find_element("P::Cell::work::go")
+    assert (go.subkind, reading.list_targets("P::Cell::work::go", "calls")) == (
         "call-operation",
         ["P::Robot::move"],
     )
-    pin = reading.named("P::Cell::work::go::to")
+    pin = reading.find_element("P::Cell::work::go::to")
     assert (pin.subkind, pin.attrs["value"]) == ("argument", 3)
 
 
@@ -97,8 +97,8 @@ package P {
         bind made = glue.whole;
     }
 }""")
-    assert reading.flows("P::Build") == ["raw -> raw", "piece -> piece", "whole -> made"]
-    kinds = [line.split()[0] for line in reading.owned("P::Build")]
+    assert reading.list_flows("P::Build") == ["raw -> raw", "piece -> piece", "whole -> made"]
+    kinds = [line.split()[0] for line in reading.list_owned("P::Build")]
     assert kinds.count("ActivityParameter") == 2
 
 
@@ -120,14 +120,14 @@ package P {
     }
 }""")
     run = "P::A::run::"
-    assert reading.named(f"{run}set").attrs["body"] == "x := x + 1"
-    assert reading.to(f"{run}say", "calls") == ["P::Go"]
-    assert reading.named(f"{run}say").attrs["on_port"] == reading.named("P::A::p").id
-    wait = reading.named(f"{run}wait::<Trigger>")
-    assert (wait.subkind, wait.attrs["port"]) == ("signal", reading.named("P::A::p").id)
-    sleep = reading.named(f"{run}sleep::<Trigger>").attrs
+    assert reading.find_element(f"{run}set").attrs["body"] == "x := x + 1"
+    assert reading.list_targets(f"{run}say", "calls") == ["P::Go"]
+    assert reading.find_element(f"{run}say").attrs["on_port"] == reading.find_element("P::A::p").id
+    wait = reading.find_element(f"{run}wait::<Trigger>")
+    assert (wait.subkind, wait.attrs["port"]) == ("signal", reading.find_element("P::A::p").id)
+    sleep = reading.find_element(f"{run}sleep::<Trigger>").attrs
     assert (sleep["subkind"], sleep["when"], sleep["relative"]) == ("time", "5 s", True)
-    assert str(reading.named("P::Go").kind) == "Signal"
+    assert str(reading.find_element("P::Go").kind) == "Signal"
 
 
 def test_the_start_and_the_end_of_a_block_are_its_own():
@@ -143,7 +143,7 @@ package P {
         }
     }
 }""")
-    assert reading.flows("P::R::w") == [
+    assert reading.list_flows("P::R::w") == [
         "merge -> decision",
         "decision -> merge [else]",
         "merge -> a",
@@ -168,7 +168,7 @@ package P {
         }
     }
 }""")
-    assert reading.flows("P::R::w") == [
+    assert reading.list_flows("P::R::w") == [
         "merge -> merge",
         "decision -> merge [x]",
         "merge -> merge",
@@ -189,7 +189,7 @@ package P {
         then done;
     }
 }""")
-    assert sorted(reading.flows("P::A")) == sorted(
+    assert sorted(reading.list_flows("P::A")) == sorted(
         [
             "start -> merge",
             "merge -> decision",
@@ -229,20 +229,20 @@ package P {
         }
     }
 }""")
-    assert reading.to("P::Door", "classifier-behavior") == ["P::Door::life"]
+    assert reading.list_targets("P::Door", "classifier-behavior") == ["P::Door::life"]
     region = "P::Door::life::<Region>"
-    assert reading.flows(region) == [
+    assert reading.list_flows(region) == [
         "start -> closed",
         "closed -> open [not locked]",
         "open -> closed",
         "open -> done",
     ]
     opening = f"{region}::opening"
-    assert reading.to(f"{opening}::<Trigger>", "typed-by") == ["P::Open"]
-    effect = reading.to(opening, "effect")
-    assert reading.named(effect[0]).attrs["body"] == "locked := false"
-    entry = reading.to(f"{region}::closed", "entry")
-    assert reading.named(entry[0]).attrs["body"] == "locked := true"
+    assert reading.list_targets(f"{opening}::<Trigger>", "typed-by") == ["P::Open"]
+    effect = reading.list_targets(opening, "effect")
+    assert reading.find_element(effect[0]).attrs["body"] == "locked := false"
+    entry = reading.list_targets(f"{region}::closed", "entry")
+    assert reading.find_element(entry[0]).attrs["body"] == "locked := true"
 
 
 def test_parallel_states_are_regions():
@@ -256,10 +256,14 @@ package P {
         }
     }
 }""")
-    both = "P::S::<Region>::both"
-    assert reading.owned(both) == ["Region left", "Region right"]
-    assert reading.owned(f"{both}::left") == ["Pseudostate start", "Transition", "State a"]
-    assert reading.owned(f"{both}::right") == ["State right", "Pseudostate start", "Transition"]
+    parallel = "P::S::<Region>::both"
+    assert reading.list_owned(parallel) == ["Region left", "Region right"]
+    assert reading.list_owned(f"{parallel}::left") == ["Pseudostate start", "Transition", "State a"]
+    assert reading.list_owned(f"{parallel}::right") == [
+        "State right",
+        "Pseudostate start",
+        "Transition",
+    ]
 
 
 def test_calculations_are_functions_and_constraints_of_definitions_have_no_name():
@@ -269,17 +273,22 @@ package P {
     calc def Sum { in a : Real; in b : Real; return r : Real; a + b }
     constraint def Law { in f : Real; in m : Real; f == m * 2.0 }
 }""")
-    assert (reading.named("P::Sum").subkind, reading.named("P::Sum").attrs["body"]) == (
+    assert (
+        reading.find_element("P::Sum").subkind,
+        reading.find_element("P::Sum").attrs["body"],
+    ) == (
         "function",
         "a + b",
     )
-    assert [one.attrs["direction"] for one in reading.graph.owned(reading.named("P::Sum"))] == [
+    assert [
+        member.attrs["direction"] for member in reading.graph.owned(reading.find_element("P::Sum"))
+    ] == [
         "in",
         "in",
         "return",
     ]
-    assert reading.named("P::Law").role == "constraint block"
-    assert reading.named("P::Law::<Constraint>").attrs["body"] == "f == m * 2.0"
+    assert reading.find_element("P::Law").role == "constraint block"
+    assert reading.find_element("P::Law::<Constraint>").attrs["body"] == "f == m * 2.0"
 
 
 def test_a_condition_that_nothing_precedes_starts_with_its_behaviour():
@@ -291,7 +300,7 @@ package P {
         if x > 0 { assign x := 1; } else { assign x := 0; }
     }
 }""")
-    assert reading.flows("P::A")[-1] == "start -> decision"
+    assert reading.list_flows("P::A")[-1] == "start -> decision"
 
 
 def test_an_action_that_is_handed_over_is_a_parameter_and_no_step():
@@ -300,8 +309,11 @@ package P {
     calc def Scenario { in t; return : ScalarValues::Real; }
     analysis def Study { in calc scenario : Scenario; action run; }
 }""")
-    found = {one.name: one.kind.name for one in reading.graph.owned(reading.named("P::Study"))}
-    assert found == {"scenario": "PARAMETER", "run": "ACTION"}
+    kinds = {
+        member.name: member.kind.name
+        for member in reading.graph.owned(reading.find_element("P::Study"))
+    }
+    assert kinds == {"scenario": "PARAMETER", "run": "ACTION"}
 
 
 def test_a_succession_to_an_action_of_a_package_is_told_and_has_no_flow():
@@ -310,5 +322,5 @@ package P {
     action focus;
     action takePicture { first focus; then shoot; action shoot; then done; }
 }""")
-    assert reading.flows("P::takePicture") == ["shoot -> done"]
-    assert "SM480" in reading.codes()
+    assert reading.list_flows("P::takePicture") == ["shoot -> done"]
+    assert "SM480" in reading.list_codes()

@@ -19,12 +19,17 @@ TEXT = """package P {{
 """
 
 
-def withheld(tmp_path, *, inside="", state="", beside=""):
+def list_withheld(tmp_path, *, inside="", state="", beside=""):
     (tmp_path / "m.sysml").write_text(TEXT.format(inside=inside, state=state, beside=beside))
     backends = tuple(select_backends(("contracts", "plantuml")))
-    made = compile_model(Request((tmp_path / "m.sysml",), backends=backends))
-    assert [one.rule.code for one in made.diagnostics if one.is_error] in ([], ["SM205"])
-    written = {one.path.rpartition("/")[2] for one in made.list_published()}
+    compilation = compile_model(Request((tmp_path / "m.sysml",), backends=backends))
+    assert [
+        diagnostic.rule.code for diagnostic in compilation.diagnostics if diagnostic.is_error
+    ] in (
+        [],
+        ["SM205"],
+    )
+    written = {output.path.rpartition("/")[2] for output in compilation.list_published()}
     return {name for name in NAMES if name not in written}
 
 
@@ -32,11 +37,11 @@ NAMES = {"P.bdd.puml", "P.Moves.stm.puml", "P.Moves.contract.json", "P.Work.act.
 
 
 def test_a_right_model_has_all_outputs(tmp_path):
-    assert withheld(tmp_path) == set()
+    assert list_withheld(tmp_path) == set()
 
 
 @pytest.mark.parametrize(
-    ("given", "expected"),
+    ("backends", "expected"),
     [
         ({"inside": '@Unknown { url = "x"; }'}, set()),
         ({"inside": "part p : Unknown;"}, {"P.bdd.puml"}),
@@ -44,6 +49,6 @@ def test_a_right_model_has_all_outputs(tmp_path):
         ({"beside": "private import Unknown::*;"}, NAMES),
     ],
 )
-def test_an_unknown_name_withholds_what_holds_it(tmp_path, given, expected):
-    assert expected <= withheld(tmp_path, **given)
-    assert "P.Work.act.puml" not in withheld(tmp_path, **given) or "beside" in given
+def test_an_unknown_name_withholds_what_holds_it(tmp_path, backends, expected):
+    assert expected <= list_withheld(tmp_path, **backends)
+    assert "P.Work.act.puml" not in list_withheld(tmp_path, **backends) or "beside" in backends

@@ -57,51 +57,57 @@ JOINED = """
 """
 
 
-def composites(text):
+def compose(text):
     reading = read(text)
     pipeline.run(reading.graph, reading.sink)
-    found = list(compose_blocks(reading.graph, reading.graph.derived(Contract), reading.sink))
-    codes = [one.rule.code for one in reading.sink if one.rule.code.startswith("SM5")]
-    return {one.component: one for one in found}, codes
+    compositions = list(
+        compose_blocks(reading.graph, reading.graph.derived(Contract), reading.sink)
+    )
+    codes = [
+        diagnostic.rule.code
+        for diagnostic in reading.sink
+        if diagnostic.rule.code.startswith("SM5")
+    ]
+    return {composition.component: composition for composition in compositions}, codes
 
 
-def variables(contract):
-    return [f"{one.owner.value} {one.name}" for one in contract.variables]
+def list_variables(contract):
+    return [f"{variable.owner.value} {variable.name}" for variable in contract.variables]
 
 
-def formulas(conjuncts):
-    return [print_formula(one.formula) for one in conjuncts]
+def print_formulas(conjuncts):
+    return [print_formula(conjunct.formula) for conjunct in conjuncts]
 
 
-def panel(inside=JOINED):
-    found, codes = composites(PANEL.replace("INSIDE", inside))
+def compose_panel(inside=JOINED):
+    compositions, codes = compose(PANEL.replace("INSIDE", inside))
     assert codes == []
-    return found["Line::Panel"]
+    return compositions["Line::Panel"]
 
 
 def test_what_connectors_bindings_and_flows_join_is_one_variable():
-    sensor, display = panel().parts
+    sensor, display = compose_panel().parts
     assert (sensor.name, display.name) == ("sensor", "display")
-    assert variables(sensor.contract) == ["sys sensor.level_value", "sys sensor.busy"]
-    assert variables(display.contract) == [
+    assert list_variables(sensor.contract) == ["sys sensor.level_value", "sys sensor.busy"]
+    assert list_variables(display.contract) == [
         "env sensor.level_value",
         "env sensor.busy",
         "sys light",
     ]
-    assert formulas(display.contract.assumptions) == ["!sensor.busy"]
-    assert formulas(display.contract.guarantees)[-1] == "sensor.level_value>3 -> light'"
+    assert print_formulas(display.contract.assumptions) == ["!sensor.busy"]
+    assert print_formulas(display.contract.guarantees)[-1] == "sensor.level_value>3 -> light'"
 
 
 def test_what_the_parts_make_up_together_is_what_the_block_demands():
-    whole = panel().whole
-    assert variables(whole) == ["sys light"]
-    assert formulas(whole.guarantees) == ["!light", "light"]
+    whole = compose_panel().whole
+    assert list_variables(whole) == ["sys light"]
+    assert print_formulas(whole.guarantees) == ["!light", "light"]
 
 
 def test_what_nothing_joins_is_the_parts_own():
-    sensor, display = panel("bind light = display.lamp;").parts
-    assert variables(sensor.contract) == ["sys sensor.level_value", "sys sensor.busy"]
-    assert variables(display.contract) == [
+    sensor, display = compose_panel("bind light = display.lamp;").parts
+    assert list_variables(sensor.contract) == ["sys sensor.level_value", "sys sensor.busy"]
+    assert list_variables(display.contract) == [
         "env display.shown_value",
         "env display.waits",
         "sys light",
@@ -110,19 +116,27 @@ def test_what_nothing_joins_is_the_parts_own():
 
 def test_what_a_reader_does_not_know_it_assumes_not_to_come():
     text = PANEL.replace("INSIDE", JOINED).replace("shown.value <= 7", "shown.value <= 5")
-    found, codes = composites(text)
-    _, display = found["Line::Panel"].parts
-    level = next(one for one in display.contract.variables if one.name.endswith("value"))
+    compositions, codes = compose(text)
+    _, display = compositions["Line::Panel"].parts
+    level = next(
+        variable for variable in display.contract.variables if variable.name.endswith("value")
+    )
     assert level.domain == IntegerDomain(0, 7)
-    assert [(str(one.class_), print_formula(one.formula)) for one in display.contract.assumptions][
-        :2
-    ] == [("init", "sensor.level_value<=5"), ("safety", "sensor.level_value'<=5")]
+    assert [
+        (str(assumption.class_), print_formula(assumption.formula))
+        for assumption in display.contract.assumptions
+    ][:2] == [("init", "sensor.level_value<=5"), ("safety", "sensor.level_value'<=5")]
     assert codes == []
 
 
 def test_copies_of_a_part_are_parts_each():
-    found = panel("part spare : Sensor [2]; bind light = display.lamp;")
-    assert [one.name for one in found.parts] == ["sensor", "display", "spare[1]", "spare[2]"]
+    composition = compose_panel("part spare : Sensor [2]; bind light = display.lamp;")
+    assert [part.name for part in composition.parts] == [
+        "sensor",
+        "display",
+        "spare[1]",
+        "spare[2]",
+    ]
 
 
 def test_a_part_without_a_contract_is_opened():
@@ -137,10 +151,10 @@ def test_a_part_without_a_contract_is_opened():
     }
     part def Panel {""",
     )
-    found, _ = composites(text)
-    rack = found["Line::Rack"]
-    assert [one.name for one in rack.parts] == ["panel.one", "panel.two", "spare"]
-    assert "env panel.one.level_value" in variables(rack.parts[1].contract)
+    compositions, _ = compose(text)
+    rack = compositions["Line::Rack"]
+    assert [part.name for part in rack.parts] == ["panel.one", "panel.two", "spare"]
+    assert "env panel.one.level_value" in list_variables(rack.parts[1].contract)
     assert rack.whole is None
 
 
@@ -152,7 +166,7 @@ def test_rules_report_their_wrong_model_and_not_their_right_one(code):
         graph = parse_text(text)
         pipeline.run(graph, sink, verify_each=True)
         is_composed = len(list(compose_blocks(graph, graph.derived(Contract), sink))) == 1
-        assert (code in [one.rule.code for one in sink]) is expected
+        assert (code in [diagnostic.rule.code for diagnostic in sink]) is expected
         assert is_composed is (code in ("SM508", "SM526") or not expected)
 
 
@@ -192,10 +206,10 @@ package Plant {
 
 
 def test_what_one_part_sends_occurs_at_the_other():
-    found, _ = composites(GATE)
-    yard = found["Plant::Yard"]
-    assert [one.name for one in yard.parts] == ["gate", "operator"]
-    assert formulas(yard.wiring) == [
+    compositions, _ = compose(GATE)
+    yard = compositions["Plant::Yard"]
+    assert [part.name for part in yard.parts] == ["gate", "operator"]
+    assert print_formulas(yard.wiring) == [
         "gate.event=start -> operator.send_start",
         "operator.send_start -> gate.event=start & operator.send_start",
         "operator.event=opened -> gate.send_opened",
@@ -205,13 +219,13 @@ def test_what_one_part_sends_occurs_at_the_other():
 
 
 def test_parts_that_nothing_joins_hear_nothing_of_one_another():
-    found, _ = composites(GATE.replace("connect gate.told to operator.tells;", ""))
-    assert found["Plant::Yard"].wiring == ()
+    compositions, _ = compose(GATE.replace("connect gate.told to operator.tells;", ""))
+    assert compositions["Plant::Yard"].wiring == ()
 
 
 def test_a_block_is_a_composite_only_when_there_is_something_to_compare():
     assert (
-        composites(
+        compose(
             GATE.replace("part operator : Operator;", "").replace(
                 "connect gate.told to operator.tells;", ""
             )
@@ -255,33 +269,33 @@ package Cells {
 
 
 def test_a_machine_is_its_actions_and_its_coordinator():
-    found, codes = composites(LOADER)
-    loader = found["Cells::Loader"]
+    compositions, codes = compose(LOADER)
+    loader = compositions["Cells::Loader"]
     assert codes == []
-    assert [one.name for one in loader.parts] == ["pick", "place", "move", "Loader"]
+    assert [part.name for part in loader.parts] == ["pick", "place", "move", "Loader"]
     assert loader.whole is None
-    pick, place, move, coordinator = (variables(one.contract) for one in loader.parts)
+    pick, place, move, coordinator = (list_variables(part.contract) for part in loader.parts)
     assert pick[:4] == ["env command", "sys pick_executed", "env piece", "env place_executed"]
     assert "env pick_executed" in place
     assert "env grip" in move
     assert "sys move_executed" in move
     assert {"sys command", "sys grip", "env move_executed"} <= set(coordinator)
-    assert "!place.grip" in formulas(loader.parts[1].contract.guarantees)
+    assert "!place.grip" in print_formulas(loader.parts[1].contract.guarantees)
 
 
-def told(text):
+def check_page(text):
     """What is told of a machine's parts together, and whether they fit."""
     reading = read(text)
     pipeline.run(reading.graph, reading.sink)
     graph, sink = reading.graph, Sink()
-    made = list(compose_blocks(graph, graph.derived(Contract), sink))
+    compositions = list(compose_blocks(graph, graph.derived(Contract), sink))
     place = lambda it: graph.subject(graph[it])  # noqa: E731
-    (result,) = check_compositions(made, place, sink, Options("", Limits()))
-    return [f"{one.rule.code} {one.message}" for one in sink], result.text()
+    (result,) = check_compositions(compositions, place, sink, Options("", Limits()))
+    return [f"{diagnostic.rule.code} {diagnostic.message}" for diagnostic in sink], result.text()
 
 
 def test_the_actions_and_the_coordinator_of_a_machine_fit_together():
-    assert told(LOADER) == ([], "Cells::Loader: its 4 parts fit together")
+    assert check_page(LOADER) == ([], "Cells::Loader: its 4 parts fit together")
 
 
 @pytest.mark.parametrize(
@@ -293,8 +307,8 @@ def test_the_actions_and_the_coordinator_of_a_machine_fit_together():
     ],
 )
 def test_what_is_missing_in_a_machine_is_told(missing, assumed):
-    found, verdict = told(LOADER.replace(missing, ";" if "{" in missing else " "))
-    assert any(assumed in message for message in found)
+    messages, verdict = check_page(LOADER.replace(missing, ";" if "{" in missing else " "))
+    assert any(assumed in message for message in messages)
     assert verdict == "Cells::Loader: its 4 parts do not fit together"
 
 
@@ -321,19 +335,23 @@ package Cells {
 
 @pytest.mark.parametrize("inside", [DRAWN, "action fetch : Fetch; action put : Put;"])
 def test_a_block_that_has_only_actions_of_its_own_is_made_up_of_them(inside):
-    found, codes = composites(OWN.replace("INSIDE", inside))
-    assert [one.name for one in found["Cells::Cell"].parts] == ["fetch", "put"]
+    compositions, codes = compose(OWN.replace("INSIDE", inside))
+    assert [part.name for part in compositions["Cells::Cell"].parts] == ["fetch", "put"]
     assert codes == []
 
 
 def test_what_actions_read_of_their_block_is_one_variable():
-    fetch, put = composites(OWN.replace("INSIDE", DRAWN))[0]["Cells::Cell"].parts
-    assert [one for one in variables(fetch.contract) if one.startswith("env")] == [
+    fetch, put = compose(OWN.replace("INSIDE", DRAWN))[0]["Cells::Cell"].parts
+    assert [
+        variable for variable in list_variables(fetch.contract) if variable.startswith("env")
+    ] == [
         "env fetch.done_grip",
         "env fetch.done_again",
         "env ready",
     ]
-    assert [one for one in variables(put.contract) if one.startswith("env")] == [
+    assert [
+        variable for variable in list_variables(put.contract) if variable.startswith("env")
+    ] == [
         "env put.done_drop",
         "env ready",
     ]
@@ -367,11 +385,11 @@ def test_operations_are_composed_by_their_methods():
     pipeline.run(graph, sink)
     (cell,) = compose_blocks(graph, graph.derived(Contract), sink)
     assert cell.component == "Cells::Cell"
-    assert [one.name for one in cell.parts] == ["fetch", "put"]
+    assert [part.name for part in cell.parts] == ["fetch", "put"]
 
 
 def test_an_action_that_another_one_calls_takes_part_only_by_it():
     calls = "action put : Put; action sub { first start; then action grip; then done; }"
     calls += "action all { first start; then action it : sub; then done; }"
-    found, _ = composites(OWN.replace("INSIDE", calls))
-    assert [one.name for one in found["Cells::Cell"].parts] == ["put", "all"]
+    compositions, _ = compose(OWN.replace("INSIDE", calls))
+    assert [part.name for part in compositions["Cells::Cell"].parts] == ["put", "all"]

@@ -23,15 +23,15 @@ package Plant {
 
 
 @pytest.fixture(scope="module")
-def pages():
+def write_pages():
     reading = read(LINE)
     pipeline.run(reading.graph, reading.sink)
     graph = reading.graph
-    return {one.component: explain(graph, one) for one in graph.derived(Contract)}
+    return {contract.component: explain(graph, contract) for contract in graph.derived(Contract)}
 
 
-def test_a_page_begins_with_what_the_library_says_of_the_action(pages):
-    lines = pages["Plant::Line.carry"].splitlines()
+def test_a_page_begins_with_what_the_library_says_of_the_action(write_pages):
+    lines = write_pages["Plant::Line.carry"].splitlines()
     assert lines[:3] == [
         "# Contract of Plant::Line.carry",
         "",
@@ -39,18 +39,18 @@ def test_a_page_begins_with_what_the_library_says_of_the_action(pages):
     ]
 
 
-def test_the_nearest_comment_goes_before_and_its_first_paragraph_is_enough(pages):
-    assert pages["Plant::Line.screw"].splitlines()[2] == "Two turns."
+def test_the_nearest_comment_goes_before_and_its_first_paragraph_is_enough(write_pages):
+    assert write_pages["Plant::Line.screw"].splitlines()[2] == "Two turns."
 
 
-def test_what_a_requirement_says_has_its_name(pages):
-    text = pages["Plant::Line.carry"]
+def test_what_a_requirement_says_has_its_name(write_pages):
+    text = write_pages["Plant::Line.carry"]
     assert "- Only a free belt is loaded. *(requirement 'ConveyContract')*\n  `loaded' ->" in text
     assert "demands it" not in text
 
 
-def test_what_a_constraint_says_has_its_name_and_steps_have_the_diagrams(pages):
-    text = pages["Plant::Line.clamp"]
+def test_what_a_constraint_says_has_its_name_and_steps_have_the_diagrams(write_pages):
+    text = write_pages["Plant::Line.clamp"]
     assert "- Asks for pick. *(constraint of 'Clamping')*\n  `asked=pick <->" in text
     assert "- Action 'pick' runs from when all its flows have brought a token until" in text
 
@@ -58,10 +58,10 @@ def test_what_a_constraint_says_has_its_name_and_steps_have_the_diagrams(pages):
 def test_markup_of_tools_is_not_copied():
     reading = read(LINE.replace("Two turns.", "<p>Two turns</p>"))
     pipeline.run(reading.graph, reading.sink)
-    (made,) = (
-        explain(reading.graph, one)
-        for one in reading.graph.derived(Contract)
-        if one.component.endswith("screw")
+    (page,) = (
+        explain(reading.graph, contract)
+        for contract in reading.graph.derived(Contract)
+        if contract.component.endswith("screw")
     )
-    assert "<p>" not in made
-    assert made.splitlines()[2] == "A screw is turned in."
+    assert "<p>" not in page
+    assert page.splitlines()[2] == "A screw is turned in."

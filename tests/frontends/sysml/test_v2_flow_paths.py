@@ -23,42 +23,42 @@ TWO = PLANT % "part a : Pump; part b : Pump;"
 ONE = PLANT % "part a : Pump;"
 
 
-def paths(graph):
+def list_paths(graph):
     """Names of the parts that lead to both ends of the only flow."""
     (flow,) = graph.of_kind(Kind.ITEM_FLOW)
     keys = ("source_path", "target_path")
     return [[graph[id_].name for id_ in flow.attrs.get(key, ())] for key in keys]
 
 
-def joined(graph):
+def list_linked_features(graph):
     """The ends that flows of the plant join, and of how many it is not clear what they do."""
-    (plant,) = [one for one in graph if one.name == "Plant"]
+    (plant,) = [element for element in graph if element.name == "Plant"]
     ends = [
-        [f"{one.path}.{one.feature}" for side in both for one in side]
-        for both in iter_links(graph, plant)
+        [f"{end.path}.{end.feature}" for side in sides for end in side]
+        for sides in iter_links(graph, plant)
     ]
     return ends, len(list(find_unclear_flows(graph, plant)))
 
 
 def test_one_of_two_parts_of_a_type_is_the_one_that_the_text_names():
     graph = Reading(TWO, passes=PASSES).graph
-    assert paths(graph) == [["a"], []]
-    assert joined(graph) == ([["a.w", "c.w"]], 0)
+    assert list_paths(graph) == [["a"], []]
+    assert list_linked_features(graph) == ([["a.w", "c.w"]], 0)
 
 
 def test_a_part_of_a_more_special_type_is_alike():
     text = TWO.replace("part b : Pump;", "part def Fast :> Pump; part b : Fast;")
-    assert paths(Reading(text, passes=PASSES).graph) == [["a"], []]
+    assert list_paths(Reading(text, passes=PASSES).graph) == [["a"], []]
 
 
 def test_the_only_part_needs_no_path():
     graph = Reading(ONE, passes=PASSES).graph
-    assert paths(graph) == [[], []]
-    assert joined(graph) == ([["a.w", "c.w"]], 0)
+    assert list_paths(graph) == [[], []]
+    assert list_linked_features(graph) == ([["a.w", "c.w"]], 0)
 
 
 def test_the_path_is_written_again():
     graph = Reading(TWO, passes=(*PASSES, "flows")).graph
-    found, _ = read_back(graph)
-    assert paths(found) == [["a"], []]
-    assert list(compare(graph, found, ("id",))) == []
+    again, _ = read_back(graph)
+    assert list_paths(again) == [["a"], []]
+    assert list(compare(graph, again, ("id",))) == []

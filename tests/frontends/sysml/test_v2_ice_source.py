@@ -39,23 +39,23 @@ def laboratory(folder, tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def recipe(laboratory):
-    (told,) = laboratory.list_published()
-    return json.loads(told.text)
+    (output,) = laboratory.list_published()
+    return json.loads(output.text)
 
 
 @pytest.fixture(scope="module")
 def text(folder):
     """All files of the laboratory, and the literals of its enumerations."""
     files = {path.stem: source.read(path) for path in sorted(folder.rglob("*.sysml"))}
-    return files, source.literals(files["enums"])
+    return files, source.read_literals(files["enums"])
 
 
-def nodes(recipe, graph):
-    graphs = {one["id"]: one for one in (*recipe["serviceGraphs"], *recipe["functionGraphs"])}
-    return {one["id"].rpartition("::")[2]: one for one in graphs[graph]["nodes"]}
+def find_nodes(recipe, name):
+    graphs = {name["id"]: name for name in (*recipe["serviceGraphs"], *recipe["functionGraphs"])}
+    return {node["id"].rpartition("::")[2]: node for node in graphs[name]["nodes"]}
 
 
-def said(value, numbers, enumerations):
+def write_value(value, numbers, enumerations):
     """What a value of the text is in the recipe: a literal, or the name of a variable."""
     if re.fullmatch(r"-?\d+", value):
         return {"lit": int(value)}
@@ -64,25 +64,25 @@ def said(value, numbers, enumerations):
     return {"var": re.sub(r"^\w+::", "", value)}
 
 
-def fits(bound, value, numbers, sources):
+def is_expected(bound, value, numbers, sources):
     """Whether a binding is what the text says; results of steps go by the variables they set."""
-    expected = [said(value, numbers, enumerations) for enumerations in (False, True)]
+    expected = [write_value(value, numbers, enumerations) for enumerations in (False, True)]
     step, dot, output = value.partition(".")
     if dot and output in sources.get(step, {}):
         expected.append({"var": sources[step][output]})
     return bound in expected
 
 
-def check_bindings(made, blocks, numbers):
+def check_bindings(steps, blocks, numbers):
     """Every argument of every step is in the recipe, and no other."""
-    sources = {name: one.get("assign", {}) for name, one in made.items()}
+    sources = {name: step.get("assign", {}) for name, step in steps.items()}
     count = 0
     for name, block in blocks.items():
-        arguments = source.arguments(block)
-        bound = made[name].get("bind", {})
+        arguments = source.read_arguments(block)
+        bound = steps[name].get("bind", {})
         assert set(bound) == set(arguments), name
         for key, value in arguments.items():
-            assert fits(bound[key], value, numbers, sources), (name, key, value, bound[key])
+            assert is_expected(bound[key], value, numbers, sources), (name, key, value, bound[key])
             count += 1
     return count
 
@@ -96,10 +96,12 @@ def test_the_recipe_is_valid_against_its_schema(recipe):
 
 
 def test_the_recipe_has_the_five_tasks_of_the_text_in_their_order(recipe, text):
-    (found,) = text[0]["demo_lego"].find(r"action def DemoLego :> Recipe")
-    written = [m[1] for m, _ in found[1].find(r"then action (\w+) : Task\w+")]
-    (only,) = recipe["recipes"]
-    follows = {a.rpartition("::")[2]: b.rpartition("::")[2] for a, b in only["precedence"]}
+    (definition,) = text[0]["demo_lego"].find(r"action def DemoLego :> Recipe")
+    written = [m[1] for m, _ in definition[1].find(r"then action (\w+) : Task\w+")]
+    (recipe_of_text,) = recipe["recipes"]
+    follows = {
+        a.rpartition("::")[2]: b.rpartition("::")[2] for a, b in recipe_of_text["precedence"]
+    }
     order = [next(iter(set(follows) - set(follows.values())))]
     while order[-1] in follows:
         order.append(follows[order[-1]])
@@ -108,10 +110,10 @@ def test_the_recipe_has_the_five_tasks_of_the_text_in_their_order(recipe, text):
 
 
 def test_values_go_into_tasks_as_written(recipe, text):
-    (found,) = text[0]["demo_lego"].find(r"action def DemoLego :> Recipe")
-    steps = {m[1]: block for m, block in found[1].find(r"then action (\w+) : Task\w+")}
-    made = {one["name"]: one for one in recipe["recipes"][0]["tasks"]}
-    assert check_bindings(made, steps, text[1]) == 17
+    (definition,) = text[0]["demo_lego"].find(r"action def DemoLego :> Recipe")
+    steps = {m[1]: block for m, block in definition[1].find(r"then action (\w+) : Task\w+")}
+    tasks = {task["name"]: task for task in recipe["recipes"][0]["tasks"]}
+    assert check_bindings(tasks, steps, text[1]) == 17
 
 
 def test_every_call_of_a_service_has_the_arguments_of_the_text(recipe, text):
@@ -119,12 +121,12 @@ def test_every_call_of_a_service_has_the_arguments_of_the_text(recipe, text):
     calls = count = 0
     for task, block in files["demo_lego"].find(TASK):
         steps = {m[1]: (m[2], inside) for m, inside in block.find(SERVICE_CALL)}
-        made = nodes(recipe, f"DemoLegoRecipe::{task[1]}")
-        services = {name: one for name, one in made.items() if one["kind"] == "service"}
+        lowered = find_nodes(recipe, f"DemoLegoRecipe::{task[1]}")
+        services = {name: node for name, node in lowered.items() if node["kind"] == "service"}
         assert list(services) == list(steps)
         for name, (service, _) in steps.items():
             assert services[name]["ref"].rpartition("::")[2] == service
-        inside = {name: one for name, (_, one) in steps.items()}
+        inside = {name: node for name, (_, node) in steps.items()}
         count += check_bindings(services, inside, numbers)
         calls += len(steps)
     assert (calls, count) == (31, 103)
@@ -133,7 +135,7 @@ def test_every_call_of_a_service_has_the_arguments_of_the_text(recipe, text):
 def test_the_plant_says_which_operation_of_which_cell_does_each_of_the_31(recipe, text):
     files, _ = text
     (line,) = files["ice_lab"].find(r"perform action demoLego : DemoLego")
-    given = {m[1]: m[2] for m, _ in line[1].find(r"in ref :>> (\w+) = ([\w.]+)")}
+    arguments = {m[1]: m[2] for m, _ in line[1].find(r"in ref :>> (\w+) = ([\w.]+)")}
     task_of = {m[1]: m[2] for m, _ in files["demo_lego"].find(r"then action (op\w+) : (Task\w+)")}
     written = {
         f"DemoLegoRecipe::{task_of[task[1]]}::{step[1]}": step[2]
@@ -142,7 +144,7 @@ def test_the_plant_says_which_operation_of_which_cell_does_each_of_the_31(recipe
     }
     (performed,) = recipe["recipes"][0]["performedBy"]
     assert performed["block"] == "PlantTopology::ICEProductionLine"
-    assert performed["arguments"] == given
+    assert performed["arguments"] == arguments
     assert performed["steps"] == written
     assert len(written) == 31
 
@@ -150,7 +152,7 @@ def test_the_plant_says_which_operation_of_which_cell_does_each_of_the_31(recipe
 # -- services and functions --------------------------------------------------------------------
 
 
-def used(recipe, text):
+def find_definitions(recipe, text):
     """Services and helpers of the recipe with their text."""
     definitions = {
         m[1]: block
@@ -158,20 +160,21 @@ def used(recipe, text):
         for m, block in file.find(r"action def (\w+)(?: :> MachineService)?")
     }
     return {
-        one["id"]: definitions[one["id"].rpartition("::")[2]] for one in recipe["functionGraphs"]
+        graph["id"]: definitions[graph["id"].rpartition("::")[2]]
+        for graph in recipe["functionGraphs"]
     }
 
 
 def test_every_service_calls_the_functions_of_the_text_with_their_arguments(recipe, text):
     calls = count = 0
-    for graph, block in used(recipe, text).items():
+    for graph, block in find_definitions(recipe, text).items():
         steps = {m[1]: (m[2], inside) for m, inside in block.find(FUNCTION_CALL)}
-        made = nodes(recipe, graph)
-        functions = {name: one for name, one in made.items() if one["kind"] == "function"}
+        lowered = find_nodes(recipe, graph)
+        functions = {name: node for name, node in lowered.items() if node["kind"] == "function"}
         assert set(functions) == set(steps)
         for name, (function, _) in steps.items():
             assert functions[name]["ref"].rpartition("::")[2] == function
-        count += check_bindings(functions, {n: one for n, (_, one) in steps.items()}, text[1])
+        count += check_bindings(functions, {n: node for n, (_, node) in steps.items()}, text[1])
         calls += len(steps)
     assert (calls, count) == (12, 28)
 
@@ -182,30 +185,33 @@ def test_every_function_has_the_node_ids_of_its_definition(recipe, text):
     for machine, block in equipment.find(r"part def (\w+) :> ProductionEquipment"):
         methods = {}
         for definition, inside in block.find(r"action def (\w+) :> MachineFunction"):
-            tags = dict(_tag(m) for m, _ in inside.find(r'(\w+) = "(.*)"'))
+            tags = dict(_read_tag(m) for m, _ in inside.find(r'(\w+) = "(.*)"'))
             methods[definition[1]] = tags
         for action, _ in block.find(r"action (\w+) : (\w+)"):
             ids[f"EquipmentInterfaces::{machine[1]}::{action[1]}"] = methods[action[2]]
     written = {
-        one["id"]: {"nodeId": one["opcua"]["method"], "parentNodeId": one["opcua"]["object"]}
-        for one in recipe["functions"]
+        function["id"]: {
+            "nodeId": function["opcua"]["method"],
+            "parentNodeId": function["opcua"]["object"],
+        }
+        for function in recipe["functions"]
     }
     assert written == {id: ids[id] for id in written}
     assert len(written) == 11
 
 
-def _tag(found):
-    return found[1], re.sub(r"\\(.)", r"\1", found[2])
+def _read_tag(match):
+    return match[1], re.sub(r"\\(.)", r"\1", match[2])
 
 
 def test_results_of_services_are_those_of_the_text(recipe, text):
     count = 0
-    for graph, block in used(recipe, text).items():
-        made = nodes(recipe, graph)
+    for graph, block in find_definitions(recipe, text).items():
+        lowered = find_nodes(recipe, graph)
         for bound, _ in block.find(r"bind (\w+) = (\w+)\.(\w+)"):
             output, step, result = bound.groups()
-            if made.get(step, {}).get("kind") == "function":
-                assert made[step]["assign"][result] == output, (graph, output)
+            if lowered.get(step, {}).get("kind") == "function":
+                assert lowered[step]["assign"][result] == output, (graph, output)
                 count += 1
     assert count == 14
 
@@ -216,41 +222,43 @@ def test_results_of_services_are_those_of_the_text(recipe, text):
 def test_every_loop_of_the_text_is_an_unbounded_loop_with_its_condition(recipe, text):
     """A merge that a guarded succession behind it leads back to is where a loop begins."""
     count = 0
-    for graph, block in used(recipe, text).items():
-        loops = [one for one in nodes(recipe, graph).values() if one["kind"] == "loop"]
-        assert all(one["unbounded"] is True for one in loops)
-        heads = _loops(block)
+    for graph, block in find_definitions(recipe, text).items():
+        loops = [node for node in find_nodes(recipe, graph).values() if node["kind"] == "loop"]
+        assert all(loop["unbounded"] is True for loop in loops)
+        heads = _list_loops(block)
         assert len(loops) == len(heads), (graph, heads)
         count += len(loops)
     assert count == 5
 
 
-def _loops(block):
+def _list_loops(block):
     """Names of merges that are led back to from what stands behind them."""
-    found = []
-    for one in block.walk():
-        order = [inner.head for inner in one.inside]
-        for at, head in enumerate(order):
+    merges = []
+    for child in block.walk():
+        order = [inner.head for inner in child.inside]
+        for index, head in enumerate(order):
             merge = re.fullmatch(r"merge (\w+)", head)
             back = rf"(?:if .+ then|else|then) {merge[1]}" if merge else "(?!)"
-            found += [merge[1]] if any(re.fullmatch(back, after) for after in order[at:]) else []
-    return found
+            merges += (
+                [merge[1]] if any(re.fullmatch(back, after) for after in order[index:]) else []
+            )
+    return merges
 
 
 def test_for_each_over_pallets_is_as_written(recipe, text):
     written = [
         (graph, m[1], m[2])
-        for graph, block in used(recipe, text).items()
+        for graph, block in find_definitions(recipe, text).items()
         for m, _ in block.find(r"(?:then )?for (\w+) in ([\w.]+)")
     ]
-    made = [
-        (graph["id"], one["variable"]["name"], one["in"]["var"])
+    loops = [
+        (graph["id"], node["variable"]["name"], node["in"]["var"])
         for graph in recipe["functionGraphs"]
-        for one in graph["nodes"]
-        if one["kind"] == "forEach"
+        for node in graph["nodes"]
+        if node["kind"] == "forEach"
     ]
-    assert made == written
-    assert [(one.rpartition("::")[2], *rest) for one, *rest in made] == [
+    assert loops == written
+    assert [(graph_id.rpartition("::")[2], *rest) for graph_id, *rest in loops] == [
         ("ReadPalletContent", "p", "equipment.pallets"),
         ("ReserveFreePalletOfType2", "p", "equipment.pallets"),
     ]
@@ -259,15 +267,17 @@ def test_for_each_over_pallets_is_as_written(recipe, text):
 def test_times_that_the_text_has_none_of_are_left_open(recipe):
     """The only time of the text is the pause of a second before a pallet is asked for again."""
 
-    def keys(value):
+    def iter_items(value):
         if isinstance(value, dict):
             yield from value.items()
-        for one in value.values() if isinstance(value, dict) else value:
-            if isinstance(one, dict | list):
-                yield from keys(one)
+        for item in value.values() if isinstance(value, dict) else value:
+            if isinstance(item, dict | list):
+                yield from iter_items(item)
 
     times = ("duration", "minDuration", "maxDuration", "timeout", "time")
-    assert [(key, one) for key, one in keys(recipe) if key in times] == [("time", {"lit": 1000})]
+    assert [(key, one) for key, one in iter_items(recipe) if key in times] == [
+        ("time", {"lit": 1000})
+    ]
 
 
 def test_polled_variables_have_the_nodes_of_the_text(recipe, text):
@@ -276,19 +286,21 @@ def test_polled_variables_have_the_nodes_of_the_text(recipe, text):
     for machine in recipe["machines"]:
         name = machine["id"].rpartition("::")[2]
         (block,) = [b for m, b in equipment.find(r"part def (\w+) :> .+") if m[1] == name]
-        for one in machine.get("variables", ()):
-            if "node" in one:
-                assert one["node"] == _node(block, one["name"].split(".")), one["name"]
+        for variable in machine.get("variables", ()):
+            if "node" in variable:
+                assert variable["node"] == _find_node(block, variable["name"].split(".")), variable[
+                    "name"
+                ]
                 count += 1
     assert count == 53
 
 
-def _node(block, path):
+def _find_node(block, path):
     for part in path:
         pattern = rf"attribute (?:{part} : .+|:>> {part})"
-        block = next(one for one in block.inside if re.fullmatch(pattern, one.head))
-    (found,) = [_tag(m)[1] for m, _ in block.find(r'(nodeId) = "(.*)"')]
-    return found
+        block = next(child for child in block.inside if re.fullmatch(pattern, child.head))
+    (node_id,) = [_read_tag(m)[1] for m, _ in block.find(r'(nodeId) = "(.*)"')]
+    return node_id
 
 
 # -- names that are missing --------------------------------------------------------------------
@@ -302,10 +314,12 @@ def test_every_use_of_a_missing_name_is_told_at_its_place_and_nothing_else(labor
     for path in sorted(folder.rglob("*.sysml")):
         name, whole = path.relative_to(folder).as_posix(), path.read_text()
         words += len(re.findall(MISSING, whole))
-        for found in re.finditer(rf"(?:\w+::)*{MISSING}", source.uncommented(whole)):
+        for found in re.finditer(rf"(?:\w+::)*{MISSING}", source.blank_comments(whole)):
             written.add((name, len(whole[: found.start()].encode())))
-    errors = [one for one in laboratory.diagnostics if one.is_error]
-    assert {one.rule.code for one in errors} == {"SM205"}
-    told = [(one.subject.place.file, one.subject.place.offset) for one in errors]
-    assert sorted(told) == sorted(written)
-    assert (words, len(told)) == (25, 24)
+    errors = [diagnostic for diagnostic in laboratory.diagnostics if diagnostic.is_error]
+    assert {diagnostic.rule.code for diagnostic in errors} == {"SM205"}
+    reported = [
+        (diagnostic.subject.place.file, diagnostic.subject.place.offset) for diagnostic in errors
+    ]
+    assert sorted(reported) == sorted(written)
+    assert (words, len(reported)) == (25, 24)

@@ -20,11 +20,13 @@ def lines_of(graph):
     return [line.strip() for line in print_document(graph, Sink())[0].splitlines()]
 
 
-def again(text):
+def read_back_and_compare(text):
     """The model that is read of the text of a model, and the differences."""
     graph = graph_of(text)
-    found, _ = read_back(graph)
-    return found, [f"{one.name} {one.aspect}" for one in compare(graph, found, ("id",))]
+    again, _ = read_back(graph)
+    return again, [
+        f"{difference.name} {difference.aspect}" for difference in compare(graph, again, ("id",))
+    ]
 
 
 KEPT = """
@@ -40,19 +42,19 @@ Class metaclass "Class" external=true qualified_name="UML::Class"
 
 
 def test_attributes_of_every_sort_come_back():
-    found, differences = again(KEPT)
+    graph, differences = read_back_and_compare(KEPT)
     assert differences == []
-    (gate,) = [one for one in found if one.name == "Gate"]
+    (gate,) = [element for element in graph if element.name == "Gate"]
     assert (gate.attrs["size"], gate.attrs["odd"], gate.attrs["active"]) == ("7", ("x", 1), True)
-    (result,) = list(found.of_kind(Kind.PARAMETER))
+    (result,) = list(graph.of_kind(Kind.PARAMETER))
     assert result.attrs["direction"] == "return"
 
 
 def test_edges_to_what_is_outside_come_back():
     assert '@Kept { attributes = ("extends=>UML::Class"); }' in " ".join(lines_of(graph_of(KEPT)))
-    found, _ = again(KEPT)
-    (mark,) = list(found.of_kind(Kind.STEREOTYPE))
-    assert [one.name for one in found.targets(mark, Edge.EXTENDS)] == ["Class"]
+    graph, _ = read_back_and_compare(KEPT)
+    (mark,) = list(graph.of_kind(Kind.STEREOTYPE))
+    assert [target.name for target in graph.targets(mark, Edge.EXTENDS)] == ["Class"]
 
 
 NAMELESS = """
@@ -66,7 +68,7 @@ Package p "Plant"
 
 def test_what_has_no_name_has_none_again():
     assert "part part1 : B { @Named; }" in lines_of(graph_of(NAMELESS))
-    assert again(NAMELESS)[1] == []
+    assert read_back_and_compare(NAMELESS)[1] == []
 
 
 HIDING = """
@@ -87,7 +89,7 @@ def test_a_member_that_would_hide_an_inherited_one_has_another_name_in_the_text(
     lines = lines_of(graph_of(HIDING))
     assert 'attribute x_2 { @Named { name = "x"; } }' in lines
     assert "attribute :>> x;" in lines
-    assert again(HIDING)[1] == []
+    assert read_back_and_compare(HIDING)[1] == []
 
 
 FLOW = """
@@ -114,4 +116,4 @@ Package p "Plant"
 
 def test_a_flow_between_parts_is_a_message():
     assert "message f of Pallet from a to b;" in lines_of(graph_of(FLOW))
-    assert again(FLOW)[1] == []
+    assert read_back_and_compare(FLOW)[1] == []

@@ -1,7 +1,7 @@
 """What real models lost on the way to the text and back: it comes back now, or is told."""
 
 import pytest
-from test_v2_kept import again, graph_of
+from test_v2_kept import graph_of, read_back_and_compare
 
 from sysmlc.backends.sysml.document import write_document
 
@@ -106,22 +106,24 @@ Package p "Plant"
     ],
 )
 def test_it_comes_back(text):
-    _, differences = again(text)
+    _, differences = read_back_and_compare(text)
     assert differences == []
 
 
 def test_the_flow_that_a_decision_is_made_over_is_kept_by_its_name():
-    found, differences = again(INPUT_FLOW)
-    assert [one for one in differences if "decision input flow" in one] == []
-    (decision,) = [one for one in found if one.name == "d"]
-    assert found[str(decision.attrs["decision_input_flow"])].name == "given"
+    graph, differences = read_back_and_compare(INPUT_FLOW)
+    assert [difference for difference in differences if "decision input flow" in difference] == []
+    (decision,) = [element for element in graph if element.name == "d"]
+    assert graph[str(decision.attrs["decision_input_flow"])].name == "given"
 
 
-def told(text):
+def list_losses(text):
     """The ids of elements of which a loss is told, with what is said of them."""
     writer, _ = write_document(graph_of(text))
-    found = writer.losses.by_element.items()
-    return {id_: [facts.get("said", code) for code, facts in losses] for id_, losses in found}
+    losses_by_id = writer.losses.by_element.items()
+    return {
+        id_: [facts.get("said", code) for code, facts in losses] for id_, losses in losses_by_id
+    }
 
 
 WAITING = """
@@ -140,9 +142,9 @@ Package p "Plant"
 
 
 def test_a_step_that_waits_for_a_guarded_flow_is_told():
-    said = "a step that waits for several flows, one of them with a guard,"
-    assert told(WAITING.format(guard='guard="1 < 2"')) == {"run.c": [said]}
-    assert told(WAITING.format(guard="")) == {}
+    construct = "a step that waits for several flows, one of them with a guard,"
+    assert list_losses(WAITING.format(guard='guard="1 < 2"')) == {"run.c": [construct]}
+    assert list_losses(WAITING.format(guard="")) == {}
 
 
 FORK = """
@@ -155,9 +157,9 @@ Package p "Plant"
 
 
 def test_a_fork_that_a_state_owns_without_a_region_is_told():
-    said = "a pseudostate that no region owns"
-    assert told(FORK.format(subkind="fork"))["m.r.s.f"] == [said]
-    assert "m.r.s.f" not in told(FORK.format(subkind="exit-point"))
+    construct = "a pseudostate that no region owns"
+    assert list_losses(FORK.format(subkind="fork"))["m.r.s.f"] == [construct]
+    assert "m.r.s.f" not in list_losses(FORK.format(subkind="exit-point"))
 
 
 IMPORT = """
@@ -170,8 +172,8 @@ Package types "PrimitiveTypes" external=true
 
 
 def test_an_import_of_primitive_types_of_uml_is_told():
-    assert told(IMPORT.format(target="types")) == {"p.i": ["an import of primitive types"]}
-    assert "p.i" not in told(IMPORT.format(target="q"))
+    assert list_losses(IMPORT.format(target="types")) == {"p.i": ["an import of primitive types"]}
+    assert "p.i" not in list_losses(IMPORT.format(target="q"))
 
 
 DEGREES = """
@@ -185,6 +187,6 @@ Package p "Plant"
 
 
 def test_a_quantity_kind_with_another_unit_is_told():
-    said = "a quantity kind that has other units"
-    assert told(DEGREES.format(symbol="°C")) == {"t": [said]}
-    assert told(DEGREES.format(symbol="K")) == {}
+    construct = "a quantity kind that has other units"
+    assert list_losses(DEGREES.format(symbol="°C")) == {"t": [construct]}
+    assert list_losses(DEGREES.format(symbol="K")) == {}

@@ -31,37 +31,43 @@ NEEDED = {
 """What must happen again and again for the machine to do something again and again."""
 
 
-def contracts():
+def read_contracts():
     reading = read(LINE)
     pipeline.run(reading.graph, reading.sink)
-    assert [one.rule.code for one in reading.sink] == []
-    found = reading.graph.derived(Contract)
-    return {one.component.removeprefix("Lines::Line."): one for one in found}
+    assert [diagnostic.rule.code for diagnostic in reading.sink] == []
+    contracts = reading.graph.derived(Contract)
+    return {contract.component.removeprefix("Lines::Line."): contract for contract in contracts}
 
 
 def is_realizable(contract):
     return solve(make_game(contract, Manager())).is_realizable
 
 
-def without(contract, text):
-    left = tuple(one for one in contract.assumptions if print_formula(one.formula) != text)
-    assert len(left) == len(contract.assumptions) - 1
-    return replace(contract, assumptions=left)
+def drop_assumption(contract, text):
+    assumptions = tuple(
+        assumption
+        for assumption in contract.assumptions
+        if print_formula(assumption.formula) != text
+    )
+    assert len(assumptions) == len(contract.assumptions) - 1
+    return replace(contract, assumptions=assumptions)
 
 
 @pytest.mark.parametrize("action", sorted(NEEDED))
 def test_the_contract_of_a_machine_can_be_kept_and_not_by_doing_nothing(action):
-    contract = contracts()[action]
+    contract = read_contracts()[action]
     assert is_realizable(contract)
-    assert not is_realizable(without(contract, NEEDED[action]))
+    assert not is_realizable(drop_assumption(contract, NEEDED[action]))
 
 
 def test_the_constants_of_a_general_action_hold_for_the_special_one():
-    domains = {one.name: one.domain for one in contracts()["mill"].variables}
+    domains = {variable.name: variable.domain for variable in read_contracts()["mill"].variables}
     assert domains["depth"] == domains["wanted"] == IntegerDomain(0, 5)
     assert domains["column"] == IntegerDomain(0, 2)
 
 
 def test_what_two_requirements_say_is_one_contract():
-    said = {one.text.partition(" of ")[2] for one in contracts()["print"].guarantees}
-    assert {"'GridContract' demands it.", "'PrintContract' demands it."} <= said
+    requirements = {
+        guarantee.text.partition(" of ")[2] for guarantee in read_contracts()["print"].guarantees
+    }
+    assert {"'GridContract' demands it.", "'PrintContract' demands it."} <= requirements

@@ -47,9 +47,12 @@ JOINED = """
 """
 
 
-def machine(able, operation):
+def write_machine(able, operation):
     """A machine with some actions and a coordinator."""
-    kinds, actions = (", ".join(KINDS[one] for one in able), "\n".join(ACTIONS[o] for o in able))
+    kinds, actions = (
+        ", ".join(KINDS[name] for name in able),
+        "\n".join(ACTIONS[action_name] for action_name in able),
+    )
     return f"""package Cells {{
     private import DIN8580::*;
     part def Machine :> {kinds} {{ {actions} {JOINED} {operation} }}
@@ -90,38 +93,41 @@ package Cells {
 """
 
 
-def compiled(text):
+def compile_text(text):
     reading = read(text)
     pipeline.run(reading.graph, reading.sink)
-    assert [one.message for one in reading.sink] == []
+    assert [diagnostic.message for diagnostic in reading.sink] == []
     return reading.graph
 
 
-def contracts(text):
-    return {one.component: one for one in compiled(text).derived(Contract)}
+def list_contracts(text):
+    return {contract.component: contract for contract in compile_text(text).derived(Contract)}
 
 
-def composed(text):
-    graph, sink = compiled(text), Sink()
-    made = list(compose_blocks(graph, graph.derived(Contract), sink))
+def check_composition(text):
+    graph, sink = compile_text(text), Sink()
+    compositions = list(compose_blocks(graph, graph.derived(Contract), sink))
     place = lambda id: graph.subject(graph[id])  # noqa: E731
-    (result,) = together.check_compositions(made, place, sink, Options())
-    return result.text(), [(one.rule.code, one.message) for one in sink]
+    (result,) = together.check_compositions(compositions, place, sink, Options())
+    return result.text(), [(diagnostic.rule.code, diagnostic.message) for diagnostic in sink]
 
 
 @pytest.mark.parametrize("operation", STEPS)
 def test_a_usage_asks_for_its_steps_one_after_the_other(operation):
     text = f"package P {{ part def Cell {{ action work : DIN8580::{operation}; }} }}"
-    found = contracts(text)
-    assert list(found) == ["P::Cell.work"]
-    contract, steps = found["P::Cell.work"], STEPS[operation]
-    sides = {side: [one.name for one in contract.variables if one.owner is side] for side in Owner}
+    contracts = list_contracts(text)
+    assert list(contracts) == ["P::Cell.work"]
+    contract, steps = contracts["P::Cell.work"], STEPS[operation]
+    sides = {
+        side: [variable.name for variable in contract.variables if variable.owner is side]
+        for side in Owner
+    }
     assert sides[Owner.ENVIRONMENT] == [f"done_{step}" for step in steps]
     assert {"asked", *(f"run_{step}" for step in steps)} <= set(sides[Owner.SYSTEM])
-    assert [print_formula(one.formula) for one in contract.assumptions] == [
+    assert [print_formula(assumption.formula) for assumption in contract.assumptions] == [
         f"!run_{step} | done_{step}" for step in steps
     ]
-    promised = [print_formula(one.formula) for one in contract.guarantees]
+    promised = [print_formula(guarantee.formula) for guarantee in contract.guarantees]
     for step in steps:
         assert f"asked={step} <-> run_{step} & !done_{step}" in promised
 
@@ -129,64 +135,66 @@ def test_a_usage_asks_for_its_steps_one_after_the_other(operation):
 @pytest.mark.parametrize("operation", STEPS)
 def test_a_usage_can_be_kept_and_nothing_is_suspicious_in_it(operation):
     text = f"package P {{ part def Cell {{ action work : DIN8580::{operation}; }} }}"
-    graph, sink = compiled(text), Sink()
-    made = graph.derived(Contract)
-    (result,) = check_contracts(made, made, lambda id: graph.subject(graph[id]), sink, Options())
+    graph, sink = compile_text(text), Sink()
+    contracts = graph.derived(Contract)
+    (result,) = check_contracts(
+        contracts, contracts, lambda id: graph.subject(graph[id]), sink, Options()
+    )
     assert result.verdict.is_realizable
-    assert [one.message for one in sink] == []
+    assert [diagnostic.message for diagnostic in sink] == []
 
 
 def test_a_usage_that_says_more_has_the_steps_of_what_it_specialises():
     text = """package P { part def Cell { action work : DIN8580::Screwing {
         constraint { language "ltl" /* G F asked=turn */ }
     } } }"""
-    (contract,) = contracts(text).values()
+    (contract,) = list_contracts(text).values()
     assert contract.component == "P::Cell.work"
-    assert "asked=turn" in [print_formula(one.formula) for one in contract.guarantees]
-    assert "run_turn" in [one.name for one in contract.variables]
+    assert "asked=turn" in [print_formula(guarantee.formula) for guarantee in contract.guarantees]
+    assert "run_turn" in [variable.name for variable in contract.variables]
 
 
-@pytest.mark.parametrize("operation", [one for one in STEPS if one != "Dismantling"])
+@pytest.mark.parametrize("operation", [step for step in STEPS if step != "Dismantling"])
 def test_actions_a_coordinator_and_an_operation_fit_together(operation):
-    able = [one for one in ACTIONS if one in {"pick", "place", *STEPS[operation]}]
+    able = [action for action in ACTIONS if action in {"pick", "place", *STEPS[operation]}]
     lines = [f"action work : {operation};", "bind work.asked = asked;"]
-    lines += [BOUND[one].replace("clamp", "work") for one in BOUND if one in able]
-    verdict, found = composed(machine(able, "\n".join(lines)))
+    lines += [BOUND[action].replace("clamp", "work") for action in BOUND if action in able]
+    verdict, diagnostics = check_composition(write_machine(able, "\n".join(lines)))
     assert verdict == f"Cells::Machine: its {len(able) + 2} parts fit together"
-    assert found == []
+    assert diagnostics == []
 
 
 def test_two_arms_dismantle_what_comes():
-    assert composed(DISMANTLES) == ("Cells::Opener: its 3 parts fit together", [])
+    assert check_composition(DISMANTLES) == ("Cells::Opener: its 3 parts fit together", [])
 
 
 def test_two_arms_mount_what_comes():
-    assert composed(MOUNTS) == ("Cells::Mounter: its 2 parts fit together", [])
+    assert check_composition(MOUNTS) == ("Cells::Mounter: its 2 parts fit together", [])
 
 
 def test_a_step_ends_when_the_one_action_that_performs_it_is_executed():
-    graph = compiled(machine(ACTIONS, CLAMPS))
-    (found,) = compose_blocks(graph, graph.derived(Contract), Sink())
-    (clamp,) = (one.contract for one in found.parts if one.name == "clamp")
-    inputs = [one.name for one in clamp.variables if one.owner is Owner.ENVIRONMENT]
+    graph = compile_text(write_machine(ACTIONS, CLAMPS))
+    (composition,) = compose_blocks(graph, graph.derived(Contract), Sink())
+    (clamp,) = (part.contract for part in composition.parts if part.name == "clamp")
+    inputs = [variable.name for variable in clamp.variables if variable.owner is Owner.ENVIRONMENT]
     assert inputs == ["pick_executed", "move_executed", "turn_executed", "place_executed"]
 
 
 def test_of_two_actions_that_could_perform_a_step_a_binding_says_which():
     two = CLAMPS + "        action other : Pick;\n"
     for bound, name in (("", "clamp.done_pick"), ("bind clamp.pick = other;", "other.executed")):
-        graph = compiled(machine(ACTIONS, two + bound))
-        (found,) = compose_blocks(graph, graph.derived(Contract), Sink())
-        (clamp,) = (one.contract for one in found.parts if one.name == "clamp")
-        assert name in [one.name for one in clamp.variables]
+        graph = compile_text(write_machine(ACTIONS, two + bound))
+        (composition,) = compose_blocks(graph, graph.derived(Contract), Sink())
+        (clamp,) = (part.contract for part in composition.parts if part.name == "clamp")
+        assert name in [variable.name for variable in clamp.variables]
 
 
 @pytest.mark.long
 def test_what_nobody_asks_the_coordinator_for_is_told():
-    text = machine(ACTIONS, CLAMPS.replace("bind clamp.asked = asked;", ""))
-    verdict, found = composed(text)
+    text = write_machine(ACTIONS, CLAMPS.replace("bind clamp.asked = asked;", ""))
+    verdict, diagnostics = check_composition(text)
     assert verdict == "Cells::Machine: its 6 parts do not fit together"
-    assert found == [
+    assert diagnostics == [
         (
             "SM595",
             "part 'clamp' of 'Cells::Machine' assumes '!clamp.run_turn | turn_executed', "
@@ -205,34 +213,38 @@ def test_what_nobody_asks_the_coordinator_for_is_told():
 PAGE = (Path(__file__).parents[3] / "docs" / "elementary-actions.md").read_text(encoding="utf-8")
 
 
-def shown(start):
+def read_page_example(start):
     """A part of the page: from a line to the next that is not indented."""
     lines = PAGE[PAGE.index(start) :].splitlines()
     return "\n".join(takewhile(lambda line: not line or line.startswith(" "), lines))
 
 
 def test_the_machine_of_the_page_fits_together_and_not_without_pieces():
-    text = "package Cells { private import DIN8580::*;\n" + shown("    part def Loader") + "}"
-    assert composed(text) == ("Cells::Loader: its 4 parts fit together", [])
+    text = (
+        "package Cells { private import DIN8580::*;\n"
+        + read_page_example("    part def Loader")
+        + "}"
+    )
+    assert check_composition(text) == ("Cells::Loader: its 4 parts fit together", [])
     waiting = text.replace("Supplied", "Picking, Placing")
     waiting = waiting.replace("bind pick.pos = piece;", "").replace("bind place.pos = space;", "")
-    verdict, found = composed(waiting)
+    verdict, diagnostics = check_composition(waiting)
     assert verdict == "Cells::Loader: its 4 parts do not fit together"
-    assert {code for code, _ in found} == {"SM596"}
+    assert {code for code, _ in diagnostics} == {"SM596"}
 
 
 def test_an_operation_of_ones_own_is_performed_as_those_of_the_library_are():
-    swap = shown("    action def Swapping")
-    able = [one for one in ACTIONS if one in ("pick", "place")]
-    lines = machine(able, "action swap : Swapping; bind swap.asked = asked;")
+    swap = read_page_example("    action def Swapping")
+    able = [action for action in ACTIONS if action in ("pick", "place")]
+    lines = write_machine(able, "action swap : Swapping; bind swap.asked = asked;")
     text = lines.replace("part def Machine", f"{swap}\n    part def Machine")
-    assert composed(text) == ("Cells::Machine: its 4 parts fit together", [])
+    assert check_composition(text) == ("Cells::Machine: its 4 parts fit together", [])
 
 
 def test_an_operation_within_another_one_has_no_end_of_its_own_and_that_is_told():
-    swap = shown("    action def Swapping")
-    lines = machine(
-        [one for one in ACTIONS if one in ("pick", "place")],
+    swap = read_page_example("    action def Swapping")
+    lines = write_machine(
+        [action for action in ACTIONS if action in ("pick", "place")],
         "action twice : Twice; bind twice.asked = asked;",
     )
     twice = """
@@ -246,9 +258,9 @@ def test_an_operation_within_another_one_has_no_end_of_its_own_and_that_is_told(
     }
 """
     text = lines.replace("part def Machine", f"{swap}{twice}\n    part def Machine")
-    verdict, found = composed(text)
+    verdict, diagnostics = check_composition(text)
     assert verdict == "Cells::Machine: its 4 parts fit together"
-    assert found == [
+    assert diagnostics == [
         (
             "SM508",
             "no behaviour of 'Machine' determines when step 'swap' of 'twice' ends; the "

@@ -50,7 +50,7 @@ PLANT = """\
 """
 
 
-def plant(data, name="plant.aml"):
+def read_plant(data, name="plant.aml"):
     graph, sink = Graph(), Sink()
     CAEX.read([Source(name, data)], graph, sink, Coverage())
     pipeline.build_pipeline(("resolve", "inherit", "classify", "ports")).run(graph, sink)
@@ -65,21 +65,21 @@ def read_back(graph, sink=None):
     return again
 
 
-def differences(graph):
-    return [str(one) for one in compare(graph, read_back(graph), ("id",))]
+def list_differences(graph):
+    return [str(difference) for difference in compare(graph, read_back(graph), ("id",))]
 
 
 @pytest.mark.parametrize("unit", ["m/s", "m³/h", "MTS", ""])
 def test_data_types_units_versions_and_the_ends_of_links_come_back(unit):
     """``MTS`` is another spelling of m/s, which the text keeps; SI has no m³/h."""
-    assert differences(plant(PLANT.replace("{unit}", unit).encode())) == []
+    assert list_differences(read_plant(PLANT.replace("{unit}", unit).encode())) == []
 
 
 def test_ids_of_interfaces_that_are_read_are_not_told_as_lost():
     sink = Sink()
-    again = read_back(plant(PLANT.replace("{unit}", "m/s").encode()), sink)
-    assert [one for one in again if one.attrs.get("interface_ids")]
-    assert [found.message for found in sink if found.rule.code == "SM481"] == []
+    again = read_back(read_plant(PLANT.replace("{unit}", "m/s").encode()), sink)
+    assert [element for element in again if element.attrs.get("interface_ids")]
+    assert [diagnostic.message for diagnostic in sink if diagnostic.rule.code == "SM481"] == []
 
 
 def test_an_id_of_an_interface_is_said_once_beside_other_members():
@@ -95,14 +95,20 @@ def test_an_id_of_an_interface_is_said_once_beside_other_members():
       <ExternalInterface Name="in" ID="l.in" RefBaseClassPath="Wires/Wire"/>
      </InternalElement></SystemUnitClass></SystemUnitClassLib>"""
     text = PLANT.replace("{unit}", "m/s").replace("</SystemUnitClassLib>", units)
-    once = read_back(plant(text.encode()))
-    assert [one.attrs["interface_ids"][0][1] for one in once if one.attrs.get("interface_ids")]
-    assert [str(one) for one in compare(once, read_back(once), ("id",))] == []
+    once = read_back(read_plant(text.encode()))
+    assert [
+        element.attrs["interface_ids"][0][1]
+        for element in once
+        if element.attrs.get("interface_ids")
+    ]
+    assert [str(difference) for difference in compare(once, read_back(once), ("id",))] == []
 
 
 def test_a_unit_that_si_does_not_have_comes_back_with_its_quantity():
-    again = read_back(plant(PLANT.replace("{unit}", "rpm").encode()))
-    (speed,) = [one for one in again.of_kind(Kind.PROPERTY) if one.name == "speed"]
+    again = read_back(read_plant(PLANT.replace("{unit}", "rpm").encode()))
+    (speed,) = [
+        property_ for property_ in again.of_kind(Kind.PROPERTY) if property_.name == "speed"
+    ]
     assert speed.attrs["unit"] == "rpm"
     assert unit_of(again, speed).attrs["symbol"] == "rpm"
     assert quantity_kind_of(again, speed).name == "rotational frequency"
@@ -111,21 +117,23 @@ def test_a_unit_that_si_does_not_have_comes_back_with_its_quantity():
 def test_a_name_that_the_text_cannot_have_comes_back():
     """``Quantities`` is a package of the standard library: the text has another name for ours."""
     data = PLANT.replace("Units", "Quantities").replace("{unit}", "m").encode()
-    text, _ = print_document(plant(data), Sink())
+    text, _ = print_document(read_plant(data), Sink())
     assert "package Quantities_2 {" in text
-    assert differences(plant(data)) == []
+    assert list_differences(read_plant(data)) == []
 
 
 @pytest.mark.corpus
 @pytest.mark.parametrize("name", ["BayGate.aml", "BayGate_caex215.aml"])
 def test_baygate_comes_back_as_it_was(corpus, name):
     data = (corpus / "aml" / "baygate" / name).read_bytes()
-    assert differences(plant(data, name)) == []
+    assert list_differences(read_plant(data, name)) == []
 
 
 def test_the_example_comes_back_but_for_where_its_comments_are():
-    graph = plant((ROOT / "examples/baygate/baygate.aml").read_bytes())
-    assert {one.aspect for one in compare(graph, read_back(graph), ("id",))} == {"comment"}
+    graph = read_plant((ROOT / "examples/baygate/baygate.aml").read_bytes())
+    assert {difference.aspect for difference in compare(graph, read_back(graph), ("id",))} == {
+        "comment"
+    }
 
 
 WITH_CONSTRAINTS = """\
@@ -153,10 +161,12 @@ def test_constraints_of_interfaces_and_of_attribute_types_are_well_formed_in_the
 @pytest.mark.parametrize("name", quick_first(REAL_PLANTS))
 def test_the_text_of_a_real_plant_has_no_errors(name, corpus, tmp_path):
     data = (corpus / "aml" / "dev" / f"{name}.aml").read_bytes()
-    made = compile_text(tmp_path, f"{name}.aml", data, "sysml")
-    for path, text in outputs(made).items():
+    compilation = compile_text(tmp_path, f"{name}.aml", data, "sysml")
+    for path, text in outputs(compilation).items():
         (tmp_path / path).parent.mkdir(exist_ok=True)
         (tmp_path / path).write_text(text)
     again = compile_example(tmp_path / "sysml" / f"{name}.sysml", "ir")
-    found = [one for one in again.diagnostics if one.severity is Severity.ERROR]
-    assert [str(one.message) for one in found] == []
+    errors = [
+        diagnostic for diagnostic in again.diagnostics if diagnostic.severity is Severity.ERROR
+    ]
+    assert [str(error.message) for error in errors] == []

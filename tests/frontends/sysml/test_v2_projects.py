@@ -15,7 +15,11 @@ STANDARD = "https://www.omg.org/spec/SysML/20250201/Systems-Library.kpar"
 
 
 def pack(path, value=SUM, usage=(), described=True):
-    about = {"name": "Robots", "version": "1.0.0", "usage": [{"resource": one} for one in usage]}
+    about = {
+        "name": "Robots",
+        "version": "1.0.0",
+        "usage": [{"resource": resource} for resource in usage],
+    }
     meta = {"index": {}, "checksum": {"R.sysml": {"value": value, "algorithm": "SHA256"}}}
     written = io.BytesIO()
     with zipfile.ZipFile(written, "w") as zipped:
@@ -27,20 +31,23 @@ def pack(path, value=SUM, usage=(), described=True):
     return path
 
 
-def compiled(*paths):
-    made = compile_model(Request(inputs=paths))
-    told = [(one.rule.code, one.subject.place.file) for one in made.diagnostics]
-    return {made.graph.qualified_name(one) for one in made.graph}, told
+def compile_files(*paths):
+    compilation = compile_model(Request(inputs=paths))
+    diagnostics = [
+        (diagnostic.rule.code, diagnostic.subject.place.file)
+        for diagnostic in compilation.diagnostics
+    ]
+    return {compilation.graph.qualified_name(element) for element in compilation.graph}, diagnostics
 
 
 def test_the_models_of_an_archive_are_compiled(tmp_path):
-    names, told = compiled(pack(tmp_path / "robots.kpar", usage=[STANDARD]))
+    names, diagnostics = compile_files(pack(tmp_path / "robots.kpar", usage=[STANDARD]))
     assert "Robots::Robot" in names
-    assert told == []
+    assert diagnostics == []
 
 
 @pytest.mark.parametrize(
-    ("said", "expected"),
+    ("message", "expected"),
     [
         ({"value": "00"}, [("SM168", "robots.kpar!.meta.json")]),
         ({"usage": ["Gone.kpar"]}, [("SM169", "robots.kpar!.project.json")]),
@@ -50,21 +57,21 @@ def test_the_models_of_an_archive_are_compiled(tmp_path):
         ),
     ],
 )
-def test_what_does_not_fit_is_told(tmp_path, said, expected):
-    assert sorted(compiled(pack(tmp_path / "robots.kpar", **said))[1]) == sorted(expected)
+def test_what_does_not_fit_is_told(tmp_path, message, expected):
+    assert sorted(compile_files(pack(tmp_path / "robots.kpar", **message))[1]) == sorted(expected)
 
 
 def test_archives_that_are_given_together_are_found(tmp_path):
     user = pack(tmp_path / "plant.kpar", usage=["https://example.org/1.0/Robots.kpar"])
-    assert compiled(user, pack(tmp_path / "robots.kpar"))[1] == []
+    assert compile_files(user, pack(tmp_path / "robots.kpar"))[1] == []
 
 
 def test_archives_of_the_library_are_examined(tmp_path):
     (tmp_path / "m.sysml").write_text("package M { private import Robots::*; part r : Robot; }")
     for name, value in (("good", SUM), ("bad", "00")):
         library = pack(tmp_path / f"{name}.kpar", value)
-        made = compile_model(Request((tmp_path / "m.sysml",), library=str(library)))
-        codes = [one.rule.code for one in made.diagnostics]
+        compilation = compile_model(Request((tmp_path / "m.sysml",), library=str(library)))
+        codes = [diagnostic.rule.code for diagnostic in compilation.diagnostics]
         assert ("SM168" in codes) == (name == "bad")
 
 
@@ -72,6 +79,6 @@ def test_archives_of_the_library_of_the_environment_are_examined(tmp_path, monke
     (tmp_path / "m.sysml").write_text("package M { private import Robots::*; part r : Robot; }")
     for name, value in (("good", SUM), ("bad", "00")):
         monkeypatch.setenv("SYSML_LIBRARY_PATH", str(pack(tmp_path / f"{name}.kpar", value)))
-        made = compile_model(Request((tmp_path / "m.sysml",)))
-        codes = [one.rule.code for one in made.diagnostics]
+        compilation = compile_model(Request((tmp_path / "m.sysml",)))
+        codes = [diagnostic.rule.code for diagnostic in compilation.diagnostics]
         assert ("SM168" in codes) == (name == "bad")

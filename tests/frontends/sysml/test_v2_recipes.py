@@ -38,10 +38,10 @@ def recipe(serving, *, helper="", given="out :>> at;"):
     text = _AROUND.format(helper, f"out at : Integer; {serving}", given)
     reading = Reading(text, passes=PASSES)
     (model,) = reading.graph.derived(Model)
-    return model, [one.rule.code for one in reading.sink]
+    return model, [diagnostic.rule.code for diagnostic in reading.sink]
 
 
-def shown(graph):
+def list_edges(graph):
     nodes = {node.id: node.id.rpartition("::")[2] for node in graph.nodes}
     return [
         f"{nodes[e.source]} -> {nodes[e.target]}" + (f" {e.role}" if e.role else "")
@@ -58,15 +58,15 @@ def test_a_for_loop_is_a_node_with_a_body_and_an_exit():
         }
         then done;""")
     (graph,) = model.function_graphs
-    assert shown(graph) == [
+    assert list_edges(graph) == [
         "start -> expansion",
         "expansion -> done exit",
         "expansion -> go body",
         "go -> settle",
         "settle -> expansion",
     ]
-    (each,) = [node for node in graph.nodes if node.kind == "forEach"]
-    assert (each.variable, each.expression, each.max_iterations) == (
+    (loop,) = [node for node in graph.nodes if node.kind == "forEach"]
+    assert (loop.variable, loop.expression, loop.max_iterations) == (
         "p",
         make_variable("belt.places"),
         4,
@@ -97,7 +97,7 @@ def test_a_loop_inside_a_for_loop_is_a_loop():
     (graph,) = model.function_graphs
     kinds = {node.id.rpartition("::")[2]: node.kind for node in graph.nodes}
     assert (kinds["expansion"], kinds["decision"]) == ("forEach", "loop")
-    assert "settle -> expansion" in shown(graph)
+    assert "settle -> expansion" in list_edges(graph)
     assert "SM604" not in codes
 
 
@@ -107,7 +107,7 @@ def test_steps_of_a_block_are_steps_of_the_service():
         then action both { first start; then action go : Move { in :>> to = 1; } then done; }
         then done;""")
     (graph,) = model.function_graphs
-    assert shown(graph) == ["start -> both", "both -> go", "go -> end", "end -> done"]
+    assert list_edges(graph) == ["start -> both", "both -> go", "go -> end", "end -> done"]
     assert "SM615" not in codes
 
 
@@ -178,10 +178,10 @@ def test_an_output_that_is_an_expression_is_assigned_before_the_end():
         bind at = found;"""
     model, _ = recipe(text)
     graph = model.function_graphs[0]
-    made = [(node.variable, node.expression) for node in graph.nodes if node.kind == "assign"]
-    assert made == [("at", make_variable("found"))]
-    assert shown(graph) == ["start -> go", "go -> at", "at -> done"]
-    assert [one.value for one in graph.variables] == [(1, 2)]
+    assigned = [(node.variable, node.expression) for node in graph.nodes if node.kind == "assign"]
+    assert assigned == [("at", make_variable("found"))]
+    assert list_edges(graph) == ["start -> go", "go -> at", "at -> done"]
+    assert [variable.value for variable in graph.variables] == [(1, 2)]
 
 
 def test_the_first_value_of_an_output_is_no_result():
@@ -190,4 +190,4 @@ def test_the_first_value_of_an_output_is_no_result():
     model, _ = recipe(text)
     graph = model.function_graphs[0]
     assert "assign" not in {node.kind for node in graph.nodes}
-    assert {one.name: one.value for one in graph.outputs} == {"at": None, "list": ()}
+    assert {output.name: output.value for output in graph.outputs} == {"at": None, "list": ()}

@@ -1,6 +1,6 @@
 """Requirements, cases and relations of SysML v2 in the graph."""
 
-from reading_v2 import classified, read
+from reading_v2 import read, read_classified
 
 MODEL = """
 package P {
@@ -35,54 +35,54 @@ package P {
 
 def test_a_requirement_has_id_text_subject_and_constraints():
     reading = read(MODEL)
-    light = reading.named("P::light")
+    light = reading.find_element("P::light")
     assert (light.role, light.attrs["req_id"], light.attrs["text"]) == (
         "requirement",
         "R1",
         "The car is light.",
     )
-    assert reading.to("P::light", "subject") == ["P::Car"]
-    assert reading.named("P::light::limit").attrs["body"] == "one.mass <= 1000.0"
+    assert reading.list_targets("P::light", "subject") == ["P::Car"]
+    assert reading.find_element("P::light::limit").attrs["body"] == "one.mass <= 1000.0"
 
 
 def test_satisfactions_verifications_and_derivations_are_dependencies():
-    reading = classified(MODEL)
-    assert reading.to("P::car", "satisfies") == ["P::light"]
-    assert reading.to("P::Weigh", "verifies") == ["P::light"]
-    assert reading.to("P::safe", "derives") == ["P::light"]
-    assert reading.to("P::car", "allocated-to") == ["P::car"]
-    assert reading.named("P::Weigh").role == "test case"
+    reading = read_classified(MODEL)
+    assert reading.list_targets("P::car", "satisfies") == ["P::light"]
+    assert reading.list_targets("P::Weigh", "verifies") == ["P::light"]
+    assert reading.list_targets("P::safe", "derives") == ["P::light"]
+    assert reading.list_targets("P::car", "allocated-to") == ["P::car"]
+    assert reading.find_element("P::Weigh").role == "test case"
 
 
 def test_a_part_that_satisfies_may_be_called_as_the_subject():
-    reading = classified("""
+    reading = read_classified("""
 package P {
     part def Pump { part motor; }
     requirement quiet { subject pump : Pump; }
     part plant { part pump : Pump; satisfy quiet by pump; satisfy quiet by pump.motor; }
 }""")
-    assert reading.codes() == []
-    assert reading.to("P::plant::pump", "satisfies") == ["P::quiet"]
-    assert reading.to("P::Pump::motor", "satisfies") == ["P::quiet"]
+    assert reading.list_codes() == []
+    assert reading.list_targets("P::plant::pump", "satisfies") == ["P::quiet"]
+    assert reading.list_targets("P::Pump::motor", "satisfies") == ["P::quiet"]
 
 
 def test_a_satisfaction_of_a_special_requirement_is_one_of_what_it_subsets():
-    reading = classified("""
+    reading = read_classified("""
 package P {
     requirement def Quiet;
     requirement quiet : Quiet;
     part pump;
     satisfy requirement here : Quiet subsets quiet by pump;
 }""")
-    assert reading.to("P::pump", "satisfies") == ["P::quiet"]
+    assert reading.list_targets("P::pump", "satisfies") == ["P::quiet"]
 
 
 def test_use_cases_have_subjects_inclusions_and_actors():
     reading = read(MODEL)
-    assert reading.to("P::Drive", "includes") == ["P::StartEngine"]
-    assert reading.to("P::Drive", "subject") == ["P::Car"]
-    ends = reading.graph.owned(reading.named("P::<Association>"))
-    types = [reading.graph.target(one, "typed-by").name for one in ends]
+    assert reading.list_targets("P::Drive", "includes") == ["P::StartEngine"]
+    assert reading.list_targets("P::Drive", "subject") == ["P::Car"]
+    ends = reading.graph.owned(reading.find_element("P::<Association>"))
+    types = [reading.graph.target(end, "typed-by").name for end in ends]
     assert types == ["Drive", "Driver"]
 
 
@@ -95,8 +95,8 @@ package P {
     alias B for Q::A;
     comment about Q /* Inside. */
 }""")
-    comments = [one for one in reading.graph if str(one.kind) == "Comment"]
-    assert [one.attrs["body"] for one in comments] == ["What this is.", "Inside."]
+    comments = [element for element in reading.graph if str(element.kind) == "Comment"]
+    assert [comment.attrs["body"] for comment in comments] == ["What this is.", "Inside."]
     assert reading.graph.target(comments[1], "references").name == "Q"
-    assert reading.to("P::B", "references") == ["P::Q::A"]
-    assert reading.to("P::<Import>", "references") == ["P::Q"]
+    assert reading.list_targets("P::B", "references") == ["P::Q::A"]
+    assert reading.list_targets("P::<Import>", "references") == ["P::Q"]

@@ -48,28 +48,34 @@ MOVED = frozenset({"item flow", "satisfy", "allocate", "import", "derive"})
 """Kinds that stand where the text can name their ends (SM734)."""
 
 
-def plain(graph):
+def remove_unwritten(graph):
     """The graph without what the text does not say."""
-    for one in list(graph):
-        is_told = one.kind is Kind.APPLICATION and is_standard(one)
-        is_outside = one.owner is None and one.kind in (Kind.PROFILE, Kind.PACKAGE, Kind.STEREOTYPE)
-        if one.id in graph and (is_told or (is_outside and one.attrs.get("external"))):
-            graph.remove(one)
-    for one in graph:
+    for element in list(graph):
+        is_standard_stereotype = element.kind is Kind.APPLICATION and is_standard(element)
+        is_external = element.owner is None and element.kind in (
+            Kind.PROFILE,
+            Kind.PACKAGE,
+            Kind.STEREOTYPE,
+        )
+        if element.id in graph and (
+            is_standard_stereotype or (is_external and element.attrs.get("external"))
+        ):
+            graph.remove(element)
+    for element in graph:
         for key in UNSAID:
-            one.attrs.pop(key, None)
-        if one.kind is Kind.PORT:
-            one.attrs.pop("aggregation", None)
-        if one.kind in UNNAMED or one.subkind in ("initial", "final", "flow-final"):
-            one.name = ""
+            element.attrs.pop(key, None)
+        if element.kind is Kind.PORT:
+            element.attrs.pop("aggregation", None)
+        if element.kind in UNNAMED or element.subkind in ("initial", "final", "flow-final"):
+            element.name = ""
         for key in ("guard", "body", "condition", "value", "default"):
-            one.attrs[key] = spelt(one.attrs.get(key))
-            if one.attrs[key] is None:
-                del one.attrs[key]
+            element.attrs[key] = normalize_expression(element.attrs.get(key))
+            if element.attrs[key] is None:
+                del element.attrs[key]
     return graph
 
 
-def spelt(text):
+def normalize_expression(text):
     """An expression in one spelling."""
     if not isinstance(text, str):
         return text
@@ -88,18 +94,27 @@ def read_back(graph):
     return again, sink
 
 
-def differences(graph):
+def list_differences(graph):
     """What was not read back as it was, one a line."""
     again, sink = read_back(graph)
-    errors = [str(found.message) for found in sink if found.rule.code in ("SM205", "SM482")]
-    changes = compare(plain(graph), plain(again), ("id",))
-    told = [one for one in changes if one.aspect not in OF_COMMENTS and one.kind not in MOVED]
-    return errors + [f"{one.what.value} {one.owner}::{one.name} {one.aspect}" for one in told]
+    errors = [
+        str(diagnostic.message) for diagnostic in sink if diagnostic.rule.code in ("SM205", "SM482")
+    ]
+    changes = compare(remove_unwritten(graph), remove_unwritten(again), ("id",))
+    unexpected = [
+        difference
+        for difference in changes
+        if difference.aspect not in OF_COMMENTS and difference.kind not in MOVED
+    ]
+    return errors + [
+        f"{difference.what.value} {difference.owner}::{difference.name} {difference.aspect}"
+        for difference in unexpected
+    ]
 
 
 @pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
 def test_examples(path):
-    known = {
+    accepted = {
         "baygate-behaviour": {
             "changed BayGate::BayGate Breakdown::Stopper::StopperBehaviour::<Region>::Operating::"
             "<Region>::clear trigger",  # 2 [s] for 2
@@ -109,22 +124,28 @@ def test_examples(path):
             "changed BayGate::BayGate Breakdown::RFID_Reader::readId::id direction",
         },
     }
-    assert set(differences(compile_example(path, "ir").graph)) <= known.get(path.stem, set())
+    assert set(list_differences(compile_example(path, "ir").graph)) <= accepted.get(
+        path.stem, set()
+    )
 
 
 @pytest.mark.parametrize("seed", quick_first(range(0, 24, 4), 2))
 def test_models_at_random_keep_their_structure(seed):
     """No block, part, port, connector, state, transition or operation is lost or comes in."""
-    for more in range(4):
+    for offset in range(4):
         graph, sink = Graph(), Sink()
-        data = random_model(Random(seed + more), 2)
+        data = random_model(Random(seed + offset), 2)
         XMI.read([Source("model.uml", data)], graph, sink, Coverage())
         pipeline.build_pipeline(PASSES).run(graph, sink)
-        again, found = read_back(graph)
-        assert [one.message for one in found if one.rule.code in ("SM205", "SM482")] == []
+        again, again_sink = read_back(graph)
+        assert [
+            diagnostic.message
+            for diagnostic in again_sink
+            if diagnostic.rule.code in ("SM205", "SM482")
+        ] == []
         for kind in KEPT:
-            before, after = names(graph, kind), names(again, kind)
-            assert before <= after, (seed + more, kind, before - after)
+            before, after = list_names(graph, kind), list_names(again, kind)
+            assert before <= after, (seed + offset, kind, before - after)
 
 
 KEPT = (
@@ -137,18 +158,18 @@ KEPT = (
 )
 
 
-def names(graph, kind):
+def list_names(graph, kind):
     """Names of the elements of a kind; a second one of a name has a number in the text."""
-    own = (one for one in graph.of_kind(kind) if not one.attrs.get("external"))
-    return {one.name.rstrip("_0123456789") for one in own if one.name}
+    elements = (element for element in graph.of_kind(kind) if not element.attrs.get("external"))
+    return {element.name.rstrip("_0123456789") for element in elements if element.name}
 
 
 @pytest.mark.long
 def test_the_plant_of_automationml_is_a_plant_again():
     graph = compile_example(PLANT, "ir").graph
     kinds = (Kind.CLASS, Kind.PORT, Kind.CONNECTOR, Kind.INSTANCE, Kind.OPERATION)
-    before = {kind: names(graph, kind) for kind in kinds}
+    before = {kind: list_names(graph, kind) for kind in kinds}
     again, _ = read_back(graph)
-    assert {kind: before[kind] - names(again, kind) for kind in kinds} == {
+    assert {kind: before[kind] - list_names(again, kind) for kind in kinds} == {
         kind: set() for kind in kinds
     }

@@ -1,7 +1,7 @@
 """Object flows past control nodes are written as successions with metadata, and read back."""
 
 import pytest
-from test_v2_roundtrip import differences, read_back
+from test_v2_roundtrip import list_differences, read_back
 
 from sysmlc.ir import Kind
 from sysmlc.ir.text import parse_text
@@ -43,15 +43,15 @@ Package p "P"
 
 @pytest.mark.parametrize("control", ["fork", "merge", "decision", "join"])
 def test_objects_flow_past_control_nodes_as_before(control):
-    assert differences(parse_text(MODEL.replace("{control}", control))) == []
+    assert list_differences(parse_text(MODEL.replace("{control}", control))) == []
 
 
 def test_flows_that_follow_from_others_are_not_read_again():
     again, sink = read_back(parse_text(MODEL.replace("{control}", "fork")))
     assert len(list(again.of_kind(Kind.OBJECT_FLOW))) == 5
-    assert [one.rule.code for one in sink if one.is_error] == []
+    assert [diagnostic.rule.code for diagnostic in sink if diagnostic.is_error] == []
 
 
 def test_flows_from_pin_to_pin_stay_flows():
     text = MODEL.replace("{control}", "fork").replace("-> flow-target f\n", "-> flow-target yi\n")
-    assert differences(parse_text(text)) == []
+    assert list_differences(parse_text(text)) == []

@@ -1,7 +1,7 @@
 """What only SysML v2 says of an element is written and read back: portions, choices, payloads."""
 
 from reading_v2 import read
-from test_v2_roundtrip import differences
+from test_v2_roundtrip import list_differences
 
 TEXT = """
 package P {
@@ -30,8 +30,10 @@ package P {
 
 def test_portions_choices_individuals_payloads_first_values_and_units():
     reading = read(TEXT)
-    assert reading.codes() == []
-    assert [one for one in differences(reading.graph) if not is_of_grip(one)] == []
+    assert reading.list_codes() == []
+    assert [
+        difference for difference in list_differences(reading.graph) if not is_of_grip(difference)
+    ] == []
 
 
 def is_of_grip(line):

@@ -15,35 +15,39 @@ RULES = (rules.UNSUPPORTED, rules.APPROXIMATED, rules.NOT_IN_GRAPH)
 @pytest.mark.parametrize("rule", RULES, ids=lambda rule: rule.code)
 def test_the_wrong_model_has_the_finding_and_the_right_one_has_not(rule):
     assert rule.code in CODES
-    assert rule.code in read(rule.read_page().wrong).codes()
-    assert rule.code not in read(rule.read_page().right).codes()
+    assert rule.code in read(rule.read_page().wrong).list_codes()
+    assert rule.code not in read(rule.read_page().right).list_codes()
 
 
 def test_sm480_what_is_not_read_is_told_once_with_its_number_and_place():
     reading = read("package P {\n    rendering def A;\n    rendering def B { part x; }\n}")
-    found = [one for one in reading.sink if one.rule.code == "SM480"]
-    assert [one.message for one in found] == [
+    diagnostics = [diagnostic for diagnostic in reading.sink if diagnostic.rule.code == "SM480"]
+    assert [diagnostic.message for diagnostic in diagnostics] == [
         "rendering definition is not read (2 in the unit, with all that they own)"
     ]
-    assert found[0].subject.place.ordinal == 30
-    assert reading.totals() == {"elements": 5, "mapped": 2, "unsupported": 3}
+    assert diagnostics[0].subject.place.ordinal == 30
+    assert reading.count_verdicts() == {"elements": 5, "mapped": 2, "unsupported": 3}
 
 
 def test_what_a_usage_is_beyond_a_feature_is_kept():
     portions = "snapshot begun; timeslice shift; individual part one : Cell;"
     variants = "variation part tool { variant part gripper; }"
-    found = read(f"package P {{ individual part def Cell {{ {portions} {variants} part x; }} }}")
-    assert found.codes() == []
-    assert found.named("P::Cell").attrs["individual"] is True
-    assert found.named("P::Cell::begun").attrs["portion"] == "snapshot"
-    assert found.named("P::Cell::shift").attrs["portion"] == "timeslice"
-    assert found.named("P::Cell::tool", "Class").attrs["variation"] is True
-    assert found.named("P::Cell::tool::gripper").attrs["variant"] is True
-    assert found.named("P::Cell::x").attrs.keys().isdisjoint({"variation", "variant", "portion"})
+    reading = read(f"package P {{ individual part def Cell {{ {portions} {variants} part x; }} }}")
+    assert reading.list_codes() == []
+    assert reading.find_element("P::Cell").attrs["individual"] is True
+    assert reading.find_element("P::Cell::begun").attrs["portion"] == "snapshot"
+    assert reading.find_element("P::Cell::shift").attrs["portion"] == "timeslice"
+    assert reading.find_element("P::Cell::tool", "Class").attrs["variation"] is True
+    assert reading.find_element("P::Cell::tool::gripper").attrs["variant"] is True
+    assert (
+        reading.find_element("P::Cell::x")
+        .attrs.keys()
+        .isdisjoint({"variation", "variant", "portion"})
+    )
 
 
 @pytest.mark.parametrize(
-    ("member", "what"),
+    ("member", "owner"),
     [
         ("assert constraint safe { attribute x; 1 == 2 }", "a constraint"),
         ("satisfy q { attribute x; }", "a satisfaction"),
@@ -63,17 +67,19 @@ def test_what_a_usage_is_beyond_a_feature_is_kept():
         ("verification v { objective { verify q { attribute x; } } }", "a verification"),
     ],
 )
-def test_sm481_members_of_what_has_none_in_the_graph_are_told(member, what):
+def test_sm481_members_of_what_has_none_in_the_graph_are_told(member, owner):
     around = "requirement q; part def M { attribute x; } part a : M; part b : M;"
-    found = read(f"package P {{ part def Cell {{ {around} {member} }} }}").sink
-    told = [one.message for one in found if one.rule.code == "SM481"]
-    assert told == [f"a member of {what} is read as nothing (1 in the unit)"]
+    sink = read(f"package P {{ part def Cell {{ {around} {member} }} }}").sink
+    messages = [diagnostic.message for diagnostic in sink if diagnostic.rule.code == "SM481"]
+    assert messages == [f"a member of {owner} is read as nothing (1 in the unit)"]
     nearly = member.replace("attribute x;", "doc /* x */")
-    assert "SM481" not in read(f"package P {{ part def Cell {{ {around} {nearly} }} }}").codes()
+    assert (
+        "SM481" not in read(f"package P {{ part def Cell {{ {around} {nearly} }} }}").list_codes()
+    )
 
 
 @pytest.mark.parametrize(
-    ("member", "said"),
+    ("member", "expected"),
     [
         ("action a { action b[4]; }", "the multiplicity of an action usage is read as nothing"),
         ("state a { state b[4]; }", "the multiplicity of a state usage is read as nothing"),
@@ -88,14 +94,14 @@ def test_sm481_members_of_what_has_none_in_the_graph_are_told(member, what):
         ),
     ],
 )
-def test_sm481_nothing_vanishes_without_a_word(member, said):
+def test_sm481_nothing_vanishes_without_a_word(member, expected):
     around = "metadata def M { attribute y { attribute z; } }"
-    found = read(f"package P {{ {around} {member} }}").sink
-    told = [one.message for one in found if one.rule.code == "SM481"]
-    assert told == [f"{said} (1 in the unit)"]
+    sink = read(f"package P {{ {around} {member} }}").sink
+    messages = [diagnostic.message for diagnostic in sink if diagnostic.rule.code == "SM481"]
+    assert messages == [f"{expected} (1 in the unit)"]
     plain = member.replace("[4]", "").replace("variation ", "").replace("{ :>> z = 3; }", "= 3;")
     plain = plain.replace("doc /* x */", "")
-    assert "SM481" not in read(f"package P {{ {around} {plain} }}").codes()
+    assert "SM481" not in read(f"package P {{ {around} {plain} }}").list_codes()
 
 
 def test_documentation_of_aliases_imports_and_nested_allocations_is_kept():
@@ -107,10 +113,10 @@ package P {
     allocate a to b { allocate a.c to b.d; }
 }
 package Q;""")
-    bodies = [one.attrs["body"] for one in reading.graph if one.kind == "Comment"]
+    bodies = [element.attrs["body"] for element in reading.graph if element.kind == "Comment"]
     assert sorted(bodies) == ["one", "two"]
-    assert len([one for one in reading.graph if one.role == "allocate"]) == 2
-    assert reading.codes() == []
+    assert len([element for element in reading.graph if element.role == "allocate"]) == 2
+    assert reading.list_codes() == []
 
 
 @pytest.mark.parametrize(
@@ -122,21 +128,23 @@ package Q;""")
 )
 def test_sm480_what_leads_to_no_step_does_not_lead_to_the_next_one(body, name):
     reading = read(f"package P {{ {body} }}")
-    told = [one.message for one in reading.sink if one.rule.code == "SM480"]
-    assert told == ["succession as usage is not read (1 in the unit, with all that they own)"]
-    assert [one for one in reading.graph if one.kind == name] == []
+    messages = [
+        diagnostic.message for diagnostic in reading.sink if diagnostic.rule.code == "SM480"
+    ]
+    assert messages == ["succession as usage is not read (1 in the unit, with all that they own)"]
+    assert [element for element in reading.graph if element.kind == name] == []
     nearly = body.replace("action z", "state z").replace("part z", "action z")
     reading = read(f"package P {{ {nearly} }}")
-    assert len([one for one in reading.graph if one.kind == name]) == 1
-    assert "SM480" not in reading.codes()
+    assert len([element for element in reading.graph if element.kind == name]) == 1
+    assert "SM480" not in reading.list_codes()
 
 
 def test_aliases_of_states_are_in_the_graph_wherever_they_stand():
     plain = "state def A { entry; then a; state a; alias b for a; alias <c> for a; }"
     beside = "state def B parallel { state r { state s; alias d for s; } alias e for r; }"
     reading = read(f"package P {{ {plain} {beside} }}")
-    assert [one.name for one in reading.graph if one.kind == "Alias"] == list("bcde")
-    assert "unsupported" not in reading.totals()
+    assert [element.name for element in reading.graph if element.kind == "Alias"] == list("bcde")
+    assert "unsupported" not in reading.count_verdicts()
 
 
 DAMAGED = b'<sysml:Namespace xmlns:sysml="https://www.omg.org/spec/SysML/20250201"><a>'
@@ -145,7 +153,7 @@ DAMAGED = b'<sysml:Namespace xmlns:sysml="https://www.omg.org/spec/SysML/2025020
 def test_a_damaged_interchange_file_is_told_and_left_out():
     sink, graph = Sink(), Graph()
     FRONTEND.read([Source("a.sysmlx", DAMAGED)], graph, sink, Coverage())
-    assert [one.rule.code for one in sink if one.is_error] == ["SM750"]
+    assert [diagnostic.rule.code for diagnostic in sink if diagnostic.is_error] == ["SM750"]
     assert len(graph) == 0
 
 
@@ -153,16 +161,16 @@ def test_sm484_a_library_that_is_not_there_is_told(tmp_path):
     sink, graph = Sink(), Graph()
     front = FRONTEND.with_library(str(tmp_path / "nowhere"))
     front.read([Source("a.sysml", b"package P { part def A; }")], graph, sink, Coverage())
-    assert [one.rule.code for one in sink if one.is_error] == ["SM484"]
-    assert [one.name for one in graph] == ["P", "A"]
+    assert [diagnostic.rule.code for diagnostic in sink if diagnostic.is_error] == ["SM484"]
+    assert [element.name for element in graph] == ["P", "A"]
 
 
 def test_sm484_names_the_library_of_the_environment(tmp_path, monkeypatch):
     monkeypatch.setenv("SYSML_LIBRARY_PATH", str(tmp_path / "nowhere"))
     sink = Sink()
     FRONTEND.read([Source("a.sysml", b"package P;")], Graph(), sink, Coverage())
-    (told,) = [one for one in sink if one.is_error]
-    assert (told.rule.code, "nowhere" in told.message) == ("SM484", True)
+    (error,) = [diagnostic for diagnostic in sink if diagnostic.is_error]
+    assert (error.rule.code, "nowhere" in error.message) == ("SM484", True)
 
 
 @pytest.mark.parametrize(

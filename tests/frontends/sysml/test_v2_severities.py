@@ -29,7 +29,7 @@ package P {
 
 
 def test_rules_of_sysml_v1_are_silent_where_the_language_judges():
-    assert read(VALID, passes=ALL).codes() == ["SM300"]
+    assert read(VALID, passes=ALL).list_codes() == ["SM300"]
     assert SEVERITIES["SM202"] is None
 
 
@@ -37,7 +37,7 @@ def test_the_project_has_the_last_word():
     graph, sink = Graph(), Sink({"SM214": Severity.WARNING})
     FRONTEND.read([Source("model.sysml", VALID.encode())], graph, sink, Coverage())
     pipeline.build_pipeline(("resolve", "inherit", "classify")).run(graph, sink)
-    assert [one.rule.code for one in sink] == ["SM214"]
+    assert [diagnostic.rule.code for diagnostic in sink] == ["SM214"]
 
 
 def test_other_files_are_judged_as_before():
@@ -46,18 +46,22 @@ def test_other_files_are_judged_as_before():
     sink.report(rule, Subject("a", place=Place("model.sysml")), requirement="a")
     sink.report(rule, Subject("b", place=Place("model.uml")), requirement="b")
     sink.report(rule, Subject("c"), requirement="c")
-    assert [one.subject.name for one in sink] == ["b", "c"]
+    assert [diagnostic.subject.name for diagnostic in sink] == ["b", "c"]
 
 
-def contract(text, component):
+def find_contract(text, component):
     reading = read(text, passes=ALL)
-    (found,) = [one for one in reading.graph.derived(Contract) if one.component == component]
-    names = {f"{one.owner} {one.name}" for one in found.variables}
-    return names, reading.codes()
+    (contract,) = [
+        find_contract
+        for find_contract in reading.graph.derived(Contract)
+        if find_contract.component == component
+    ]
+    names = {f"{variable.owner} {variable.name}" for variable in contract.variables}
+    return names, reading.list_codes()
 
 
 def test_outputs_of_steps_are_variables_of_the_contract():
-    names, codes = contract(
+    names, codes = find_contract(
         """
 package P {
     private import ScalarValues::*;
@@ -80,7 +84,7 @@ package P {
 
 
 def test_a_name_that_is_no_output_of_the_step_stays_plain_words():
-    names, codes = contract(
+    names, codes = find_contract(
         """
 package P {
     action def Look { out mass : ScalarValues::Real; }
@@ -125,7 +129,7 @@ package P {
 
 
 def test_payloads_and_arguments_of_states_are_variables_of_the_contract():
-    names, codes = contract(MACHINE, "P::Cell")
+    names, codes = find_contract(MACHINE, "P::Cell")
     assert {"env fault_severe", "sys machine_busy", "sys reset_accepted"} <= names
     assert "SM412" not in codes
 
@@ -157,15 +161,15 @@ package P {
 
 def test_texts_are_those_that_a_behaviour_mentions_and_any_other():
     reading = read(WORDS, passes=ALL)
-    (found,) = reading.graph.derived(Contract)
-    domains = {one.name: one.domain for one in found.variables}
+    (contract,) = reading.graph.derived(Contract)
+    domains = {variable.name: variable.domain for variable in contract.variables}
     words = EnumerationDomain(
         ("no_good", "other", "idle", "empty", "other_2"), ("no good", "other", "idle", "")
     )
     assert domains["last"] == domains["note"] == domains["report_text"] == words
     assert domains["kind"] == IntegerDomain(-2, 40)
-    assert {"SM415", "SM458"}.isdisjoint(reading.codes())
-    moves = [print_formula(one.formula) for one in found.guarantees]
+    assert {"SM415", "SM458"}.isdisjoint(reading.list_codes())
+    moves = [print_formula(guarantee.formula) for guarantee in contract.guarantees]
     assert any("report_text=no_good" in text for text in moves)
     assert any("kind=-2" in text and "last=other" in text for text in moves)
 
@@ -173,13 +177,15 @@ def test_texts_are_those_that_a_behaviour_mentions_and_any_other():
 def test_two_texts_of_which_neither_is_known_are_not_compared():
     compared = WORDS.replace('report.text == "no good"', "report.text == note")
     reading = read(compared, passes=ALL)
-    (found,) = reading.graph.derived(Contract)
-    assert "SM411" in reading.codes()
-    assert not any("report_text=note" in print_formula(one.formula) for one in found.guarantees)
+    (contract,) = reading.graph.derived(Contract)
+    assert "SM411" in reading.list_codes()
+    assert not any(
+        "report_text=note" in print_formula(guarantee.formula) for guarantee in contract.guarantees
+    )
 
 
 def test_a_behaviour_without_texts_has_none_as_values():
-    names, _ = contract(
+    names, _ = find_contract(
         """
 package P {
     part def Cell {
@@ -191,13 +197,13 @@ package P {
         "P::Cell",
     )
     assert "env on" in names
-    assert not any("name" in one for one in names)
+    assert not any("name" in name for name in names)
 
 
 def test_what_has_no_finite_values_is_an_opaque_effect_with_a_warning():
     reading = read(MACHINE, passes=ALL)
-    found = [one for one in reading.sink if one.rule.code == "SM415"]
-    assert [(one.severity, one.message) for one in found] == [
+    diagnostics = [diagnostic for diagnostic in reading.sink if diagnostic.rule.code == "SM415"]
+    assert [(diagnostic.severity, diagnostic.message) for diagnostic in diagnostics] == [
         (
             Severity.WARNING,
             "'machine.age := 1.5' assigns to 'machine.age', which is not a changeable "
@@ -208,13 +214,15 @@ def test_what_has_no_finite_values_is_an_opaque_effect_with_a_warning():
 
 def test_states_without_a_first_one_are_no_error():
     reading = read("package P { state def S { state a; state b; } }", passes=ALL)
-    assert [(one.rule.code, one.severity) for one in reading.sink] == [("SM421", Severity.WARNING)]
+    assert [(diagnostic.rule.code, diagnostic.severity) for diagnostic in reading.sink] == [
+        ("SM421", Severity.WARNING)
+    ]
 
 
 def test_components_of_one_name_in_two_files_are_told_with_both():
     text = "package P { action def A { first start; then action x; then done; } }"
     reading = read(text, text, passes=ALL)
-    (first, second) = [one for one in reading.sink if one.rule.code == "SM500"]
+    (first, second) = [diagnostic for diagnostic in reading.sink if diagnostic.rule.code == "SM500"]
     assert first.notes == ("another 'P::A' is in model.sysml",)
     assert second.notes == ("another 'P::A' is in m0.sysml",)
     assert first.help.startswith("packages of two files have one name")
@@ -243,12 +251,12 @@ package P {
 
 def test_a_loop_keeps_its_collection_and_the_type_of_its_variable():
     reading = read(LOOP)
-    region = reading.named("P::Count::<Structured>")
+    region = reading.find_element("P::Count::<Structured>")
     assert region.attrs["collection"] == "belt.pallets"
-    assert reading.to("P::Count::<Structured>::p", "typed-by") == ["P::Status"]
+    assert reading.list_targets("P::Count::<Structured>::p", "typed-by") == ["P::Status"]
 
 
 def test_values_of_what_a_loop_is_at_are_variables_of_the_contract():
-    names, codes = contract(LOOP, "P::Count")
+    names, codes = find_contract(LOOP, "P::Count")
     assert "env p_free" in names
     assert "SM458" not in codes

@@ -1,6 +1,6 @@
 """Structure of SysML v2 in the graph: definitions, usages, ports, connections, values."""
 
-from reading_v2 import classified, read
+from reading_v2 import read, read_classified
 
 PLANT = """
 package Plant {
@@ -25,9 +25,12 @@ package Plant {
 
 
 def test_definitions_and_usages_have_the_kinds_and_roles_of_blocks():
-    reading = classified(PLANT)
+    reading = read_classified(PLANT)
     roles = {
-        name: (str(reading.named(f"Plant::{name}").kind), reading.named(f"Plant::{name}").role)
+        name: (
+            str(reading.find_element(f"Plant::{name}").kind),
+            reading.find_element(f"Plant::{name}").role,
+        )
         for name in ("Gate", "Transfer", "Cell::east", "Cell::spare", "Gate::width", "Gate::inlet")
     }
     assert roles == {
@@ -38,48 +41,51 @@ def test_definitions_and_usages_have_the_kinds_and_roles_of_blocks():
         "Gate::width": ("Property", "value"),
         "Gate::inlet": ("Port", "proxy port"),
     }
-    assert reading.codes() == []
+    assert reading.list_codes() == []
 
 
 def test_multiplicities_flags_and_values_are_attributes():
     reading = read(PLANT)
-    names = reading.named("Plant::Gate::names").attrs
+    names = reading.find_element("Plant::Gate::names").attrs
     assert (names["multiplicity"], names["ordered"], names["unique"]) == ("*", True, False)
-    assert reading.named("Plant::Cell::second").attrs["multiplicity"] == "1..2"
-    assert "multiplicity" not in reading.named("Plant::Cell::east").attrs
-    assert reading.named("Plant::Gate::width").attrs["default"] == 0.5
+    assert reading.find_element("Plant::Cell::second").attrs["multiplicity"] == "1..2"
+    assert "multiplicity" not in reading.find_element("Plant::Cell::east").attrs
+    assert reading.find_element("Plant::Gate::width").attrs["default"] == 0.5
 
 
 def test_conjugated_ports_are_typed_by_the_original():
-    reading = classified(PLANT)
-    inlet = reading.named("Plant::Gate::inlet")
+    reading = read_classified(PLANT)
+    inlet = reading.find_element("Plant::Gate::inlet")
     assert (inlet.attrs["conjugated"], inlet.attrs["direction"]) == (True, "in")
-    assert reading.to("Plant::Gate::inlet", "typed-by") == ["Plant::Transfer"]
+    assert reading.list_targets("Plant::Gate::inlet", "typed-by") == ["Plant::Transfer"]
 
 
 def test_connections_have_ends_with_paths_and_flows_run_along_them():
     reading = read(PLANT)
-    link = reading.graph.owned(reading.named("Plant::Cell::link"))
+    link = reading.graph.owned(reading.find_element("Plant::Cell::link"))
     ends = [
-        [one.name for edge in ("path", "role") for one in reading.graph.targets(end, edge)]
+        [target.name for edge in ("path", "role") for target in reading.graph.targets(end, edge)]
         for end in link
     ]
     assert ends == [["east", "leave"], ["second", "inlet"]]
     flow = "Plant::Cell::<ItemFlow>"
-    assert reading.to(flow, "conveys") == ["Plant::Pallet"]
-    assert reading.to(flow, "realizing") == ["Plant::Cell::link"]
-    assert reading.to(flow, "flow-source") == ["Plant::Gate::leave"]
+    assert reading.list_targets(flow, "conveys") == ["Plant::Pallet"]
+    assert reading.list_targets(flow, "realizing") == ["Plant::Cell::link"]
+    assert reading.list_targets(flow, "flow-source") == ["Plant::Gate::leave"]
 
 
 def test_ids_are_those_of_qualified_names_wherever_they_stand_in_the_file():
-    one, other = read(PLANT), read("// a comment\n" + PLANT)
-    assert [e.id for e in one.graph] == [e.id for e in other.graph]
-    assert one.named("Plant::Gate").ordinal + 13 == other.named("Plant::Gate").ordinal
+    plain, with_comment = read(PLANT), read("// a comment\n" + PLANT)
+    assert [e.id for e in plain.graph] == [e.id for e in with_comment.graph]
+    assert (
+        plain.find_element("Plant::Gate").ordinal + 13
+        == with_comment.find_element("Plant::Gate").ordinal
+    )
 
 
 def test_places_are_bytes_of_the_names():
     text = "package 'Käse' { part def Gate; }"
-    gate = read(text).named("Käse::Gate")
+    gate = read(text).find_element("Käse::Gate")
     assert text.encode()[gate.ordinal :].startswith(b"Gate")
 
 
@@ -89,9 +95,9 @@ package P {
     part def A { attribute mass : ScalarValues::Real; }
     part def B :> A { attribute :>> mass = 3.5; }
 }""")
-    assert reading.to("P::B::mass", "redefines") == ["P::A::mass"]
-    assert reading.to("P::B::mass", "typed-by") == ["Real"]
-    assert reading.to("P::B", "specializes") == ["P::A"]
+    assert reading.list_targets("P::B::mass", "redefines") == ["P::A::mass"]
+    assert reading.list_targets("P::B::mass", "typed-by") == ["Real"]
+    assert reading.list_targets("P::B", "specializes") == ["P::A"]
 
 
 def test_a_usage_with_members_of_its_own_is_typed_by_a_class_made_for_it():
@@ -100,11 +106,11 @@ package P {
     part def Engine { attribute power : ScalarValues::Real; }
     part def Car { part engine : Engine { attribute :>> power = 90.0; part filter; } }
 }""")
-    own = reading.named("P::Car::engine", "Class")
-    assert own.attrs["property_specific"] is True
-    assert reading.to("P::Car::engine", "typed-by", "Property") == ["P::Car::engine"]
-    assert reading.to("P::Car::engine", "specializes", "Class") == ["P::Engine"]
-    assert reading.owned("P::Car::engine", "Class") == ["Property power", "Property filter"]
+    class_ = reading.find_element("P::Car::engine", "Class")
+    assert class_.attrs["property_specific"] is True
+    assert reading.list_targets("P::Car::engine", "typed-by", "Property") == ["P::Car::engine"]
+    assert reading.list_targets("P::Car::engine", "specializes", "Class") == ["P::Engine"]
+    assert reading.list_owned("P::Car::engine", "Class") == ["Property power", "Property filter"]
 
 
 def test_usages_in_packages_are_instances_when_they_only_give_values():
@@ -114,13 +120,13 @@ package P {
     part east : Gate { :>> width = 0.8; }
     part line { part gate : Gate; part second : Gate; connect gate to second; }
 }""")
-    assert str(reading.named("P::east").kind) == "Instance"
-    assert reading.to("P::east", "instance-of") == ["P::Gate"]
-    slot = reading.named("P::east::width")
+    assert str(reading.find_element("P::east").kind) == "Instance"
+    assert reading.list_targets("P::east", "instance-of") == ["P::Gate"]
+    slot = reading.find_element("P::east::width")
     assert (str(slot.kind), slot.attrs["value"]) == ("Slot", 0.8)
-    line = reading.named("P::line")
+    line = reading.find_element("P::line")
     assert (str(line.kind), line.attrs["usage"]) == ("Class", True)
-    assert reading.owned("P::line")[2] == "Connector"
+    assert reading.list_owned("P::line")[2] == "Connector"
 
 
 def test_enumerations_and_values_that_name_their_literals():
@@ -129,11 +135,11 @@ package P {
     enum def Colour { red; blue; }
     part def A { attribute c : Colour = Colour::blue; }
 }""")
-    assert reading.owned("P::Colour") == ["EnumerationLiteral red", "EnumerationLiteral blue"]
-    attrs = reading.named("P::A::c").attrs
+    assert reading.list_owned("P::Colour") == ["EnumerationLiteral red", "EnumerationLiteral blue"]
+    attrs = reading.find_element("P::A::c").attrs
     assert (attrs["default"], attrs["default_instance"]) == (
         "blue",
-        reading.named("P::Colour::blue").id,
+        reading.find_element("P::Colour::blue").id,
     )
 
 
@@ -141,7 +147,7 @@ def test_value_types_of_quantities_have_unit_and_quantity_kind():
     reading = read("""
 package P { attribute def Mass :> ISQ::MassValue { attribute :>> mRef = SI::kg; } }
 """)
-    mass = reading.graph.targets(reading.named("P::Mass"), "references")
+    mass = reading.graph.targets(reading.find_element("P::Mass"), "references")
     assert [(str(one.kind), one.name, one.attrs.get("symbol")) for one in mass] == [
         ("Unit", "kilogram", "kg"),
         ("QuantityKind", "mass", None),
@@ -160,10 +166,10 @@ package P {
     part def B;
     dependency uses from A to B;
 }""")
-    assert reading.named("P::A::<Connector>").role == "binding connector"
-    assert reading.named("P::A::small").attrs["body"] == "x <= 3 and not (y > 2)"
-    assert reading.to("P::uses", "client") == ["P::A"]
-    assert reading.to("P::uses", "supplier") == ["P::B"]
+    assert reading.find_element("P::A::<Connector>").role == "binding connector"
+    assert reading.find_element("P::A::small").attrs["body"] == "x <= 3 and not (y > 2)"
+    assert reading.list_targets("P::uses", "client") == ["P::A"]
+    assert reading.list_targets("P::uses", "supplier") == ["P::B"]
 
 
 def test_metadata_is_an_applied_stereotype_with_its_values():
@@ -174,10 +180,10 @@ package P {
     part def Gate { @Cell { speed = 2; } }
 }""".replace("attribute of : Anything; ", "")
     )
-    applied = reading.named("P::Gate::Cell")
+    applied = reading.find_element("P::Gate::Cell")
     assert applied.attrs["tag.speed"] == "2"
-    assert reading.to("P::Gate::Cell", "subject") == ["P::Gate"]
-    assert reading.to("P::Gate::Cell", "instance-of") == ["P::Cell"]
+    assert reading.list_targets("P::Gate::Cell", "subject") == ["P::Gate"]
+    assert reading.list_targets("P::Gate::Cell", "instance-of") == ["P::Cell"]
 
 
 NODES = 34
@@ -186,11 +192,11 @@ NODES = 34
 
 def test_every_node_has_one_verdict():
     reading = read(PLANT)
-    assert reading.totals() == {"elements": NODES, "mapped": NODES - 1, "external": 1}
+    assert reading.count_verdicts() == {"elements": NODES, "mapped": NODES - 1, "external": 1}
 
 
 def test_an_end_of_an_association_has_the_multiplicity_with_which_it_is_crossed():
     reading = read("part def A; part def B; connection def R { end a : A; end [0..3] part b : B; }")
-    assert reading.owned("R") == ["Property a", "Property b"]
-    assert reading.named("R::b").attrs["multiplicity"] == "0..3"
-    assert reading.to("R::b", "typed-by") == ["B"]
+    assert reading.list_owned("R") == ["Property a", "Property b"]
+    assert reading.find_element("R::b").attrs["multiplicity"] == "0..3"
+    assert reading.list_targets("R::b", "typed-by") == ["B"]

@@ -6,16 +6,16 @@ from reading_v2 import Reading
 RUN = "package P { part def Cell { exhibit state Run { entry; then dead; state dead { %s } } } }"
 
 
-def messages(reading):
-    return [one.message for one in reading.sink if one.rule.code == "SM481"]
+def list_messages(reading):
+    return [diagnostic.message for diagnostic in reading.sink if diagnostic.rule.code == "SM481"]
 
 
 @pytest.mark.parametrize("held", ["entry terminate;", "do terminate;", "exit terminate;"])
 def test_a_terminate_action_of_a_state_is_told(held):
-    (told,) = messages(Reading(RUN % held))
-    assert told.startswith("a terminate action of a state or a transition is read as an action")
+    (message,) = list_messages(Reading(RUN % held))
+    assert message.startswith("a terminate action of a state or a transition is read as an action")
 
 
 def test_one_that_ends_an_action_of_the_state_is_the_end_of_that_action():
     reading = Reading(RUN % "entry action lock { action a; then terminate; }")
-    assert messages(reading) == []
+    assert list_messages(reading) == []

@@ -16,36 +16,38 @@ from sysmlc.synthesis.decision import Options
 CODES = ("SM506", "SM548", "SM595", "SM596", "SM597", "SM598")
 
 
-def checked(text, limits=None):
+def check_model(text, limits=None):
     reading = read(text)
     pipeline.run(reading.graph, reading.sink, verify_each=True)
     graph, sink = reading.graph, Sink()
     options = Options("", limits or Limits())
-    made = list(compose_blocks(graph, graph.derived(Contract), sink))
-    results = together.check_compositions(made, lambda it: graph.subject(graph[it]), sink, options)
+    compositions = list(compose_blocks(graph, graph.derived(Contract), sink))
+    results = together.check_compositions(
+        compositions, lambda id_: graph.subject(graph[id_]), sink, options
+    )
     return list(results), list(sink)
 
 
 @pytest.mark.parametrize("code", CODES)
 def test_rule_reports_its_wrong_model_and_not_its_right_one(code):
     rule = catalogue()[code]
-    assert code in [one.rule.code for one in checked(rule.read_page().wrong)[1]]
-    assert checked(rule.read_page().right)[1] == []
+    assert code in [diagnostic.rule.code for diagnostic in check_model(rule.read_page().wrong)[1]]
+    assert check_model(rule.read_page().right)[1] == []
 
 
 def test_what_nothing_promises_is_told_with_a_run():
-    (result,), found = checked(together_rules.OPEN.read_page().wrong)
+    (result,), diagnostics = check_model(together_rules.OPEN.read_page().wrong)
     assert result.text() == "Line::Cell: its 2 parts together break its contract"
-    assert [one.rule.code for one in found] == ["SM595", "SM597"]
-    assert found[0].message == (
+    assert [diagnostic.rule.code for diagnostic in diagnostics] == ["SM595", "SM597"]
+    assert diagnostics[0].message == (
         "part 'picker' of 'Line::Cell' assumes 'feeder.ready', which neither the other parts "
         "nor the block's assumptions guarantee "
         "('Takes' assumes it)"
     )
-    assert found[0].notes[0].startswith("step 1: feeder.ready=false")
+    assert diagnostics[0].notes[0].startswith("step 1: feeder.ready=false")
     not_counted = "what 'picker' may promise is not counted on: what it takes for granted is open"
-    assert found[1].notes[-1] == not_counted
-    assert [one.broken.text for one in result.witnesses] == [
+    assert diagnostics[1].notes[-1] == not_counted
+    assert [witness.broken.text for witness in result.witnesses] == [
         "'Takes' assumes it.",
         "'Works' demands it.",
     ]
@@ -61,33 +63,37 @@ def test_parts_of_a_block_that_promises_nothing_fit_or_do_not():
                 "part def Other { out attribute taken : Boolean; }\n    part def Cell",
             )
         )
-        (result,), _ = checked(silent)
+        (result,), _ = check_model(silent)
         assert result.text() == f"Line::Cell: its 2 parts {words} together"
 
 
 def test_what_takes_too_long_is_not_decided():
-    (result,), (told,) = checked(together_rules.BREAK.read_page().right, Limits(nodes=1))
+    (result,), (diagnostic,) = check_model(together_rules.BREAK.read_page().right, Limits(nodes=1))
     assert result.text() == "Line::Cell: its parts are not put together"
-    assert told.message == (
+    assert diagnostic.message == (
         "the composition of the parts of 'Line::Cell' is not checked: the limit of 1 nodes "
         "was reached"
     )
 
 
-def told_of_requirements(text):
+def check_requirements(text):
     reading = read(text)
     pipeline.run(reading.graph, reading.sink, verify_each=True)
     graph, sink = reading.graph, Sink()
-    made = graph.derived(Contract)
-    list(check_contracts(made, made, lambda it: graph.subject(graph[it]), sink, Options()))
-    return {one.rule.code: one for one in sink}
+    contracts = graph.derived(Contract)
+    list(
+        check_contracts(
+            contracts, contracts, lambda id_: graph.subject(graph[id_]), sink, Options()
+        )
+    )
+    return {diagnostic.rule.code: diagnostic for diagnostic in sink}
 
 
 def test_requirements_that_lean_on_one_another():
     rule = catalogue()["SM599"]
-    told = told_of_requirements(rule.read_page().wrong)["SM599"]
-    assert told.notes == ("'Shines' demands 'lit'", "'Shines' demands 'lit -> power'")
-    assert "SM599" not in told_of_requirements(rule.read_page().right)
+    diagnostic = check_requirements(rule.read_page().wrong)["SM599"]
+    assert diagnostic.notes == ("'Shines' demands 'lit'", "'Shines' demands 'lit -> power'")
+    assert "SM599" not in check_requirements(rule.read_page().right)
 
 
 APART = together_rules.OPEN.read_page().right.replace("bind feeder.ready = picker.ready;", "")
@@ -97,32 +103,32 @@ def test_parts_that_share_nothing_are_not_said_to_fit():
     silent = APART.replace("subject cell : Cell", "subject cell : Other").replace(
         "part def Cell", "part def Other { out attribute taken : Boolean; }\n    part def Cell"
     )
-    (result,), found = checked(silent)
+    (result,), diagnostics = check_model(silent)
     assert result.text() == "Line::Cell: nothing joins its 2 parts"
-    assert found == []
+    assert diagnostics == []
 
 
 def test_a_part_alone_keeps_what_the_block_promises_and_the_others_do_not_matter():
     """The picker is told by nobody that something is ready, which the block does not assume."""
-    (result,), found = checked(APART)
+    (result,), diagnostics = check_model(APART)
     assert result.text() == "Line::Cell: its 2 parts together break its contract"
-    assert [one.rule.code for one in found] == ["SM595", "SM597"]
+    assert [diagnostic.rule.code for diagnostic in diagnostics] == ["SM595", "SM597"]
 
 
 def test_what_no_part_speaks_of_is_not_kept():
     nobody = together_rules.OPEN.read_page().right.replace("bind picker.taken = taken;", "")
-    (result,), found = checked(nobody)
+    (result,), diagnostics = check_model(nobody)
     assert result.text() == "Line::Cell: its 2 parts together break its contract"
-    assert [one.message for one in found] == [
+    assert [diagnostic.message for diagnostic in diagnostics] == [
         "the parts of 'Line::Cell' together do not guarantee 'taken' ('Works' demands it)"
     ]
 
 
 def test_two_that_send_the_same_lose_one_of_it():
     wrong = together_rules.LOST.read_page().wrong.replace("do send off()", "do send on()")
-    _, found = checked(wrong)
-    assert [one.message for one in found] == [
+    _, diagnostics = check_model(wrong)
+    assert [diagnostic.message for diagnostic in diagnostics] == [
         "in 'Room::Room' two messages are sent in one step, and one of them is lost ('on' by 'one' "
         "and 'on' by 'other' are sent to 'lamp')"
     ]
-    assert found[0].notes[-1] == "then again from step 4"
+    assert diagnostics[0].notes[-1] == "then again from step 4"

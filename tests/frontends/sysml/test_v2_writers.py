@@ -31,61 +31,67 @@ package Plant {{
 CLEAR = "first start; then action clear {{ assign {} := false; }} then done;"
 
 
-def plant(base="", own="", step="", beside="", elsewhere="") -> tuple[Graph, Sink]:
-    text = PLANT.format(base=base, own=own, step=step, beside=beside, elsewhere=elsewhere)
+def write_plant(base="", actions="", step="", beside="", elsewhere="") -> tuple[Graph, Sink]:
+    text = PLANT.format(base=base, own=actions, step=step, beside=beside, elsewhere=elsewhere)
     reading = read(text)
     pipeline.run(reading.graph, reading.sink, verify_each=True)
     return reading.graph, reading.sink
 
 
-def told(sink: Sink, *codes: str) -> list[str]:
-    return [one.message for one in sink if one.rule.code in (codes or ("SM544", "SM545", "SM546"))]
+def list_messages(sink: Sink, *codes: str) -> list[str]:
+    return [
+        diagnostic.message
+        for diagnostic in sink
+        if diagnostic.rule.code in (codes or ("SM544", "SM545", "SM546"))
+    ]
 
 
-def owners(graph: Graph, name: str) -> set[Owner]:
-    variables = (one for made in graph.derived(Contract) for one in made.variables)
-    return {one.owner for one in variables if one.name == name}
+def list_owners(graph: Graph, name: str) -> set[Owner]:
+    variables = (
+        variable for contract in graph.derived(Contract) for variable in contract.variables
+    )
+    return {variable.owner for variable in variables if variable.name == name}
 
 
-def clear(name: str) -> str:
+def without_text(name: str) -> str:
     return "action reset { " + CLEAR.format(name) + " }"
 
 
 @pytest.mark.parametrize(
     "model",
     [
-        {"elsewhere": f"part def Boss {{ part cell : Cell; {clear('cell.full')} }}"},
-        {"elsewhere": f"part cell : Cell {{ attribute :>> full := true; {clear('full')} }}"},
-        {"base": clear("full"), "own": "attribute :>> full := false;"},
-        {"beside": f"part def Arm {{ {clear('full')} }} part arm : Arm;"},
-        {"beside": clear("full")},
+        {"elsewhere": f"part def Boss {{ part cell : Cell; {without_text('cell.full')} }}"},
+        {"elsewhere": f"part cell : Cell {{ attribute :>> full := true; {without_text('full')} }}"},
+        {"base": without_text("full"), "actions": "attribute :>> full := false;"},
+        {"beside": f"part def Arm {{ {without_text('full')} }} part arm : Arm;"},
+        {"beside": without_text("full")},
     ],
     ids=["through a part", "a redefinition", "a general", "a part inside", "beside it"],
 )
 def test_what_another_behaviour_writes_is_nobodys_own(model):
-    graph, sink = plant(**model)
+    graph, sink = write_plant(**model)
     assert any(
-        one.startswith("the contract of 'work' treats 'full' as an input")
-        and one.endswith("'clear' assigns it too")
-        for one in told(sink)
+        diagnostic.startswith("the contract of 'work' treats 'full' as an input")
+        and diagnostic.endswith("'clear' assigns it too")
+        for diagnostic in list_messages(sink)
     )
-    assert owners(graph, "full") == {Owner.ENVIRONMENT}
+    assert list_owners(graph, "full") == {Owner.ENVIRONMENT}
 
 
 def test_what_is_alone_in_writing_owns_it():
-    graph, sink = plant()
-    assert (told(sink), owners(graph, "full")) == ([], {Owner.SYSTEM})
+    graph, sink = write_plant()
+    assert (list_messages(sink), list_owners(graph, "full")) == ([], {Owner.SYSTEM})
 
 
 def test_an_output_that_is_bound_to_a_feature_writes_it():
     reset = "action def Reset { inout x : Boolean; " + CLEAR.format("x") + " }"
     step = "then action reset : Reset { inout x = full; }"
-    graph, sink = plant(step=step, elsewhere=reset)
-    assert told(sink) == [
+    graph, sink = write_plant(step=step, elsewhere=reset)
+    assert list_messages(sink) == [
         "the contract of 'work' treats 'full' as an input although action 'fill' and action "
         "'reset' assign it: the value that it gets is not known"
     ]
-    assert owners(graph, "full") == {Owner.ENVIRONMENT}
+    assert list_owners(graph, "full") == {Owner.ENVIRONMENT}
 
 
 MACHINE = """state {name} {{
@@ -96,15 +102,15 @@ MACHINE = """state {name} {{
 
 
 def test_machines_that_write_the_same_promise_nothing_of_it():
-    other = "attribute other : Boolean; " + MACHINE.format(name="mode", value="false")
-    graph, sink = plant(beside=other)
-    assert told(sink) == [
+    other_machine = "attribute other : Boolean; " + MACHINE.format(name="mode", value="false")
+    graph, sink = write_plant(beside=other_machine)
+    assert list_messages(sink) == [
         "the contract of 'work' treats 'full' as an input although action 'fill' assigns it: "
         "'mode' assigns it too",
         "'full' is also assigned by 'fill', so the contract of 'mode' treats it as an input "
         "and shows 'full := false' as output 'full_false'",
     ]
-    assert owners(graph, "full") == {Owner.ENVIRONMENT}
+    assert list_owners(graph, "full") == {Owner.ENVIRONMENT}
 
 
 def test_the_rule_of_machines_reports_its_wrong_model_and_not_its_right_one():
@@ -112,7 +118,7 @@ def test_the_rule_of_machines_reports_its_wrong_model_and_not_its_right_one():
     for text, expected in ((rule.read_page().wrong, True), (rule.read_page().right, False)):
         graph, sink = parse_text(text), Sink()
         pipeline.run(graph, sink, verify_each=True)
-        assert ("SM546" in [one.rule.code for one in sink]) is expected
+        assert ("SM546" in [diagnostic.rule.code for diagnostic in sink]) is expected
 
 
 @pytest.mark.parametrize(
@@ -123,18 +129,18 @@ def test_the_rule_of_machines_reports_its_wrong_model_and_not_its_right_one():
     ],
 )
 def test_what_belongs_to_another_object_is_told_and_is_no_unknown_name(action, reason):
-    _, sink = plant(elsewhere=action.replace("ACTION", clear(reason)))
+    _, sink = write_plant(elsewhere=action.replace("ACTION", without_text(reason)))
     assert (
         "the contract of 'reset' treats 'full' as an input although action 'clear' assigns it: "
         "it belongs to another object"
-    ) in told(sink)
-    assert told(sink, "SM545") == []
+    ) in list_messages(sink)
+    assert list_messages(sink, "SM545") == []
 
 
 def test_a_feature_by_the_name_of_its_owner_is_the_same_feature():
     robot = "part robot { attribute busy : Boolean := false; ACTION }"
-    graph, sink = plant(elsewhere=robot.replace("ACTION", clear("robot.busy")))
-    assert (told(sink), owners(graph, "busy")) == ([], {Owner.SYSTEM})
+    graph, sink = write_plant(elsewhere=robot.replace("ACTION", without_text("robot.busy")))
+    assert (list_messages(sink), list_owners(graph, "busy")) == ([], {Owner.SYSTEM})
 
 
 def test_what_an_activity_inherits_is_known():
@@ -142,11 +148,11 @@ def test_what_an_activity_inherits_is_known():
     work = "part def Other { action add : Counting { ACTION } }".replace(
         "ACTION", CLEAR.format("count")
     )
-    _, sink = plant(elsewhere=f"{inherited} {work}")
-    assert told(sink) == []
+    _, sink = write_plant(elsewhere=f"{inherited} {work}")
+    assert list_messages(sink) == []
 
 
 def test_help_fits_the_reason():
-    _, sink = plant(beside=clear("full"))
-    helps = {one.help for one in sink if one.rule.code == "SM544"}
+    _, sink = write_plant(beside=without_text("full"))
+    helps = {diagnostic.help for diagnostic in sink if diagnostic.rule.code == "SM544"}
     assert helps == {"let only one behaviour assign it, or specify its value in a requirement"}
