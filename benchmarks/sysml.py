@@ -151,7 +151,7 @@ def main() -> int:
     report.calibration()
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        slower = xmi.slowness(report, argparse.Namespace(rounds=given.rounds, seed=1), folder)
+        slower = xmi.slowness(report, given.rounds)
         generate(folder, 1.0)
         measure(report, "generated", folder, given.rounds, slower, linked=True)
         processes(report, folder, given.rounds, slower)
