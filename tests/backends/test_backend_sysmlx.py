@@ -1,4 +1,4 @@
-"""The back end ``sysmlx``: v2 inputs as their syntax says them, others as their text would."""
+"""The back end ``sysmlx``: v2 inputs as they were read, other models by way of their v2 text."""
 
 from uuid import NAMESPACE_URL, uuid5
 
@@ -17,7 +17,7 @@ from sysmlc.support.output import Output
 
 SCALARS = uuid5(NAMESPACE_URL, "https://www.omg.org/spec/KerML/ScalarValues")
 REAL = uuid5(SCALARS, "ScalarValues::Real")
-"""As KerML 1.0, 9.1, gives ids to the elements of its libraries."""
+"""The id of a library element as KerML 1.0, 9.1, derives it."""
 
 ROBOTS = """\
 package Robots {
@@ -39,7 +39,7 @@ package Cells {
 """
 
 
-def compiled(*files):
+def read_v2(*files):
     graph, sink = Graph(), Sink()
     sources = [Source(path, text.encode()) for path, text in files]
     FRONTEND.read(sources, graph, sink, Coverage())
@@ -47,54 +47,55 @@ def compiled(*files):
     return graph, inputs
 
 
-def emitted(graph, inputs=()):
+def emit(graph, inputs=()):
     output, sink = Output(), Sink()
     BACKEND.emit(graph, output, sink, EmitOptions(inputs=inputs))
-    return {one.path: one.text for one in output.artefacts()}, [one.rule.code for one in sink]
+    files = {artefact.path: artefact.text for artefact in output.artefacts()}
+    return files, [diagnostic.rule.code for diagnostic in sink]
 
 
-def again(files):
+def read_interchange(files):
     sink = Sink()
     documents = [read(Source(path, text.encode()), sink) for path, text in files.items()]
     link(documents, sink)
-    assert [found.message for found in sink] == []
+    assert [diagnostic.message for diagnostic in sink] == []
     return documents
 
 
-def test_each_file_of_a_v2_model_becomes_one_of_its_own():
-    graph, inputs = compiled(("cells/cell.sysml", CELL), ("robots.sysml", ROBOTS))
-    files, codes = emitted(graph, inputs)
+def test_each_file_of_a_v2_model_becomes_an_interchange_file():
+    graph, inputs = read_v2(("cells/cell.sysml", CELL), ("robots.sysml", ROBOTS))
+    files, codes = emit(graph, inputs)
     assert (list(files), codes) == (["sysmlx/cells/cell.sysmlx", "sysmlx/robots.sysmlx"], [])
     assert 'href="../robots.sysmlx#' in files["sysmlx/cells/cell.sysmlx"]
-    cells, robots = again(files)
+    cells, robots = read_interchange(files)
     (arm,) = (node for node in cells.root.walk() if node.name == "arm")
     (robot,) = (node for node in robots.root.walk() if node.name == "Robot")
     assert arm.relations[0].reference.target is robot
 
 
 def test_references_to_the_standard_library_lead_to_its_released_files():
-    files, _ = emitted(*compiled(("robots.sysml", ROBOTS)))
+    files, _ = emit(*read_v2(("robots.sysml", ROBOTS)))
     text = files["sysmlx/robots.sysmlx"]
     assert 'href="sysml.library.xmi/' in text
     assert f"ScalarValues.kermlx#{REAL}" in text
 
 
-def test_what_was_written_is_read_to_the_same_graph():
-    graph, inputs = compiled(("robots.sysml", ROBOTS))
-    files, _ = emitted(graph, inputs)
-    (path, text), read_again = next(iter(files.items())), Graph()
-    FRONTEND.read([Source(path, text.encode())], read_again, Sink(), Coverage())
-    assert names(read_again) == names(graph)
+def test_reading_the_interchange_file_gives_the_same_graph():
+    graph, inputs = read_v2(("robots.sysml", ROBOTS))
+    files, _ = emit(graph, inputs)
+    (path, text), graph_read_back = next(iter(files.items())), Graph()
+    FRONTEND.read([Source(path, text.encode())], graph_read_back, Sink(), Coverage())
+    assert list_names(graph_read_back) == list_names(graph)
 
 
-def names(graph):
-    return sorted((str(one.kind), graph.qualified_name(one)) for one in graph)
+def list_names(graph):
+    return sorted((str(element.kind), graph.qualified_name(element)) for element in graph)
 
 
-def test_other_models_are_written_as_their_text_would_be():
+def test_other_models_are_written_by_way_of_their_text():
     graph = parse_text('Package p "Plant"\n  Class a "Gate"\n    Property b "open"\n')
-    files, _ = emitted(graph)
-    (document,) = again(files)
+    files, _ = emit(graph)
+    (document,) = read_interchange(files)
     assert next((node.kind, node.name) for node in document.root.walk() if node.name) == (
         "Package",
         "Plant",
@@ -102,9 +103,9 @@ def test_other_models_are_written_as_their_text_would_be():
     assert "Gate" in {node.name for node in document.root.walk()}
 
 
-def test_what_the_text_cannot_say_is_told():
+def test_losses_of_the_text_are_reported():
     graph = parse_text('Package p "Plant"\n  Class a "A"\n    TemplateParameter t ""\n')
-    assert emitted(graph)[1] == ["SM730"]
+    assert emit(graph)[1] == ["SM730"]
 
 
 @pytest.mark.long
@@ -114,10 +115,10 @@ def test_the_ice_laboratory_is_valid_for_the_metamodel(corpus, tmp_path):
 
     folder = corpus / "sysml2/ice-lab"
     paths = sorted(folder.rglob("*.sysml"))
-    graph, inputs = compiled(
+    graph, inputs = read_v2(
         *((path.relative_to(folder).as_posix(), path.read_text("utf-8")) for path in paths)
     )
-    files, codes = emitted(graph, inputs)
+    files, codes = emit(graph, inputs)
     assert (len(files), set(codes)) == (18, {"SM758"})
     resources = ResourceSet()
     metamodel = corpus / "sysml2/interchange/metamodel/SysML.ecore"
@@ -135,43 +136,43 @@ def test_the_ice_laboratory_is_valid_for_the_metamodel(corpus, tmp_path):
 @pytest.mark.parametrize(
     "name", ["ArrowheadProfile_v5.0.profile.uml", "SmartCityDSL-2.uml", "TankBarrelExample.uml"]
 )
-def test_models_of_other_languages_are_said_without_a_broken_reference(name, corpus):
-    made = compile_model(Request((corpus / "xmi/papyrus" / name,)))
-    files, codes = emitted(made.graph)
+def test_models_of_other_languages_have_no_broken_references(name, corpus):
+    compilation = compile_model(Request((corpus / "xmi/papyrus" / name,)))
+    files, codes = emit(compilation.graph)
     assert "SM758" not in codes
-    assert len(list(again(files)[0].root.walk())) > 100
+    assert len(list(read_interchange(files)[0].root.walk())) > 100
 
 
-def nested(depth):
+def nest_packages(depth):
     rows = (f'{"  " * level}Package p{level} "P{level}"' for level in range(depth))
     return parse_text("\n".join(rows) + "\n")
 
 
-def test_what_is_nested_deeper_than_text_is_read_is_not_written_but_told():
-    assert emitted(nested(202)) == ({}, ["SM748"])
+def test_a_model_nested_deeper_than_the_parser_allows_is_reported():
+    assert emit(nest_packages(202)) == ({}, ["SM748"])
 
 
-def test_what_is_nested_as_deep_as_text_is_read_is_written():
-    files, codes = emitted(nested(200))
+def test_a_model_nested_as_deep_as_the_parser_allows_is_written():
+    files, codes = emit(nest_packages(200))
     assert list(files) == ["sysmlx/P0.sysmlx"]
     assert codes == []
 
 
-class Wrong:
-    """A writer of text that makes a mistake."""
+class FaultyBackend:
+    """A text back end whose text has a syntax error."""
 
     def emit(self, _graph, output, _sink, _options):
         output.add("sysml/plant.sysml", "package Plant {\n  part def Gate { part : ; }\n}\n")
 
 
-def test_an_error_in_the_text_of_our_own_is_told_at_its_element(monkeypatch):
-    monkeypatch.setattr("sysmlc.backends.sysmlx.backend.TEXT", Wrong())
+def test_a_syntax_error_in_the_text_is_reported_at_its_element(monkeypatch):
+    monkeypatch.setattr("sysmlc.backends.sysmlx.backend.TEXT", FaultyBackend())
     graph = parse_text('Package plant "Plant"\n  Class gate "Gate"\n')
     output, sink = Output(), Sink()
     BACKEND.emit(graph, output, sink, EmitOptions())
     assert output.artefacts() == []
-    (found,) = sink
-    assert (found.rule.code, found.subject.name) == ("SM749", "Plant::Gate")
-    assert found.message.startswith(
-        "the text that says 'Gate' in SysML v2 cannot be read (line 2: ';' "
+    (diagnostic,) = sink
+    assert (diagnostic.rule.code, diagnostic.subject.name) == ("SM749", "Plant::Gate")
+    assert diagnostic.message.startswith(
+        "the SysML v2 text generated for 'Gate' cannot be read (line 2: unexpected ';'"
     )

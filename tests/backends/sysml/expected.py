@@ -1,4 +1,4 @@
-"""What the toolkit must find of a graph: told by the graph alone, not by the back end."""
+"""The elements that the toolkit must find, derived from the graph without the back end."""
 
 from sysmlc.ir import Edge, Kind
 from sysmlc.ir.query import generals, type_of
@@ -61,80 +61,81 @@ IN_BEHAVIOURS = ("start", "done", "self", "this", "that")
 """Names that all behaviours inherit."""
 
 
-def expected(graph):
-    """Metaclasses and, where there is one, the name of the type, by the path of names.
+def list_expected(graph):
+    """Return metaclasses and the name of the type, or None, by the path of names.
 
-    What shares its name with something beside it has another one in SysML v2, and so has what
-    stands below it.
+    Elements with a clashing name, which the back end renames, are omitted with all below them.
     """
-    found, left_out = {}, clashing(graph)
+    expected, clashing_ids = {}, find_clashing_ids(graph)
     for element in graph:
         owners = [element, *graph.ancestors(element)]
-        owners = [one for one in owners if not _is_only_region(graph, one)]
+        owners = [owner for owner in owners if not _is_only_region(graph, owner)]
         if element not in owners:
             continue
-        if any(one.attrs.get("external") or one.id in left_out for one in owners):
+        if any(owner.attrs.get("external") or owner.id in clashing_ids for owner in owners):
             continue
-        if not all(one.name and one.kind in _PLAIN_OWNERS for one in owners[1:]):
+        if not all(owner.name and owner.kind in _PLAIN_OWNERS for owner in owners[1:]):
             continue
-        metaclasses = _metaclasses(graph, element)
+        metaclasses = _list_metaclasses(graph, element)
         if metaclasses and element.name:
-            type_ = _type(graph, element, left_out)
-            found[tuple(one.name for one in reversed(owners))] = metaclasses, type_
-    return found
+            type_name = _find_type_name(graph, element, clashing_ids)
+            path = tuple(owner.name for owner in reversed(owners))
+            expected[path] = metaclasses, type_name
+    return expected
 
 
-def clashing(graph):
-    """Ids of elements with the name of something beside them or inherited, or of the library."""
-    found = set()
+def find_clashing_ids(graph):
+    """Return the ids of elements with the name of a sibling, an inherited member or a library."""
+    clashing = set()
     for owner in (None, *graph):
-        beside = graph.roots() if owner is None else graph.owned(owner)
-        names = {}
-        for one in _members(graph, beside):
-            if one.name and one.kind is not Kind.APPLICATION:
-                names.setdefault(one.name, []).append(one.id)
-        found.update(id for ids in names.values() if len(ids) > 1 for id in ids)
-        if owner is None:
-            found.update(id for name, ids in names.items() if name in LIBRARY for id in ids)
-        found.update(id for name in IN_BEHAVIOURS for id in names.get(name, ()))
-        if owner is not None:
-            inherited = _inherited(graph, owner)
-            found.update(id for name, ids in names.items() if name in inherited for id in ids)
-    return found
+        children = graph.roots() if owner is None else graph.owned(owner)
+        ids_by_name = {}
+        for member in _iter_members(graph, children):
+            if member.name and member.kind is not Kind.APPLICATION:
+                ids_by_name.setdefault(member.name, []).append(member.id)
+        taken = set(IN_BEHAVIOURS)
+        taken |= set(LIBRARY) if owner is None else _list_inherited_names(graph, owner)
+        for name, ids in ids_by_name.items():
+            if len(ids) > 1 or name in taken:
+                clashing.update(ids)
+    return clashing
 
 
-def _inherited(graph, owner):
-    """Names of members of what an element specialises or is typed by."""
-    first = [*generals(graph, owner)]
+def _list_inherited_names(graph, owner):
+    """Return the names of members of the generals and types of an element."""
+    direct = [*generals(graph, owner)]
     for edge in (Edge.TYPED_BY, Edge.INSTANCE_OF, Edge.REPRESENTS, Edge.REDEFINES):
-        first += graph.targets(owner, edge)
-    above = {one.id: one for one in first}
-    above |= {more.id: more for one in first for more in generals(graph, one)}
-    return {one.name for general in above.values() for one in graph.owned(general) if one.name}
+        direct += graph.targets(owner, edge)
+    classifiers = {general.id: general for general in direct}
+    for general in direct:
+        classifiers |= {indirect.id: indirect for indirect in generals(graph, general)}
+    members = (member for general in classifiers.values() for member in graph.owned(general))
+    return {member.name for member in members if member.name}
 
 
-def _members(graph, beside):
-    """What is beside one another; what a region holds is beside the state or machine too."""
-    for one in beside:
-        yield one
-        if _is_only_region(graph, one):
-            yield from graph.owned(one)
+def _iter_members(graph, children):
+    """Yield the members of one namespace; those of an only region are among them."""
+    for child in children:
+        yield child
+        if _is_only_region(graph, child):
+            yield from graph.owned(child)
 
 
-def _is_only_region(graph, one):
-    """SysML v2 has no regions: states stand in their state, unless there are several regions."""
-    if one.kind is not Kind.REGION:
+def _is_only_region(graph, element):
+    """Whether a region has no member: its states belong to the state around it."""
+    if element.kind is not Kind.REGION:
         return False
-    return sum(other.kind is Kind.REGION for other in graph.owned(graph.owner(one))) == 1
+    siblings = graph.owned(graph.owner(element))
+    return sum(sibling.kind is Kind.REGION for sibling in siblings) == 1
 
 
 LIBRARY = ("Quantities", "Items", "Parts", "Ports", "Actions", "Units", "SysML")
-"""Packages of the standard library that models of the corpus name theirs like."""
+"""Packages of the standard library whose names models of the corpus use, too."""
 
 
-def _metaclasses(graph, element):
+def _list_metaclasses(graph, element):
     if element.kind is Kind.LIFELINE:
-        return _lifeline(graph, element)
+        return _list_lifeline_metaclasses(graph, element)
     if element.kind in (Kind.CLASS, Kind.DATA_TYPE) and element.role in ROLES:
         return {ROLES[element.role]}
     if element.kind in DEFINITIONS:
@@ -146,19 +147,20 @@ def _metaclasses(graph, element):
     return USAGES.get(element.kind, set())
 
 
-def _lifeline(graph, lifeline):
-    """A lifeline is a port exactly when the type of what it represents is an interface block."""
-    types = [type_of(graph, one) for one in graph.targets(lifeline, Edge.REPRESENTS)]
-    is_port = any(one is not None and one.role == "interface block" for one in types)
+def _list_lifeline_metaclasses(graph, lifeline):
+    """Return the metaclass of a port if the lifeline represents a port, else that of a part."""
+    represented = graph.targets(lifeline, Edge.REPRESENTS)
+    types = [type_of(graph, element) for element in represented]
+    is_port = any(type_ is not None and type_.role == "interface block" for type_ in types)
     return {"PortUsage"} if is_port else {"PartUsage", "ReferenceUsage"}
 
 
-def _type(graph, element, left_out):
-    """The name of the type, unless it is in another file or the feature redefines another."""
+def _find_type_name(graph, element, clashing_ids):
+    """Return the name of the type; None if it is in another file or the feature redefines one."""
     if element.kind is not Kind.PROPERTY or graph.targets(element, Edge.REDEFINES):
         return None
     type_ = type_of(graph, element)
     is_plain = type_ is not None and type_.kind in DEFINITIONS and type_.role != "requirement"
-    if not is_plain or type_.attrs.get("external") or type_.id in left_out:
+    if not is_plain or type_.attrs.get("external") or type_.id in clashing_ids:
         return None
     return type_.name

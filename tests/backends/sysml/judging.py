@@ -1,52 +1,57 @@
-"""Compares what the toolkit finds in texts with what their graphs have."""
+"""Compares the elements that the toolkit finds in a text with those of the graph."""
 
-from expected import expected
+from expected import list_expected
 from toolkit import load
-from writing import written
+from writing import write
 
 
-def judged(graph):
-    """Complaints of the toolkit, differences in names, metaclasses and types, and their number."""
-    files, _ = written(graph)
+def judge(graph):
+    """Return the complaints of the toolkit, the differences, and the number of elements."""
+    files, _ = write(graph)
     loaded = load(files)
-    wanted = expected(graph)
-    return loaded.complaints, differences(loaded, wanted, ()), len(wanted)
+    wanted = list_expected(graph)
+    return loaded.complaints, find_differences(loaded, wanted, ()), len(wanted)
 
 
-def judged_together(graphs):
-    """The same for many small models in one session: each stands in a package of its own.
+def judge_together(graphs):
+    """Judge many small models in one session, each in a package of its own.
 
-    A text that begins names at the root (``$::``) cannot: it is judged alone.
+    A text with names from the root (``$::``) needs a session of its own.
     """
     files, together, alone = {}, [], []
     for graph in graphs:
-        made, _ = written(graph)
-        text = made.pop("model.sysml")
-        (alone if "$::" in text else together).append(graph)
-        if "$::" not in text:
-            files |= made | {f"m{len(together)}.sysml": f"package m{len(together)} {{\n{text}}}\n"}
+        texts, _ = write(graph)
+        text = texts.pop("model.sysml")
+        if "$::" in text:
+            alone.append(graph)
+            continue
+        together.append(graph)
+        name = f"m{len(together)}"
+        files |= texts | {f"{name}.sysml": f"package {name} {{\n{text}}}\n"}
     loaded = load(files)
-    complaints, found, count = loaded.complaints, [], 0
+    complaints, differences, count = loaded.complaints, [], 0
     for graph in alone:
-        more, different, number = judged(graph)
-        complaints, found, count = complaints + more, found + different, count + number
+        own_complaints, own_differences, own_count = judge(graph)
+        complaints, differences = complaints + own_complaints, differences + own_differences
+        count += own_count
     for number, graph in enumerate(together, 1):
-        wanted = expected(graph)
+        wanted = list_expected(graph)
         count += len(wanted)
-        found += differences(loaded, wanted, (f"m{number}",))
-    return complaints, found, count
+        differences += find_differences(loaded, wanted, (f"m{number}",))
+    return complaints, differences, count
 
 
-def differences(loaded, wanted, above):
-    """What the toolkit does not find as the graph has it, below packages with these names."""
-    found = []
+def find_differences(loaded, wanted, packages):
+    """Return the expected elements that the toolkit lacks or finds with another kind or type."""
+    differences = []
     for path, (metaclasses, type_) in wanted.items():
-        path = (*above, *path)
-        known = loaded.elements.get(path)
-        if known is None:
-            found.append(f"{'::'.join(path)} is missing")
-        elif not metaclasses & set(known):
-            found.append(f"{'::'.join(path)} is {set(known)}")
+        path = (*packages, *path)
+        name = "::".join(path)
+        metaclass_counts = loaded.elements.get(path)
+        if metaclass_counts is None:
+            differences.append(f"{name} is missing")
+        elif not metaclasses & set(metaclass_counts):
+            differences.append(f"{name} is {set(metaclass_counts)}")
         elif type_ is not None and type_ not in loaded.types[path]:
-            found.append(f"{'::'.join(path)} has not the type {type_}")
-    return found
+            differences.append(f"{name} has not the type {type_}")
+    return differences

@@ -1,9 +1,9 @@
 """Members inherit names from the standard library, which hide the same names further out."""
 
 import pytest
-from judging import judged
+from judging import judge
 from library_names import format_member_names
-from writing import lines_of, refined
+from writing import lines_of, refine
 
 from sysmlc.backends.sysml.library import BASES, MEMBER_NAMES_FILE, list_inherited_names
 from sysmlc.support import resources
@@ -38,7 +38,7 @@ def test_definitions_have_the_names_of_their_usages(keyword):
 def test_a_block_with_such_a_name_is_named_with_its_package(part, item):
     text = MODEL.format(part=part, item=item)
     assert {f"part a : Plant::{part};", f"in item x : Plant::{item};"} <= {*lines_of(text)}
-    complaints, differences, _ = judged(refined(text))
+    complaints, differences, _ = judge(refine(text))
     assert (complaints, differences) == ([], [])
 
 

@@ -1,8 +1,8 @@
-"""What SysML v2 says in other words than the graph, and what it cannot say."""
+"""Losses: what SysML v2 text cannot express, or expresses in other words than the graph."""
 
 import pytest
-from judging import judged_together
-from writing import refined, text_of, written
+from judging import judge_together
+from writing import refine, text_of, write
 
 from sysmlc.backends.sysml import rules
 from sysmlc.driver.registry import load_full_catalogue
@@ -20,33 +20,35 @@ RULES = (
 )
 
 
+def list_codes(text):
+    """Return the codes of the losses of a model in text form."""
+    return [loss[:5] for loss in write(refine(text))[1]]
+
+
 @pytest.mark.parametrize("rule", RULES, ids=lambda rule: rule.name)
 def test_a_rule_reports_its_wrong_model_and_not_its_right_one(rule):
-    assert rule.code in [one[:5] for one in written(refined(rule.read_page().wrong))[1]]
-    assert written(refined(rule.read_page().right))[1] == []
+    assert rule.code in list_codes(rule.read_page().wrong)
+    assert write(refine(rule.read_page().right))[1] == []
 
 
-def test_a_loss_is_counted_and_told_once():
+def test_equal_losses_are_one_diagnostic_with_their_number():
     parameters = "".join(f'    TemplateParameter t{number} ""\n' for number in range(3))
-    _, told = written(refined('Package p "Plant"\n  Class a "A"\n' + parameters))
-    assert told == ["SM730 SysML v2 text cannot express TemplateParameter (3 omitted)"]
+    _, losses = write(refine('Package p "Plant"\n  Class a "A"\n' + parameters))
+    assert losses == ["SM730 SysML v2 text cannot express TemplateParameter (3 omitted)"]
 
 
-def test_a_verification_of_nothing_is_told():
-    _, told = written(
-        refined("""
+def test_a_verification_without_a_requirement_is_reported():
+    codes = list_codes("""
 Package p "Plant"
   Activity t "Try" role="test case"
   Dependency v "" role="verify"
     -> client t
 """)
-    )
-    assert [line[:5] for line in told] == ["SM736"]
+    assert codes == ["SM736"]
 
 
-def test_what_cannot_be_written_is_not_referred_to():
-    _, told = written(
-        refined("""
+def test_references_to_dropped_elements_are_reported():
+    codes = list_codes("""
 Package p "Plant"
   Class a "A" role="block"
     Connector c "wire"
@@ -56,19 +58,18 @@ Package p "Plant"
     Comment d "" body="see there"
       -> references c
 """)
-    )
-    assert [one[:5] for one in told] == ["SM736", "SM736"]
+    assert codes == ["SM736", "SM736"]
 
 
 @pytest.mark.long
-def test_every_small_model_of_our_rules_can_be_loaded():
-    graphs = [graph for graph in map(graph_of, texts()) if graph is not None]
+def test_the_text_of_every_example_of_a_rule_can_be_loaded():
+    graphs = [graph for graph in map(parse_model, list_rule_examples()) if graph is not None]
     assert len(graphs) > 150
-    complaints, _, _ = judged_together(graphs)
+    complaints, _, _ = judge_together(graphs)
     assert complaints == []
 
 
-def texts():
+def list_rule_examples():
     return sorted(
         {
             text
@@ -78,10 +79,10 @@ def texts():
     )
 
 
-def graph_of(text):
-    """The graph, or None for a model that is written in another form."""
+def parse_model(text):
+    """Return the graph, or None for an example that is not in text form."""
     try:
-        return refined(text)
+        return refine(text)
     except (IrSyntaxError, ValueError, KeyError):
         return None
 
@@ -116,9 +117,10 @@ Package p "P"
 """
 
 
-def test_a_flow_between_a_store_and_a_control_node_is_told_as_said_in_other_words():
-    def told(text):
-        return [one for one in written(refined(text))[1] if "a store and a control node" in one]
+def test_a_flow_between_a_store_and_a_control_node_is_an_approximation():
+    def find_losses(text):
+        _, losses = write(refine(text))
+        return [loss for loss in losses if "a store and a control node" in loss]
 
-    assert [one[:5] for one in told(STORED.format(first="d"))] == ["SM734"]
-    assert told(STORED.format(first="x.in").partition("    ObjectFlow f2")[0]) == []
+    assert [loss[:5] for loss in find_losses(STORED.format(first="d"))] == ["SM734"]
+    assert find_losses(STORED.format(first="x.in").partition("    ObjectFlow f2")[0]) == []

@@ -1,4 +1,4 @@
-"""What of the graph becomes what in SysML v2, as small documents."""
+"""The SysML v2 text of small models."""
 
 import os
 import re
@@ -8,8 +8,8 @@ import sys
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from toolkit import load, parts
-from writing import lines_of, refined, text_of, written
+from toolkit import load, split_name
+from writing import lines_of, refine, text_of, write
 
 from examples.compiling import PLANT, compile_example
 from long_runs import quick_first
@@ -145,28 +145,28 @@ Package p "Plant"
 """
 
 
-def test_quantities_are_those_of_isq_with_units_of_si():
+def test_quantities_have_types_of_isq_and_units_of_si():
     lines = lines_of(MEASURED)
     assert "attribute def Length :> ISQ::LengthValue {" in lines
     assert "attribute :>> mRef = SI::mm;" in lines
     assert "attribute length : Length default = 1.5 [SI::mm];" in lines
     assert "part 'belt 1' : Belt {" in lines
     assert ":>> length = 2.5 [SI::mm];" in lines
-    told = '@Unit { name = "quark"; symbol = "qk"; }'
-    assert f"attribute def Strangeness {{ {told} }}" in lines
+    annotation = '@Unit { name = "quark"; symbol = "qk"; }'
+    assert f"attribute def Strangeness {{ {annotation} }}" in lines
 
 
-def test_every_unit_is_one_of_the_library_or_of_ours():
+def test_every_unit_is_in_si_or_in_our_library():
     members = [
         f"attribute a{number} : ISQ::{value} = 1 [{'::'.join(map(quote_name, name.split('::')))}];"
         for number, (symbol, (value, _)) in enumerate(UNITS.items())
         if (name := find_unit_name(Element("u", Kind.UNIT, attrs={"symbol": symbol})))
     ]
     assert len(members) == len(UNITS) > 50
-    assert load(with_library(f"package P {{ {' '.join(members)} }}")).complaints == []
+    assert load(load_with_library(f"package P {{ {' '.join(members)} }}")).complaints == []
 
 
-def with_library(text):
+def load_with_library(text):
     return {"m.sysml": text, "l.sysml": resources.read_text("metamodels", "SysMLC.sysml")}
 
 
@@ -333,11 +333,11 @@ Package p "Plant"
 """
 
 
-def test_a_signal_called_as_what_each_state_inherits_is_named_with_its_package():
+def test_a_signal_with_an_inherited_name_is_named_with_its_package():
     assert "transition first idle accept Plant::start then busy;" in text_of(STARTED)
 
 
-def test_what_a_block_performs_is_typed_by_the_activity_that_it_specialises():
+def test_an_operation_is_typed_by_the_activity_that_implements_it():
     assert "perform action fill : Fill;" in text_of(PERFORMED)
 
 
@@ -382,7 +382,7 @@ Package p "Plant"
 """
 
 
-def test_stereotypes_are_metadata_with_a_definition_when_the_profile_is_not_there():
+def test_stereotypes_of_missing_profiles_get_metadata_definitions():
     assert (
         text_of(TAGGED)
         == """\
@@ -403,8 +403,8 @@ package Stereotypes {
     )
 
 
-def test_ids_are_those_that_automationml_gave():
-    """A class that only one InternalElement has is of our making, and has none."""
+def test_metadata_preserves_the_ids_of_automationml():
+    """A class that the front end adds for one InternalElement has no id."""
     lines = lines_of(
         """\
 Document d "plant.aml" subkind="caex" @plant.aml:1
@@ -421,7 +421,7 @@ Package IH#Plant "Plant" subkind="instance-hierarchy" @plant.aml:2
     ]
 
 
-def test_inherited_features_that_hide_one_another_are_named_in_full():
+def test_inherited_features_that_hide_one_another_have_qualified_names():
     lines = lines_of("""
 Package p "Plant"
   Class a "A" role="block"
@@ -436,7 +436,7 @@ Package p "Plant"
     assert "attribute y :> A::x;" in lines
 
 
-def test_what_is_private_and_used_from_outside_is_public():
+def test_private_features_with_references_from_outside_become_public():
     model = """
 Package p "Plant"
   Class a "A" role="block"
@@ -458,19 +458,19 @@ Package p "Plant"
     assert 'attribute x { @Kept { attributes = ("visibility=private"); } }' in lines
     assert "private attribute y;" in lines
     assert "bind a.x = z;" in lines
-    assert [one[:5] for one in written(refined(model))[1]] == ["SM734"]
+    assert [loss[:5] for loss in write(refine(model))[1]] == ["SM734"]
 
 
 @given(st.text(min_size=1))
-def test_any_name_is_written_so_that_it_is_read_back(name):
-    made = quote_name(name)
-    assert parts(made)[0] == "".join(map(visible, name))
-    if not made.startswith("'"):
-        assert made.isascii()
-        assert made not in RESERVED
+def test_any_quoted_name_is_read_back(name):
+    quoted = quote_name(name)
+    assert split_name(quoted)[0] == "".join(map(replace_control_character, name))
+    if not quoted.startswith("'"):
+        assert quoted.isascii()
+        assert quoted not in RESERVED
 
 
-def visible(char):
+def replace_control_character(char):
     is_control = ord(char) in (*range(8), 11, *range(14, 32), *range(127, 160), 0x2028, 0x2029)
     is_no_character = 0xD800 <= ord(char) < 0xE000 or ord(char) in (0xFFFE, 0xFFFF)
     return "\ufffd" if is_control or is_no_character else char
@@ -487,7 +487,8 @@ def test_the_toolkit_reads_our_names(name):
 def test_the_plant_of_the_thesis(golden):
     """The gate in AutomationML, refined by its overlay and its behaviour."""
     compilation = compile_example(PLANT, "sysml")
-    files = {one.path: one.text for one in compilation.list_published() if one.backend == "sysml"}
+    published = compilation.list_published()
+    files = {file.path: file.text for file in published if file.backend == "sysml"}
     assert sorted(files) == ["sysml/SysMLC.sysml", "sysml/baygate.sysml"]
     golden.check("sysml", {"baygate.sysml": files["sysml/baygate.sysml"]})
 
@@ -498,19 +499,19 @@ def test_the_text_does_not_depend_on_hash_seeds(seed):
         "import sys; sys.path[:0] = sys.argv[1:]\n"
         "from random import Random\n"
         "from dialects.random_models import random_model\n"
-        "from writing import read, written\n"
-        "files, told = written(read(random_model(Random(7), 2)))\n"
-        "print(files['model.sysml'], told)"
+        "from writing import read_xmi, write\n"
+        "files, losses = write(read_xmi(random_model(Random(7), 2)))\n"
+        "print(files['model.sysml'], losses)"
     )
     folders = [path for path in sys.path if path.endswith(("tests", "sysml"))]
-    made = subprocess.run(
+    output = subprocess.run(
         [sys.executable, "-c", script, *folders],
         env={**os.environ, "PYTHONHASHSEED": seed},
         capture_output=True,
         check=True,
     ).stdout
     assert (
-        made
+        output
         == subprocess.run(
             [sys.executable, "-c", script, *folders], capture_output=True, check=True
         ).stdout
@@ -535,21 +536,21 @@ Package p "Plant"
 """
 
 
-def test_types_that_lead_in_a_circle_do_no_harm():
+def test_cycles_of_types_are_written():
     lines = lines_of(TYPED_BY_EACH_OTHER)
     assert lines[2:5] == ["ref x :> y;", "part y :> z;", "ref z :> y;"]
     assert lines[-5:-1] == ["connection def k {", "end e : k;", "}", "part i :> i;"]
 
 
-def test_a_row_of_types_ends_however_long_it_is():
+def test_a_chain_of_2000_types_is_written():
     rows = (f'    Property f{n} "f{n}"\n      -> typed-by f{n + 1}' for n in range(2000))
     last = '    Property f2000 "f2000" role="part"'
     lines = lines_of("\n".join(['Package p "P"', '  Class a "A" role="block"', *rows, last]))
     assert lines[-4:-2] == ["ref f1999 :> f2000;", "part f2000;"]
 
 
-def test_rows_of_associations_of_the_next_two_are_written_however_long_they_are():
-    """Each has two ends: who followed every way would take twice as long for each more."""
+def test_associations_with_exponentially_many_paths_are_written():
+    """Each association has two ends: to follow every path would double the time for each one."""
     rows = (
         f'  Association a{n} "a{n}"\n    -> end a{n}.x a{n}.y\n'
         f'    Property a{n}.x "x"\n      -> typed-by a{n + 1}\n'
@@ -562,17 +563,17 @@ def test_rows_of_associations_of_the_next_two_are_written_however_long_they_are(
     assert "connection def a0 {" in lines
 
 
-def test_associations_of_one_another_are_written():
+def test_associations_typed_by_each_other_are_written():
     rows = [
-        f'  Association {one} "{one}"\n'
+        f'  Association {name} "{name}"\n'
         + "".join(
-            f'    -> end {one}.{other}\n    Property {one}.{other} "{other}"\n'
-            f"      -> typed-by {other}\n"
-            for other in "kmn"
+            f'    -> end {name}.{type_}\n    Property {name}.{type_} "{type_}"\n'
+            f"      -> typed-by {type_}\n"
+            for type_ in "kmn"
         )
-        for one in "kmn"
+        for name in "kmn"
     ]
     lines = lines_of('Package p "P"\n' + "".join(rows))
     assert [line for line in lines if line.startswith("connection def")] == [
-        f"connection def {one} {{" for one in "kmn"
+        f"connection def {name} {{" for name in "kmn"
     ]

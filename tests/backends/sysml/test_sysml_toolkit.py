@@ -1,15 +1,15 @@
-"""The OpenMBEE toolkit loads our text without complaint, with the names of the model.
+"""The OpenMBEE toolkit loads the text and finds names, metaclasses and types of the model.
 
-It finds a name that we refer to or says so; names, metaclasses and types are those that the
-graph alone tells (expected.py).
+The toolkit complains about references that it cannot resolve. ``expected.py`` derives from the
+graph alone what the toolkit has to find.
 """
 
 from random import Random
 
 import pytest
-from judging import judged, judged_together
-from toolkit import load, parts, sysml
-from writing import read, refined, written
+from judging import judge, judge_together
+from toolkit import load, split_name, sysml
+from writing import read_xmi, refine, write
 
 from dialects.random_models import random_model
 from examples.compiling import ROOT, compile_example
@@ -23,7 +23,7 @@ JUDGED = {
     "lego-recipe": 181,
     "hall": 17,
 }
-"""Elements of each example that the judge looks at (expected.py)."""
+"""Number of elements that the judge checks in each example."""
 AML = (
     "amlbaselibs_215.aml",
     "amlsec_rolelib.aml",
@@ -50,21 +50,21 @@ XMI = (
 )
 
 
-def agrees(graph):
-    complaints, differences, count = judged(graph)
+def count_agreeing(graph):
+    complaints, differences, count = judge(graph)
     assert (complaints, differences) == ([], [])
     return count
 
 
 @pytest.mark.parametrize("path", quick_first(EXAMPLES), ids=lambda path: path.stem)
 def test_examples(path):
-    assert agrees(compile_example(path, "ir").graph) == JUDGED[path.stem]
+    assert count_agreeing(compile_example(path, "ir").graph) == JUDGED[path.stem]
 
 
 @pytest.mark.parametrize("seed", quick_first(range(0, 50, 10)))
 def test_models_at_random(seed):
-    graphs = [read(random_model(Random(seed + more), 2)) for more in range(10)]
-    complaints, differences, count = judged_together(graphs)
+    graphs = [read_xmi(random_model(Random(seed + step), 2)) for step in range(10)]
+    complaints, differences, count = judge_together(graphs)
     assert (complaints, differences) == ([], [])
     assert count > 200
 
@@ -73,19 +73,19 @@ def test_models_at_random(seed):
 @pytest.mark.parametrize("suffix", quick_first([".aml", ".amlx", "_caex215.aml", "_extlibs.aml"]))
 def test_the_gate_of_the_thesis(corpus, suffix):
     path = corpus / "aml" / "baygate" / f"BayGate{suffix}"
-    assert agrees(compile_example(path, "ir").graph) == 28
+    assert count_agreeing(compile_example(path, "ir").graph) == 28
 
 
 @pytest.mark.corpus
 @pytest.mark.parametrize("name", quick_first(AML))
 def test_real_plants(corpus, name):
-    assert agrees(compile_example(corpus / "aml" / "dev" / name, "ir").graph) > 1
+    assert count_agreeing(compile_example(corpus / "aml" / "dev" / name, "ir").graph) > 1
 
 
 @pytest.mark.corpus
 @pytest.mark.parametrize("name", quick_first(XMI))
 def test_real_models(corpus, name):
-    assert agrees(compile_example(corpus / "xmi" / name, "ir").graph) > 20
+    assert count_agreeing(compile_example(corpus / "xmi" / name, "ir").graph) > 20
 
 
 GATE = """
@@ -98,21 +98,21 @@ Package p "Plant"
 
 
 @pytest.mark.long
-def test_the_judge_sees_what_is_missing_has_another_kind_or_another_type(monkeypatch):
-    graph = refined(GATE)
-    assert agrees(graph) == 4
-    files, _ = written(graph)
+def test_the_judge_notices_missing_elements_other_kinds_and_other_types(monkeypatch):
+    graph = refine(GATE)
+    assert count_agreeing(graph) == 4
+    files, _ = write(graph)
     text = files["model.sysml"]
-    for old, new, told in (
+    for old, new, problem in (
         ("part def Sensor;", "part def Sender;", "is missing"),
         ("part def Gate", "port def Gate", "is {'PortDefinition'}"),
         ("sensor : Sensor", "sensor : Gate", "has not the type Sensor"),
     ):
         changed = text.replace(old, new)
         assert changed != text
-        monkeypatch.setattr("judging.written", lambda _, text=changed: ({"m.sysml": text}, []))
-        complaints, differences, _ = judged(graph)
-        assert any(told in one for one in differences), differences
+        monkeypatch.setattr("judging.write", lambda _, text=changed: ({"m.sysml": text}, []))
+        complaints, differences, _ = judge(graph)
+        assert any(problem in difference for difference in differences), differences
         assert bool(complaints) == (new == "part def Sender;")
 
 
@@ -132,14 +132,14 @@ def test_the_judge_sees_what_is_missing_has_another_kind_or_another_type(monkeyp
         2,
     ),
 )
-def test_the_toolkit_complains_about_names_that_it_does_not_find(member):
+def test_the_toolkit_complains_about_unknown_names(member):
     assert load({"m.sysml": f"package P {{ {member} }}"}).complaints
 
 
-def test_the_toolkit_refuses_what_is_no_sysml():
+def test_the_toolkit_rejects_syntax_errors():
     with pytest.raises(sysml.SdkError):
         load({"m.sysml": "package P { part part; }"})
 
 
-def test_qualified_names_are_taken_apart():
-    assert parts("A::'b c'::'it\\'s'::d") == ("A", "b c", "it's", "d")
+def test_qualified_names_are_split_at_their_separators():
+    assert split_name("A::'b c'::'it\\'s'::d") == ("A", "b c", "it's", "d")

@@ -1,7 +1,7 @@
-"""The OpenMBEE toolkit (distribution ``sysml``) as the judge of our SysML v2 text.
+"""The OpenMBEE toolkit (distribution ``sysml``) as the judge of SysML v2 text.
 
-It loads a text with the standard library, raises for a syntax error, and answers
-``UnresolvedReference`` for each name that it does not find.
+It loads a text with the standard library, raises an exception for a syntax error, and answers
+``UnresolvedReference`` for each unknown name.
 """
 
 import gc
@@ -27,7 +27,7 @@ REFERENCES = {
     "Dependency": "supplier",
     "Annotation": "annotatedElement",
 }
-"""What each kind of relationship refers to."""
+"""The feature with the target of each kind of relationship."""
 TYPINGS = ("FeatureTyping", "Subclassification", "ConjugatedPortTyping")
 
 
@@ -39,14 +39,14 @@ class Loaded:
     elements: dict = field(default_factory=dict)
     """Metaclasses by qualified name, a tuple of names."""
     types: dict = field(default_factory=dict)
-    """Names of the types and generals that the text gives, by qualified name."""
+    """Names of the types and generals in the declaration, by qualified name."""
 
 
 def load(files):
     """Load texts by name together with the standard library. Raises for a syntax error."""
     loaded = Loaded()
     _read(loaded, files)
-    # The toolkit's models are circles, which nobody else's frozen graphs may keep alive.
+    # Models of the toolkit are reference cycles; frozen objects would keep them alive.
     gc.unfreeze()
     gc.collect()
     return loaded
@@ -58,9 +58,9 @@ def _read(loaded, files):
         _check(loaded, element)
         name = element.qualifiedName if hasattr(type(element), "qualifiedName") else None
         if name:
-            path = parts(name)
+            path = split_name(name)
             loaded.elements.setdefault(path, Counter())[element.metaclass_name] += 1
-            loaded.types.setdefault(path, set()).update(_types(element))
+            loaded.types.setdefault(path, set()).update(_iter_types(element))
 
 
 def _check(loaded, element):
@@ -68,45 +68,45 @@ def _check(loaded, element):
     if feature is None:
         return
     try:
-        found = getattr(element, feature)
+        target = getattr(element, feature)
     except sysml.UnresolvedReference as problem:
         loaded.complaints.append(str(problem))
     except sysml.NotImplementedInToolkit:
         return
     else:
-        if found in (None, []):
+        if target in (None, []):
             loaded.complaints.append(f"{element!r} refers to nothing")
 
 
-def _types(element):
-    """Names of the types, or the generals, that stand in the declaration of an element."""
+def _iter_types(element):
+    """Yield the names of the types or generals in the declaration of an element."""
     for relation in element.ownedRelationship:
         if relation.metaclass_name not in TYPINGS:
             continue
         with suppress(sysml.UnresolvedReference):
-            found = getattr(relation, REFERENCES[relation.metaclass_name])
-            yield parts(found.qualifiedName)[-1].removeprefix("~")
+            target = getattr(relation, REFERENCES[relation.metaclass_name])
+            yield split_name(target.qualifiedName)[-1].removeprefix("~")
 
 
-def parts(name):
-    """The names that a qualified name consists of, without quotes and escapes."""
-    found, at = [], 0
-    while at < len(name):
-        if name[at] != "'":
-            end = name.find("::", at)
+def split_name(name):
+    """Return the segments of a qualified name, without quotes and escapes."""
+    segments, start = [], 0
+    while start < len(name):
+        if name[start] != "'":
+            end = name.find("::", start)
             end = len(name) if end < 0 else end
-            found.append(name[at:end])
+            segments.append(name[start:end])
         else:
-            end, text = at + 1, ""
+            end, text = start + 1, ""
             while name[end] != "'":
                 step = 2 if name[end] == "\\" else 1
-                text += _unescaped(name[end : end + step])
+                text += _unescape(name[end : end + step])
                 end += step
-            found.append(text)
+            segments.append(text)
             end += 1
-        at = end + 2
-    return tuple(found)
+        start = end + 2
+    return tuple(segments)
 
 
-def _unescaped(text):
+def _unescape(text):
     return {"\\n": "\n", "\\t": "\t", "\\r": "\r", "\\b": "\b", "\\f": "\f"}.get(text, text[-1])

@@ -12,36 +12,36 @@ from sysmlc.support import resources
 PASSES = ("resolve", "inherit", "classify", "ports")
 
 
-def read(data, name="model.uml"):
-    """The graph of an XMI document, classified."""
+def read_xmi(data, name="model.uml"):
+    """Return the graph of an XMI document, classified."""
     graph, sink = Graph(), Sink()
     FRONTEND.read([Source(name, data)], graph, sink, Coverage())
     pipeline.build_pipeline(PASSES).run(graph, sink)
     return graph
 
 
-def refined(text):
-    """The graph that a text form means, classified."""
+def refine(text):
+    """Return the graph of a model in text form, classified."""
     graph = parse_text(text)
     pipeline.build_pipeline(PASSES).run(graph, Sink())
     return graph
 
 
-def written(graph):
-    """The files, by name, and what they do not say: codes and messages."""
+def write(graph):
+    """Return the texts of a graph by file name, and its losses as codes and messages."""
     sink = Sink()
     text, uses_library = print_document(graph, sink)
     files = {"model.sysml": text}
     if uses_library:
         files[LIBRARY] = resources.read_text("metamodels", LIBRARY)
-    return files, [f"{found.rule.code} {found.message}" for found in sink]
+    return files, [f"{loss.rule.code} {loss.message}" for loss in sink]
 
 
 def text_of(model):
-    """The text of a small model in text form."""
-    return written(refined(model))[0]["model.sysml"]
+    """Return the SysML v2 text of a small model in text form."""
+    return write(refine(model))[0]["model.sysml"]
 
 
 def lines_of(model):
-    """The lines of a small model, without indentation and empty lines."""
+    """Return the lines of that text, without indentation and empty lines."""
     return [line.strip() for line in text_of(model).splitlines() if line.strip()]
