@@ -152,8 +152,8 @@ def _write_accept(writer: Writer, member: Member, element: Element) -> Line:
     writer.expressed.update(trigger.id for trigger in triggers)
     accepts = [format_trigger(writer, member, trigger) for trigger in triggers]
     if len(accepts) > 1:
-        said = "an accept action with several triggers"
-        writer.record_approximation(element, said, "its first one")
+        construct = "an accept action with several triggers"
+        writer.record_approximation(element, construct, "its first one")
     accept = f" {accepts[0]}" if accepts else ""
     return Line(f"{_format_head(writer, member, element)}{accept}", body)
 

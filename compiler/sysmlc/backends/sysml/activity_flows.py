@@ -30,9 +30,8 @@ _STORES = (Kind.OBJECT_NODE, Kind.DATA_STORE, Kind.ACTIVITY_PARAMETER)
 def write_successions(writer: Writer, member: Member) -> list[Line]:
     """Write the successions that leave a node, in the order of the model; ``else`` is last."""
     flows = _list_outgoing_flows(writer, member.require_element())
-    others = [flow for flow in flows if flow.attrs.get("guard") != "else"]
-    else_flows = [flow for flow in flows if flow.attrs.get("guard") == "else"]
-    lines = [_write_succession(writer, member, flow) for flow in (*others, *else_flows)]
+    flows.sort(key=lambda flow: flow.attrs.get("guard") == "else")
+    lines = [_write_succession(writer, member, flow) for flow in flows]
     return [line for line in lines if line is not None]
 
 
@@ -94,8 +93,8 @@ def _write_succession(writer: Writer, member: Member, flow: Element) -> Line | N
     flow_member = writer.plan.find(flow)
     name = flow_member.name if flow_member is not None else ""
     if flow_member is not None and flow_member.parent is not member.parent:
-        said = "a flow that another node owns"
-        writer.record_approximation(flow, said, "a succession beside its source")
+        construct = "a flow that another node owns"
+        writer.record_approximation(flow, construct, "a succession beside its source")
     body = [] if flow_member is None else write_contents(writer, flow_member)
     if flow.kind is not Kind.CONTROL_FLOW:
         body = [_annotate_pins(writer, member, flow), *body]
@@ -289,8 +288,8 @@ def _record_shared_node(writer: Writer, flow: Element, source: Element, target: 
     """
     for node, edge in ((source, Edge.FLOW_SOURCE), (target, Edge.FLOW_TARGET)):
         if node.kind is not Kind.PIN and len(writer.graph.sources(node, edge)) > 1:
-            said = "an object flow of a node with several"
-            writer.record_approximation(flow, said, "a binding")
+            construct = "an object flow of a node with several"
+            writer.record_approximation(flow, construct, "a binding")
             return
 
 

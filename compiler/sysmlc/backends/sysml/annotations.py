@@ -236,8 +236,8 @@ def _iter_applications(writer: Writer, member: Member, element: Element) -> Iter
             continue
         writer.expressed.add(application.id)
         if is_standard(application):
-            said = "an applied stereotype of SysML"
-            writer.record_approximation(element, said, "a keyword")
+            construct = "an applied stereotype of SysML"
+            writer.record_approximation(element, construct, "a keyword")
             continue
         definition = writer.plan.metadata_definitions.get(application.id)
         if definition is not None:

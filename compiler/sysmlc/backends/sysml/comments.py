@@ -29,8 +29,8 @@ def write_comment(writer: Writer, member: Member) -> list[Line]:
     if text != format_comment(stripped) or stripped != body:
         writer.record_approximation(element, "white space around a text", "none")
     if not annotated and owner is not None:
-        said = "a comment about nothing"
-        writer.record_approximation(element, said, "documentation of its owner")
+        construct = "a comment about nothing"
+        writer.record_approximation(element, construct, "documentation of its owner")
     has_owner = member.parent is not None and element.role == ""
     if annotated == [owner] or (not annotated and has_owner):
         return [Line(f"doc{name}", text=text), *children]

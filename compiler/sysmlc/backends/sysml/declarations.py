@@ -121,8 +121,8 @@ def _list_generals(writer: Writer, member: Member) -> tuple[list[str], list[str]
 
 def _add_generalization(writer: Writer, member: Member, element: Element, general: Element) -> None:
     """Add a dependency in place of a generalisation that SysML v2 does not allow."""
-    said = f"generalization of {member.shape.keyword}"
-    writer.record_approximation(element, said, "dependency")
+    construct = f"generalization of {member.shape.keyword}"
+    writer.record_approximation(element, construct, "dependency")
     name = writer.refer_to(member, element, Edge.SPECIALIZES, general)
     if name is not None:
         keyword = writer.refer_to_sysmlc(member, "generalization")

@@ -51,15 +51,15 @@ def write_import(writer: Writer, member: Member) -> list[Line]:
     for target in writer.graph.targets(element, Edge.REFERENCES):
         name = _refer_to_imported(writer, member, target)
         if name is None and target.attrs.get("library"):
-            said = f"the import of the library {target.name}"
-            writer.record_approximation(element, said, "nothing")
+            construct = f"the import of the library {target.name}"
+            writer.record_approximation(element, construct, "nothing")
             continue
         if name is None:
             writer.record_unreachable(element, "references")
             continue
         if target.attrs.get("external") and writer.plan.find(target) is None:
-            said = "an import of primitive types"
-            writer.record_approximation(element, said, "one of those of SysML v2")
+            construct = "an import of primitive types"
+            writer.record_approximation(element, construct, "one of those of SysML v2")
         is_package = target.kind in (Kind.PACKAGE, Kind.PROFILE) and element.subkind != "element"
         lines.append(Line(f"{visibility} import {name}{'::*' if is_package else ''}"))
     return lines
@@ -169,10 +169,11 @@ def write_value_type(writer: Writer, member: Member) -> list[Line]:
 def _record_other_quantity(writer: Writer, element: Element, quantity: str) -> None:
     """Record a quantity kind that is not the one of the unit: in ISQ, a unit determines it."""
     quantity_kind = quantity_kind_of(writer.graph, element)
-    own = None if quantity_kind is None else find_quantity_of_kind(quantity_kind)
-    if own is not None and own != quantity:
-        said = "a quantity kind that has other units"
-        writer.record_approximation(element, said, "that of the unit")
+    if quantity_kind is None:
+        return
+    if find_quantity_of_kind(quantity_kind) not in (None, quantity):
+        construct = "a quantity kind that has other units"
+        writer.record_approximation(element, construct, "that of the unit")
 
 
 def _list_non_scalar_generals(writer: Writer, member: Member, element: Element) -> list[str]:

@@ -29,8 +29,8 @@ def write_lifeline(writer: Writer, member: Member) -> list[Line]:
             type_name = refer_to_type(writer, member.parent, element, type_)
             if type_name is not None:
                 head = f"ref {keyword}{quote_name(member.name)} : {type_name}"
-        said = "what a lifeline represents"
-        writer.record_approximation(element, said, "a part of the same type")
+        construct = "what a lifeline represents"
+        writer.record_approximation(element, construct, "a part of the same type")
     return [Line(head, write_contents(writer, member))]
 
 
@@ -48,8 +48,8 @@ def write_message(writer: Writer, member: Member) -> list[Line]:
     if source is not None and target is not None:
         head += f" from {source} to {target}"
     elif source is not None or target is not None:
-        said = "a message with one end"
-        writer.record_approximation(element, said, "a message without ends")
+        construct = "a message with one end"
+        writer.record_approximation(element, construct, "a message without ends")
     _record_events(writer, element)
     body = _write_message_facts(writer, member, element) + write_contents(writer, member)
     return [Line(head, body)]
@@ -108,8 +108,8 @@ def write_fragment(writer: Writer, member: Member) -> list[Line]:
     body = [make_annotation(writer, member, "Kind", {"name": kind})]
     guard = element.attrs.get("guard")
     if guard is not None and str(guard) != "else":
-        said = "the guard of an operand"
-        writer.record_approximation(element, said, "a constraint in it")
+        construct = "the guard of an operand"
+        writer.record_approximation(element, construct, "a constraint in it")
         condition = format_condition(writer, member, element, str(guard))
         body.append(Line("assert constraint", [Line("", text=[condition])], is_short=True))
     for called in writer.graph.targets(element, Edge.CALLS):
@@ -119,6 +119,6 @@ def write_fragment(writer: Writer, member: Member) -> list[Line]:
             operator = ":" if called_member.shape.is_definition else ":>"
             body.append(Line(f"ref {operator} {name}"))
     if element.kind is Kind.FRAGMENT:
-        said = "a fragment of an interaction"
-        writer.record_approximation(element, said, "an occurrence of its kind")
+        construct = "a fragment of an interaction"
+        writer.record_approximation(element, construct, "an occurrence of its kind")
     return [Line(f"occurrence {quote_name(member.name)}", body + write_contents(writer, member))]

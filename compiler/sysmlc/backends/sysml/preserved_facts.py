@@ -89,13 +89,13 @@ def _iter_part_facts(writer: Writer, part: Element, default_name: str) -> Iterat
     """Yield the facts of a part without a member; a reader gives it *default_name*."""
     writer.stored_attributes.add((part.id, "name"))
     if part.name != default_name and not part.name and default_name in ("start", "done"):
-        what = "a first or last node without a name"
-        writer.record_approximation(part, what, "start or done")
+        construct = "a first or last node without a name"
+        writer.record_approximation(part, construct, "start or done")
     elif part.name != default_name:
         yield _format_attribute(writer, "name", part.name) or ""
     if part.kind is Kind.ACTIVITY_PARAMETER and not writer.graph.targets(part, Edge.TYPED_BY):
-        what = "a parameter node without a type"
-        writer.record_approximation(part, what, "one of its parameter's type")
+        construct = "a parameter node without a type"
+        writer.record_approximation(part, construct, "one of its parameter's type")
     yield from _iter_attribute_facts(writer, None, part)
 
 

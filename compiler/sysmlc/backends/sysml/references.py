@@ -46,9 +46,9 @@ def visible_members(plan: Plan, namespace: Member) -> dict[str, Member]:
     redefines the other.
     """
     if namespace.visible_names is None:
-        own = {member.name: member for member in namespace.members if member.name}
-        # Generalisations may form a cycle: then the own members are all that is known so far.
-        namespace.visible_names = own
+        own_members = {member.name: member for member in namespace.members if member.name}
+        # In a cycle of generalisations, the namespace is asked again before it is complete.
+        namespace.visible_names = own_members
         inherited: dict[str, Member | None] = {}
         for general in _iter_direct_generals(plan, namespace):
             for name, member in visible_members(plan, general).items():

@@ -62,8 +62,8 @@ def write_pseudostate(writer: Writer, member: Member) -> list[Line]:
     keyword = writer.refer_to_sysmlc(member.parent, _KEYWORDS.get(element.subkind, "choice"))
     owner = writer.graph.owner(element)
     if owner is not None and owner.kind is Kind.STATE and element.subkind not in _POINTS:
-        said = "a pseudostate that no region owns"
-        writer.record_approximation(element, said, "one of the only region")
+        construct = "a pseudostate that no region owns"
+        writer.record_approximation(element, construct, "one of the only region")
     body = write_contents(writer, member)
     for target in writer.graph.targets(element, Edge.REFERENCES):
         name = writer.refer_to(member, element, Edge.REFERENCES, target)

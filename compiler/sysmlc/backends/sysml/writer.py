@@ -112,9 +112,9 @@ class Writer:
         """Record the loss of a reference whose target has no name in the text."""
         self.losses.record(UNREACHABLE, holder, edge=edge, kind=str(holder.kind))
 
-    def record_approximation(self, element: Element, said: str, written: str) -> None:
-        """Record that the text expresses *said* in other words: as *written*."""
-        self.losses.record(APPROXIMATED, element, said=said, written=written)
+    def record_approximation(self, element: Element, construct: str, replacement: str) -> None:
+        """Record that the text replaces a construct of the model by a similar one of SysML v2."""
+        self.losses.record(APPROXIMATED, element, said=construct, written=replacement)
 
     def drop(self, member: Member, edge: str) -> list[Line]:
         """Omit a member because the text cannot name the targets of *edge*. Return no lines.
