@@ -25,7 +25,7 @@ def test_suspicious_contracts_are_told_and_are_no_error(here):
     here.write("lamp.gr1.json", rules.IDLE.read_page().wrong)
     made = here.sysmlc("contracts", "check", "lamp.gr1.json")
     assert made.exit_code == 0
-    assert "warning[SM541 vacuous-win]: 'lamp' keeps its contract without ever" in made.stderr
+    assert "warning[SM541 vacuous-win]: 'lamp' satisfies its contract without ever" in made.stderr
 
 
 def test_an_unrealizable_contract_is_an_error(here):
@@ -39,7 +39,7 @@ def test_a_behaviour_that_breaks_a_requirement(here, all_passes):
     here.write("lamp.ir", check.BREAKS.read_page().wrong)
     made = here.sysmlc("contracts", "check", "lamp.ir")
     assert made.exit_code == 1
-    assert "Plant::Gate: realizable, breaks its requirements\n" in made.stdout
+    assert "Plant::Gate: realizable, violates its requirements\n" in made.stdout
     assert "error[SM560 behaviour-breaks-requirement]" in made.stderr
     assert "step 2: event=stop, state=B" in made.stderr
 
@@ -57,7 +57,7 @@ def test_a_component_alone_is_compared_with_its_requirements_too(here, all_passe
     made = here.sysmlc("contracts", "check", "lamp.ir", "-c", "Plant::Gate")
     assert [made.exit_code, made.stdout] == [
         1,
-        "Plant::Gate: realizable, breaks its requirements\n",
+        "Plant::Gate: realizable, violates its requirements\n",
     ]
 
 
@@ -66,7 +66,7 @@ def test_parts_of_a_block_are_put_together_and_runs_are_drawn(here, all_passes):
     made = here.sysmlc("contracts", "check", "cell.sysml", "-c", "Line::Cell", "-o", "out")
     assert made.exit_code == 1
     assert made.stdout == (
-        "Line::Cell: realizable\nLine::Cell: its 2 parts together break its contract\n"
+        "Line::Cell: realizable\nLine::Cell: its 2 parts together violate its contract\n"
     )
     assert "error[SM595 part-assumption-open]: part 'picker' of 'Line::Cell'" in made.stderr
     assert here.files("out") == ["Line.Cell.run1.puml", "Line.Cell.run2.puml"]

@@ -135,8 +135,8 @@ def checked(here):
 
 
 def test_a_state_machine_is_compared_with_the_requirement_that_its_block_satisfies(checked):
-    kept = ["Plant::Door: realizable, keeps its requirements"]
-    broken = ["Plant::Door: realizable, breaks its requirements"]
+    kept = ["Plant::Door: realizable, satisfies its requirements"]
+    broken = ["Plant::Door: realizable, violates its requirements"]
     alone = ["Plant::Door.requirements: realizable"]
     assert checked(DOOR, CLOSES) == (0, [*kept, *alone], [])
     code, said, (error,) = checked(DOOR, STAYS_OPEN)
@@ -149,7 +149,7 @@ def test_two_blocks_are_composed_along_the_connector_of_their_ports(checked):
     assert checked(CELL, "G F ready") == (0, [*parts, "Plant::Cell: its 2 parts fit together"], [])
     code, said, (error,) = checked(CELL, "G (ready -> X !ready)")
     assert (code, said) == (1, [*parts, "Plant::Cell: its 2 parts do not fit together"])
-    assert "part 'picker' of 'Plant::Cell' assumes 'feeder.ready', which nothing around" in error
+    assert "part 'picker' of 'Plant::Cell' assumes 'feeder.ready', which neither" in error
 
 
 @pytest.mark.parametrize(

@@ -262,7 +262,7 @@ def test_a_formula_that_was_reduced_to_gr1_is_shown_as_it_was_written(here):
     chase += " Assumptions: true; Guarantees: G(go -> F(done)) & G(!done);"
     here.write("c.ltl", chase)
     said = here.sysmlc("synth", "c.ltl", "-o", "out").stderr
-    assert "these 2 of 2 guarantees cannot be kept together" in said
+    assert "these 2 of 2 guarantees cannot be satisfied together" in said
     assert "note: G (go -> F done)\n" in said
     run = here.read("out/n.c.counter-run.puml")
     assert "title n.c\\ncannot keep its contract\\nnot kept: G (go -<U+003E> F done)\n" in run

@@ -40,14 +40,14 @@ def test_machines_of_the_ice_laboratory_exchange_nothing_that_a_contract_speaks_
     made = list(compose_blocks(laboratory, laboratory.derived(Contract), sink))
     told = [one.text() for one in check_compositions(made, place(laboratory), sink, Options())]
     assert told == [
-        "PlantTopology::Cell1_FunctionalTesting: nothing joins its 2 parts",
-        "PlantTopology::Cell2_Milling: nothing joins its 4 parts",
-        "PlantTopology::Cell4_RoboticAssembly: nothing joins its 10 parts",
-        "PlantTopology::Cell5_QualityControl: nothing joins its 2 parts",
-        "PlantTopology::Cell6_Warehouse: nothing joins its 3 parts",
-        "PlantTopology::Cell7_ConveyorSystem: nothing joins its 18 parts",
-        "PlantTopology::ICEProductionLine: nothing joins its 39 parts",
-        "PlantTopology::MobileLogistics: nothing joins its 2 parts",
+        "PlantTopology::Cell1_FunctionalTesting: its 2 parts are not connected",
+        "PlantTopology::Cell2_Milling: its 4 parts are not connected",
+        "PlantTopology::Cell4_RoboticAssembly: its 10 parts are not connected",
+        "PlantTopology::Cell5_QualityControl: its 2 parts are not connected",
+        "PlantTopology::Cell6_Warehouse: its 3 parts are not connected",
+        "PlantTopology::Cell7_ConveyorSystem: its 18 parts are not connected",
+        "PlantTopology::ICEProductionLine: its 39 parts are not connected",
+        "PlantTopology::MobileLogistics: its 2 parts are not connected",
     ]
     assert {one.rule.code for one in sink} == {"SM508"}
     steps = [re.findall("'([^']*)'", one.message)[1] for one in sink]

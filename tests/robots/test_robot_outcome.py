@@ -117,7 +117,7 @@ def test_what_the_thesis_claims_on_nine_cells(nine):
         "C_S refines C_R among others": False,
         "C_S refines C_E": False,
         "C_S refines C_M": False,
-        "C_E as the thesis has it discharges what C_R assumes of it": False,
+        "C_E as the thesis defines it discharges what C_R assumes of it": False,
         "C_E discharges what C_R assumes of it": False,
         "C_E discharges what C_R among others assumes of it": False,
         "C_R, C_E and C_M together keep what C_S promises of each step": True,
@@ -138,7 +138,7 @@ def test_one_robot_alone_gets_what_its_contract_assumes_of_the_environment():
         for one in decide_claims(study, shortest_travel_times(study), Options())
     }
     assert found["C_S refines C_R"] is False
-    assert found["C_E as the thesis has it discharges what C_R assumes of it"] is True
+    assert found["C_E as the thesis defines it discharges what C_R assumes of it"] is True
     assert found["C_E discharges what C_R assumes of it"] is False
 
 

@@ -80,7 +80,8 @@ def test_the_message_names_the_core():
     decide(contract(LIFT), lambda origin: Subject(), sink, Options(is_explained=True))
     (told,) = sink
     assert told.notes == (
-        "these 4 of 6 guarantees cannot be kept together; without any one of them the rest can:",
+        "these 4 of 6 guarantees cannot be satisfied together; without any one of them the "
+        "rest can:",
         "at first: floor=0",
         "always: floor'<=floor + 1",
         "always: called -> open'",

@@ -43,7 +43,7 @@ def cart(last: int, speed: int, more: str = ""):
 def test_a_cart_needs_the_way_from_end_to_end(last, speed, bound):
     made, told = found(cart(last, speed), "timer")
     assert [made.bound, made.exit_code, told] == [bound, 0, []]
-    assert made.text() == f"c: timer <= {bound} can be promised, no less"
+    assert made.text() == f"c: timer <= {bound} can be guaranteed, no smaller bound"
 
 
 def test_a_bound_is_the_one_where_decisions_change():

@@ -40,7 +40,7 @@ def test_what_the_component_could_make_impossible_is_no_help():
 def test_the_reasons_name_them():
     turn = contract(TURN)
     said = list(explain_unrealizability(make_game(turn, Manager()), turn))
-    assert "it could be kept if this were assumed, always: wanted'=wanted" in said
+    assert "it is realizable under the further assumption always: wanted'=wanted" in said
 
 
 def test_with_each_of_them_a_random_contract_can_be_kept():

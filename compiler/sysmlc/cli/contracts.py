@@ -1,4 +1,4 @@
-"""``sysmlc contracts``: what contracts say, by themselves and of one another."""
+"""``sysmlc contracts``: checks of contracts, by themselves and against one another."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -21,7 +21,7 @@ def command() -> None:
 
 @command.command(
     "check",
-    short_help="Say whether contracts can be kept and behaviours keep them.",
+    short_help="Decide whether contracts are realizable and behaviours satisfy them.",
     epilog="""\b
 Examples:
   sysmlc contracts check plant.uml
@@ -30,13 +30,13 @@ Examples:
   sysmlc contracts check gate.contract.json
   sysmlc contracts check plant.uml --question-limit 60 --time-limit 1800
 
-Exit codes: 0 all is well, 1 a contract cannot be kept or is not kept,
+Exit codes: 0 all contracts hold, 1 a contract is unrealizable or violated,
 2 the work could not be done.""",
 )
 @click.argument("file", type=click.Path(path_type=Path), metavar="FILE")
 @click.option("-c", "--component", default="", metavar="NAME", help="Only this component.")
 @options.folder("Draw the runs that break something there (PlantUML).")
-@click.option("--from", "language", default="", metavar="FORM", help="Form of the file.")
+@click.option("--from", "language", default="", metavar="FORM", help="Format of the file.")
 @options.question_limit(default=10.0)
 @options.reporting
 @options.reading
@@ -53,10 +53,10 @@ def check_command(
 ) -> None:
     """Check the contracts in FILE, a model or a contract.
 
-    Each is decided, and what is suspicious in it is told: promises that cost nothing, assumptions
-    that nobody can keep, outputs of which nothing is said. A behaviour is compared with the
-    requirements of its component, and the parts of a block with the block's: whether they fit
-    together and keep it. A run shows where something is broken; -o draws it.
+    Each contract is decided, and suspicious parts are reported: guarantees that hold trivially,
+    assumptions that no environment satisfies, outputs without guarantees. A behaviour is checked
+    against the requirements of its component, and the parts of a block against its contract. A run
+    shows each violation; -o draws it.
     """
     from sysmlc.cli import session
     from sysmlc.cli.contract_files import read_contracts
@@ -114,7 +114,11 @@ def _check(
 
 
 def _format_line(result: "CheckedContract") -> str:
-    additions = {None: "", True: ", keeps its requirements", False: ", breaks its requirements"}
+    additions = {
+        None: "",
+        True: ", satisfies its requirements",
+        False: ", violates its requirements",
+    }
     words = {None: "not decided", True: "realizable", False: "unrealizable"}
     verdict = result.verdict
     return f"{verdict.component}: {words[verdict.is_realizable]}{additions[result.is_implemented]}"

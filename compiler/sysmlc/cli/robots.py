@@ -35,7 +35,7 @@ Exit codes: 0 the mission is done from every start, 1 it is not,
     "--relations/--no-relations",
     "has_relations",
     default=True,
-    help="Decide what the thesis claims of the contracts.  [default: relations]",
+    help="Decide the relations between contracts that the thesis claims.  [default: relations]",
 )
 @options.question_limit(default=10.0)
 @options.reporting
@@ -55,8 +55,9 @@ def command(
 
     A controller of the robots is synthesised from their contract, travel times are measured,
     targets are allocated, and robots and environment are simulated together from every admissible
-    start. Where that fails another allocation is tried; a run shows what happens. Controller and
-    travel times are kept: new targets on a floor that stays ask for another allocation only.
+    start. If the mission fails, another allocation is tried, and a run shows the failure.
+    Controller and travel times are cached: new targets on the same floor require only another
+    allocation.
     """
     from sysmlc.cli import session
     from sysmlc.cli.progress import Progress

@@ -1,4 +1,4 @@
-"""``sysmlc synth``: whether a contract can be kept, and a machine that keeps it."""
+"""``sysmlc synth``: whether a contract is realizable, and a controller that satisfies it."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -22,7 +22,7 @@ _GIBIBYTE = 1 << 30
 
 @click.command(
     "synth",
-    short_help="Say whether a contract can be kept, make a machine that does.",
+    short_help="Decide whether a contract is realizable; synthesise a controller.",
     epilog="""\b
 Examples:
   sysmlc synth gate.contract.json --realizable
@@ -33,29 +33,34 @@ Examples:
   sysmlc synth amba.tlsf --realizable --time-limit 60 --memory-limit 2
 
 Exit codes: 0 realizable, 1 unrealizable or the model has errors, 2 outside
-GR(1), beyond a limit, no machine, or the work could not be done.""",
+GR(1), beyond a limit, no controller, or the work could not be done.""",
 )
 @click.argument("file", type=click.Path(path_type=Path), metavar="FILE")
 @click.option("-c", "--component", default="", metavar="NAME", help="Only this component.")
 @click.option("--realizable", "is_decided_only", is_flag=True, help="Decide, write nothing.")
-@options.folder("Write the machines there, and what defeats a contract that cannot be kept.")
+@options.folder("Write controllers there, and counter-strategies of unrealizable contracts.")
 @click.option(
     "--machine",
     "machine_form",
     type=click.Choice(("own", "table", "gr1c")),
     default="own",
     show_default=True,
-    help="Form of the machines that are written.",
+    help="Format of the controllers.",
 )
-@click.option("--play", "is_played", is_flag=True, help="Play against what defeats the contract.")
+@click.option(
+    "--play",
+    "is_played",
+    is_flag=True,
+    help="Play against the counter-strategy of an unrealizable contract.",
+)
 @click.option(
     "--deadline",
     "timers",
     multiple=True,
     metavar="VAR",
-    help="Find the smallest bound of this number that can be promised (of several, one for all).",
+    help="Find the smallest bound of this variable that can be guaranteed (one bound for all).",
 )
-@click.option("--from", "language", default="", metavar="FORM", help="Form of the file.")
+@click.option("--from", "language", default="", metavar="FORM", help="Format of the file.")
 @click.option(
     "--engine",
     type=click.Choice(("cudd", "autoref")),
@@ -67,7 +72,7 @@ GR(1), beyond a limit, no machine, or the work could not be done.""",
     type=click.IntRange(min=0),
     default=0,
     metavar="N",
-    help="Nodes of diagrams at once.  [default: no limit]",
+    help="Decision-diagram nodes in memory.  [default: no limit]",
 )
 @options.reporting
 @options.reading
@@ -88,13 +93,13 @@ def command(
     nodes: int,
     **given: Any,  # noqa: ANN401 - the fields of Settings
 ) -> None:
-    """Decide whether there is a system that keeps the contracts in FILE, and make a machine.
+    """Decide whether the contracts in FILE are realizable, and synthesise controllers.
 
-    FILE is a model or a contract, in one of the forms of docs/synthesis.md. Each machine is
-    checked against its contract; with -o it is written, as JSON and, when it is small, as a
-    diagram in PlantUML; where it cannot be listed, as a table of decisions. Of a contract that
-    cannot be kept -o writes how an environment defeats it, as diagrams and in SysML v2; with
-    --play you are the component and see for yourself.
+    FILE is a model, or a contract in one of the formats of docs/synthesis.md. Each controller is
+    checked against its contract. With -o it is written as JSON and, when it is small, as a
+    PlantUML diagram; one with too many states is written as a table of decisions. For an
+    unrealizable contract -o writes a counter-strategy of the environment, as diagrams and in
+    SysML v2; with --play you take the part of the component against it.
     """
     from sysmlc.cli import session
     from sysmlc.cli.contract_files import read_contracts

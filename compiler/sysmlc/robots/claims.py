@@ -70,7 +70,7 @@ def _claim_procedures(study: Study, travel: TravelTimes) -> dict[str, _Procedure
         ),
         "C_S refines C_E": partial(_decide_refinement, study, lambda: environment_contract(study)),
         MISSION_CLAIM: partial(_decide_refinement, study, lambda: mission_contract(study, travel)),
-        "C_E as the thesis has it discharges what C_R assumes of it": partial(
+        "C_E as the thesis defines it discharges what C_R assumes of it": partial(
             _decide_discharge, study, literal, True
         ),
         "C_E discharges what C_R assumes of it": partial(_decide_discharge, study, once, True),

@@ -33,7 +33,7 @@ from sysmlc.synthesis.decision import Options, Place, decide
 
 MAX_TRIED = 12
 """Allocations that are validated at most."""
-SHARED_CELL_CLAIM = "C_E can be kept as the thesis has it"
+SHARED_CELL_CLAIM = "C_E is realizable as the thesis defines it"
 """The claim that fails unless a cell is offered to one robot only."""
 
 SHARED_CELL = rule(

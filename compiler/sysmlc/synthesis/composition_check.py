@@ -99,12 +99,12 @@ class CompositionVerdict(Struct, frozen=True):
 
     def _verdict(self) -> str:
         if self.is_kept is None:
-            return "its parts are not put together"
+            return "the composition of its parts is not checked"
         if self.has_whole and self.is_joined:
-            verb = "keep" if self.is_kept else "break"
+            verb = "satisfy" if self.is_kept else "violate"
             return f"its {self.parts} parts together {verb} its contract"
         if self.is_kept and not self.is_joined:
-            return f"nothing joins its {self.parts} parts"
+            return f"its {self.parts} parts are not connected"
         return f"its {self.parts} parts {'fit' if self.is_kept else 'do not fit'} together"
 
 

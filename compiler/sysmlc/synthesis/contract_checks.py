@@ -65,7 +65,7 @@ class CheckedContract(Struct, frozen=True):
 
     verdict: Verdict
     is_implemented: bool | None
-    """Whether the behaviour keeps its requirements; None when there are none, or no answer."""
+    """Whether the behaviour satisfies its requirements; None when there are none, or no answer."""
     witnesses: tuple[Witness, ...] = ()
 
 

@@ -204,8 +204,8 @@ class Deadline(Struct, frozen=True):
         """Return the bound on one line."""
         names = ", ".join(self.timers)
         if self.bound is not None:
-            return f"{self.component}: {names} <= {self.bound} can be promised, no less"
-        words = {1: "no bound below the end of the range can be promised"}
+            return f"{self.component}: {names} <= {self.bound} can be guaranteed, no smaller bound"
+        words = {1: "no bound below the end of the range can be guaranteed"}
         return f"{self.component}: {names}: {words.get(self.exit_code, 'not decided')}"
 
 

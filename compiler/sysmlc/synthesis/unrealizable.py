@@ -137,14 +137,14 @@ def explain_unrealizability(game: Game, contract: Contract) -> Iterator[str]:
     try:
         yield from _describe_conflict(game, contract)
     except LimitError as problem:
-        yield f"which guarantees cannot be kept together is not known: {problem}"
+        yield f"the conflicting guarantees are unknown: {problem}"
         return
     try:
         helpful = helpful_assumptions(game)
     except LimitError:
         return
     for assumption in helpful:
-        yield f"it could be kept if this were assumed, {_print_conjunct(assumption)}"
+        yield f"it is realizable under the further assumption {_print_conjunct(assumption)}"
 
 
 def _describe_conflict(game: Game, contract: Contract) -> Iterator[str]:
@@ -152,7 +152,7 @@ def _describe_conflict(game: Game, contract: Contract) -> Iterator[str]:
     guarantees = original_conjuncts((part.conjunct for part in parts if part.conjunct), contract)
     core = original_conjuncts(unrealizable_core(game), contract)
     yield (
-        f"these {len(core)} of {len(guarantees)} guarantees cannot be kept together; "
+        f"these {len(core)} of {len(guarantees)} guarantees cannot be satisfied together; "
         "without any one of them the rest can:"
     )
     for conjunct in core:

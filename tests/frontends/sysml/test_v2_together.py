@@ -37,7 +37,7 @@ def test_rule_reports_its_wrong_model_and_not_its_right_one(code):
 
 def test_what_nothing_promises_is_told_with_a_run():
     (result,), diagnostics = check_model(together_rules.OPEN.read_page().wrong)
-    assert result.text() == "Line::Cell: its 2 parts together break its contract"
+    assert result.text() == "Line::Cell: its 2 parts together violate its contract"
     assert [diagnostic.rule.code for diagnostic in diagnostics] == ["SM595", "SM597"]
     assert diagnostics[0].message == (
         "part 'picker' of 'Line::Cell' assumes 'feeder.ready', which neither the other parts "
@@ -69,7 +69,7 @@ def test_parts_of_a_block_that_promises_nothing_fit_or_do_not():
 
 def test_what_takes_too_long_is_not_decided():
     (result,), (diagnostic,) = check_model(together_rules.BREAK.read_page().right, Limits(nodes=1))
-    assert result.text() == "Line::Cell: its parts are not put together"
+    assert result.text() == "Line::Cell: the composition of its parts is not checked"
     assert diagnostic.message == (
         "the composition of the parts of 'Line::Cell' is not checked: the limit of 1 nodes "
         "was reached"
@@ -104,21 +104,21 @@ def test_parts_that_share_nothing_are_not_said_to_fit():
         "part def Cell", "part def Other { out attribute taken : Boolean; }\n    part def Cell"
     )
     (result,), diagnostics = check_model(silent)
-    assert result.text() == "Line::Cell: nothing joins its 2 parts"
+    assert result.text() == "Line::Cell: its 2 parts are not connected"
     assert diagnostics == []
 
 
 def test_a_part_alone_keeps_what_the_block_promises_and_the_others_do_not_matter():
     """The picker is told by nobody that something is ready, which the block does not assume."""
     (result,), diagnostics = check_model(APART)
-    assert result.text() == "Line::Cell: its 2 parts together break its contract"
+    assert result.text() == "Line::Cell: its 2 parts together violate its contract"
     assert [diagnostic.rule.code for diagnostic in diagnostics] == ["SM595", "SM597"]
 
 
 def test_what_no_part_speaks_of_is_not_kept():
     nobody = together_rules.OPEN.read_page().right.replace("bind picker.taken = taken;", "")
     (result,), diagnostics = check_model(nobody)
-    assert result.text() == "Line::Cell: its 2 parts together break its contract"
+    assert result.text() == "Line::Cell: its 2 parts together violate its contract"
     assert [diagnostic.message for diagnostic in diagnostics] == [
         "the parts of 'Line::Cell' together do not guarantee 'taken' ('Works' demands it)"
     ]
