@@ -70,41 +70,44 @@ def conjuncts(class_, primes):
     return st.builds(lambda formula: Conjunct(formula, class_, ""), conditions(primes))
 
 
-only_now, then_or_now = st.just(False), st.booleans()
+unprimed, primed_or_not = st.just(False), st.booleans()
 guarantees = st.lists(
     st.one_of(
-        conjuncts(Class.INIT, only_now),
-        conjuncts(Class.SAFETY, then_or_now),
-        conjuncts(Class.LIVENESS, only_now),
+        conjuncts(Class.INIT, unprimed),
+        conjuncts(Class.SAFETY, primed_or_not),
+        conjuncts(Class.LIVENESS, unprimed),
     ),
     max_size=4,
 )
 assumptions = st.lists(
-    st.one_of(conjuncts(Class.INIT, only_now), conjuncts(Class.LIVENESS, only_now)), max_size=2
+    st.one_of(conjuncts(Class.INIT, unprimed), conjuncts(Class.LIVENESS, unprimed)), max_size=2
 )
 contracts = st.builds(
-    lambda assumed, promised: Contract("Gate", "", VARIABLES, tuple(assumed), tuple(promised)),
+    lambda assumptions, guarantees: Contract(
+        "Gate", "", VARIABLES, tuple(assumptions), tuple(guarantees)
+    ),
     assumptions,
     guarantees,
 )
 
 
 def canonical(contract):
-    """The conjuncts by class, split as far as they can be, without places and words."""
+    """Return variables and conjuncts, split and sorted by class, without origins and texts."""
 
-    def side(found):
-        whole = f.both(*map(ltl, found))
+    def split(conjuncts):
+        whole = f.both(*map(add_temporal_operators, conjuncts))
         parts = {Conjunct(part, class_, ""): None for class_, part in classify(whole)}
-        return sort_by_class(one for one in parts if one.formula != f.TRUE)
+        return sort_by_class(part for part in parts if part.formula != f.TRUE)
 
     return (
-        sorted(contract.variables, key=lambda one: (one.owner, one.name)),
-        side(contract.assumptions),
-        side(contract.guarantees),
+        sorted(contract.variables, key=lambda variable: (variable.owner, variable.name)),
+        split(contract.assumptions),
+        split(contract.guarantees),
     )
 
 
-def ltl(conjunct):
+def add_temporal_operators(conjunct):
+    """Return the conjunct's formula in LTL, with the operators that its class implies."""
     formula = conjunct.formula
     if conjunct.class_ is Class.LIVENESS:
         formula = f.eventually(formula)

@@ -1,4 +1,4 @@
-"""Formulas as Lark reads them from grammars/ltl.lark: the reader by precedence is held to it."""
+"""Formulas as Lark parses them with grammars/ltl.lark, the oracle for ``logic.infix``."""
 
 from functools import cache
 
@@ -10,7 +10,7 @@ from sysmlc.support import resources
 
 TEMPORAL = {"G": Op.ALWAYS, "[]": Op.ALWAYS, "F": Op.EVENTUALLY, "<>": Op.EVENTUALLY, "X": Op.NEXT}
 UNTIL = {"U": Op.UNTIL, "R": Op.RELEASE, "V": Op.RELEASE, "W": Op.WEAK_UNTIL}
-JOINS = {
+CONNECTIVES = {
     "negate": f.negate,
     "both": f.both,
     "either": f.either,
@@ -27,28 +27,31 @@ ATOMS = {
 
 
 @cache
-def parser():
+def create_parser():
     return Lark(
         resources.read_text("grammars", "ltl.lark"), parser="lalr", maybe_placeholders=False
     )
 
 
-def judge(text):
-    """The formula, with enumerations' literals as variables. Raises lark's UnexpectedInput."""
-    return build(nodes(parser().parse(text))[0])
+def parse_with_grammar(text):
+    """Return the formula with literals of enumerations as variables.
+
+    Raises lark's UnexpectedInput.
+    """
+    return build_formula(child_nodes(create_parser().parse(text))[0])
 
 
-def nodes(tree):
+def child_nodes(tree):
     return [child for child in tree.children if not isinstance(child, str)]
 
 
-def build(tree):
+def build_formula(tree):
     words = [str(child) for child in tree.children if isinstance(child, str)]
     if tree.data in ATOMS:
         return ATOMS[tree.data](*words)
-    args = [build(node) for node in nodes(tree)]
-    if tree.data in JOINS:
-        return JOINS[tree.data](*args)
+    args = [build_formula(node) for node in child_nodes(tree)]
+    if tree.data in CONNECTIVES:
+        return CONNECTIVES[tree.data](*args)
     word = words[0]
     op = TEMPORAL.get(word) or UNTIL.get(word) or Op("=" if word == "==" else word)
     return Apply(op, tuple(args))

@@ -1,7 +1,7 @@
-"""Texts for tools that are not here, SMV and CHASE, read by nothing of ours: Spot judges them.
+"""Spot judges texts for SMV and CHASE, which are not installed, without the readers of sysmlc.
 
-The readers below know as much of the two languages as the texts have: LTL with the release of SMV
-written ``V``, comparisons of a variable with a value, and the primes of CHASE.
+The readers below know what the texts use of the two languages: LTL with ``V`` for the release of
+SMV, comparisons of a variable with a value, and the primes of CHASE.
 """
 
 import re
@@ -40,66 +40,66 @@ OPERATORS = {
 TERM = r"\w+(?:\s*[+-]\s*\w+)*"
 
 
-def of_smv(text, domains=()):
-    """The formula of the only specification, with a proposition for each value."""
+def read_smv(text, domains=()):
+    """Return the formula of the only specification, with a proposition for each value."""
     (body,) = re.findall(r"^LTLSPEC NAME C := (.*);$", text, re.MULTILINE)
     body = re.sub(r"\bV\b", "R", body)
     return spot.formula(
-        re.sub(rf"({TERM})\s*(!=|<=|>=|=|<|>)\s*({TERM})", meant(dict(domains)), body)
+        re.sub(rf"({TERM})\s*(!=|<=|>=|=|<|>)\s*({TERM})", expand_with(dict(domains)), body)
     )
 
 
-def meant(domains):
-    """What replaces a comparison: the values of its variables for which it holds."""
+def expand_with(domains):
+    """Return a function that replaces a comparison by the valuations for which it holds."""
 
-    def replaced(found):
-        left, op, right = found.groups()
-        names = [
-            one for one in dict.fromkeys(re.findall(r"\w+", f"{left} {right}")) if one in domains
-        ]
-        rows = [
-            " & ".join(f"{name}__{value}" for name, value in zip(names, row, strict=True))
-            for row in product(*(values(domains[name]) for name in names))
-            for known in [dict(zip(names, row, strict=True))]
-            if OPERATORS[op](sum_of(left, known), sum_of(right, known))
-        ]
-        return "(" + (" | ".join(f"({row})" for row in rows) or "0") + ")"
+    def expand(comparison):
+        left, op, right = comparison.groups()
+        words = dict.fromkeys(re.findall(r"\w+", f"{left} {right}"))
+        names = [word for word in words if word in domains]
+        cases = []
+        for row in product(*(values(domains[name]) for name in names)):
+            valuation = dict(zip(names, row, strict=True))
+            if OPERATORS[op](evaluate_sum(left, valuation), evaluate_sum(right, valuation)):
+                cases.append(" & ".join(f"{name}__{value}" for name, value in valuation.items()))
+        return "(" + (" | ".join(f"({case})" for case in cases) or "0") + ")"
 
-    return replaced
+    return expand
 
 
-def sum_of(term, known):
+def evaluate_sum(term, valuation):
     first, *rest = re.findall(r"[+-]|\w+", term)
-    total = value(first, known)
+    total = evaluate_word(first, valuation)
     for sign, word in zip(rest[::2], rest[1::2], strict=True):
-        total += value(word, known) if sign == "+" else -value(word, known)
+        value = evaluate_word(word, valuation)
+        total += value if sign == "+" else -value
     return total
 
 
-def value(word, known):
-    return int(word) if word.isdigit() else known.get(word, word)
+def evaluate_word(word, valuation):
+    return int(word) if word.isdigit() else valuation.get(word, word)
 
 
-def of_chase(text):
-    """Assumptions imply guarantees, a line each, primes as next steps."""
-    _, assumed, promised = re.split(r"Assumptions:|Guarantees:", text)
+def read_chase(text):
+    """Return that the assumptions imply the guarantees, one a line, with X for primes."""
+    _, assumptions, guarantees = re.split(r"Assumptions:|Guarantees:", text)
     sides = [
         " & ".join(f"({line.strip().rstrip(';')})" for line in side.splitlines() if line.strip())
-        for side in (assumed, promised)
+        for side in (assumptions, guarantees)
     ]
     body = f"({sides[0] or '1'}) -> ({sides[1] or '1'})"
     return spot.formula(re.sub(r"(\w+)'", r"(X \1)", body))
 
 
-@pytest.mark.parametrize(("form", "read"), [("smv", of_smv), ("chase", of_chase)])
+@pytest.mark.parametrize(("format_name", "read"), [("smv", read_smv), ("chase", read_chase)])
 @pytest.mark.parametrize("contracts", [games, any_contracts], ids=["games", "ltl"])
-def test_others_read_what_the_contract_says(form, read, contracts):
+def test_the_text_means_the_same_as_the_contract(format_name, read, contracts):
     @given(contract=contracts)
     @settings(max_examples=examples(25), deadline=None)
-    def judged(contract):
-        assert spot.are_equivalent(meaning(contract), read(formats.write(contract, form)))
+    def judge(contract):
+        text = formats.write(contract, format_name)
+        assert spot.are_equivalent(meaning(contract), read(text))
 
-    judged()
+    judge()
 
 
 MODE, LEVEL = EnumerationDomain(("red", "green")), IntegerDomain(0, 3)
@@ -108,28 +108,29 @@ VALUED = (
     Variable("x", Owner.SYSTEM, LEVEL),
     Variable("y", Owner.SYSTEM, LEVEL),
 )
-DOMAINS = {one.name: one.domain for one in VALUED}
+DOMAINS = {variable.name: variable.domain for variable in VALUED}
 
 
-def steps(formula):
-    """The formula as the list of all pairs of steps in which it is true."""
-    rows = []
+def list_steps(formula):
+    """Return the disjunction of all pairs of steps in which the formula is true."""
+    cases = []
     names = list(DOMAINS)
     for row in product(*(values(domain) for domain in (*DOMAINS.values(), *DOMAINS.values()))):
-        now, after = dict(zip(names, row[:3], strict=True)), dict(zip(names, row[3:], strict=True))
-        if value_of(formula, now, after):
-            told = [f"{name}__{value}" for name, value in now.items()]
-            told += [f"X {name}__{value}" for name, value in after.items()]
-            rows.append("(" + " & ".join(told) + ")")
-    return " | ".join(rows) or "0"
+        before = dict(zip(names, row[:3], strict=True))
+        after = dict(zip(names, row[3:], strict=True))
+        if value_of(formula, before, after):
+            propositions = [f"{name}__{value}" for name, value in before.items()]
+            propositions += [f"X {name}__{value}" for name, value in after.items()]
+            cases.append("(" + " & ".join(propositions) + ")")
+    return " | ".join(cases) or "0"
 
 
 ONE_VALUE = " & ".join(
     "G (" + " | ".join(
         "(" + " & ".join(
-            f"{'' if one == other else '!'}{name}__{other}" for other in values(domain)
+            f"{'' if value == chosen else '!'}{name}__{value}" for value in values(domain)
         ) + ")"
-        for one in values(domain)
+        for chosen in values(domain)
     ) + ")"
     for name, domain in DOMAINS.items()
 )  # fmt: skip
@@ -137,7 +138,7 @@ ONE_VALUE = " & ".join(
 
 
 @pytest.mark.parametrize(
-    "said",
+    "text",
     [
         "m=red & x<3 -> x'=x+1",
         "x'=y & m'!=m",
@@ -146,10 +147,10 @@ ONE_VALUE = " & ".join(
         "x'!=y'",
     ],
 )
-def test_comparisons_of_values_are_written_out_for_smv(said):
-    conjunct = Conjunct(parse_formula(said, DOMAINS), Class.SAFETY, "")
+def test_comparisons_of_values_are_expanded_for_smv(text):
+    conjunct = Conjunct(parse_formula(text, DOMAINS), Class.SAFETY, "")
     contract = Contract("C", "", VALUED, (), (conjunct,))
-    read = of_smv(formats.write(contract, "smv"), DOMAINS)
-    listed = spot.formula(f"G ({steps(conjunct.formula)})")
+    read = read_smv(formats.write(contract, "smv"), DOMAINS)
+    expected = spot.formula(f"G ({list_steps(conjunct.formula)})")
     world = spot.formula(ONE_VALUE)
-    assert spot.are_equivalent(spot.formula.And([world, read]), spot.formula.And([world, listed]))
+    assert spot.are_equivalent(spot.formula.And([world, read]), spot.formula.And([world, expected]))

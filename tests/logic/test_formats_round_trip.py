@@ -1,4 +1,4 @@
-"""Contracts in every form: what was written is read again, and says the same."""
+"""A contract that was written in a format is read again with the same meaning."""
 
 import json
 import re
@@ -16,45 +16,46 @@ from sysmlc.logic.formats import NotExpressibleError
 from sysmlc.support import resources
 
 GAMES = ("gr1c", "slugsin", "structured")
-TEXTS = (*GAMES, "tlsf", "spot", "smv", "chase", "chasejson", "neutral", "contract")
+FORMATS = (*GAMES, "tlsf", "spot", "smv", "chase", "chasejson", "neutral", "contract")
 
 
-@pytest.mark.parametrize("form", TEXTS)
+@pytest.mark.parametrize("format_name", FORMATS)
 @given(contract=contracts)
 @settings(max_examples=examples(60), deadline=None)
-def test_what_was_written_is_read_again(form, contract):
+def test_the_lowered_contract_is_read_again(format_name, contract):
     try:
-        text = formats.write(contract, form)
+        text = formats.write(contract, format_name)
     except NotExpressibleError as error:
-        assert form == "gr1c"
+        assert format_name == "gr1c"
         assert error.conjunct is not None  # noqa: PT017
         return
     sink = Sink()
-    (again,) = formats.read(text, "Gate.txt", sink, form)
-    assert [found.message for found in sink] == []
-    assert canonical(again) == canonical(formats.lower(contract, form))
+    (again,) = formats.read(text, "Gate.txt", sink, format_name)
+    assert [diagnostic.message for diagnostic in sink] == []
+    assert canonical(again) == canonical(formats.lower(contract, format_name))
 
 
 @given(contract=contracts)
 @settings(max_examples=examples(30), deadline=None)
-def test_spin_s_formula_is_read_again_but_for_ranges(contract):
+def test_a_formula_of_spin_is_read_again_except_for_ranges(contract):
     text = formats.write(contract, "spin")
     sink = Sink()
     (again,) = formats.read(text, "Gate.spin.ltl", sink)
-    assert [found.message for found in sink] == []
-    names = {one.name: one.owner for one in contract.variables}
-    assert {one.name: one.owner for one in again.variables}.items() <= names.items()
-    lines = [one.splitlines()[0] for one in (text, formats.write(again, "spin"))]
-    formulas = [re.sub(r"\{(.*?)\}", r'"\1"', one) for one in lines]
+    assert [diagnostic.message for diagnostic in sink] == []
+    owners = {variable.name: variable.owner for variable in contract.variables}
+    owners_again = {variable.name: variable.owner for variable in again.variables}
+    assert owners_again.items() <= owners.items()
+    lines = [file.splitlines()[0] for file in (text, formats.write(again, "spin"))]
+    formulas = [re.sub(r"\{(.*?)\}", r'"\1"', line) for line in lines]
     assert spot.are_equivalent(*map(spot.formula, formulas))
 
 
 SCHEMAS = {"neutral": "neutral-contract", "chasejson": "chase-contract"}
 
 
-@pytest.mark.parametrize(("form", "schema"), SCHEMAS.items())
+@pytest.mark.parametrize(("format_name", "schema"), SCHEMAS.items())
 @given(contract=contracts)
 @settings(max_examples=examples(25), deadline=None)
-def test_json_is_as_its_schema_says(form, schema, contract):
-    rules = json.loads(resources.read_text("metamodels", f"{schema}.schema.json"))
-    jsonschema.validate(json.loads(formats.write(contract, form)), rules)
+def test_json_is_valid_for_its_schema(format_name, schema, contract):
+    json_schema = json.loads(resources.read_text("metamodels", f"{schema}.schema.json"))
+    jsonschema.validate(json.loads(formats.write(contract, format_name)), json_schema)

@@ -1,8 +1,8 @@
-"""Spot reads what we write, and finds every form to say the same as the contract does."""
+"""Spot judges that a contract means the same in every format."""
 
 import pytest
 import spot
-from contract_cases import ltl
+from contract_cases import add_temporal_operators
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -39,23 +39,23 @@ WORDS = {
 }
 
 
-def for_spot(formula):
-    """The formula with every pair of parentheses, in Spot's words."""
+def print_for_spot(formula):
+    """Return the formula in Spot's words, with all parentheses."""
     match formula:
         case Const(value):
             return "1" if value else "0"
         case Var(name, primed):
             return f"(X {name})" if primed else name
-        case Apply(op, (only,)):
-            return f"({WORDS[op]} {for_spot(only)})"
+        case Apply(op, (operand,)):
+            return f"({WORDS[op]} {print_for_spot(operand)})"
         case Apply(op, args):
-            return f"({f' {WORDS[op]} '.join(map(for_spot, args))})"
+            return f"({f' {WORDS[op]} '.join(map(print_for_spot, args))})"
 
 
 def meaning(contract):
-    assumed = f.both(*map(ltl, contract.assumptions))
-    promised = f.both(*map(ltl, contract.guarantees))
-    return spot.formula(for_spot(Apply(Op.IMPLIES, (assumed, promised))))
+    assumptions = f.both(*map(add_temporal_operators, contract.assumptions))
+    guarantees = f.both(*map(add_temporal_operators, contract.guarantees))
+    return spot.formula(print_for_spot(Apply(Op.IMPLIES, (assumptions, guarantees))))
 
 
 def formulas(primes):
@@ -86,77 +86,89 @@ general = st.recursive(
     ),
     max_leaves=3,
 )
-now = formulas(st.just(False))
-ahead = formulas(st.booleans())
+unprimed = formulas(st.just(False))
+primed_or_not = formulas(st.booleans())
 
 
-def conjunct(class_, found):
-    return st.builds(lambda formula: Conjunct(formula, class_, ""), found)
+def conjunct(class_, formula):
+    return st.builds(lambda formula: Conjunct(formula, class_, ""), formula)
 
 
 games = st.builds(
-    lambda assumed, promised: Contract("C", "", VARIABLES, tuple(assumed), tuple(promised)),
-    st.lists(conjunct(Class.LIVENESS, now), max_size=1),
-    st.lists(st.one_of(conjunct(Class.SAFETY, ahead), conjunct(Class.LIVENESS, now)), max_size=2),
+    lambda assumptions, guarantees: Contract(
+        "C", "", VARIABLES, tuple(assumptions), tuple(guarantees)
+    ),
+    st.lists(conjunct(Class.LIVENESS, unprimed), max_size=1),
+    st.lists(
+        st.one_of(conjunct(Class.SAFETY, primed_or_not), conjunct(Class.LIVENESS, unprimed)),
+        max_size=2,
+    ),
 )
 any_contracts = st.builds(
-    lambda assumed, promised: Contract("C", "", VARIABLES, tuple(assumed), tuple(promised)),
+    lambda assumptions, guarantees: Contract(
+        "C", "", VARIABLES, tuple(assumptions), tuple(guarantees)
+    ),
     st.lists(conjunct(Class.OTHER, general), max_size=1),
-    st.lists(st.one_of(conjunct(Class.OTHER, general), conjunct(Class.SAFETY, ahead)), max_size=2),
+    st.lists(
+        st.one_of(conjunct(Class.OTHER, general), conjunct(Class.SAFETY, primed_or_not)), max_size=2
+    ),
 )
 
 
-@pytest.mark.parametrize("form", ["gr1c", "slugsin", "structured", "tlsf", "smv", "chase"])
+@pytest.mark.parametrize("format_name", ["gr1c", "slugsin", "structured", "tlsf", "smv", "chase"])
 @given(contract=games)
 @settings(max_examples=examples(25), deadline=None)
-def test_a_game_says_the_same_in_every_form(form, contract):
-    same(contract, form)
+def test_a_gr1_contract_means_the_same_in_every_format(format_name, contract):
+    check_same_meaning(contract, format_name)
 
 
-@pytest.mark.parametrize("form", ["tlsf", "spot", "spin", "smv", "chase", "chasejson", "neutral"])
+@pytest.mark.parametrize(
+    "format_name", ["tlsf", "spot", "spin", "smv", "chase", "chasejson", "neutral"]
+)
 @given(contract=any_contracts)
 @settings(max_examples=examples(25), deadline=None)
-def test_general_ltl_says_the_same_in_every_form(form, contract):
-    same(contract, form)
+def test_general_ltl_means_the_same_in_every_format(format_name, contract):
+    check_same_meaning(contract, format_name)
 
 
-def same(contract, form):
-    text = formats.write(contract, form)
-    (again,) = formats.read(text, "C.txt", Sink(), form)
+def check_same_meaning(contract, format_name):
+    text = formats.write(contract, format_name)
+    (again,) = formats.read(text, "C.txt", Sink(), format_name)
     assert spot.are_equivalent(meaning(contract), meaning(again))
 
 
-@pytest.mark.parametrize("form", ["gr1c", "slugsin", "structured"])
-def test_what_can_be_reduced_is_written_with_history_bits(form):
+@pytest.mark.parametrize("format_name", ["gr1c", "slugsin", "structured"])
+def test_a_reducible_formula_is_written_with_history_bits(format_name):
     response = parse_formula("G (a -> F c)", {name: BooleanDomain() for name in "abcd"})
     contract = Contract("C", "", VARIABLES, (), (Conjunct(response, Class.OTHER, ""),))
-    (again,) = formats.read(formats.write(contract, form), "C.txt", Sink(), form)
-    assert [one.name for one in again.variables] == [*"abcd", "since_1"]
-    assert [one.class_ for one in again.guarantees] == [Class.INIT, Class.SAFETY, Class.LIVENESS]
+    (again,) = formats.read(formats.write(contract, format_name), "C.txt", Sink(), format_name)
+    assert [variable.name for variable in again.variables] == [*"abcd", "since_1"]
+    classes = [conjunct.class_ for conjunct in again.guarantees]
+    assert classes == [Class.INIT, Class.SAFETY, Class.LIVENESS]
 
 
-@pytest.mark.parametrize("form", ["spot", "spin"])
+@pytest.mark.parametrize("format_name", ["spot", "spin"])
 @given(contract=any_contracts)
 @settings(max_examples=examples(40), deadline=None)
-def test_spot_reads_the_formula_itself(form, contract):
-    first = formats.write(contract, form).splitlines()[0]
+def test_spot_reads_the_written_formula(format_name, contract):
+    first = formats.write(contract, format_name).splitlines()[0]
     assert spot.are_equivalent(meaning(contract), spot.formula(first))
 
 
-@pytest.mark.parametrize("form", ["gr1c", "slugsin", "structured"])
+@pytest.mark.parametrize("format_name", ["gr1c", "slugsin", "structured"])
 @given(formula=general)
 @settings(max_examples=examples(25), deadline=None)
-def test_what_a_form_has_no_words_for_names_the_conjunct(form, formula):
+def test_an_inexpressible_conjunct_is_named(format_name, formula):
     stable = f.eventually(f.always(f.either(Var("d"), formula)))
     outside = Conjunct(stable, Class.OTHER, "model.uml:3:1")
     with pytest.raises(NotExpressibleError) as caught:
-        formats.write(Contract("C", "", VARIABLES, (), (outside,)), form)
+        formats.write(Contract("C", "", VARIABLES, (), (outside,)), format_name)
     assert caught.value.conjunct == outside
 
 
-@pytest.mark.parametrize("form", ["gr1c", "slugsin", "structured"])
-def test_an_assumption_about_what_the_system_does_next_is_named(form):
-    ahead = Conjunct(f.implies(Var("a"), Var("c", True)), Class.SAFETY, "model.uml:3:1")
+@pytest.mark.parametrize("format_name", ["gr1c", "slugsin", "structured"])
+def test_an_assumption_about_the_next_output_is_named(format_name):
+    assumption = Conjunct(f.implies(Var("a"), Var("c", True)), Class.SAFETY, "model.uml:3:1")
     with pytest.raises(NotExpressibleError) as caught:
-        formats.write(Contract("C", "", VARIABLES, (ahead,), ()), form)
-    assert caught.value.conjunct == ahead
+        formats.write(Contract("C", "", VARIABLES, (assumption,), ()), format_name)
+    assert caught.value.conjunct == assumption

@@ -1,4 +1,4 @@
-"""Formulas as text: reading what was printed gives the same formula; the corpus can be read."""
+"""Printed formulas are parsed to the same formula; the corpus is parsed; formulas are interned."""
 
 import copy
 import gc
@@ -66,7 +66,7 @@ formulas = st.recursive(
 
 @given(formulas)
 @settings(max_examples=examples(200), deadline=None)
-def test_printing_and_reading_again_gives_the_same(formula):
+def test_a_printed_formula_is_parsed_to_the_same_formula(formula):
     assert parse_formula(print_formula(formula), VARIABLES) == formula
 
 
@@ -80,18 +80,18 @@ def test_printing_and_reading_again_gives_the_same(formula):
         ("(p U q) V q", "(p U q) R q"),
     ],
 )
-def test_spellings(text, neutral):
+def test_other_spellings_are_printed_in_the_neutral_form(text, neutral):
     assert print_formula(parse_formula(text, VARIABLES)) == neutral
 
 
 @pytest.mark.parametrize("text", ["p &", "r", "mode", "n + 1", "mode=idle -> n", "p -> (", "3"])
-def test_what_is_no_formula_is_refused(text):
+def test_a_text_that_is_no_formula_is_refused(text):
     with pytest.raises(FormulaError):
         parse_formula(text, VARIABLES)
 
 
 @pytest.mark.corpus
-def test_all_din_8580_contracts_can_be_read_and_printed():
+def test_the_formulas_of_din_8580_are_parsed_and_printed():
     corpus = os.environ.get("SYSMLC_CORPUS")
     if not corpus:
         pytest.skip("SYSMLC_CORPUS is not set")
@@ -117,31 +117,31 @@ def _domain(type_):
 
 @given(formulas, formulas)
 @settings(max_examples=examples(100), deadline=None)
-def test_formulas_are_one_object_exactly_when_they_are_equal(left, right):
+def test_equal_formulas_are_the_same_object(left, right):
     assert (left is right) == (repr(left) == repr(right))
     assert pickle.loads(pickle.dumps(left)) is left
     assert copy.deepcopy(left) is left
 
 
-def test_a_truth_is_no_number():
-    """Python says that True is 1; tables of formulas must not take one for the other."""
-    truth, number = f.eq(Var("x"), f.TRUE), f.eq(Var("x"), Const(1))
+def test_true_is_different_from_1():
+    """In Python True equals 1, so tables of formulas could confuse them."""
+    boolean, number = f.eq(Var("x"), f.TRUE), f.eq(Var("x"), Const(1))
     assert Const(True) != Const(1)
-    assert truth != number
-    assert [print_formula(one) for one in (truth, number)] == ["x=true", "x=1"]
+    assert boolean != number
+    assert [print_formula(formula) for formula in (boolean, number)] == ["x=true", "x=1"]
     assert f.both(f.eq(Var("n"), Const(1)), Const(1)) != f.eq(Var("n"), Const(1))
     assert [Const(0) in {Const(False)}, Const(False) in {Const(False)}] == [False, True]
 
 
-def test_formulas_that_nobody_has_are_forgotten():
-    """But for those that are remembered to be found again soon, whose number is bounded."""
+def test_unreferenced_formulas_are_freed():
+    """The cache of recent formulas, which holds references, is bounded."""
     assert f._apply.cache_info().maxsize is not None
     f._apply.cache_clear()
     gc.collect()
     before = len(f._APPLIED)
-    made = [f.eq(Var(f"only_here_{number}"), Const(number)) for number in range(51)]
+    formulas = [f.eq(Var(f"only_here_{number}"), Const(number)) for number in range(51)]
     assert len(f._APPLIED) > before + 50
-    del made
+    del formulas
     f._apply.cache_clear()
     gc.collect()
     assert len(f._APPLIED) == before

@@ -4,7 +4,7 @@ import pytest
 import spot
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from test_formats_spot import for_spot
+from test_formats_spot import print_for_spot
 from test_reductions import bit_rules, ltl
 
 from long_runs import examples
@@ -79,8 +79,8 @@ CASES = [
 def test_a_sentence_means_the_published_formula(text, scope, published):
     history = History(DOMAINS)
     parts = reduce_formula(read_sentence(SCOPES[scope] + text, DOMAINS), history)
-    rules = for_spot(bit_rules(history))
-    claim = spot.formula(f"({rules}) & !(({published}) <-> ({for_spot(ltl(parts))}))")
+    rules = print_for_spot(bit_rules(history))
+    claim = spot.formula(f"({rules}) & !(({published}) <-> ({print_for_spot(ltl(parts))}))")
     assert not spot.translate(spot.formula(rules)).is_empty()
     counterexample = spot.translate(claim).accepting_word()
     assert counterexample is None
@@ -107,7 +107,7 @@ def _translate(text):
     text = text.replace("n=3", "s")
     history = History(DOMAINS)
     parts = reduce_formula(read_sentence(text, DOMAINS), history)
-    return spot.formula(for_spot(f.both(bit_rules(history), ltl(parts))))
+    return spot.formula(print_for_spot(f.both(bit_rules(history), ltl(parts))))
 
 
 SOON = "(p -> (s | r | X (s | r | X (s | r))))"
@@ -127,8 +127,8 @@ def test_a_bounded_response_means_nested_nexts(scope, expected):
     history = History(DOMAINS)
     text = f"{scope}always if p then s holds within 2 steps"
     parts = reduce_formula(read_sentence(text, DOMAINS), history)
-    rules = for_spot(bit_rules(history))
-    claim = spot.formula(f"({rules}) & !(({expected}) <-> ({for_spot(ltl(parts))}))")
+    rules = print_for_spot(bit_rules(history))
+    claim = spot.formula(f"({rules}) & !(({expected}) <-> ({print_for_spot(ltl(parts))}))")
     assert spot.translate(claim).is_empty()
 
 

@@ -4,7 +4,7 @@ import pytest
 import spot
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from test_formats_spot import for_spot
+from test_formats_spot import print_for_spot
 
 from long_runs import examples
 from sysmlc.logic import formula as f
@@ -41,7 +41,7 @@ def bit_rules(history):
 def are_equivalent(formula, parts, history):
     """Whether the parts mean the formula in all traces in which the bits follow their rules."""
     claim = f.implies(bit_rules(history), f.iff(formula, ltl(parts)))
-    return spot.translate(spot.formula(for_spot(f.negate(claim)))).is_empty()
+    return spot.translate(spot.formula(print_for_spot(f.negate(claim)))).is_empty()
 
 
 @pytest.mark.parametrize(

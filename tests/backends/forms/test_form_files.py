@@ -1,4 +1,4 @@
-"""The back ends gr1c, slugs, tlsf, smv, chase and spot: their files can be read again."""
+"""The back ends gr1c, slugs, tlsf, smv, chase and spot write files that sysmlc reads."""
 
 import pytest
 import spot
@@ -25,46 +25,47 @@ ENDINGS = {
 }
 
 
-def emitted(text, name):
+def emit(text, name):
     graph, sink, output = parse_text(text), Sink(), Output()
     pipeline.run(graph, sink, verify_each=True)
     (backend,) = load_backends([name])
     backend.emit(graph, output, sink, EmitOptions())
-    return graph, {one.path: one for one in output.artefacts()}, sink
+    return graph, {artefact.path: artefact for artefact in output.artefacts()}, sink
 
 
 @pytest.mark.parametrize("name", ENDINGS)
-def test_every_tool_gets_files_that_our_readers_understand(name):
-    graph, files, sink = emitted(GATE, name)
-    assert [one.rule.code for one in sink if one.rule is NOT_EXPRESSIBLE] == []
+def test_the_files_for_each_tool_are_read_without_diagnostics(name):
+    graph, files, sink = emit(GATE, name)
+    assert not any(diagnostic.rule is NOT_EXPRESSIBLE for diagnostic in sink)
     assert list(files) == [f"contracts/Plant.Gate{ending}" for ending in ENDINGS[name]]
     for path, file in files.items():
         if path.endswith((".spot.part", ".spot.ltl")):
             continue
-        heard = Sink()
-        assert len(formats.read(file.text, path, heard)) == 1
-        assert [one.message for one in heard] == []
+        reader_sink = Sink()
+        assert len(formats.read(file.text, path, reader_sink)) == 1
+        assert [diagnostic.message for diagnostic in reader_sink] == []
         assert set(file.trace) >= {graph.derived(Contract)[0].origin}
 
 
-def test_spot_gets_a_formula_and_who_decides():
-    _, files, _ = emitted(GATE, "spot")
+def test_spot_gets_a_formula_and_the_owners_of_its_variables():
+    _, files, _ = emit(GATE, "spot")
     formula = files["contracts/Plant.Gate.spot.ltl"].text
     part = files["contracts/Plant.Gate.spot.part"].text
-    named = {word for line in part.splitlines() for word in line.split()[1:]}
-    assert named >= {str(one) for one in spot.atomic_prop_collect(spot.formula(formula))}
+    names = {word for line in part.splitlines() for word in line.split()[1:]}
+    propositions = spot.atomic_prop_collect(spot.formula(formula))
+    assert names >= {str(proposition) for proposition in propositions}
     assert [line.split()[0] for line in part.splitlines()] == [".inputs", ".outputs"]
 
 
 @pytest.mark.parametrize(("name", "count"), [("gr1c", 1), ("slugs", 2), ("tlsf", 0), ("spot", 0)])
-def test_what_a_tool_has_no_words_for_is_told_at_the_constraint(name, count):
-    _graph, files, sink = emitted(NOT_EXPRESSIBLE.read_page().wrong, name)
-    told = [one for one in sink if one.rule is NOT_EXPRESSIBLE]
-    assert [one.subject.name for one in told] == ["Lamp::Lit"] * count
+def test_an_inexpressible_constraint_is_reported(name, count):
+    _graph, files, sink = emit(NOT_EXPRESSIBLE.read_page().wrong, name)
+    reported = [diagnostic for diagnostic in sink if diagnostic.rule is NOT_EXPRESSIBLE]
+    assert [diagnostic.subject.name for diagnostic in reported] == ["Lamp::Lit"] * count
     assert len(files) == (len(ENDINGS[name]) if not count else 0)
-    assert all("F G state=On" in one.message for one in told)
+    assert all("F G state=On" in diagnostic.message for diagnostic in reported)
 
 
 def test_the_same_model_gives_the_same_bytes():
-    first, second = (emitted(GATE, "tlsf")[1] for _ in range(2))
+    first, second = (emit(GATE, "tlsf")[1] for _ in range(2))
     assert {p: f.text for p, f in first.items()} == {p: f.text for p, f in second.items()}
