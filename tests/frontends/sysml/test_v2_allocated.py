@@ -1,4 +1,4 @@
-"""What a use of a behaviour says about the plant: who does its steps, what its parameters are."""
+"""Uses of behaviours bind steps to actions and parameters to features of the plant."""
 
 import pytest
 from reading_v2 import read
@@ -56,13 +56,13 @@ def test_parameters_and_steps_are_allocated_with_the_way_from_the_block():
 
 
 @pytest.mark.parametrize("value", ["true", "not spare.busy"])
-def test_an_argument_that_is_no_feature_is_told(value):
+def test_an_argument_that_is_no_feature_is_reported(value):
     reading = read(LINE % value)
     assert len(list(allocations(reading))) == 3
     assert "SM481" in reading.list_codes()
 
 
-def test_a_value_that_a_performed_step_is_given_is_told():
+def test_a_value_for_a_performed_step_is_reported():
     text = LINE.replace(
         "in ref robot : Robot;", "in ref robot : Robot; in n : ScalarValues::Integer;"
     )

@@ -1,4 +1,4 @@
-"""Arguments of calls, new instances and sendings: none is lost, named ones have their place."""
+"""Arguments of calls, new instances and send actions: named ones are sorted, none is lost."""
 
 import pytest
 from reading_v2 import read

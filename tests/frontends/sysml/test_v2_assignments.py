@@ -1,4 +1,4 @@
-"""What actions assign is in the contract of their activity, as in SysML v1; the rest is told."""
+"""Assignments of actions are in the contract of their activity, as in SysML v1, or reported."""
 
 import pytest
 from reading_v2 import read
@@ -80,7 +80,7 @@ def find_contract(graph):
 
 
 def describe_assignments(contract):
-    """What the contract says of the variables that actions assign."""
+    """Return the texts of the guarantees about the variables that actions assign."""
     names = {variable.name for variable in contract.variables if variable.name in ("n", "total")}
     return [
         guarantee.text
@@ -90,7 +90,7 @@ def describe_assignments(contract):
     ]
 
 
-def test_what_actions_assign_is_decided_by_the_component():
+def test_variables_that_actions_assign_are_outputs():
     contract = find_contract(compile_v2()[0])
     assert [variable.name for variable in contract.variables if variable.owner is Owner.SYSTEM][
         :2
@@ -129,7 +129,7 @@ def test_a_loop_that_its_counter_never_ends_cannot_be_finished():
     assert is_realizable(find_contract(graph), graph) is False
 
 
-def test_both_notations_say_the_same():
+def test_both_notations_have_the_same_contract():
     descriptions = [
         [
             [(variable.name, variable.owner, variable.domain) for variable in contract.variables],
@@ -147,7 +147,7 @@ def test_both_notations_say_the_same():
     assert descriptions[0] == descriptions[1]
 
 
-def test_only_what_can_leave_its_range_is_told():
+def test_only_a_variable_that_can_leave_its_range_is_reported():
     """The loop ends before the counter does; the total goes on in the next run."""
     assert [diagnostic.message for diagnostic in compile_v2()[1]] == [
         "action 'add' can take 'total' out of its range; it stops at the bound"
@@ -161,7 +161,7 @@ def test_only_what_can_leave_its_range_is_told():
         ("n := n + 1", "n := measure(n)", "'measure(n)' is not known, or has too many cases"),
     ],
 )
-def test_what_cannot_be_followed_is_told_with_the_reason(old, new, reason):
+def test_an_assignment_that_cannot_be_derived_is_reported_with_the_reason(old, new, reason):
     graph, sink = compile_v2(V2.replace(old, new))
     assert next(diagnostic.message for diagnostic in sink if diagnostic.rule.code == "SM544") == (
         f"the contract of 'work' treats 'n' as an input although action 'count' assigns it: "
@@ -171,7 +171,7 @@ def test_what_cannot_be_followed_is_told_with_the_reason(old, new, reason):
     assert owners["n"] is Owner.ENVIRONMENT
 
 
-def test_what_two_behaviours_write_is_nobodys_own():
+def test_a_feature_that_two_behaviours_write_is_an_input_of_both():
     second_action = "action reset { first start; then action clear assign total := 0; then done; }"
     text = V2.replace("action work {", f"{second_action}\n        action work {{")
     graph, sink = compile_v2(text.replace("if n < 3", "if total < 9"))
@@ -204,7 +204,7 @@ def test_a_structural_feature_gets_the_value_of_its_pin():
     assert "SM544" not in [diagnostic.rule.code for diagnostic in sink]
 
 
-def test_what_a_state_machine_of_the_block_writes_is_not_the_activitys():
+def test_a_feature_that_a_state_machine_of_the_block_writes_is_an_input_of_the_activity():
     machine = """exhibit state life {
             entry; then idle;
             state idle;
@@ -272,7 +272,7 @@ def compile_body(body):
     ], becomes
 
 
-def test_a_value_that_is_always_outside_is_told_and_the_contract_says_what_it_becomes():
+def test_a_value_that_is_always_outside_is_reported_and_the_contract_states_the_bound():
     messages, becomes = compile_body("assign n := 12;")
     assert messages == ["SM414 warning: assignment 'n := 12': 12 is outside 0..9"]
     assert becomes == ["When action 'up' is done, 'n' becomes 9."]
@@ -296,7 +296,7 @@ def test_each_of_several_assignments_stops_at_the_bound_for_itself():
     ]
 
 
-def test_an_assignment_to_a_constant_is_told():
+def test_an_assignment_to_a_constant_is_reported():
     messages, becomes = compile_body("assign full := true;")
     assert messages[0] == (
         "SM415 warning: 'full := true' assigns to 'full', which is not a changeable property "
@@ -305,7 +305,7 @@ def test_an_assignment_to_a_constant_is_told():
     assert becomes == []
 
 
-def test_a_value_of_another_type_is_told():
+def test_a_value_of_another_type_is_reported():
     messages, becomes = compile_body("assign mode := Color::red;")
     assert messages == [
         "SM544 info: the contract of 'work' treats 'mode' as an input although action 'up' "
@@ -327,7 +327,9 @@ def test_a_value_of_another_type_is_told():
         ),
     ],
 )
-def test_what_the_block_has_is_told_where_no_guard_reads_it_too(attribute, value, reason):
+def test_an_assigned_feature_of_the_block_is_reported_even_if_no_guard_reads_it(
+    attribute, value, reason
+):
     text = BODY.replace("attribute mode", f"attribute {attribute};\n        attribute mode")
     text = text.replace("};\n", "}\n").replace("action work", "calc def Measure;\n action work")
     _, sink = compile_v2(text.replace("BODY", f"assign m := {value};"))
@@ -394,7 +396,7 @@ COUNTS = {
 
 
 @pytest.mark.parametrize("case", COUNTS)
-def test_only_what_is_not_ruled_out_on_the_way_can_leave_its_range(case):
+def test_a_variable_can_leave_its_range_unless_the_path_to_the_action_rules_it_out(case):
     (start, most, steps), expected = COUNTS[case]
     text = COUNTING.replace("STEPS", steps).replace("START", start).replace("MOST", str(most))
     _, sink = compile_v2(text.replace("UP", UP))

@@ -316,7 +316,7 @@ package P {
     assert kinds == {"scenario": "PARAMETER", "run": "ACTION"}
 
 
-def test_a_succession_to_an_action_of_a_package_is_told_and_has_no_flow():
+def test_a_succession_to_an_action_of_a_package_is_reported_and_has_no_flow():
     reading = read("""
 package P {
     action focus;

@@ -57,7 +57,7 @@ MODELS = {
 
 
 def compile_contracts(model):
-    """What each contract says, in any order, and what is written as UML."""
+    """Return the contracts of a model, in any order, and its text as UML."""
     compilation = compile_model(Request((model,), backends=tuple(select_backends(["uml"]))))
     contracts = {
         contract.component: describe_contract(contract)

@@ -1,4 +1,4 @@
-"""Blocks with parts: which contracts make them up, and what connectors make one variable."""
+"""Blocks with parts: their contracts, and the features that connectors make one variable."""
 
 import pytest
 from reading_v2 import read
@@ -85,7 +85,7 @@ def compose_panel(inside=JOINED):
     return compositions["Line::Panel"]
 
 
-def test_what_connectors_bindings_and_flows_join_is_one_variable():
+def test_features_joined_by_connectors_bindings_and_flows_are_one_variable():
     sensor, display = compose_panel().parts
     assert (sensor.name, display.name) == ("sensor", "display")
     assert list_variables(sensor.contract) == ["sys sensor.level_value", "sys sensor.busy"]
@@ -98,13 +98,13 @@ def test_what_connectors_bindings_and_flows_join_is_one_variable():
     assert print_formulas(display.contract.guarantees)[-1] == "sensor.level_value>3 -> light'"
 
 
-def test_what_the_parts_make_up_together_is_what_the_block_demands():
+def test_the_contract_of_the_block_is_that_of_its_requirements():
     whole = compose_panel().whole
     assert list_variables(whole) == ["sys light"]
     assert print_formulas(whole.guarantees) == ["!light", "light"]
 
 
-def test_what_nothing_joins_is_the_parts_own():
+def test_features_that_nothing_joins_are_variables_of_their_part():
     sensor, display = compose_panel("bind light = display.lamp;").parts
     assert list_variables(sensor.contract) == ["sys sensor.level_value", "sys sensor.busy"]
     assert list_variables(display.contract) == [
@@ -205,7 +205,7 @@ package Plant {
 """
 
 
-def test_what_one_part_sends_occurs_at_the_other():
+def test_a_signal_that_one_part_sends_occurs_at_the_other():
     compositions, _ = compose(GATE)
     yard = compositions["Plant::Yard"]
     assert [part.name for part in yard.parts] == ["gate", "operator"]
@@ -284,7 +284,7 @@ def test_a_machine_is_its_actions_and_its_coordinator():
 
 
 def check_page(text):
-    """What is told of a machine's parts together, and whether they fit."""
+    """Return the diagnostics about the parts of a machine, and whether they fit together."""
     reading = read(text)
     pipeline.run(reading.graph, reading.sink)
     graph, sink = reading.graph, Sink()
@@ -306,7 +306,7 @@ def test_the_actions_and_the_coordinator_of_a_machine_fit_together():
         (" bind pick.pos = piece;", "commanded again"),
     ],
 )
-def test_what_is_missing_in_a_machine_is_told(missing, assumed):
+def test_missing_assumptions_of_a_machine_are_reported(missing, assumed):
     messages, verdict = check_page(LOADER.replace(missing, ";" if "{" in missing else " "))
     assert any(assumed in message for message in messages)
     assert verdict == "Cells::Loader: its 4 parts do not fit together"

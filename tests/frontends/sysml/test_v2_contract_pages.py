@@ -1,4 +1,4 @@
-"""Pages of contracts read as the author's own words: what it is, what it promises and why."""
+"""Pages of contracts contain the documentation of the model, the guarantees and their origin."""
 
 import pytest
 from reading_v2 import read
@@ -23,15 +23,15 @@ package Plant {
 
 
 @pytest.fixture(scope="module")
-def write_pages():
+def pages():
     reading = read(LINE)
     pipeline.run(reading.graph, reading.sink)
     graph = reading.graph
     return {contract.component: explain(graph, contract) for contract in graph.derived(Contract)}
 
 
-def test_a_page_begins_with_what_the_library_says_of_the_action(write_pages):
-    lines = write_pages["Plant::Line.carry"].splitlines()
+def test_a_page_begins_with_the_documentation_in_the_library(pages):
+    lines = pages["Plant::Line.carry"].splitlines()
     assert lines[:3] == [
         "# Contract of Plant::Line.carry",
         "",
@@ -39,18 +39,18 @@ def test_a_page_begins_with_what_the_library_says_of_the_action(write_pages):
     ]
 
 
-def test_the_nearest_comment_goes_before_and_its_first_paragraph_is_enough(write_pages):
-    assert write_pages["Plant::Line.screw"].splitlines()[2] == "Two turns."
+def test_the_nearest_comment_goes_before_and_its_first_paragraph_is_enough(pages):
+    assert pages["Plant::Line.screw"].splitlines()[2] == "Two turns."
 
 
-def test_what_a_requirement_says_has_its_name(write_pages):
-    text = write_pages["Plant::Line.carry"]
+def test_conjuncts_of_a_requirement_have_its_name(pages):
+    text = pages["Plant::Line.carry"]
     assert "- Only a free belt is loaded. *(requirement 'ConveyContract')*\n  `loaded' ->" in text
     assert "demands it" not in text
 
 
-def test_what_a_constraint_says_has_its_name_and_steps_have_the_diagrams(write_pages):
-    text = write_pages["Plant::Line.clamp"]
+def test_conjuncts_of_a_constraint_have_its_name_and_steps_that_of_the_diagram(pages):
+    text = pages["Plant::Line.clamp"]
     assert "- Asks for pick. *(constraint of 'Clamping')*\n  `asked=pick <->" in text
     assert "- Action 'pick' runs from when all its flows have brought a token until" in text
 

@@ -47,7 +47,7 @@ def recipe(laboratory):
     return json.loads(outputs["recipes/DemoLegoRecipe.DemoLego.json"])
 
 
-def test_four_lines_say_as_much_as_nine(corpus, tmp_path, recipe):
+def test_four_lines_of_levels_are_equivalent_to_nine(corpus, tmp_path, recipe):
     assert len(LEVELS.splitlines()) == 4
     (output,) = compile_laboratory(corpus, tmp_path, ALL_LEVELS, "recipe").list_published()
     assert json.loads(output.text) == recipe
@@ -159,7 +159,7 @@ def test_only_the_names_that_are_known_to_be_missing_are_unresolved(laboratory):
     assert len(about_connection) == 9
 
 
-def test_the_milling_cell_has_a_contract_with_what_it_is_given_and_told(laboratory):
+def test_the_contract_of_the_milling_cell_has_its_outputs_and_inputs(laboratory):
     outputs = {output.path: output.text for output in laboratory.list_published()}
     text = outputs["contracts/MillingCellBehavior.MillingCellEngravingStates.contract.json"]
     owners = {name: variable["owner"] for name, variable in json.loads(text)["variables"].items()}

@@ -56,7 +56,7 @@ def find_nodes(recipe, name):
 
 
 def write_value(value, numbers, enumerations):
-    """What a value of the text is in the recipe: a literal, or the name of a variable."""
+    """Return the value in the recipe for a value of the text: a literal or a variable."""
     if re.fullmatch(r"-?\d+", value):
         return {"lit": int(value)}
     if value in numbers:
@@ -65,7 +65,7 @@ def write_value(value, numbers, enumerations):
 
 
 def is_expected(bound, value, numbers, sources):
-    """Whether a binding is what the text says; results of steps go by the variables they set."""
+    """Whether a binding is that of the text; results of steps are the variables they set."""
     expected = [write_value(value, numbers, enumerations) for enumerations in (False, True)]
     step, dot, output = value.partition(".")
     if dot and output in sources.get(step, {}):
@@ -74,7 +74,7 @@ def is_expected(bound, value, numbers, sources):
 
 
 def check_bindings(steps, blocks, numbers):
-    """Every argument of every step is in the recipe, and no other."""
+    """Check that the recipe has exactly the arguments of each step; return their number."""
     sources = {name: step.get("assign", {}) for name, step in steps.items()}
     count = 0
     for name, block in blocks.items():
@@ -132,7 +132,7 @@ def test_every_call_of_a_service_has_the_arguments_of_the_text(recipe, text):
     assert (calls, count) == (31, 103)
 
 
-def test_the_plant_says_which_operation_of_which_cell_does_each_of_the_31(recipe, text):
+def test_the_plant_states_which_operation_of_which_cell_performs_each_of_the_31(recipe, text):
     files, _ = text
     (line,) = files["ice_lab"].find(r"perform action demoLego : DemoLego")
     arguments = {m[1]: m[2] for m, _ in line[1].find(r"in ref :>> (\w+) = ([\w.]+)")}
@@ -308,7 +308,9 @@ def _find_node(block, path):
 MISSING = r"\b(?:OpcUaConnection|RoboticCell(?:Cmd|State)Port|(?:cmd|state)Port)\b"
 
 
-def test_every_use_of_a_missing_name_is_told_at_its_place_and_nothing_else(laboratory, folder):
+def test_every_use_of_a_missing_name_is_reported_at_its_location_and_nothing_else(
+    laboratory, folder
+):
     """25 words in all; one of them, ``the equipment's statePort``, is in a comment."""
     written, words = set(), 0
     for path in sorted(folder.rglob("*.sysml")):

@@ -1,4 +1,4 @@
-"""The library LineMachines: what conveyor, printer, quality check and mill promise can be kept."""
+"""The library LineMachines: the contracts of its four machines are realizable."""
 
 import pytest
 from msgspec.structs import replace
@@ -66,7 +66,7 @@ def test_the_constants_of_a_general_action_hold_for_the_special_one():
     assert domains["column"] == IntegerDomain(0, 2)
 
 
-def test_what_two_requirements_say_is_one_contract():
+def test_two_requirements_of_a_component_are_one_contract():
     requirements = {
         guarantee.text.partition(" of ")[2] for guarantee in read_contracts()["print"].guarantees
     }

@@ -48,7 +48,7 @@ JOINED = """
 
 
 def write_machine(able, operation):
-    """A machine with some actions and a coordinator."""
+    """Return the text of a machine with some actions and a coordinator."""
     kinds, actions = (
         ", ".join(KINDS[name] for name in able),
         "\n".join(ACTIONS[action_name] for action_name in able),
@@ -63,7 +63,7 @@ BOUND = {
     "move": "bind clamp.move.executed = move.moved;",
     "turn": "bind clamp.turn.executed = turn.turned;",
 }
-"""Being at the target holds on: what is told once ends a step."""
+"""Being at the target persists: one notification ends a step."""
 CLAMPS = "\n".join(["action clamp : Clamping;", "bind clamp.asked = asked;", *BOUND.values()])
 DISMANTLES = """
 package Cells {
@@ -144,7 +144,7 @@ def test_a_usage_can_be_kept_and_nothing_is_suspicious_in_it(operation):
     assert [diagnostic.message for diagnostic in sink] == []
 
 
-def test_a_usage_that_says_more_has_the_steps_of_what_it_specialises():
+def test_a_usage_with_constraints_of_its_own_has_the_steps_of_its_definition():
     text = """package P { part def Cell { action work : DIN8580::Screwing {
         constraint { language "ltl" /* G F asked=turn */ }
     } } }"""
@@ -180,7 +180,7 @@ def test_a_step_ends_when_the_one_action_that_performs_it_is_executed():
     assert inputs == ["pick_executed", "move_executed", "turn_executed", "place_executed"]
 
 
-def test_of_two_actions_that_could_perform_a_step_a_binding_says_which():
+def test_a_binding_selects_one_of_two_actions_that_could_perform_a_step():
     two = CLAMPS + "        action other : Pick;\n"
     for bound, name in (("", "clamp.done_pick"), ("bind clamp.pick = other;", "other.executed")):
         graph = compile_text(write_machine(ACTIONS, two + bound))
@@ -190,7 +190,7 @@ def test_of_two_actions_that_could_perform_a_step_a_binding_says_which():
 
 
 @pytest.mark.long
-def test_what_nobody_asks_the_coordinator_for_is_told():
+def test_an_operation_whose_requests_nothing_reads_is_reported():
     text = write_machine(ACTIONS, CLAMPS.replace("bind clamp.asked = asked;", ""))
     verdict, diagnostics = check_composition(text)
     assert verdict == "Cells::Machine: its 6 parts do not fit together"
@@ -241,7 +241,7 @@ def test_an_operation_of_ones_own_is_performed_as_those_of_the_library_are():
     assert check_composition(text) == ("Cells::Machine: its 4 parts fit together", [])
 
 
-def test_an_operation_within_another_one_has_no_end_of_its_own_and_that_is_told():
+def test_an_operation_inside_another_has_no_end_of_its_own_which_is_reported():
     swap = read_page_example("    action def Swapping")
     lines = write_machine(
         [action for action in ACTIONS if action in ("pick", "place")],

@@ -1,4 +1,4 @@
-"""Plants of AutomationML, written as SysML v2 and read again: what they say of themselves."""
+"""Plants of AutomationML that are written as SysML v2 are read back with their metadata."""
 
 from pathlib import Path
 
@@ -75,14 +75,14 @@ def test_data_types_units_versions_and_the_ends_of_links_come_back(unit):
     assert list_differences(read_plant(PLANT.replace("{unit}", unit).encode())) == []
 
 
-def test_ids_of_interfaces_that_are_read_are_not_told_as_lost():
+def test_ids_of_interfaces_that_are_read_are_not_reported_as_lost():
     sink = Sink()
     again = read_back(read_plant(PLANT.replace("{unit}", "m/s").encode()), sink)
     assert [element for element in again if element.attrs.get("interface_ids")]
     assert [diagnostic.message for diagnostic in sink if diagnostic.rule.code == "SM481"] == []
 
 
-def test_an_id_of_an_interface_is_said_once_beside_other_members():
+def test_an_id_of_an_interface_is_written_once_beside_other_members():
     """A part of a class has a class of its own then; the port came into it a second time."""
     units = """<SystemUnitClass Name="Motor"/>
     <SystemUnitClass Name="Driven" RefBaseClassPath="Units/Belt">

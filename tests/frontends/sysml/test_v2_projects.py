@@ -1,4 +1,4 @@
-"""Project archives as inputs: one model, and what they say of themselves is examined."""
+"""Project archives as inputs: one model, whose files are checked against the description."""
 
 import hashlib
 import io
@@ -57,7 +57,7 @@ def test_the_models_of_an_archive_are_compiled(tmp_path):
         ),
     ],
 )
-def test_what_does_not_fit_is_told(tmp_path, message, expected):
+def test_differences_from_the_project_description_are_reported(tmp_path, message, expected):
     assert sorted(compile_files(pack(tmp_path / "robots.kpar", **message))[1]) == sorted(expected)
 
 

@@ -49,7 +49,7 @@ MOVED = frozenset({"item flow", "satisfy", "allocate", "import", "derive"})
 
 
 def remove_unwritten(graph):
-    """The graph without what the text does not say."""
+    """Remove from a graph what the text does not contain; return the graph."""
     for element in list(graph):
         is_standard_stereotype = element.kind is Kind.APPLICATION and is_standard(element)
         is_external = element.owner is None and element.kind in (
@@ -76,7 +76,7 @@ def remove_unwritten(graph):
 
 
 def normalize_expression(text):
-    """An expression in one spelling."""
+    """Return an expression in normal form."""
     if not isinstance(text, str):
         return text
     try:
@@ -86,7 +86,7 @@ def normalize_expression(text):
 
 
 def read_back(graph):
-    """The graph of the text of a graph, and what was found in the text."""
+    """Return the graph of the text of a graph, and the diagnostics about the text."""
     text, _ = print_document(graph, Sink())
     again, sink = Graph(), Sink()
     FRONTEND.read([Source("model.sysml", text.encode())], again, sink, Coverage())
@@ -95,7 +95,7 @@ def read_back(graph):
 
 
 def list_differences(graph):
-    """What was not read back as it was, one a line."""
+    """Return the errors in the text of a graph, and the differences of the graph read back."""
     again, sink = read_back(graph)
     errors = [
         str(diagnostic.message) for diagnostic in sink if diagnostic.rule.code in ("SM205", "SM482")
@@ -159,7 +159,7 @@ KEPT = (
 
 
 def list_names(graph, kind):
-    """Names of the elements of a kind; a second one of a name has a number in the text."""
+    """Return the names of the elements of a kind, without the numbers that make them unique."""
     elements = (element for element in graph.of_kind(kind) if not element.attrs.get("external"))
     return {element.name.rstrip("_0123456789") for element in elements if element.name}
 

@@ -1,4 +1,4 @@
-"""What only SysML v2 says of an element is written and read back: portions, choices, payloads."""
+"""Facts that only SysML v2 expresses are written and read back: portions, choices, payloads."""
 
 from reading_v2 import read
 from test_v2_roundtrip import list_differences

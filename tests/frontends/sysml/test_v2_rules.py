@@ -1,4 +1,4 @@
-"""What the front end for SysML v2 reports (SM480 to SM482, SM484), and what it does not."""
+"""Rules of the front end for SysML v2 (SM480 to SM482, SM484)."""
 
 import pytest
 from reading_v2 import read
@@ -13,13 +13,13 @@ RULES = (rules.UNSUPPORTED, rules.APPROXIMATED, rules.NOT_IN_GRAPH)
 
 
 @pytest.mark.parametrize("rule", RULES, ids=lambda rule: rule.code)
-def test_the_wrong_model_has_the_finding_and_the_right_one_has_not(rule):
+def test_the_wrong_model_is_reported_and_the_right_one_is_not(rule):
     assert rule.code in CODES
     assert rule.code in read(rule.read_page().wrong).list_codes()
     assert rule.code not in read(rule.read_page().right).list_codes()
 
 
-def test_sm480_what_is_not_read_is_told_once_with_its_number_and_place():
+def test_sm480_unread_elements_are_reported_once_with_their_number_and_location():
     reading = read("package P {\n    rendering def A;\n    rendering def B { part x; }\n}")
     diagnostics = [diagnostic for diagnostic in reading.sink if diagnostic.rule.code == "SM480"]
     assert [diagnostic.message for diagnostic in diagnostics] == [
@@ -29,7 +29,7 @@ def test_sm480_what_is_not_read_is_told_once_with_its_number_and_place():
     assert reading.count_verdicts() == {"elements": 5, "mapped": 2, "unsupported": 3}
 
 
-def test_what_a_usage_is_beyond_a_feature_is_kept():
+def test_individuals_portions_variations_and_variants_are_in_the_graph():
     portions = "snapshot begun; timeslice shift; individual part one : Cell;"
     variants = "variation part tool { variant part gripper; }"
     reading = read(f"package P {{ individual part def Cell {{ {portions} {variants} part x; }} }}")
@@ -67,7 +67,7 @@ def test_what_a_usage_is_beyond_a_feature_is_kept():
         ("verification v { objective { verify q { attribute x; } } }", "a verification"),
     ],
 )
-def test_sm481_members_of_what_has_none_in_the_graph_are_told(member, owner):
+def test_sm481_members_of_elements_without_members_in_the_graph_are_reported(member, owner):
     around = "requirement q; part def M { attribute x; } part a : M; part b : M;"
     sink = read(f"package P {{ part def Cell {{ {around} {member} }} }}").sink
     messages = [diagnostic.message for diagnostic in sink if diagnostic.rule.code == "SM481"]
@@ -94,7 +94,7 @@ def test_sm481_members_of_what_has_none_in_the_graph_are_told(member, owner):
         ),
     ],
 )
-def test_sm481_nothing_vanishes_without_a_word(member, expected):
+def test_sm481_every_omission_is_reported(member, expected):
     around = "metadata def M { attribute y { attribute z; } }"
     sink = read(f"package P {{ {around} {member} }}").sink
     messages = [diagnostic.message for diagnostic in sink if diagnostic.rule.code == "SM481"]
@@ -126,7 +126,7 @@ package Q;""")
         ("action def A { action a; then part z; action b; }", "ControlFlow"),
     ],
 )
-def test_sm480_what_leads_to_no_step_does_not_lead_to_the_next_one(body, name):
+def test_sm480_a_succession_to_no_step_does_not_lead_to_the_next_step(body, name):
     reading = read(f"package P {{ {body} }}")
     messages = [
         diagnostic.message for diagnostic in reading.sink if diagnostic.rule.code == "SM480"
@@ -150,14 +150,14 @@ def test_aliases_of_states_are_in_the_graph_wherever_they_stand():
 DAMAGED = b'<sysml:Namespace xmlns:sysml="https://www.omg.org/spec/SysML/20250201"><a>'
 
 
-def test_a_damaged_interchange_file_is_told_and_left_out():
+def test_a_damaged_interchange_file_is_reported_and_omitted():
     sink, graph = Sink(), Graph()
     FRONTEND.read([Source("a.sysmlx", DAMAGED)], graph, sink, Coverage())
     assert [diagnostic.rule.code for diagnostic in sink if diagnostic.is_error] == ["SM750"]
     assert len(graph) == 0
 
 
-def test_sm484_a_library_that_is_not_there_is_told(tmp_path):
+def test_sm484_a_missing_library_is_reported(tmp_path):
     sink, graph = Sink(), Graph()
     front = FRONTEND.with_library(str(tmp_path / "nowhere"))
     front.read([Source("a.sysml", b"package P { part def A; }")], graph, sink, Coverage())

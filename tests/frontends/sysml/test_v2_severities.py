@@ -1,4 +1,4 @@
-"""What rules for models in SysML v1 say of valid text in SysML v2, and contracts of its names."""
+"""Rules for SysML v1 in valid text of SysML v2, and the names in its contracts."""
 
 from reading_v2 import read
 
@@ -219,7 +219,7 @@ def test_states_without_a_first_one_are_no_error():
     ]
 
 
-def test_components_of_one_name_in_two_files_are_told_with_both():
+def test_components_of_one_name_in_two_files_are_reported_with_both():
     text = "package P { action def A { first start; then action x; then done; } }"
     reading = read(text, text, passes=ALL)
     (first, second) = [diagnostic for diagnostic in reading.sink if diagnostic.rule.code == "SM500"]

@@ -1,4 +1,4 @@
-"""A terminate action in a state ends what UML has no words for: it is told."""
+"""A terminate action in a state has no counterpart in UML and is reported."""
 
 import pytest
 from reading_v2 import Reading
@@ -11,7 +11,7 @@ def list_messages(reading):
 
 
 @pytest.mark.parametrize("held", ["entry terminate;", "do terminate;", "exit terminate;"])
-def test_a_terminate_action_of_a_state_is_told(held):
+def test_a_terminate_action_of_a_state_is_reported(held):
     (message,) = list_messages(Reading(RUN % held))
     assert message.startswith("a terminate action of a state or a transition is read as an action")
 

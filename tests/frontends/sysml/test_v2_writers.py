@@ -1,4 +1,4 @@
-"""Who else writes a feature is found wherever it stands: then no contract says that it keeps."""
+"""A feature with several writers, wherever they are, is an input of every contract."""
 
 import pytest
 from reading_v2 import read
@@ -128,7 +128,7 @@ def test_the_rule_of_machines_reports_its_wrong_model_and_not_its_right_one():
         ("part robot { attribute full : Boolean; part def Arm { ACTION } }", "full"),
     ],
 )
-def test_what_belongs_to_another_object_is_told_and_is_no_unknown_name(action, reason):
+def test_a_feature_of_another_object_is_reported_but_not_as_an_unknown_name(action, reason):
     _, sink = write_plant(elsewhere=action.replace("ACTION", without_text(reason)))
     assert (
         "the contract of 'reset' treats 'full' as an input although action 'clear' assigns it: "

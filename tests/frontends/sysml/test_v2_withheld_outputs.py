@@ -1,4 +1,4 @@
-"""An error withholds what it touches, not the whole file that it stands in."""
+"""An error withholds the outputs of the elements it concerns, not those of the whole file."""
 
 import pytest
 

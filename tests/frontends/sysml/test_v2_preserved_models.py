@@ -1,7 +1,7 @@
-"""What real models lost on the way to the text and back: it comes back now, or is told."""
+"""Facts that real models lost in the text: they are read back, or their loss is reported."""
 
 import pytest
-from test_v2_kept import graph_of, read_back_and_compare
+from test_v2_preserved_facts import graph_of, read_back_and_compare
 
 from sysmlc.backends.sysml.document import write_document
 
@@ -118,7 +118,7 @@ def test_the_flow_that_a_decision_is_made_over_is_kept_by_its_name():
 
 
 def list_losses(text):
-    """The ids of elements of which a loss is told, with what is said of them."""
+    """Return the ids of elements with a reported loss, and the lost constructs."""
     writer, _ = write_document(graph_of(text))
     losses_by_id = writer.losses.by_element.items()
     return {
@@ -141,7 +141,7 @@ Package p "Plant"
 """
 
 
-def test_a_step_that_waits_for_a_guarded_flow_is_told():
+def test_a_step_that_waits_for_a_guarded_flow_is_reported():
     construct = "a step that waits for several flows, one of them with a guard,"
     assert list_losses(WAITING.format(guard='guard="1 < 2"')) == {"run.c": [construct]}
     assert list_losses(WAITING.format(guard="")) == {}
@@ -156,7 +156,7 @@ Package p "Plant"
 """
 
 
-def test_a_fork_that_a_state_owns_without_a_region_is_told():
+def test_a_fork_that_a_state_owns_without_a_region_is_reported():
     construct = "a pseudostate that no region owns"
     assert list_losses(FORK.format(subkind="fork"))["m.r.s.f"] == [construct]
     assert "m.r.s.f" not in list_losses(FORK.format(subkind="exit-point"))
@@ -171,7 +171,7 @@ Package types "PrimitiveTypes" external=true
 """
 
 
-def test_an_import_of_primitive_types_of_uml_is_told():
+def test_an_import_of_primitive_types_of_uml_is_reported():
     assert list_losses(IMPORT.format(target="types")) == {"p.i": ["an import of primitive types"]}
     assert "p.i" not in list_losses(IMPORT.format(target="q"))
 
@@ -186,7 +186,7 @@ Package p "Plant"
 """
 
 
-def test_a_quantity_kind_with_another_unit_is_told():
+def test_a_quantity_kind_with_another_unit_is_reported():
     construct = "a quantity kind that has other units"
     assert list_losses(DEGREES.format(symbol="°C")) == {"t": [construct]}
     assert list_losses(DEGREES.format(symbol="K")) == {}

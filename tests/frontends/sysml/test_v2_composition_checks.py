@@ -1,4 +1,4 @@
-"""Blocks with parts: the rules about them, and the words of the verdict."""
+"""Rules about blocks with parts, and the texts of the verdicts."""
 
 import pytest
 from reading_v2 import read
@@ -35,7 +35,7 @@ def test_rule_reports_its_wrong_model_and_not_its_right_one(code):
     assert check_model(rule.read_page().right)[1] == []
 
 
-def test_what_nothing_promises_is_told_with_a_run():
+def test_an_assumption_that_nothing_guarantees_is_reported_with_a_run():
     (result,), diagnostics = check_model(together_rules.OPEN.read_page().wrong)
     assert result.text() == "Line::Cell: its 2 parts together violate its contract"
     assert [diagnostic.rule.code for diagnostic in diagnostics] == ["SM595", "SM597"]
@@ -67,7 +67,7 @@ def test_parts_of_a_block_that_promises_nothing_fit_or_do_not():
         assert result.text() == f"Line::Cell: its 2 parts {words} together"
 
 
-def test_what_takes_too_long_is_not_decided():
+def test_a_check_beyond_the_limits_is_not_decided():
     (result,), (diagnostic,) = check_model(together_rules.BREAK.read_page().right, Limits(nodes=1))
     assert result.text() == "Line::Cell: the composition of its parts is not checked"
     assert diagnostic.message == (
@@ -99,7 +99,7 @@ def test_requirements_that_lean_on_one_another():
 APART = together_rules.OPEN.read_page().right.replace("bind feeder.ready = picker.ready;", "")
 
 
-def test_parts_that_share_nothing_are_not_said_to_fit():
+def test_parts_that_share_no_variable_are_not_reported_as_fitting():
     silent = APART.replace("subject cell : Cell", "subject cell : Other").replace(
         "part def Cell", "part def Other { out attribute taken : Boolean; }\n    part def Cell"
     )
@@ -109,13 +109,13 @@ def test_parts_that_share_nothing_are_not_said_to_fit():
 
 
 def test_a_part_alone_keeps_what_the_block_promises_and_the_others_do_not_matter():
-    """The picker is told by nobody that something is ready, which the block does not assume."""
+    """Nothing tells the picker that a part is ready, and the block does not assume it."""
     (result,), diagnostics = check_model(APART)
     assert result.text() == "Line::Cell: its 2 parts together violate its contract"
     assert [diagnostic.rule.code for diagnostic in diagnostics] == ["SM595", "SM597"]
 
 
-def test_what_no_part_speaks_of_is_not_kept():
+def test_a_guarantee_about_a_variable_of_no_part_is_not_kept():
     nobody = together_rules.OPEN.read_page().right.replace("bind picker.taken = taken;", "")
     (result,), diagnostics = check_model(nobody)
     assert result.text() == "Line::Cell: its 2 parts together violate its contract"

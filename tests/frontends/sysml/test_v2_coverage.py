@@ -1,4 +1,4 @@
-"""What is lost of a text is told and listed, and what follows from an unknown name is not told."""
+"""Losses are reported and listed; consequences of an unknown name are not reported."""
 
 import pytest
 from reading_v2 import PASSES, read
@@ -16,7 +16,7 @@ ENGINE = """
 
 
 def list_lost(text):
-    """What is said to be lost, without the number."""
+    """Return the messages about losses, without the number."""
     sink = read(f"package P {{ {text} }}").sink
     return [
         diagnostic.message.partition(" (")[0]
@@ -26,7 +26,7 @@ def list_lost(text):
 
 
 def list_reported_losses(text):
-    """What the report lists: type, verdict, elements, reason."""
+    """Return the losses of the detailed report: type, verdict, elements, reason."""
     coverage = Coverage(is_detailed=True)
     FRONTEND.read([Source("m.sysml", text.encode())], Graph(), Sink(), coverage)
     (file,) = coverage.files()
@@ -54,7 +54,7 @@ def list_reported_losses(text):
         ("package A; private import A::*[@SysML::PartDefinition];", "an import with a filter"),
     ],
 )
-def test_what_is_lost_is_told(text, beginning):
+def test_losses_are_reported(text, beginning):
     (message,) = list_lost(ENGINE + text)
     assert message.startswith(beginning)
 
@@ -69,11 +69,11 @@ def test_what_is_lost_is_told(text, beginning):
         "package A; private import A::*;",
     ],
 )
-def test_what_is_kept_is_not(text):
+def test_nothing_is_reported_if_nothing_is_lost(text):
     assert list_lost(ENGINE + text) == []
 
 
-def test_a_loss_is_listed_with_what_is_in_it():
+def test_a_loss_is_listed_with_the_number_of_its_members():
     text = f"package P {{ {ENGINE} analysis a {{ subject e : Engine;"
     text += " objective { assume constraint { e.mass > 2 } verify engine2; } }"
     text += " requirement engine2 : Mass; private import ScalarValues::*; }"
@@ -101,7 +101,7 @@ def test_an_import_with_a_filter_is_in_the_graph():
         "part def B { port p; port q; connect p to gone; bind q = gone; }",
     ],
 )
-def test_what_follows_from_an_unknown_name_is_not_told(text):
+def test_consequences_of_an_unknown_name_are_not_reported(text):
     passes = (*PASSES, "behaviours", "activities", "contracts")
     reading = read(f"package P {{ {text} }}", passes=passes)
     errors = [

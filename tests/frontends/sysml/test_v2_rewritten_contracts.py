@@ -73,7 +73,7 @@ EXAMPLES = sorted((ROOT / "examples").rglob("*.sysml"))
 
 
 def list_contracts(reading):
-    """What each component assumes and guarantees."""
+    """Return assumptions and guarantees by component."""
     return {
         contract.component: (
             [conjunct.formula for conjunct in contract.assumptions],
@@ -84,7 +84,7 @@ def list_contracts(reading):
 
 
 def check_round_trip(text):
-    """The contracts, once graph, text and contracts are found to be the same again."""
+    """Check that graph, text and contracts are read back; return the contracts."""
     original = Reading(text, passes=PASSES)
     written, _ = print_document(original.graph, Sink())
     again = Reading(written, passes=PASSES)

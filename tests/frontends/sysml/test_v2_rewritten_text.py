@@ -1,4 +1,4 @@
-"""Text of SysML v2 that is written from what was read of it is the same model."""
+"""Text of SysML v2 that is read, written and read again is the same model."""
 
 import pytest
 from reading_v2 import Reading
@@ -9,7 +9,7 @@ from sysmlc.diagnostics import Sink
 
 
 def write_lines(text):
-    """The lines of the text that the back end writes of a text, without indentation."""
+    """Return the lines that the back end writes for a text, without indentation."""
     written, _ = print_document(Reading(text, passes=PASSES).graph, Sink())
     return [line.strip() for line in written.splitlines() if line.strip()]
 
@@ -65,12 +65,12 @@ package P {
 """
 
 
-def test_a_loop_over_a_collection_is_one_again():
+def test_a_loop_over_a_collection_is_read_back():
     assert "action each for p in belt.pallets {" in write_lines(LOOP)
     assert list_differences(Reading(LOOP, passes=PASSES).graph) == []
 
 
-def test_a_loop_over_what_no_expression_says_keeps_its_words():
+def test_a_loop_over_a_collection_in_prose_keeps_its_text():
     reading = Reading(LOOP, passes=PASSES)
     (region,) = [element for element in reading.graph if element.subkind == "expansion"]
     reading.graph.set(region, collection="the pallets of the belt")
@@ -100,7 +100,7 @@ package P {
 """
 
 
-def test_actors_ends_and_steps_that_several_lead_to_are_as_they_were():
+def test_actors_ends_and_steps_with_several_predecessors_are_read_back():
     lines = write_lines(JOINED)
     assert "actor pilot : Pilot;" in lines
     assert not any(line.startswith("merge") for line in lines)
@@ -115,7 +115,7 @@ package P {
 """
 
 
-def test_what_a_library_of_ours_has_is_referred_to_and_not_written():
+def test_elements_of_shipped_libraries_are_referred_to_and_not_written():
     lines = write_lines(SHIPPED)
     assert "action pick : DIN8580::Pick {" in lines
     assert [line for line in lines if line.startswith("package")] == ["package P {"]
@@ -123,7 +123,7 @@ def test_what_a_library_of_ours_has_is_referred_to_and_not_written():
 
 
 @pytest.mark.parametrize("text", [MEMBERS, LOOP, JOINED, SHIPPED])
-def test_no_error_is_told_of_what_is_written(text):
+def test_the_written_text_has_no_errors(text):
     written, _ = print_document(Reading(text, passes=PASSES).graph, Sink())
     again = Reading(written, passes=PASSES)
     assert [diagnostic.message for diagnostic in again.sink if diagnostic.is_error] == []

@@ -1,4 +1,4 @@
-"""What no word of SysML v2 says is kept as metadata in the text and is read again."""
+"""Facts that SysML v2 cannot express are written as metadata and read back."""
 
 from test_v2_roundtrip import read_back
 
