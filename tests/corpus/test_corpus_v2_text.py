@@ -1,8 +1,8 @@
-"""Text of SysML v2 of real models: read, written and read again it is the same model.
+"""The SysML v2 text of real models: read, written and read again it is the same model.
 
-The text is what ``--emit +sysml`` makes of the XMI and AutomationML of the corpus. What the way
-there loses is told (SM730 to SM737, docs/write-sysml-v2.md); on the way from text to text nothing
-may be lost or come in.
+The text is what ``--emit +sysml`` writes for the XMI and AutomationML of the corpus. The first
+writing reports its losses (SM730 to SM737, docs/write-sysml-v2.md); from text to text nothing may
+be lost or added.
 """
 
 import gc
@@ -23,7 +23,7 @@ pytestmark = pytest.mark.corpus
 
 PASSES = ("resolve", "inherit", "classify", "ports", "flows")
 LARGEST = 300 * 1024
-"""Bytes; the larger ones of the corpus take seconds each and are alike."""
+"""Bytes of a model; larger models of the corpus take seconds each and add nothing new."""
 
 
 def units(corpus):
@@ -50,17 +50,17 @@ def read(text):
     return graph
 
 
-def differences(files):
-    """What is another in the text of the text of a model."""
+def find_differences(files):
+    """Return the differences between the text of a model and the text of that text."""
     gc.unfreeze()
-    made = compile_model(Request(tuple(files), backends=tuple(select_backends(("ir",)))))
-    once = read(text_of(made.graph))
-    again = read(text_of(once))
-    return [str(one) for one in compare(once, again, ("id",))]
+    compilation = compile_model(Request(tuple(files), backends=tuple(select_backends(("ir",)))))
+    first = read(text_of(compilation.graph))
+    second = read(text_of(first))
+    return [str(change) for change in compare(first, second, ("id",))]
 
 
 @pytest.mark.long
 def test_text_that_is_read_and_written_again_is_the_same_model(corpus):
-    found = {name: differences(files) for name, files in units(corpus).items()}
-    assert len(found) == 64
-    assert {name: told for name, told in found.items() if told} == {}
+    differences = {name: find_differences(files) for name, files in units(corpus).items()}
+    assert len(differences) == 64
+    assert {name: changes for name, changes in differences.items() if changes} == {}

@@ -112,7 +112,7 @@ def _write_succession(writer: Writer, member: Member, flow: Element) -> Line | N
 
 
 def _record_waiting(writer: Writer, step: Element | None) -> None:
-    """Record that a step of UML waits for all flows, but in SysML v2 not for a false guard."""
+    """Record a step with several flows: in SysML v2 it does not wait for false guards."""
     if step is None or step.kind not in (Kind.ACTION, Kind.STRUCTURED):
         return
     incoming = writer.graph.sources(step, Edge.FLOW_TARGET)

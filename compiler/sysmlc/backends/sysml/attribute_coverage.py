@@ -114,7 +114,7 @@ def _has_unexpressed_action_kind(writer: Writer, action: Element) -> bool:
 
 
 def _is_unexpressed_flow_end(writer: Writer, node: Element) -> bool:
-    """Whether ``done`` stands for a flow final node, although it ends the whole behaviour."""
+    """Whether the text writes a flow final node as ``done``, which ends the whole behaviour."""
     is_flow_end = node.subkind == "flow-final" and writer.plan.find(node) is None
     return is_flow_end and is_joined(writer.graph, node)
 
@@ -192,7 +192,7 @@ def _has_empty_default(_writer: Writer, _member: Member | None, element: Element
 
 
 def _has_unexpressed_path(writer: Writer, _member: Member | None, element: Element) -> bool:
-    """Whether no feature chain expresses the path to an end: item flows without connectors do."""
+    """Whether no feature chain contains the path: those of item flows without connectors do."""
     is_item_flow = element.kind is Kind.ITEM_FLOW
     return not is_item_flow or bool(writer.graph.targets(element, Edge.REALIZING))
 

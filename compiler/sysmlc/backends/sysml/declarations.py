@@ -53,7 +53,7 @@ class Head:
     value: str = ""
 
     def format(self) -> str:
-        """Return the declaration as text; a redefinition without a name comes first."""
+        """Return the declaration as text; without a name, redefinitions stand first."""
         words = [*self.prefixes, self.keyword, self.name]
         text = " ".join(word for word in words if word)
         types = f" : {', '.join(self.types)}" if self.types else ""

@@ -120,7 +120,7 @@ def _is_unexpressed_behavior(writer: Writer, _owner: Element, behaviour: Element
 
 
 def _is_unexpressed_reference(_writer: Writer, source: Element, target: Element) -> bool:
-    """Whether a reference is lost; a constraint with a name states its other elements."""
+    """Whether the text lacks a reference; a named constraint states all but its owner."""
     if source.kind is Kind.CONSTRAINT:
         return target.id == source.owner or not source.name
     return source.kind not in _KINDS_THAT_EXPRESS[Edge.REFERENCES]

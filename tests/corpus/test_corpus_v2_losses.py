@@ -1,15 +1,15 @@
-"""Our own text of SysML v2 of real models: what it loses is told, and it keeps the rules of v2.
+"""The SysML v2 text of real models: losses are reported, and the text keeps the rules of v2.
 
-Each difference between a model and what is read of its text belongs to an element of which the
-back end has told a loss (SM730 to SM737); the models where some are not told yet are named with
-their number, which may only fall.
+Each difference between a model and its text read back belongs to an element for which the back end
+reports a loss (SM730 to SM737). Models with unreported differences are listed with their number,
+which may only fall.
 """
 
 import gc
 
 import pytest
+from reported_losses import find_unreported
 from test_corpus_v2_text import read, units
-from told_losses import untold
 
 from sysmlc.backends.sysml.document import write_document
 from sysmlc.backends.sysml.printing import print_lines
@@ -23,7 +23,7 @@ from sysmlc.sources import Source
 
 pytestmark = pytest.mark.corpus
 
-NOT_TOLD = {
+UNREPORTED = {
     "aml/mtp_tud_minimal.aml": 1,
     "aml/opak_festo_v35.aml": 2,
     "aml/opak_festo_v35_plc.aml": 2,
@@ -37,7 +37,7 @@ NOT_TOLD = {
     "papyrus/AssertionLibrary.uml": 2,
     "papyrus/RoboCab.uml": 5,
 }
-"""Differences that are not told, by model."""
+"""Number of unreported differences by model."""
 KNOWN_RULES = {
     "aml/eplan_arapc_example.aml": (
         {"SM284"},
@@ -68,42 +68,43 @@ KNOWN_RULES = {
     ),
     "papyrus/moka-master.uml": ({"SM249"}, "the target of a call is no parameter of the operation"),
 }
-"""Rules of v2 that the text of a model breaks, and why."""
+"""Rules of v2 that the text of a model violates, and why."""
 
 
-def made(files):
+def compile_unit(files):
     gc.unfreeze()
     return compile_model(Request(tuple(files), backends=tuple(select_backends(("ir",)))))
 
 
 @pytest.mark.long
-def test_every_difference_is_told_as_a_loss_of_its_element(corpus):
-    found = {}
+def test_every_difference_is_reported_as_a_loss_of_its_element(corpus):
+    counts = {}
     for name, files in units(corpus).items():
-        graph = made(files).graph
+        graph = compile_unit(files).graph
         writer, lines = write_document(graph)
         changes = compare(graph, read(print_lines(lines)), ("id",))
-        found[name] = len(untold(graph, writer.losses.by_element, changes))
-    assert {name: count for name, count in found.items() if count > NOT_TOLD.get(name, 0)} == {}
-    assert sum(found.values()) == sum(NOT_TOLD.values())
+        counts[name] = len(find_unreported(graph, writer.losses.by_element, changes))
+    assert {name: count for name, count in counts.items() if count > UNREPORTED.get(name, 0)} == {}
+    assert sum(counts.values()) == sum(UNREPORTED.values())
 
 
-def rules_of(text):
-    """Codes of errors and warnings about a text."""
+def find_violations(text):
+    """Return the codes of errors and warnings about a text."""
     graph, sink = Graph(), Sink()
     FRONTEND.read([Source("model.sysml", text.encode())], graph, sink, Coverage())
     pipeline.build_pipeline(("resolve", "inherit", "classify", "ports", "flows")).run(graph, sink)
-    return {one.rule.code for one in sink if one.severity is not Severity.INFO}
+    return {diagnostic.rule.code for diagnostic in sink if diagnostic.severity is not Severity.INFO}
 
 
 @pytest.mark.long
-def test_our_own_text_keeps_the_rules_of_sysml_v2(corpus):
-    """What the model itself is told of, by rules of SysML v1, is no fault of the text."""
-    found = {}
+def test_the_text_keeps_the_rules_of_sysml_v2(corpus):
+    """A rule of SysML v1 that the model violates is no fault of the text."""
+    violations = {}
     for name, files in units(corpus).items():
-        model = made(files)
+        model = compile_unit(files)
         _, lines = write_document(model.graph)
-        codes = rules_of(print_lines(lines)) - {one.rule.code for one in model.diagnostics}
+        own_codes = {diagnostic.rule.code for diagnostic in model.diagnostics}
+        codes = find_violations(print_lines(lines)) - own_codes
         if codes:
-            found[name] = codes
-    assert found == {name: codes for name, (codes, _) in KNOWN_RULES.items()}
+            violations[name] = codes
+    assert violations == {name: codes for name, (codes, _) in KNOWN_RULES.items()}
