@@ -1,4 +1,4 @@
-"""Contracts in the forms of other tools: what the back ends for them have in common."""
+"""Common part of the back ends that write contracts in the formats of other tools."""
 
 from collections.abc import Callable
 
@@ -26,53 +26,55 @@ NOT_EXPRESSIBLE = rule(
 )
 
 Split = Callable[[str], dict[str, str]]
-"""A text as the files that it is, by their endings."""
+"""Splits a text into files; the keys are the endings of their names."""
 
 
 class FormBackend(Struct, frozen=True):
-    """Writes every contract in the forms of one tool, each with the ending of its files."""
+    """Writes every contract in the formats of one tool."""
 
     name: str
     summary: str
     files: tuple[tuple[str, str], ...]
-    """Forms (``logic.formats``) and endings."""
+    """Names of formats (``logic.formats``) with the endings of their files."""
     split: Split | None = None
     is_default: bool = False
 
     def emit(self, graph: Graph, output: Output, sink: Sink, options: EmitOptions) -> None:
-        """Add the files of each contract; report what cannot be said."""
+        """Add the files of each contract; report conjuncts that a format cannot express."""
         contracts = graph.derived(Contract)
         names = assign_file_names(contract.component for contract in contracts)
         for contract in contracts:
-            told = tuple(trace(graph, contract))
-            for form, ending in self.files:
-                for last, text in self._texts(graph, contract, form, ending, sink).items():
-                    path = f"contracts/{names[contract.component]}{last}"
-                    output.add(path, text, told, self.name)
+            traced_ids = tuple(trace(graph, contract))
+            for format_name, ending in self.files:
+                texts = self._print(graph, contract, format_name, ending, sink)
+                for file_ending, text in texts.items():
+                    path = f"contracts/{names[contract.component]}{file_ending}"
+                    output.add(path, text, traced_ids, self.name)
 
-    def _texts(
-        self, graph: Graph, contract: Contract, form: str, ending: str, sink: Sink
+    def _print(
+        self, graph: Graph, contract: Contract, format_name: str, ending: str, sink: Sink
     ) -> dict[str, str]:
+        """Return the texts of a contract by the endings of their files."""
         try:
-            text = formats.write(contract, form)
+            text = formats.write(contract, format_name)
         except NotExpressibleError as error:
-            _report(graph, contract, form, error, sink)
+            _report(graph, contract, format_name, error, sink)
             return {}
         return self.split(text) if self.split else {ending: text}
 
 
 def _report(
-    graph: Graph, contract: Contract, form: str, error: NotExpressibleError, sink: Sink
+    graph: Graph, contract: Contract, format_name: str, error: NotExpressibleError, sink: Sink
 ) -> None:
     conjunct = error.conjunct
     origin = conjunct.origin if conjunct and conjunct.origin in graph else contract.origin
     subject = graph.subject(graph[origin]) if origin in graph else Subject(contract.component)
-    what = f"'{print_formula(conjunct.formula)}'" if conjunct else "it"
+    formula = f"'{print_formula(conjunct.formula)}'" if conjunct else "it"
     sink.report(
         NOT_EXPRESSIBLE,
         subject,
         component=contract.component,
-        form=form,
-        what=what,
+        form=format_name,
+        what=formula,
         reason=error.reason,
     )

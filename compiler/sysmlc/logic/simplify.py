@@ -234,8 +234,8 @@ def _remove_redundant_conjuncts(
 ) -> Formula:
     parts = list(args)
     for index in reversed(range(len(parts))):
-        others = (*facts, *parts[:index], *parts[index + 1 :])
-        parts[index] = _remove_redundant(parts[index], known, others)
+        rest = (*facts, *parts[:index], *parts[index + 1 :])
+        parts[index] = _remove_redundant(parts[index], known, rest)
     return f.both(*parts)
 
 

@@ -157,6 +157,7 @@ class ContractDraft:
     def add_ltl(self, owner: Owner, formula: Formula, offset: int) -> None:
         """Add the conjuncts of a formula in LTL, whose operators determine their classes."""
         for class_, part in classify(formula):
+            # Formats that demand a formula in each section write "true" for no conjuncts.
             if part != f.TRUE:
                 conjunct = Conjunct(part, class_, self.file.origin_at(offset))
                 self._conjuncts[owner].append(conjunct)

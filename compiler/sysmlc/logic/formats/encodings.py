@@ -221,7 +221,7 @@ def _iter_ranges(
             continue
         high, names = variable.domain.high, bits[variable.name]
         if high + 1 == 1 << len(names):
-            continue
+            continue  # Every pattern of the bits is a value.
         for class_, primed in ((Class.INIT, False), (Class.SAFETY, True)):
             formula = _build_at_most([Var(name, primed) for name in names], high)
             text = f"'{variable.name}' is at most {high}."

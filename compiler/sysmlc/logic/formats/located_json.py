@@ -27,11 +27,12 @@ class LocatedText(str):
 
 
 def _measure_character(source: str, index: int) -> int:
-    """Return the length of the spelling of one character; a pair of surrogates is one."""
+    """Return the length of the spelling of one character."""
     if source[index : index + 1] != "\\":
         return 1
     if source[index + 1 : index + 2] != "u":
         return 2
+    # JSON escapes a character beyond U+FFFF as two surrogates of six characters each.
     is_high_surrogate = source[index + 2 : index + 4].lower() in ("d8", "d9", "da", "db")
     return 12 if is_high_surrogate and source[index + 6 :][:2] == "\\u" else 6
 

@@ -118,6 +118,7 @@ def rename_reserved(contract: Contract, reserved: Iterable[str]) -> Contract:
 
     A literal with the name of a variable is renamed too.
     """
+    # A format has one namespace for variables and literals.
     words = frozenset(reserved)
     names = _assign_names([variable.name for variable in contract.variables], words)
     taken = words | {*names, *names.values()}

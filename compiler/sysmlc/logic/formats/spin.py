@@ -50,6 +50,7 @@ from sysmlc.logic.syntax import NEUTRAL, FormulaError
 SYNTAX = replace(NEUTRAL, comment=r"/\*[\s\S]*?\*/|//[^\n]*")
 _EQUAL_PRECEDENCE = frozenset([Op.AND, Op.OR, Op.IMPLIES, Op.IFF])
 _EQUALITY = re.compile(r"\{\s*([^\W\d]\w*)\s*==\s*(-?\w+)\s*\}")
+# A proposition is matched whole, so that no names are found inside it.
 _NAME_OR_PROPOSITION = re.compile(r"\{[^{}]*\}|[^\W\d]\w*|[\s\S]")
 _MOST_NAMED = 8
 """Most variables without an owner that a diagnostic names."""
