@@ -49,7 +49,7 @@ def print_conjunct(conjunct):
 
 
 def read(text):
-    """Spot's reading; braces make propositions in its lenient mode."""
+    """Parse with Spot, whose lenient mode reads braces as propositions."""
     parsed = spot.parse_infix_psl(text, spot.default_environment.instance(), False, True)
     assert not parsed.errors, text
     return parsed.f
@@ -59,31 +59,31 @@ def read(text):
 
 
 def bits(name, value):
-    """The value as a conjunction of bits."""
+    """Return the value as a conjunction of bits."""
     index = VALUES[name].index(value)
     return [f'{"" if index >> k & 1 else "!"}"{name}.{k}"' for k in range(2)]
 
 
 def axioms(names):
-    """Each proposition of the SPIN text is a pattern of bits; no pattern is without value."""
-    found = []
+    """Return that each proposition of the SPIN text is a bit pattern, and each pattern a value."""
+    conditions = []
     for name in names:
         patterns = [" & ".join(bits(name, value)) for value in VALUES[name]]
-        found.append("(" + " | ".join(f"({pattern})" for pattern in patterns) + ")")
+        conditions.append("(" + " | ".join(f"({pattern})" for pattern in patterns) + ")")
         for value, pattern in zip(VALUES[name], patterns, strict=True):
-            found.append(f"({proposition(name, value)} <-> ({pattern}))")
-    return "G(" + " & ".join(found or ["1"]) + ")"
+            conditions.append(f"({proposition(name, value)} <-> ({pattern}))")
+    return "G(" + " & ".join(conditions or ["1"]) + ")"
 
 
 def proposition(name, value):
     if isinstance(value, bool):
-        shown = {"p": '"p"', "Door": '"Door==1"'}[name]
-        return shown if value else f"!{shown}"
+        word = {"p": '"p"', "Door": '"Door==1"'}[name]
+        return word if value else f"!{word}"
     return f'"{name}=={value}"'
 
 
 def truth_table(formula):
-    """A formula without temporal operators as a disjunction over the values of its variables."""
+    """Return a formula without temporal operators as a disjunction of valuations."""
     variables = sorted({(v.name, v.primed) for v in f.variables(formula)})
     rows = []
     for values in product(*(VALUES[name] for name, _ in variables)):
@@ -103,34 +103,34 @@ def evaluate(formula, world):
         return formula.value
     if isinstance(formula, Var):
         return world[formula.name, formula.primed]
-    a = [evaluate(arg, world) for arg in formula.args]
+    args = [evaluate(arg, world) for arg in formula.args]
     return {
-        "!": lambda: not a[0],
-        "&": lambda: all(a),
-        "|": lambda: any(a),
-        "->": lambda: a[1] if a[0] else True,
-        "<->": lambda: a[0] is a[1],
-        "=": lambda: a[0] == a[1],
-        "!=": lambda: a[0] != a[1],
-        "<": lambda: a[0] < a[1],
-        "<=": lambda: a[0] <= a[1],
-        ">": lambda: a[0] > a[1],
-        ">=": lambda: a[0] >= a[1],
-        "+": lambda: a[0] + a[1],
-        "-": lambda: a[0] - a[1],
-        "*": lambda: a[0] * a[1],
+        "!": lambda: not args[0],
+        "&": lambda: all(args),
+        "|": lambda: any(args),
+        "->": lambda: args[1] if args[0] else True,
+        "<->": lambda: args[0] is args[1],
+        "=": lambda: args[0] == args[1],
+        "!=": lambda: args[0] != args[1],
+        "<": lambda: args[0] < args[1],
+        "<=": lambda: args[0] <= args[1],
+        ">": lambda: args[0] > args[1],
+        ">=": lambda: args[0] >= args[1],
+        "+": lambda: args[0] + args[1],
+        "-": lambda: args[0] - args[1],
+        "*": lambda: args[0] * args[1],
     }[formula.op]()
 
 
-def assert_same(conjunct):
-    """The SPIN text of the conjunct and its truth table, under its temporal operators, agree."""
+def assert_text_agrees_with_truth_table(conjunct):
     table = truth_table(conjunct.formula)
     wrap = {Class.SAFETY: "G({})", Class.LIVENESS: "G(F({}))", Class.INIT: "({})"}
     names = sorted({v.name for v in f.variables(conjunct.formula)})
-    known = axioms(names)
-    expected = spot.formula(f"{known} & {wrap[conjunct.class_].format(table)}")
-    found = spot.formula.And([spot.formula(known), read(print_conjunct(conjunct))])
-    assert spot.are_equivalent(found, expected), print_conjunct(conjunct)
+    world = axioms(names)
+    expected = spot.formula(f"{world} & {wrap[conjunct.class_].format(table)}")
+    text = print_conjunct(conjunct)
+    actual = spot.formula.And([spot.formula(world), read(text)])
+    assert spot.are_equivalent(actual, expected), text
 
 
 # -- random formulas ---------------------------------------------------------------------------
@@ -168,19 +168,19 @@ formulas = st.recursive(
 
 
 @pytest.mark.parametrize("op", [Op.EQ, Op.NE, Op.LT, Op.GE])
-def test_a_value_beyond_the_range_is_no_proposition_of_its_own(op):
+def test_a_value_beyond_the_range_has_no_proposition(op):
     formula = Apply(op, (Var("n"), Const(9)))
     assert "9" not in print_conjunct(Conjunct(formula, Class.SAFETY, "x"))
-    assert_same(Conjunct(formula, Class.SAFETY, "x"))
+    assert_text_agrees_with_truth_table(Conjunct(formula, Class.SAFETY, "x"))
 
 
 @given(formulas, st.sampled_from([Class.SAFETY, Class.LIVENESS]))
 @settings(max_examples=examples(60), deadline=None, suppress_health_check=[HealthCheck.too_slow])
-def test_spot_reads_the_text_and_finds_it_equivalent(formula, class_):
-    assert_same(Conjunct(formula, class_, "x"))
+def test_the_text_is_equivalent_to_the_truth_table(formula, class_):
+    assert_text_agrees_with_truth_table(Conjunct(formula, class_, "x"))
 
 
-def test_one_formula_for_the_whole_contract():
+def test_a_contract_is_one_formula():
     contract = Contract(
         "C",
         "c",
@@ -201,12 +201,12 @@ def test_one_formula_for_the_whole_contract():
     assert read(text) == spot.formula('GFp -> ("mode==idle" & G(p -> X"mode==busy"))')
 
 
-def test_no_assumption_is_true():
+def test_no_assumptions_are_written_as_true():
     contract = Contract("C", "c", (Variable("p", Owner.SYSTEM, BooleanDomain()),), (), ())
     assert print_spin(contract) == "(true) -> (true)\n"
 
 
-def test_general_ltl_keeps_its_operators():
+def test_general_ltl_retains_its_operators():
     formula = Apply(Op.UNTIL, (f.negate(Var("p")), f.eventually(f.eq(Var("m"), Const(3)))))
     text = print_conjunct(Conjunct(formula, Class.OTHER, "x"))
     assert text == "(!p U <>{m==3})"

@@ -58,13 +58,13 @@ MODELS = {
 
 
 def read(text):
-    """Spot's reading; braces make propositions in its lenient mode."""
+    """Parse with Spot, whose lenient mode reads braces as propositions."""
     parsed = spot.parse_infix_psl(text, spot.default_environment.instance(), False, True)
     assert not parsed.errors, text
     return parsed.f
 
 
-def contracts(text):
+def derive_contracts(text):
     graph = parse_text(text)
     pipeline.run(graph, Sink())
     return list(graph.derived(Contract))
@@ -77,108 +77,109 @@ def bits(domains, name, value):
 
 
 def axioms(domains, names):
-    found = []
+    conditions = []
     for name in sorted(names):
         patterns = [f"({bits(domains, name, value)})" for value in values(domains[name])]
-        found.append(f"({' | '.join(patterns)})")
+        conditions.append(f"({' | '.join(patterns)})")
         for value, pattern in zip(values(domains[name]), patterns, strict=True):
             if value is False:
                 continue
-            shown = f"{name}=={value}"
+            proposition = f"{name}=={value}"
             if value is True:
-                shown = name if re.match("[a-z_]", name) else f"{name}==1"
-            found.append(f'("{shown}" <-> {pattern})')
-    both = " & ".join(found) or "1"
-    return f"({both}) & X({both})"
+                proposition = name if re.match("[a-z_]", name) else f"{name}==1"
+            conditions.append(f'("{proposition}" <-> {pattern})')
+    condition = " & ".join(conditions) or "1"
+    return f"({condition}) & X({condition})"
 
 
-def translated(domains, formula):
+def translate(domains, formula):
     if isinstance(formula, Const):
         return "1" if formula.value else "0"
     if isinstance(formula, Var):
         text = f"({bits(domains, formula.name, True)})"
         return f"X{text}" if formula.primed else text
     if formula.op in COMPARISONS:
-        return f"({table(domains, formula)})"
-    args = [translated(domains, arg) for arg in formula.args]
+        return f"({truth_table(domains, formula)})"
+    args = [translate(domains, arg) for arg in formula.args]
     if formula.op is Op.NOT:
         return f"!({args[0]})"
     return CONNECTIVES[formula.op].join(f"({arg})" for arg in args)
 
 
-def table(domains, formula):
+def truth_table(domains, formula):
     names = sorted({(v.name, v.primed) for v in variables(formula)})
     rows = []
     for row in product(*(values(domains[name]) for name, _ in names)):
         world = dict(zip(names, row, strict=True))
-        if number(formula, world):
+        if evaluate(formula, world):
             parts = [(bits(domains, n, v), primed) for (n, primed), v in world.items()]
             rows.append(" & ".join(f"X({b})" if primed else f"({b})" for b, primed in parts))
     return " | ".join(f"({row})" for row in rows) or "0"
 
 
-def number(formula, world):
+def evaluate(formula, world):
     if isinstance(formula, Const):
         return formula.value
     if isinstance(formula, Var):
         return world[formula.name, formula.primed]
-    left, right = (number(arg, world) for arg in formula.args)
+    left, right = (evaluate(arg, world) for arg in formula.args)
     if formula.op in COMPARISONS:
         return COMPARISONS[formula.op](left, right)
     return {Op.ADD: left + right, Op.SUB: left - right}[formula.op]
 
 
-def below(conjunct, domains):
-    """Spot's reading of the text, without the temporal operators of the conjunct's class."""
-    found = read(SpinPrinter(domains).print_conjunct(conjunct))
+def read_body(conjunct, domains):
+    """Parse the conjunct's text without the temporal operators of its class."""
+    formula = read(SpinPrinter(domains).print_conjunct(conjunct))
     operators = {Class.SAFETY: [spot.op_G], Class.LIVENESS: [spot.op_G, spot.op_F]}
     for operator in operators.get(conjunct.class_, []):
-        if found.is_constant():
+        if formula.is_constant():
             break
-        assert found.kind() == operator
-        found = found[0]
-    return found
+        assert formula.kind() == operator
+        formula = formula[0]
+    return formula
 
 
-def assert_contract_is_the_same(contract):
+def assert_texts_are_equivalent(contract):
     domains = {v.name: v.domain for v in contract.variables}
     for conjunct in (*contract.assumptions, *contract.guarantees):
         names = {v.name for v in variables(conjunct.formula)}
-        known = spot.formula(axioms(domains, names))
-        expected = spot.formula(translated(domains, conjunct.formula))
-        found = below(conjunct, domains)
-        same = spot.are_equivalent(
-            spot.formula.And([known, found]), spot.formula.And([known, expected])
+        world = spot.formula(axioms(domains, names))
+        expected = spot.formula(translate(domains, conjunct.formula))
+        actual = read_body(conjunct, domains)
+        is_equivalent = spot.are_equivalent(
+            spot.formula.And([world, actual]), spot.formula.And([world, expected])
         )
-        assert same, SpinPrinter(domains).print_conjunct(conjunct)
+        assert is_equivalent, SpinPrinter(domains).print_conjunct(conjunct)
 
 
 @pytest.mark.parametrize("name", MODELS)
-def test_conjuncts_of_small_machines(name):
-    (contract,) = contracts(MODELS[name])
-    assert_contract_is_the_same(contract)
+def test_conjuncts_of_small_machines_are_equivalent(name):
+    (contract,) = derive_contracts(MODELS[name])
+    assert_texts_are_equivalent(contract)
 
 
 @pytest.mark.parametrize("name", MODELS)
 def test_the_whole_text_is_the_implication_of_its_conjuncts(name):
-    (contract,) = contracts(MODELS[name])
+    (contract,) = derive_contracts(MODELS[name])
     domains = {v.name: v.domain for v in contract.variables}
+    printer = SpinPrinter(domains)
     sides = [
-        spot.formula.And([read(SpinPrinter(domains).print_conjunct(one)) for one in conjuncts])
+        spot.formula.And([read(printer.print_conjunct(conjunct)) for conjunct in conjuncts])
         for conjuncts in (contract.assumptions, contract.guarantees)
     ]
     assert read(print_spin(contract)) == spot.formula.Implies(*sides)
 
 
 def test_a_changed_formula_is_noticed():
-    (contract,) = contracts(MODELS["gate"])
+    (contract,) = derive_contracts(MODELS["gate"])
     domains = {v.name: v.domain for v in contract.variables}
-    one = next(c for c in contract.guarantees if c.class_ is Class.SAFETY)
-    wrong = Apply(Op.NOT, (one.formula,))
-    known = spot.formula(axioms(domains, {v.name for v in variables(wrong)}))
+    conjunct = next(c for c in contract.guarantees if c.class_ is Class.SAFETY)
+    wrong = Apply(Op.NOT, (conjunct.formula,))
+    world = spot.formula(axioms(domains, {v.name for v in variables(wrong)}))
     pair = [
-        spot.formula.And([known, part])
-        for part in (below(one, domains), spot.formula(translated(domains, wrong)))
+        spot.formula.And([world, part])
+        for part in (read_body(conjunct, domains), spot.formula(translate(domains, wrong)))
     ]
     assert not spot.are_equivalent(*pair)
 
@@ -187,43 +188,45 @@ def test_a_changed_formula_is_noticed():
 
 
 def one_step(formula):
-    """The formula over two copies of the propositions: ``X p`` becomes the proposition ``p'``."""
-    return _renamed(formula, "")
+    """Return the formula over two copies of the propositions: ``X p`` becomes ``p'``."""
+    return _mark_propositions(formula, "")
 
 
-def _renamed(formula, mark):
+def _mark_propositions(formula, mark):
     if formula.kind() == spot.op_X:
         assert not mark, "a conjunct looks one step ahead, not two"
-        return _renamed(formula[0], "'")
+        return _mark_propositions(formula[0], "'")
     if formula.kind() == spot.op_ap:
         return spot.formula.ap(formula.ap_name() + mark)
-    return formula.map(lambda part: _renamed(part, mark))
+    return formula.map(lambda part: _mark_propositions(part, mark))
 
 
-def differ(known, found, expected, names=()):
+def differ(world, actual, expected, names=()):
     """Whether two formulas about one step differ where the axioms hold.
 
-    Diagrams are small when what stands together in a formula is close in their order: ``names``
-    are the variables as the formula has them.
+    Diagrams are small when variables that occur together are close in their order, so ``names``
+    are the variables in the order of the formula.
     """
     owner = spot.make_twa_graph(spot.make_bdd_dict())
-    steps = [one_step(one) for one in (known, found, expected)]
-    place = {name: number for number, name in enumerate(names)}
+    steps = [one_step(formula) for formula in (world, actual, expected)]
+    position = {name: index for index, name in enumerate(names)}
     propositions = {ap.ap_name() for step in steps for ap in spot.atomic_prop_collect(step)}
-    for name in sorted(propositions, key=lambda one: (place.get(_variable(one), 0), one)):
+    for name in sorted(propositions, key=lambda text: (position.get(_variable(text), 0), text)):
         owner.register_ap(name)
-    k, f, e = (spot.formula_to_bdd(step, owner.get_dict(), owner) for step in steps)
-    return buddy.bdd_and(k, buddy.bdd_xor(f, e)) != buddy.bddfalse
+    diagrams = (spot.formula_to_bdd(step, owner.get_dict(), owner) for step in steps)
+    world_bdd, actual_bdd, expected_bdd = diagrams
+    difference = buddy.bdd_xor(actual_bdd, expected_bdd)
+    return buddy.bdd_and(world_bdd, difference) != buddy.bddfalse
 
 
 def _variable(proposition):
-    """The variable that a proposition is about: ``x==3``, ``x.0`` and ``x'`` are about ``x``."""
+    """Return the variable of a proposition: ``x`` for ``x==3``, ``x.0`` and ``x'``."""
     return re.split(r"==|\.|'", proposition)[0]
 
 
 @pytest.mark.parametrize("model", sorted(EXAMPLES.glob("*/*.uml")), ids=lambda path: path.stem)
-def test_conjuncts_of_the_shipped_examples(model):
-    assert_contracts_are_the_same(model)
+def test_conjuncts_of_the_shipped_examples_are_equivalent(model):
+    assert_model_is_equivalent(model)
 
 
 REAL = (
@@ -240,24 +243,24 @@ REAL = (
 
 @pytest.mark.corpus
 @pytest.mark.parametrize("name", quick_first(REAL, 2))
-def test_conjuncts_of_real_models(corpus, name):
-    assert_contracts_are_the_same(corpus / "xmi" / "papyrus" / f"{name}.uml")
+def test_conjuncts_of_real_models_are_equivalent(corpus, name):
+    assert_model_is_equivalent(corpus / "xmi" / "papyrus" / f"{name}.uml")
 
 
-def assert_contracts_are_the_same(model):
-    found = compile_model(Request((model,))).graph.derived(Contract)
-    assert found
-    for contract in found[:: len(found) // 50 + 1]:
+def assert_model_is_equivalent(model):
+    contracts = compile_model(Request((model,))).graph.derived(Contract)
+    assert contracts
+    for contract in contracts[:: len(contracts) // 50 + 1]:
         domains = {v.name: v.domain for v in contract.variables}
         for conjunct in (*contract.assumptions, *contract.guarantees):
             names = dict.fromkeys(v.name for v in variables(conjunct.formula))
-            known = spot.formula(axioms(domains, names))
-            expected = spot.formula(translated(domains, conjunct.formula))
+            world = spot.formula(axioms(domains, names))
+            expected = spot.formula(translate(domains, conjunct.formula))
             text = SpinPrinter(domains).print_conjunct(conjunct)
-            assert not differ(known, below(conjunct, domains), expected, names), text
+            assert not differ(world, read_body(conjunct, domains), expected, names), text
 
 
 def test_decision_diagrams_see_a_difference_only_where_the_axioms_hold():
-    known = spot.formula('(("n==1") <-> ("b")) & X(("n==1") <-> ("b"))')
-    assert not differ(known, spot.formula('X"n==1"'), spot.formula('X"b"'))
-    assert differ(known, spot.formula('X"n==1"'), spot.formula('"b"'))
+    world = spot.formula('(("n==1") <-> ("b")) & X(("n==1") <-> ("b"))')
+    assert not differ(world, spot.formula('X"n==1"'), spot.formula('X"b"'))
+    assert differ(world, spot.formula('X"n==1"'), spot.formula('"b"'))
