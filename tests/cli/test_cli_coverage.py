@@ -53,7 +53,7 @@ uml:Nonsense: 2 unsupported, not read [SM111 unsupported-element]
 Block: 1 unsupported, applied to a missing element [SM113 stereotype-without-element]
   plant.uml:15:3  plant.uml
 
-uml:Class: 1 external, stands for what is in no file of the unit [SM160 external-element]
+uml:Class: 1 external, stands for an element in no file of the unit [SM160 external-element]
   plant.uml:7:9  Plant::Gate::item
 """
 

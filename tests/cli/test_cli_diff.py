@@ -113,7 +113,7 @@ def indented(text):
     ("word", "found"),
     [
         ("defualt", "'defualt': did you mean 'default'?"),
-        ("colour", "'colour': it is no attribute of these models"),
+        ("colour", "'colour': these models have no such attribute"),
     ],
 )
 def test_a_word_that_nothing_is_called_cannot_be_ignored(plants, word, found):

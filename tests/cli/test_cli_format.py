@@ -26,10 +26,10 @@ def folder(tmp_path):
 
 def test_files_of_a_folder_are_laid_out_in_place(folder):
     made = run(folder)
-    assert (made.exit_code, made.stderr) == (0, "1 of 2 files laid out anew\n")
+    assert (made.exit_code, made.stderr) == (0, "1 of 2 files reformatted\n")
     assert (folder / "ugly.sysml").read_text() == NEAT
     assert (folder / "other.txt").read_text() == UGLY
-    assert run(folder).stderr == "0 of 2 files laid out anew\n"
+    assert run(folder).stderr == "0 of 2 files reformatted\n"
 
 
 def test_check_names_what_would_change_and_writes_nothing(folder):
@@ -76,7 +76,7 @@ def test_a_file_with_syntax_errors_is_left_alone_and_the_others_are_not(folder):
     [
         ("gone.sysml", None, "cannot be opened: No such file or directory"),
         ("model.uml", b"", "ends neither in .sysml nor in .kerml: say --language"),
-        ("latin.sysml", b"part '\xe4';", "is no text in UTF-8: byte 6 begins no character"),
+        ("latin.sysml", b"part '\xe4';", "is not UTF-8: byte 6 does not start a character"),
     ],
 )
 def test_what_cannot_be_read_is_exit_code_2(tmp_path, name, content, message):
@@ -106,7 +106,7 @@ def test_a_folder_without_models_is_told(tmp_path):
 
 def test_suffixes_of_files_in_folders_may_be_capitals(tmp_path):
     (tmp_path / "PLANT.SYSML").write_text(UGLY)
-    assert run(tmp_path).stderr == "1 of 1 files laid out anew\n"
+    assert run(tmp_path).stderr == "1 of 1 files reformatted\n"
 
 
 def test_a_file_that_nobody_may_write_is_left_alone(tmp_path):

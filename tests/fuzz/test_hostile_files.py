@@ -79,7 +79,7 @@ def test_pipes_and_devices_are_not_waited_for(unit):
     for name in ("unit/pipe.uml", "unit", "/dev/zero", "/dev/stdin"):
         answer = unit.check(name)
         assert (answer.ended.code, answer.only.code) == (2, "SM179")
-        assert "is no regular file" in answer.only.message
+        assert "is not a regular file" in answer.only.message
 
 
 def test_a_folder_that_is_named_like_a_model_is_a_folder(unit):

@@ -108,12 +108,13 @@ def test_a_wrong_checksum_is_an_error_where_it_is_stated():
         ),
         (
             {"about": b"{"},
-            "SM752 'Robots.kpar!.project.json' does not describe a project: it is no JSON:"
+            "SM752 'Robots.kpar!.project.json' does not describe a project: it is not JSON:"
             " Expecting property name enclosed in double quotes: line 1 column 2 (char 1)",
         ),
         (
             {"about": []},
-            "SM752 'Robots.kpar!.project.json' does not describe a project: it is no JSON object",
+            "SM752 'Robots.kpar!.project.json' does not describe a project: it is not a JSON "
+            "object",
         ),
         (
             {"about": {"version": "1"}},

@@ -131,7 +131,7 @@ def test_a_symbol_too_much_is_told_and_left_out():
 
 
 def test_a_word_that_nearly_is_a_keyword_is_asked_about():
-    assert advised("attribut x : T;") == ["'attribut' is no keyword: did you mean 'attribute'?"]
+    assert advised("attribut x : T;") == ["'attribut' is not a keyword: did you mean 'attribute'?"]
 
 
 @pytest.mark.parametrize(
@@ -139,31 +139,31 @@ def test_a_word_that_nearly_is_a_keyword_is_asked_about():
     [
         ("attribute a = 3 kg;", "units stand in brackets: 3 [kg]"),
         ("enum def E { a, b; }", "members end with ';', they are not separated by commas"),
-        ("part def A extends B;", "what is more special says ':>' or 'specializes'"),
+        ("part def A extends B;", "write ':>' or 'specializes' before a general type"),
         ("attribute a = if b then c else d;", "question mark: if a ? b else c"),
         ("action def Fill(in fuel : F, out level : L);", "of the body: { in fuel; }"),
         ("calc def Double(x) { x }", "of the body: { in x; }"),
-        ("part p { connect a.p[1] to b.p; }", "stands before it: [0..1] a"),
+        ("part p { connect a.p[1] to b.p; }", "before the end: [0..1] a"),
         ("private import ISQ::TorqueValue as Torque;", "alias Torque for ...;"),
         ("private import ISQ.*;", "names of packages are joined by '::'"),
         ("action a { succession b then c; }", "succession first b then ..."),
         ("state s { transition b to c; }", "transition first b then ..."),
-        ("state s { transition t first b then c when x; }", "is 'accept when c'"),
+        ("state s { transition t first b then c when x; }", "write 'accept when c'"),
         ("calc def F { return x * 2; }", "declares the result: return r = ...;"),
         ("part p { assert x > 5; }", "in braces: assert constraint { x > 0 }"),
         ("part p { connect a with b; }", "joined by 'to': connect a to b"),
-        ("block Gate;", "'block' is no keyword: a block is a 'part def'"),
+        ("block Gate;", "'block' is not a keyword: a block is a 'part def'"),
         ("part p { value x : Real; }", "'attribute' is meant"),
         ("action a { stream b.x to c.y; }", "'flow' is meant: flow from a.x to b.y"),
         ("attribute a = b && c;", "conditions are joined by 'and'"),
         ("attribute a = b || c;", "conditions are joined by 'or'"),
-        ("attribute a = b ? c : d;", "begins with 'if': if a ? b else c"),
+        ("attribute a = b ? c : d;", "starts with 'if': if a ? b else c"),
         ("action a { if b = 3 then c; }", "'==' compares two values"),
         ("attribute a == 3;", "'==' compares two values; ':=' gives an initial value"),
         ("constraint c { a > b; }", "without ';' at the end of the body"),
         ('requirement r { doc "text"; }', "between /* and */"),
         ("part p { connect a -> b; }", "joined by 'to': a to b"),
-        ("part p { port in q; }", "the direction stands before the kind: in port"),
+        ("part p { port in q; }", "write the direction before the kind: in port"),
         ("part def A specialises B;", "did you mean 'specializes'?"),
         ("feature f;", "in SysML a feature is a 'ref'"),
     ],
@@ -288,7 +288,7 @@ def test_of_very_many_errors_the_first_hundred_are_told():
 def test_the_last_error_that_is_told_says_that_it_is_the_last():
     sink = Sink()
     parse("part a : ;\n" * 1_000, "a.sysml", "sysml", sink)
-    notes = ("of one file no more than 100 errors of syntax are told",)
+    notes = ("of one file no more than 100 syntax errors are reported",)
     assert [one.notes for one in sink] == [()] * 99 + [notes]
 
 

@@ -77,4 +77,4 @@ def test_a_pipe_is_not_waited_for(project, name):
     os.mkfifo(project / name)
     result = CliRunner().invoke(group.sysmlc, [*DOCUMENTS[name]])
     assert result.exit_code == 2
-    assert "is no regular file" in result.output
+    assert "is not a regular file" in result.output

@@ -182,7 +182,7 @@ def test_a_fifo_is_refused_and_not_waited_for(tmp_path):
     os.mkfifo(tmp_path / "bdd.puml.j2")
     texts, messages = draw(None, tmp_path)
     assert (texts, len(messages)) == ([], 1)
-    assert "bdd.puml.j2: is no regular file" in messages[0]
+    assert "bdd.puml.j2: is not a regular file" in messages[0]
 
 
 def test_a_large_template_is_refused(tmp_path):

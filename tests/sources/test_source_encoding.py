@@ -73,7 +73,7 @@ def test_the_digest_is_that_of_the_file(tmp_path):
 
 def test_bytes_of_another_encoding_are_told_from_bad_markup():
     data = (TEXT % ("UTF-8", "Förderer")).encode("latin-1")
-    reason = "it is not in the encoding UTF-8: invalid start byte"
+    reason = "it is not encoded in UTF-8: invalid start byte"
     assert refusal(data) == (reason, data.index(b"\xf6"))
 
 
@@ -84,14 +84,14 @@ def test_broken_characters_of_several_bytes_are_located():
         .replace("備".encode("shift_jis"), b"\x81")
     )
     message, offset = refusal(data)
-    assert message == "it is not in the encoding Shift_JIS: illegal multibyte sequence"
+    assert message == "it is not encoded in Shift_JIS: illegal multibyte sequence"
     assert offset == data.index(b"\x81")
 
 
 @pytest.mark.parametrize("name", ["klingon", "base64", "idna", "rot13", "utf-7", "unicode_escape"])
 def test_an_encoding_that_is_not_known_is_named(name):
     data = (TEXT % (name, "x")).encode()
-    assert refusal(data) == (f"its encoding '{name}' is not known", data.index(name.encode()))
+    assert refusal(data) == (f"its encoding '{name}' is unknown", data.index(name.encode()))
 
 
 def test_utf_16_that_is_declared_but_not_there_is_refused():

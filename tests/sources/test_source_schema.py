@@ -130,7 +130,7 @@ def test_a_link_that_leads_out_of_the_folder_is_no_schema_of_it(tmp_path):
     ("text", "message"),
     [
         ("<xs:schema", "cannot be read"),
-        ("<html/>", "is no XML Schema"),
+        ("<html/>", "is not an XML Schema"),
         (HEAD.format("", '<xs:element name="a" type="Gone"/>'), "is broken"),
         ('<!DOCTYPE a [<!ENTITY b "c">]>' + HEAD.format("", ""), "DOCTYPE"),
     ],

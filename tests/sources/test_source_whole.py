@@ -57,6 +57,6 @@ def test_the_old_content_is_whole_when_the_file_is_replaced_while_open(tmp_path,
 def test_a_pipe_is_not_waited_for(tmp_path):
     path = tmp_path / "plant.uml"
     os.mkfifo(path)
-    with pytest.raises(SourceError, match="is no regular file") as raised:
+    with pytest.raises(SourceError, match="is not a regular file") as raised:
         whole.read_whole(path, "plant.uml", LIMITS)
     assert raised.value.exit_code == 2

@@ -46,10 +46,10 @@ def test_a_winning_game_has_layers_towards_each_goal():
 @pytest.mark.parametrize(
     ("line", "why"),
     [
-        ("promise at first turning'", "an initial condition cannot speak of the next step"),
-        ("promise recurs angle=wanted'", "what must recur cannot speak of the next step (wanted')"),
-        ("assume at first turning", "an initial assumption cannot speak of an output (turning)"),
-        ("assume always turning'", "cannot speak of the next value of an output (turning')"),
+        ("promise at first turning'", "an initial condition cannot refer to the next step"),
+        ("promise recurs angle=wanted'", "what must recur cannot refer to the next step (wanted')"),
+        ("assume at first turning", "an initial assumption cannot refer to an output (turning)"),
+        ("assume always turning'", "cannot refer to the next value of an output (turning')"),
         ("promise F turning", "neither initial, nor for every step (G), nor recurring (GF)"),
     ],
 )

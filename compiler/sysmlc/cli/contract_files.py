@@ -111,7 +111,7 @@ def _read_specification(file: Path, language: str, config: "Config") -> Contract
 
     if language and not (language in formats.FORMATS and formats.FORMATS[language].is_read):
         readable = ", ".join(name for name, form in formats.FORMATS.items() if form.is_read)
-        fail(f"'{language}' is no form that is read; known are {readable}")
+        fail(f"'{language}' is not a supported format; supported are {readable}")
     try:
         name = escape_undecodable(file.as_posix())
         source = Source(name, read_whole(file, name, DOCUMENT_LIMITS))

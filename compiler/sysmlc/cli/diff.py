@@ -119,7 +119,7 @@ def _check_ignored(ignore: tuple[str, ...], compilations: "list[Compilation]") -
     for word in ignore:
         if word not in words:
             hint = did_you_mean(word, words)
-            advice = hint if hint.startswith("did") else "it is no attribute of these models"
+            advice = hint if hint.startswith("did") else "these models have no such attribute"
             raise click.BadParameter(f"'{word}': {advice}", param_hint="'--ignore'")
 
 

@@ -133,7 +133,7 @@ def _read(path: Path, language: str | None) -> _Text:
     except SourceError as problem:
         fail(f"{name} {problem.message}")
     except UnicodeDecodeError as problem:
-        fail(f"{name} is no text in UTF-8: byte {problem.start} begins no character")
+        fail(f"{name} is not UTF-8: byte {problem.start} does not start a character")
 
 
 def _find_language(path: Path, language: str | None) -> str:
@@ -183,7 +183,7 @@ def _write(texts: list[_Text]) -> None:
     files = [text for text in texts if text.path is not None]
     changed = sum(text.is_changed for text in files)
     if files:
-        click.echo(f"{changed} of {len(files)} files laid out anew", err=True)
+        click.echo(f"{changed} of {len(files)} files reformatted", err=True)
 
 
 def _replace(target: Path, name: str, content: str) -> None:

@@ -124,7 +124,7 @@ def reading(function: _F) -> _F:
                 "--verbose",
                 is_flag=True,
                 callback=_note_missing_limits,
-                help="Say what is done.",
+                help="Print each step.",
             ),
         ],
         function,

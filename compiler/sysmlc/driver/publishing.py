@@ -68,7 +68,7 @@ EDITED_STALE_FILE = rule(
     "edited-stale-output",
     Severity.WARNING,
     "'{path}' is no longer generated but was edited by hand; it is not removed",
-    help="delete it if nobody needs it",
+    help="delete it if it is not needed",
 )
 _SYNCS = 16
 """Files to wait for at once: 500 files took 1.6 s one by one, and 0.1 s at once (ext4)."""

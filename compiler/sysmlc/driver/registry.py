@@ -97,7 +97,7 @@ def load_passes(options: Mapping[str, Mapping[str, object]]) -> list[Pass]:
     for name in options:
         if name not in names:
             advice = did_you_mean(name, names)
-            raise ConfigError(f"passes.{name}: there is no such pass; {advice}")
+            raise ConfigError(f"passes.{name}: unknown pass; {advice}")
     loaded = [pipeline.load(name) for name in pipeline.NAMES]
     loaded += [_load_pass(entry) for entry in plug_ins.values()]
     return pipeline.sort_passes(_set_options(step, options.get(step.name, {})) for step in loaded)
@@ -120,7 +120,7 @@ def _set_options(step: Pass, options: Mapping[str, object]) -> Pass:
     for name, value in options.items():
         where = f"passes.{step.name}.{name}"
         if name not in names:
-            raise ConfigError(f"{where}: there is no such option; {did_you_mean(name, names)}")
+            raise ConfigError(f"{where}: unknown option; {did_you_mean(name, names)}")
         default = getattr(step, name)
         if not _has_type_of(value, default):
             raise ConfigError(f"{where}: {value!r} is no {type(default).__name__}")

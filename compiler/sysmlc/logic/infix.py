@@ -171,7 +171,7 @@ class FormulaReader:
             if isinstance(variable.kind, EnumerationDomain):
                 values = domains.describe(variable.kind)
                 value_text, variable_text = self.describe(value), self.describe(variable)
-                reason = f"{value_text} is no value of {variable_text} ({values})"
+                reason = f"{value_text} is not a value of {variable_text} ({values})"
                 raise FormulaError(reason, value.offset)
         texts = f"{self.describe(left)} and {self.describe(right)}"
         raise FormulaError(f"{texts} cannot be compared", offset)

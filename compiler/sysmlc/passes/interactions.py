@@ -42,7 +42,7 @@ RECEIVED_FIRST = rule(
     "received-before-sent",
     Severity.WARNING,
     "message '{message}' of '{interaction}' is received before it is sent",
-    help="move the message in the modelling tool, so that it orders the ends anew",
+    help="move the message in the modelling tool, which orders its ends again",
 )
 EXECUTION_BACKWARDS = rule(
     "SM445",

@@ -177,7 +177,9 @@ class _FloorReader:
             return None
         number = _parse_whole_number(value)
         if number is None or number < 0:
-            problem = "is negative" if number is not None else f"is no whole number but '{value}'"
+            problem = (
+                "is negative" if number is not None else f"is not a whole number but '{value}'"
+            )
             self._report_attribute(feature, block or feature, attribute, problem)
         return number
 

@@ -282,7 +282,7 @@ def _report_claims(study: Study, claims: Iterable[Claim], place: Place, sink: Si
 def _report_no_allocation(
     study: Study, best_allocation: BestAllocation | None, place: Place, sink: Sink
 ) -> None:
-    reason = "some target is out of the reach of all robots, or waits for what is never done"
+    reason = "some target is out of reach of all robots, or follows a target that is never reached"
     if best_allocation is not None:
         reason = (
             f"the best one that was found takes {print_steps(best_allocation.schedule.duration)}"

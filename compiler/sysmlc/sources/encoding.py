@@ -75,12 +75,12 @@ def fault(data: bytes) -> tuple[str, int] | None:
     """Why the bytes cannot be decoded and where, or None when they can."""
     said = find_declared_encoding(data)
     if not is_known(data):
-        return f"its encoding '{said}' is not known", data.find(said.encode())
+        return f"its encoding '{said}' is unknown", data.find(said.encode())
     mark, name = codec(data)
     try:
         data[mark:].decode(name)
     except UnicodeDecodeError as problem:
-        return f"it is not in the encoding {said or name}: {problem.reason}", mark + problem.start
+        return f"it is not encoded in {said or name}: {problem.reason}", mark + problem.start
     return None
 
 

@@ -99,7 +99,7 @@ def _tree(path: Path, folder: Path) -> etree._ElementTree:
     if _has_doctype(tree):
         raise SchemaError(f"the schema '{name}' has a DOCTYPE, which is refused")
     if tree.getroot().tag != f"{_XS}schema":
-        raise SchemaError(f"'{name}' is no XML Schema: its root is {tree.getroot().tag!r}")
+        raise SchemaError(f"'{name}' is not an XML Schema: its root is {tree.getroot().tag!r}")
     return tree
 
 

@@ -46,7 +46,7 @@ def _without_waiting(path: str, flags: int) -> int:
 
 def _check(found: os.stat_result, name: str, limits: Limits) -> None:
     if not stat.S_ISREG(found.st_mode):
-        raise SourceError("is no regular file", name, fault=Fault.MISSING)
+        raise SourceError("is not a regular file", name, fault=Fault.MISSING)
     if found.st_size > limits.file_size:
         message = f"larger than {limits.file_size} bytes"
         raise SourceError(message, name, fault=Fault.LIMIT)

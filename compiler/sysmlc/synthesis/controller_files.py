@@ -210,7 +210,7 @@ def _legend(names: Mapping[str, str]) -> Iterator[str]:
     if names:
         yield "legend"
         yield from (f"  {name} is what {of} was in the step before" for of, name in names.items())
-        yield "  an output that is not told stays what it was"
+        yield "  an output that is not listed keeps its value"
         yield "endlegend"
 
 

@@ -108,14 +108,14 @@ def test_what_is_no_drawing_is_reported():
         (
             "SM702",
             "diagram 'Goals as a table' of the model's author is not drawn: "
-            "a Requirement Table is no drawing",
+            "a Requirement Table is not drawn",
         ),
         (
             "SM702",
             "diagram 'Nothing' of the model's author is not drawn: "
             "it shows nothing of the model that its notation has a place for",
         ),
-        ("SM702", "diagram 'Ideas' of the model's author is not drawn: a Mind Map is no drawing"),
+        ("SM702", "diagram 'Ideas' of the model's author is not drawn: a Mind Map is not drawn"),
     ]
 
 

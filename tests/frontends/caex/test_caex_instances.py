@@ -358,7 +358,7 @@ def test_a_side_may_name_an_interface_that_only_the_class_holds(side):
         ("connection A0", "it names no interface"),
         ("7f1c1f6e-45f8-4a4c-8d6a-6d2f5f3b8a01", "no element has that id"),
         ("1:in", "'a' has no interface 'in'"),
-        ("1", "that is no interface but 'a'"),
+        ("1", "that is not an interface but 'a'"),
     ],
 )
 def test_an_unresolved_side_is_reported_and_the_link_becomes_a_dependency(side, problem):

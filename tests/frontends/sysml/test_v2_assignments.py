@@ -158,7 +158,7 @@ def test_only_a_variable_that_can_leave_its_range_is_reported():
     ("old", "new", "reason"),
     [
         ("assert constraint { 0 <= n and n <= 3 }", "", "it has no range"),
-        ("n := n + 1", "n := measure(n)", "'measure(n)' is not known, or has too many cases"),
+        ("n := n + 1", "n := measure(n)", "'measure(n)' is unknown, or has too many cases"),
     ],
 )
 def test_an_assignment_that_cannot_be_derived_is_reported_with_the_reason(old, new, reason):
@@ -241,7 +241,7 @@ def test_assignments_in_a_row_are_one_value_as_long_as_they_have_few_cases():
     body = "; ".join(f"n := if (total + n) % {prime} == 1 ? n + 1 else 0" for prime in primes)
     _, messages = assign(body, "total <= 999")
     assert len(messages) == 1
-    assert messages[0].endswith("is not known, or has too many cases")
+    assert messages[0].endswith("is unknown, or has too many cases")
 
 
 BODY = """
@@ -309,7 +309,7 @@ def test_a_value_of_another_type_is_reported():
     messages, becomes = compile_body("assign mode := Color::red;")
     assert messages == [
         "SM544 info: the contract of 'work' treats 'mode' as an input although action 'up' "
-        "assigns it: 'Color::red' is not known, or has too many cases",
+        "assigns it: 'Color::red' is unknown, or has too many cases",
         "SM413 warning: assignment 'mode := Color::red': 'Color::red' is one of red, blue, not of "
         "on, off",
     ]
@@ -323,7 +323,7 @@ def test_a_value_of_another_type_is_reported():
         (
             "m : Integer := 0 { assert constraint { 0 <= m and m <= 9 } }",
             "Measure()",
-            "'Measure()' is not known, or has too many cases",
+            "'Measure()' is unknown, or has too many cases",
         ),
     ],
 )

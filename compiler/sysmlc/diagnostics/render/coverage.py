@@ -134,7 +134,7 @@ def _iter_unlisted_losses(files: Sequence[FileReport]) -> Iterator[str]:
 def _general(lost: LostElement) -> str:
     """The reason without what differs from element to element."""
     is_external = lost.loss.verdict is Verdict.EXTERNAL and lost.loss.rule is not None
-    return "stands for what is in no file of the unit" if is_external else lost.loss.reason
+    return "stands for an element in no file of the unit" if is_external else lost.loss.reason
 
 
 def _examples(members: Sequence[LostElement], every: bool) -> Iterator[str]:

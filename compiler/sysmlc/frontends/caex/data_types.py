@@ -1,6 +1,6 @@
 """XML Schema data types of attributes: conversion of texts to values, and check of both.
 
-A text that is no value of its data type is reported once a file, and converted leniently.
+A text that is not a value of its data type is reported once a file, and converted leniently.
 """
 
 import re
@@ -37,7 +37,7 @@ _HINTS = {
 """Help for a value that is not of its data type, by UML primitive."""
 
 Converter = Callable[[str], AttrValue]
-"""Converts a text to a value. Raises ValueError for a text that is no value of the data type."""
+"""Converts a text to a value. Raises ValueError for a text that is not a value of the data type."""
 
 _INTEGER_BOUNDS: dict[str, tuple[int | None, int | None]] = {
     "integer": (None, None),
@@ -127,7 +127,7 @@ def find_converter(data_type: str) -> Converter | None:
 
 
 def convert_leniently(text: str, data_type: str) -> AttrValue:
-    """Return the likely value of a text that is no value of its data type, else the text."""
+    """Return the likely value of a text that is not a value of its data type, else the text."""
     convert = _LENIENT_CONVERTERS.get(PRIMITIVES.get(local_name(data_type), ""))
     try:
         return text if convert is None else convert(text)
@@ -204,7 +204,7 @@ def convert_value(
     """Return the value of a text for an attribute with data type *stated* or attribute type *type*.
 
     If only the attribute type has a data type, the text is checked but stays a text. A text that
-    is no value of the data type is recorded for ``report_values``.
+    is not a value of the data type is recorded for ``report_values``.
     """
     data_type = find_data_type(stated, type)
     convert = find_converter(data_type)
@@ -227,7 +227,7 @@ def find_data_type(stated: str, type: Type | None) -> str:
 
 
 def _record_invalid_value(context: Context, node: Node, text: str, data_type: str) -> None:
-    """Record a text that is no value of its data type; an empty text is no value at all."""
+    """Record a text that is not a value of its data type; an empty text is no value at all."""
     if text.strip():
         rows = context.invalid_values.setdefault((node.document, data_type, text), [])
         # Both bounds of a constraint may have the same text.

@@ -266,7 +266,7 @@ class _ColumnReader:
         local_names = {tag: tag.rpartition(SEPARATOR)[2] for tag in set(document.tags)}
         document.tags = [local_names[tag] for tag in document.tags]
         if document.tags[0] != "CAEXFile":
-            raise SourceError("its root element is no CAEXFile", self._source.name, 0)
+            raise SourceError("its root element is not CAEXFile", self._source.name, 0)
         document.ids = [attributes.get("ID", "") for attributes in document.attributes]
         document.tag_codes = bytes(map(TAG_CODES.__getitem__, document.tags))
         document.verdicts = list[Verdict | None]([None]) * len(document.tags)

@@ -133,7 +133,7 @@ class LinkEndResolver:
         component = self._components.find(parent) if parent is not None else None
         if node.tag == "ExternalInterface" and component is not None and node.element_id:
             return LinkEnd(node.element_id, component)
-        return Problem(f"that is no interface but '{node.name}'", node.element_id)
+        return Problem(f"that is not an interface but '{node.name}'", node.element_id)
 
     def _make_end_of_name(self, owner: Node, name: str) -> LinkEnd | Problem:
         """Return the end at an interface by name; perhaps only the class of *owner* declares it."""

@@ -143,9 +143,9 @@ def _read_json(
     try:
         content = json.loads(source.data)
     except (ValueError, RecursionError) as problem:
-        return _report_bad_project(sink, source, f"it is no JSON: {problem}")
+        return _report_bad_project(sink, source, f"it is not JSON: {problem}")
     if not isinstance(content, dict):
-        return _report_bad_project(sink, source, "it is no JSON object")
+        return _report_bad_project(sink, source, "it is not a JSON object")
     for key, kind in fields.items():
         if key in content and not isinstance(content[key], kind):
             _report_bad_project(sink, source, f"its '{key}' is of the wrong type", key)

@@ -11,7 +11,7 @@ from sysmlc.sources import Source
 
 _MAX_ERRORS = 100
 """Errors that are reported for one file."""
-_LAST_NOTE = f"of one file no more than {_MAX_ERRORS} errors of syntax are told"
+_LAST_NOTE = f"of one file no more than {_MAX_ERRORS} syntax errors are reported"
 _LANGUAGES = {"kerml": "KerML", "sysml": "SysML"}
 _COMMENT_ADVICE = (
     "a comment /* */ is an element of the model and stands between members, or after `doc` or "

@@ -8,14 +8,14 @@ from sysmlc.support.suggestions import did_you_mean
 INITIAL = "':=' gives an initial value, '=' binds for good, 'default' may be overridden"
 _PARAMETERS = "parameters are members of the body: {{ in {0}; }}"
 _TOKENS = {
-    "import": "an import stands in a body: private import A::*;",
+    "import": "write the import in a body: private import A::*;",
     ":=": INITIAL,
     ",": "members end with ';', they are not separated by commas",
-    "extends": "what is more special says ':>' or 'specializes'",
-    "is": "what is more special says ':>' or 'specializes', a type stands behind ':'",
+    "extends": "write ':>' or 'specializes' before a general type",
+    "is": "write ':>' or 'specializes' before a general type, and ':' before the type of a usage",
     "with": "ends of a connection are joined by 'to': connect a to b",
-    "then": "an expression asks with a question mark: if a ? b else c",
-    "when": "what is waited for is 'accept when c', a condition is 'if c', both before 'then'",
+    "then": "a conditional expression has a question mark: if a ? b else c",
+    "when": "write 'accept when c' for a change, 'if c' for a guard, both before 'then'",
 }
 """Advice about a token, wherever it stands."""
 _FIRST_WORDS = {
@@ -31,13 +31,13 @@ _FIRST_WORDS = {
     "feature": "in SysML a feature is a 'ref', 'attribute', 'part' or 'item'",
     "func": "'calc' is meant",
     "function": "in SysML a function is a 'calc def'",
-    "id": "an identifier stands behind the keyword: requirement <'R5'> name",
+    "id": "write the short name after the keyword: requirement <'R5'> name",
     "link": "'connection' is meant",
     "operation": "'action' is meant",
     "property": "'attribute', 'part' or 'ref' is meant",
     "readonly": "what never changes is 'constant', in KerML 'const'",
     "predicate": "in SysML a predicate is a 'constraint def'",
-    "signal": "what is sent is an 'item def' or 'attribute def'",
+    "signal": "declare a signal as 'item def' or 'attribute def'",
     "stream": "'flow' is meant: flow from a.x to b.y",
     "struct": "in SysML a structure is a 'part def' or 'item def'",
     "usecase": "'use case' is meant",
@@ -102,9 +102,9 @@ def _advise_first_word(tokens: Tokens, index: int, beginnings: Collection[str]) 
     if not is_first or not word.isidentifier() or word in beginnings:
         return ""
     if word in _FIRST_WORDS:
-        return f"'{word}' is no keyword: {_FIRST_WORDS[word]}"
+        return f"'{word}' is not a keyword: {_FIRST_WORDS[word]}"
     suggestion = did_you_mean(word, [keyword for keyword in beginnings if keyword.isalpha()])
-    return f"'{word}' is no keyword: {suggestion}" if suggestion.startswith("did") else ""
+    return f"'{word}' is not a keyword: {suggestion}" if suggestion.startswith("did") else ""
 
 
 def _advise_direction(tokens: Tokens, before: int, index: int, beginnings: Collection[str]) -> str:
@@ -112,7 +112,7 @@ def _advise_direction(tokens: Tokens, before: int, index: int, beginnings: Colle
     word, kind = tokens[index], tokens[before]
     if word not in _DIRECTIONS or kind not in beginnings or not kind.isalpha():
         return ""
-    return f"the direction stands before the kind: {word} {kind} ..."
+    return f"write the direction before the kind: {word} {kind} ..."
 
 
 def _member_before(tokens: Tokens, index: int) -> list[str]:
@@ -150,7 +150,7 @@ def _advise_parameters(tokens: Tokens, index: int, expected: Collection[str]) ->
 
 def _advise_multiplicity(tokens: Tokens, index: int, expected: Collection[str]) -> str:
     is_end = tokens[index] == "[" and not _END_TOKENS.isdisjoint(expected)
-    return "the multiplicity of an end stands before it: [0..1] a" if is_end else ""
+    return "write the multiplicity before the end: [0..1] a" if is_end else ""
 
 
 def _advise_import(tokens: Tokens, index: int, _expected: Collection[str]) -> str:
@@ -167,15 +167,19 @@ def _advise_ends(tokens: Tokens, index: int, _expected: Collection[str]) -> str:
     before = _member_before(tokens, index)
     source = before[-1] if before else "a"
     if tokens[index] == "then" and before[-2:-1] == ["succession"]:
-        return f"before the source stands 'first': succession first {source} then ..."
+        return f"write 'first' before the source: succession first {source} then ..."
     if tokens[index] == "to" and "transition" in before:
-        return f"a transition says where it begins and ends: transition first {source} then ..."
+        return f"a transition names its source and target: transition first {source} then ..."
     return ""
 
 
 def _advise_condition(tokens: Tokens, index: int, _expected: Collection[str]) -> str:
     is_condition = _member_before(tokens, index)[:1] == ["assert"]
-    return "what is asserted stands in braces: assert constraint { x > 0 }" if is_condition else ""
+    return (
+        "write the asserted condition in braces: assert constraint { x > 0 }"
+        if is_condition
+        else ""
+    )
 
 
 def _advise_result(tokens: Tokens, index: int, _expected: Collection[str]) -> str:
@@ -212,7 +216,7 @@ def _advise_comparison(tokens: Tokens, index: int, expected: Collection[str]) ->
 
 def _advise_conditional(tokens: Tokens, index: int, expected: Collection[str]) -> str:
     is_question = tokens[index] == "?" and "?" not in expected
-    return "an expression that chooses begins with 'if': if a ? b else c" if is_question else ""
+    return "a conditional expression starts with 'if': if a ? b else c" if is_question else ""
 
 
 def _advise_result_end(tokens: Tokens, index: int, expected: Collection[str]) -> str:
@@ -223,7 +227,7 @@ def _advise_result_end(tokens: Tokens, index: int, expected: Collection[str]) ->
 
 def _advise_comment(tokens: Tokens, index: int, expected: Collection[str]) -> str:
     is_text = tokens[index].startswith('"') and "BODY" in expected
-    return "what is said stands between /* and */" if is_text else ""
+    return "write the text between /* and */" if is_text else ""
 
 
 def _advise_connection(tokens: Tokens, index: int, expected: Collection[str]) -> str:

@@ -202,7 +202,7 @@ class _ChaseReader(FormulaReader):
         if token.text in self._propositions:
             return self._propositions[token.text]
         if token.text == "P" and self.cursor.is_next("("):
-            raise FormulaError("probabilities are outside what is read", token.offset)
+            raise FormulaError("probabilities are not supported", token.offset)
         return super().resolve_name(token)
 
 

@@ -72,7 +72,7 @@ def read_document(file: SpecificationFile, language: str) -> LocatedObject | Non
     except ValueError as error:
         # A lone ValueError is a number with more digits than Python converts.
         offset, reason = getattr(error, "pos", 0), getattr(error, "msg", str(error))
-        file.report(rules.NOT_UNDERSTOOD, offset, form=language, reason=f"it is no JSON: {reason}")
+        file.report(rules.NOT_UNDERSTOOD, offset, form=language, reason=f"it is not JSON: {reason}")
         return None
     if isinstance(document, LocatedObject):
         return document
@@ -131,7 +131,7 @@ def _read_variable(name: str, declaration: object, offset: int) -> Variable:
 def check_name(name: str, offset: int) -> None:
     """Raise ShapeError unless the name of a variable can stand in formulas."""
     if not name.isidentifier():
-        raise ShapeError(f"'{name}' is no name that formulas can have", offset)
+        raise ShapeError(f"'{name}' is not a valid name in formulas", offset)
 
 
 def read_domain(name: str, type_: object, offset: int) -> Domain:
@@ -157,7 +157,7 @@ def read_domain(name: str, type_: object, offset: int) -> Domain:
 def _read_enumeration(name: str, literals: list[str], offset: int) -> Domain:
     for literal in literals:
         if not literal.isidentifier():
-            reason = f"'{literal}' of '{name}' is no name that formulas can have"
+            reason = f"'{literal}' of '{name}' is not a valid name in formulas"
             raise ShapeError(reason, offset)
         if literals.count(literal) > 1:
             raise ShapeError(f"'{name}' has the value '{literal}' twice", offset)

@@ -128,7 +128,7 @@ class ContractDraft:
         if step is None:
             reason = "it looks further than one step"
             if class_ is Class.INIT:
-                reason = "it speaks of the next step"
+                reason = "it refers to the next step"
             self._report_wrong_class(owner, class_, formula, offset, reason)
         elif step != f.TRUE:
             origin = self.file.origin_at(offset)

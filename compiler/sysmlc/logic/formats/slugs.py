@@ -118,7 +118,7 @@ def _read_title(draft: ContractDraft, title: str, offset: int) -> str:
     if title in _DECLARATIONS or title in _SECTIONS:
         return title
     titles = ", ".join([*_DECLARATIONS, *_SECTIONS])
-    draft.report_not_understood(offset, f"[{title}] is no section; there are {titles}")
+    draft.report_not_understood(offset, f"[{title}] is not a section; the sections are {titles}")
     return ""
 
 

@@ -67,7 +67,7 @@ class TypeReader:
             return self.read_range(read_constant, ")")
         name = cursor.expect_kind("name", "a type")
         if name.text not in self.named:
-            raise FormulaError(f"'{name.text}' is no type", name.offset)
+            raise FormulaError(f"'{name.text}' is not a type", name.offset)
         return self.named[name.text]
 
     def _read_literals(self) -> Domain:
@@ -99,7 +99,7 @@ class TypeReader:
             return self._cursor.read_integer()
         term = read_constant()
         if not isinstance(term.formula, Const) or not isinstance(term.formula.value, int):
-            raise FormulaError(f"'{token.text}' is no number", token.offset)
+            raise FormulaError(f"'{token.text}' is not a number", token.offset)
         return term.formula.value
 
 

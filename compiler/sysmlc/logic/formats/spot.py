@@ -69,7 +69,7 @@ def read(file: SpecificationFile) -> tuple[Contract, ...]:
             if name.group().isidentifier():
                 draft.declare(name.group(), offset, _OWNERS[line.group(1)], BooleanDomain())
             else:
-                reason = f"'{name.group()}' is no name that formulas can have"
+                reason = f"'{name.group()}' is not a valid name in formulas"
                 draft.report_not_understood(offset, reason)
     read_implication(draft, blank_partition(file.text), SYNTAX, _SpotReader)
     return draft.build(PurePath(file.path).stem.removesuffix(".spot"))

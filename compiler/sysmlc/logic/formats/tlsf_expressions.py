@@ -210,7 +210,7 @@ class Evaluator:
             return Var(value.bits[0])
         if isinstance(value, int | Bus):
             kind = "a number" if isinstance(value, int) else "a bus"
-            raise FormulaError(f"{kind} stands where a condition is expected", tree.offset)
+            raise FormulaError(f"{kind} found; expected a condition", tree.offset)
         return value
 
     def evaluate(self, tree: Tree, scope: Scope) -> Value:
@@ -239,7 +239,7 @@ class Evaluator:
 
     def _evaluate_call(self, tree: Tree, scope: Scope) -> Value:
         if tree.text not in self._definitions:
-            raise FormulaError(f"'{tree.text}' is no definition", tree.offset)
+            raise FormulaError(f"'{tree.text}' is not a definition", tree.offset)
         arguments = tuple(self.evaluate(arg, scope) for arg in tree.args)
         return self._call(tree.text, arguments, tree)
 

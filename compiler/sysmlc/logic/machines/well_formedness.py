@@ -63,7 +63,7 @@ def _report_foreign_targets(graph: Graph, machine: Machine, sink: Sink) -> Itera
     """
     for transition in machine.list_transitions():
         if transition.target not in machine.vertices:
-            where = "to what is in no region of this machine"
+            where = "to a vertex outside of this machine"
             yield _report_stray(graph, transition, where, sink)
 
 
@@ -186,7 +186,7 @@ def _explain_bad_fork(machine: Machine, outgoing: tuple[Transition, ...]) -> str
 def _explain_bad_join(machine: Machine, incoming: list[Transition]) -> str:
     """Return why the transitions that lead to a join are invalid, or an empty text."""
     if any(machine.vertices[transition.source].kind != "state" for transition in incoming):
-        return "a transition leads to it from what is no state"
+        return "a transition leads to it from a vertex that is not a state"
     if any(transition.guard is not None or transition.occurrences for transition in incoming):
         return "a transition that leads to it has a guard or a trigger"
     if not _are_orthogonal(machine, [transition.source for transition in incoming]):

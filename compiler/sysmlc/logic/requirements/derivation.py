@@ -156,7 +156,9 @@ def _read_condition(graph: Graph, scope: Scope, statement: Statement, sink: Sink
 
 def _explain(scope: Scope, error: Exception) -> str:
     if isinstance(error, ElaborationError) and error.fault is Fault.UNKNOWN:
-        return f"'{error.name}' is no feature of '{scope.context.name}' with finitely many values"
+        return (
+            f"'{error.name}' is not a feature of '{scope.context.name}' with finitely many values"
+        )
     return str(error)
 
 

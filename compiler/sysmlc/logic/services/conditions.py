@@ -235,5 +235,5 @@ def is_input(feature: Feature) -> bool:
 
 def _explain(context: Context, error: Exception) -> str:
     if isinstance(error, ElaborationError) and error.fault is Fault.UNKNOWN:
-        return f"'{error.name}' is no parameter or feature with finitely many values"
+        return f"'{error.name}' is not a parameter or feature with finitely many values"
     return str(error)

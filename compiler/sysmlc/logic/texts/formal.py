@@ -94,7 +94,9 @@ class _TemporalReader(FormulaReader):
     def _check_past(self, op: Op, term: Term) -> Term:
         args = getattr(term.formula, "args", ())
         if op in PAST and any(has_future(arg) or has_primes(arg) for arg in args):
-            raise FormulaError(f"'{op}' cannot look back at what is yet to come", term.offset)
+            raise FormulaError(
+                f"'{op}' cannot be applied to a formula about the future", term.offset
+            )
         return term
 
 

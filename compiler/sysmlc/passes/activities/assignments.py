@@ -189,7 +189,7 @@ WIDE = Refusal("it has no range", "give it a range (constraint 0 <= {name} <= 9)
 DECIDED = Refusal("others decide it too", "assign to a feature that is neither given nor constant")
 ELSEWHERE = Refusal("it belongs to another object", "let the object itself do it (an operation)")
 UNKNOWN = Refusal(
-    "the value that it gets is not known", "write the value as an expression over known properties"
+    "its new value is unknown", "write the value as an expression over known properties"
 )
 
 

@@ -126,7 +126,7 @@ def _add_throw(draft: Draft, node: Element, source: str, guard: Guard | None) ->
 def _ensure_uncaught_final(draft: Draft) -> str:
     """Return the final node in which uncaught exceptions end the activity."""
     activity = draft.drawing.activity
-    label = "an exception that nobody catches"
+    label = "an exception without handler"
     return draft.ensure_node(
         activity, "uncaught", NodeKind.ACTIVITY_FINAL, label, ACTIVITY_REGION
     ).id

@@ -100,7 +100,7 @@ class _StoreTracker:
                 )
             else:
                 cases_of.pop(name, None)
-                reason = f"'{assignment.text}' is not known, or has too many cases"
+                reason = f"'{assignment.text}' is unknown, or has too many cases"
                 refusal = replace(UNKNOWN, reason=reason) if assignment.text else UNKNOWN
                 self.refused.setdefault(name, refusal)
         first_assignment = statements[0].assignment

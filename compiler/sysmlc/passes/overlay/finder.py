@@ -250,7 +250,7 @@ class Finder:
     def _suggest(self, word: str, sort: Sort) -> str:
         self._advised += 1
         if self._advised > _ADVISED:
-            return "the first findings of this kind name what is near"
+            return "only the first findings of this kind name similar elements"
         if _GUID.fullmatch(word.strip()):
             return "'sysmlc show MODEL' prints all ids"
         hint = did_you_mean(word, self.list_paths(sort))

@@ -293,7 +293,7 @@ def build_lasso(runs: Runs, path: list[Node], within: Node) -> Trace:
             return _decode_trace(runs, extended + closing[:-1], anchor)
         successors = runs.successors(extended[-1]) & within
         if successors == runs.manager.false:
-            raise ValueError("no fair run goes on from here")
+            raise ValueError("no fair run continues from here")
         extended.append(pick_state(runs, successors))
 
 

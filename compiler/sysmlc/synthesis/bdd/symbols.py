@@ -186,7 +186,7 @@ class Symbols:
                 codes = {literal: self.code(name, literal, primed) for literal in literals}
                 return {literal: self.manager.cube(code) for literal, code in codes.items()}
             case _:
-                raise SymbolError("a literal is compared with what is none")
+                raise SymbolError("a literal is compared with a value that is not a literal")
 
     def _literals_of(self, formula: Formula) -> tuple[str, ...]:
         match formula:
@@ -230,7 +230,7 @@ class Symbols:
     def _vector_of_variable(self, variable: Variable, primed: bool) -> Vector:
         domain = variable.domain
         if not isinstance(domain, IntegerDomain):
-            raise SymbolError(f"{variable.name} is no number")
+            raise SymbolError(f"{variable.name} is not a number")
         code = vectors.unsigned(
             self.manager, self._bit_nodes(self.bits(variable.name, primed))[::-1]
         )
@@ -239,7 +239,7 @@ class Symbols:
 
     def _variable(self, name: str) -> Variable:
         if name not in self.variables:
-            raise SymbolError(f"{name} is no variable of the contract")
+            raise SymbolError(f"{name} is not a variable of the contract")
         return self.variables[name]
 
     def _bit_nodes(self, bits: Collection[str]) -> list[Node]:

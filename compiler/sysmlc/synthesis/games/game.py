@@ -172,16 +172,16 @@ def _find_objection(conjunct: Conjunct, names: _VariableNames, is_assumption: bo
         after = _first_variable(conjunct.formula, frozenset().union(*names.values()), primed=True)
         kind = "an initial condition" if conjunct.class_ is Class.INIT else "what must recur"
         if after:
-            return f"{kind} cannot speak of the next step ({after}')"
+            return f"{kind} cannot refer to the next step ({after}')"
     return _find_assumption_objection(conjunct, names[Owner.SYSTEM]) if is_assumption else ""
 
 
 def _find_assumption_objection(conjunct: Conjunct, outputs: frozenset[str]) -> str:
     if conjunct.class_ is Class.INIT:
         output = _first_variable(conjunct.formula, outputs, primed=False)
-        return output and f"an initial assumption cannot speak of an output ({output})"
+        return output and f"an initial assumption cannot refer to an output ({output})"
     output = _first_variable(conjunct.formula, outputs, primed=True)
-    return output and f"an assumption cannot speak of the next value of an output ({output}')"
+    return output and f"an assumption cannot refer to the next value of an output ({output}')"
 
 
 def _first_variable(formula: Formula, names: frozenset[str], primed: bool) -> str:

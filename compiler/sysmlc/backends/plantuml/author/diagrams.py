@@ -192,7 +192,7 @@ def _make_diagram(choice: Selection, kind: str, view: View) -> Diagram:
 def _report_not_drawn(choice: Selection, kind: str, sink: Sink) -> None:
     type_ = str(choice.view.attrs.get("diagram_type", "")) or kind or "diagram"
     is_drawable = kind in _TITLES
-    reason = f"a {type_} is no drawing"
+    reason = f"a {type_} is not drawn"
     if is_drawable:
         reason = "it shows nothing of the model that its notation has a place for"
     subject = choice.graph.subject(choice.view)
