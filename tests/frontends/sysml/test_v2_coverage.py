@@ -48,7 +48,10 @@ def list_reported_losses(text):
             "analysis a { subject e : Engine; objective : Mass; }",
             "the type of an objective is read as nothing",
         ),
-        ("use case u; part t { perform u; }", "the performance of what is no action"),
+        (
+            "use case u; part t { perform u; }",
+            "the performance of an element that is not an action",
+        ),
         ("flow def F { end a; end b; }", "flow definition is not read"),
         ("part def Q { constraint { 1 < 2 } }", "a constraint that nothing asserts is read as"),
         ("package A; private import A::*[@SysML::PartDefinition];", "an import with a filter"),
@@ -79,7 +82,7 @@ def test_a_loss_is_listed_with_the_number_of_its_members():
     text += " requirement engine2 : Mass; private import ScalarValues::*; }"
     assert list_reported_losses(text) == [
         ("ConstraintUsage", "approximated", 5, "a part of an objective is read as nothing"),
-        ("NamespaceImport", "external", 1, "stands for what is in a library"),
+        ("NamespaceImport", "external", 1, "stands for an element of a library"),
     ]
 
 

@@ -236,7 +236,7 @@ def lower_control_node(lowering: "Lowering", node: Node, owner: Element) -> Elem
 def lower_termination(lowering: "Lowering", node: Node, owner: Element) -> Element:
     """Lower a terminate action: the end of the behaviour, or an action for another occurrence."""
     if any(expression is not None for expression in expressions.list_inputs(node)):
-        construct = "a terminate action for something else"
+        construct = "a terminate action for another occurrence"
         lowering.mark_approximated(node, construct, "an opaque action")
         return _add_action(lowering, node, owner, "destroy")
     name = nodes.name_of(node)

@@ -122,7 +122,9 @@ def _connect_performed(
     elif performed.kind is Kind.OPERATION:
         lowering.mark_approximated(node, "the performance of an operation", "the operation")
     else:
-        lowering.mark_approximated(node, "the performance of what is no action", "nothing")
+        lowering.mark_approximated(
+            node, "the performance of an element that is not an action", "nothing"
+        )
 
 
 def lower_classifier_action(lowering: "Lowering", node: Node, owner: Element) -> None:

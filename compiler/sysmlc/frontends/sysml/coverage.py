@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 _REASONS: dict[Verdict, tuple[Rule | None, str]] = {
     Verdict.UNSUPPORTED: (UNSUPPORTED, "not read"),
     Verdict.APPROXIMATED: (APPROXIMATED, "read without part of its meaning"),
-    Verdict.EXTERNAL: (None, "stands for what is in a library"),
+    Verdict.EXTERNAL: (None, "stands for an element of a library"),
     Verdict.IGNORED_NOTATION: (None, "means nothing beyond what it shows or names"),
 }
 _UNSUPPORTED = "unsupported"
