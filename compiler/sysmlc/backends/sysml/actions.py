@@ -215,7 +215,7 @@ def _format_loop(writer: Writer, member: Member, element: Element) -> str:
     expression = format_expression(writer, member.parent, collection)
     if expression is None:
         return ""
-    writer.declared_attributes.add(id(variable))
+    variable.is_declared = True
     writer.collection_loops.add(element.id)
     if variable.element is not None:
         writer.expressed.add(variable.element.id)

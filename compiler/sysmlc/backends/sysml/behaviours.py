@@ -57,9 +57,8 @@ def _is_subaction(writer: Writer, owner: Element, behaviour: Element) -> bool:
 
 def _write_body(writer: Writer, member: Member, element: Element) -> list[Line]:
     body = write_contents(writer, member)
-    objectives = writer.objective_lines.pop(id(member), [])
-    if objectives:
-        body.insert(0, Line("objective", objectives))
+    if member.objective_lines:
+        body.insert(0, Line("objective", member.objective_lines))
     statements = format_statements(writer, member, element)
     if statements is None:
         return body + write_opaque_bodies(writer, element)

@@ -11,7 +11,7 @@ from sysmlc.backends.sysml.elided_elements import find_specific_feature, iter_ty
 from sysmlc.backends.sysml.expressions import format_expression
 from sysmlc.backends.sysml.library import find_scalar_type
 from sysmlc.backends.sysml.plan import Member, Plan
-from sysmlc.backends.sysml.printing import quote_name
+from sysmlc.backends.sysml.printing import Line, quote_name
 from sysmlc.backends.sysml.rules import UNSAID_ATTRIBUTE
 from sysmlc.backends.sysml.writer import Writer
 from sysmlc.ir import Edge, Element, Kind
@@ -127,7 +127,7 @@ def _add_generalization(writer: Writer, member: Member, element: Element, genera
     if name is not None:
         keyword = writer.refer_to_sysmlc(member, "generalization")
         source = quote_name(member.name)
-        writer.add_line(member, f"#{keyword} dependency from {source} to {name}")
+        member.added_lines.append(Line(f"#{keyword} dependency from {source} to {name}"))
 
 
 def _is_invalid(plan: Plan, general: Member, specific: Member) -> bool:

@@ -33,9 +33,7 @@ def write_package(writer: Writer, member: Member) -> list[Line]:
     body += writer.write_members(member)
     own_imports = {line.head.partition(" ")[2] for line in body}
     libraries = sorted(
-        library
-        for library in writer.plan.imports.get(id(member), ())
-        if f"import {library}::*" not in own_imports
+        library for library in member.imports if f"import {library}::*" not in own_imports
     )
     imports = [Line(f"private import {library}::*") for library in libraries]
     return [Line(head, [*imports, *body])]
@@ -101,7 +99,7 @@ def write_contents(writer: Writer, member: Member) -> list[Line]:
         types = writer.graph.targets(element, Edge.TYPED_BY)
         writer.expressed.update(type_.id for type_ in types if writer.plan.find(type_) is member)
     body += _write_realizations(writer, member, element)
-    return body + writer.added_lines.pop(id(member), [])
+    return body + member.take_added_lines()
 
 
 def _write_realizations(writer: Writer, member: Member, element: Element) -> list[Line]:

@@ -47,13 +47,14 @@ def prewrite_dependencies(writer: Writer) -> None:
     for element in writer.graph.of_kind(Kind.DEPENDENCY):
         member = writer.plan.find(element)
         if member is not None and element.role in ("satisfy", "verify", "allocate"):
-            writer.prewritten[id(member)] = _BY_ROLE[element.role](writer, member)
+            member.prewritten = _BY_ROLE[element.role](writer, member)
 
 
 def write_dependency(writer: Writer, member: Member) -> list[Line]:
     """Write a dependency, or return its lines if they were written before."""
-    if id(member) in writer.prewritten:
-        return writer.prewritten.pop(id(member))
+    if member.prewritten is not None:
+        lines, member.prewritten = member.prewritten, None
+        return lines
     return _BY_ROLE.get(member.require_element().role, _write_plain)(writer, member)
 
 
@@ -113,7 +114,7 @@ def _write_satisfaction(writer: Writer, member: Member) -> list[Line]:
     client = clients[0]
     if client.shape.keyword in _SATISFYING:
         lines = _write_requirement_references(writer, member, client, suppliers, "satisfy", "")
-        writer.added_lines.setdefault(id(client), []).extend(lines)
+        client.added_lines += lines
         return []
     if client.shape.is_usage and client.shape.keyword != "requirement":
         definition = _find_definition(client)
@@ -122,7 +123,7 @@ def _write_satisfaction(writer: Writer, member: Member) -> list[Line]:
         lines = _write_requirement_references(writer, member, scope, suppliers, "satisfy", end)
         if definition is None:
             return lines
-        writer.added_lines.setdefault(id(definition), []).extend(lines)
+        definition.added_lines += lines
         return []
     return _write_plain(writer, member)
 
@@ -136,7 +137,7 @@ def _write_verification(writer: Writer, member: Member) -> list[Line]:
         return _write_plain(writer, member)
     case = clients[0]
     lines = _write_requirement_references(writer, member, case, suppliers, "verify", "")
-    writer.objective_lines.setdefault(id(case), []).extend(lines)
+    case.objective_lines += lines
     return []
 
 
@@ -209,7 +210,7 @@ def _write_usage_allocation(writer: Writer, member: Member, ends: list[Member]) 
     line = Line(f"{head} {names[0]} to {names[1]}", write_contents(writer, member))
     if scope is member.parent or scope is None:
         return [line]
-    writer.added_lines.setdefault(id(scope), []).append(line)
+    scope.added_lines.append(line)
     return []
 
 

@@ -74,9 +74,9 @@ def _write_added_member(writer: Writer, member: Member) -> list[Line]:
     """Write a member without an element: a package, a metadata definition or its attribute."""
     if member.shape.keyword == "package":
         return definitions.write_package(writer, member)
-    type_ = writer.plan.added_types.get(id(member), "")
+    type_ = member.added_type
     head = f"{member.shape.keyword} {quote_name(member.name)}{' : ' if type_ else ''}{type_}"
-    profile = writer.plan.profile_namespaces.get(id(member))
+    profile = member.profile_namespace
     body = [make_annotation(writer, member, "External", {"href": profile})] if profile else []
     return [Line(head, body + writer.write_members(member))]
 

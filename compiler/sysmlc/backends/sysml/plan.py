@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
+from sysmlc.backends.sysml.printing import Line
 from sysmlc.backends.sysml.rules import Losses
 from sysmlc.backends.sysml.shapes import Shape
 from sysmlc.ir import Element, Graph
@@ -21,6 +22,20 @@ class Member:
     """Own and inherited members by name in the text; ``references`` fills it on first use."""
     model_names: "dict[str, Member] | None" = None
     """Own and inherited members by name in the model; ``references`` fills it on first use."""
+    imports: list[str] = field(default_factory=list)
+    """Library packages that a root imports because its members refer to them."""
+    added_lines: list[Line] = field(default_factory=list)
+    """Lines that other members add to the namespace and that are not written yet."""
+    objective_lines: list[Line] = field(default_factory=list)
+    """Lines of the objective of a verification case."""
+    prewritten: list[Line] | None = None
+    """Lines of the member if it was written before its turn."""
+    is_declared: bool = False
+    """Whether the line of another member declares this one."""
+    added_type: str = ""
+    """Type and multiplicity of an attribute without an element."""
+    profile_namespace: str = ""
+    """URI of the profile of a metadata definition without an element."""
 
     @property
     def namespaces(self) -> "Iterator[Member]":
@@ -35,6 +50,11 @@ class Member:
         assert self.element is not None
         return self.element
 
+    def take_added_lines(self) -> list[Line]:
+        """Return the added lines and remove them: each is written once."""
+        lines, self.added_lines = self.added_lines, []
+        return lines
+
 
 @dataclass(slots=True)
 class Plan:
@@ -48,12 +68,6 @@ class Plan:
     """Packages of the libraries of sysmlc, which the text refers to but does not contain."""
     root_names: dict[str, Member] = field(default_factory=dict)
     """Roots and packages of libraries by name: the global scope of name lookup."""
-    added_types: dict[int, str] = field(default_factory=dict)
-    """Type and multiplicity of attributes without an element, by the identity of the member."""
-    profile_namespaces: dict[int, str] = field(default_factory=dict)
-    """URI of the profile of an added metadata definition, by the identity of the member."""
-    imports: dict[int, set[str]] = field(default_factory=dict)
-    """Library packages that a package of the text imports, by the identity of the member."""
     dropped: frozenset[str] = frozenset()
     """Ids of elements that the text omits because it cannot name what they refer to."""
     exposed: set[str] = field(default_factory=set)

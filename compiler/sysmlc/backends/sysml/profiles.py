@@ -64,7 +64,7 @@ def _add_definition(
         if package is None:
             package = added["", ""] = plan.add(Shape("package"), None, _UNKNOWN_PROFILES, None)
         added[key] = plan.add(Shape("metadata def"), package, name, None)
-        plan.profile_namespaces[id(added[key])] = namespace
+        added[key].profile_namespace = namespace
     return added[key]
 
 
@@ -80,8 +80,7 @@ def _add_tags(plan: Plan, definition: Member, application: Element) -> None:
         candidates = (m for m in definition.members if m.name == tag and m.element is None)
         attribute = next(candidates, None)
         if attribute is not None:
-            known_type = plan.added_types.get(id(attribute))
-            plan.added_types[id(attribute)] = _widen_type(known_type, value)
+            attribute.added_type = _widen_type(attribute.added_type, value)
 
 
 def _iter_attribute_names(plan: Plan, definition: Member) -> Iterator[str]:
@@ -93,9 +92,9 @@ def _iter_attribute_names(plan: Plan, definition: Member) -> Iterator[str]:
                 yield from (member.name for member in general_definition.members)
 
 
-def _widen_type(known_type: str | None, value: AttrValue) -> str:
+def _widen_type(known_type: str, value: AttrValue) -> str:
     """Return type and multiplicity of an attribute that has *value* besides its earlier values."""
-    is_list = isinstance(value, tuple) or (known_type is not None and "[0..*]" in known_type)
+    is_list = isinstance(value, tuple) or "[0..*]" in known_type
     sample = value[0] if isinstance(value, tuple) and value else value
     type_ = "String"
     if isinstance(sample, bool):
@@ -104,6 +103,6 @@ def _widen_type(known_type: str | None, value: AttrValue) -> str:
         type_ = "Integer"
     elif isinstance(sample, float):
         type_ = "Real"
-    if known_type is not None and not known_type.startswith(f"ScalarValues::{type_}"):
+    if known_type and not known_type.startswith(f"ScalarValues::{type_}"):
         type_ = "ScalarValue"
     return f"ScalarValues::{type_}[0..{'*' if is_list else '1'}]"

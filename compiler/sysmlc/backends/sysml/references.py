@@ -94,14 +94,14 @@ def _iter_scopes(scope: Member | None) -> Iterator[Member]:
 
 def iter_generals(plan: Plan, namespace: Member) -> Iterator[Member]:
     """Yield the namespaces from which a namespace inherits members, the nearest first."""
-    seen = {id(namespace)}
+    seen = {namespace}
     level = [namespace]
     while level:
         generals = [g for member in level for g in _iter_direct_generals(plan, member)]
         level = []
         for general in generals:
-            if id(general) not in seen:
-                seen.add(id(general))
+            if general not in seen:
+                seen.add(general)
                 level.append(general)
                 yield general
 
@@ -138,8 +138,8 @@ def is_or_redefines(plan: Plan, member: Member | None, wanted: Member) -> bool:
     The part of an instance counts as a redefinition of the part that it represents.
     """
     seen = set()
-    while member is not None and member is not wanted and id(member) not in seen:
-        seen.add(id(member))
+    while member is not None and member is not wanted and member not in seen:
+        seen.add(member)
         element = member.element
         if element is None:
             return False
@@ -259,7 +259,8 @@ def format_library_name(plan: Plan, scope: Member | None, name: str) -> str:
     if scope is not None and short in IMPORTS.get(package, ()):
         top = [scope, *scope.namespaces][-1]
         if top.shape.keyword == "package" and look_up(plan, scope, short) is None:
-            plan.imports.setdefault(id(top), set()).add(package)
+            if package not in top.imports:
+                top.imports.append(package)
             return quote_name(short)
     head, *rest = name.split("::")
     root = "" if look_up(plan, scope, head) is None else "$::"

@@ -46,14 +46,6 @@ class Writer:
     """Function that writes a member, by the kind of its element."""
     expressed: set[str] = field(default_factory=set)
     """Ids of elements that the text expresses."""
-    added_lines: dict[int, list[Line]] = field(default_factory=dict)
-    """Lines that other elements add to a namespace, by the identity of the member."""
-    objective_lines: dict[int, list[Line]] = field(default_factory=dict)
-    """Lines of the objective of a verification case, by the identity of the member."""
-    prewritten: dict[int, list[Line]] = field(default_factory=dict)
-    """Lines of members that were written before their turn, by the identity of the member."""
-    declared_attributes: set[int] = field(default_factory=set)
-    """Identities of members whose declaration another line contains."""
     dropped: dict[str, str] = field(default_factory=dict)
     """The edge without a name in the text, by the id of the element that was dropped for it."""
     collection_loops: set[str] = field(default_factory=set)
@@ -127,10 +119,6 @@ class Writer:
 
     # -- lines -----------------------------------------------------------------------------------
 
-    def add_line(self, namespace: Member, head: str) -> None:
-        """Add a line to a namespace, after the members of the model."""
-        self.added_lines.setdefault(id(namespace), []).append(Line(head))
-
     def declare_attribute(self, namespace: Member, name: str, type_: str) -> str:
         """Declare an attribute that no element stands for. Return its name as it is written.
 
@@ -146,19 +134,19 @@ class Writer:
         attribute = self.plan.add(Shape("attribute"), namespace, free_name, None)
         namespace.visible_names = None
         type_name = self.refer_to_library(namespace, type_)
-        self.add_line(namespace, f"attribute {quote_name(free_name)} : {type_name}")
-        self.declared_attributes.add(id(attribute))
+        namespace.added_lines.append(Line(f"attribute {quote_name(free_name)} : {type_name}"))
+        attribute.is_declared = True
         return quote_name(free_name)
 
     def write_members(self, namespace: Member) -> list[Line]:
         """Return the lines of all members of a namespace: those of the model, then added ones."""
         members = _order_members(self.graph, namespace)
         lines = [line for member in members for line in self.write_member(member)]
-        return lines + self.added_lines.pop(id(namespace), [])
+        return lines + namespace.take_added_lines()
 
     def write_member(self, member: Member) -> list[Line]:
         """Return the lines of one member; none if another line declares it."""
-        if id(member) in self.declared_attributes:
+        if member.is_declared:
             return []
         if member.element is None:
             return self.writers[""](self, member)
