@@ -671,3 +671,11 @@ def test_large_activities_lose_the_nodes_that_only_pass_tokens_on():
     origins = {origin for edge in graph.edges for origin in edge.origins}
     assert origins >= {f"f{number}" for number in range(8)}
     assert [edge.label for edge in graph.edges][1] == "the flow from action 'read' to action 'x'"
+
+
+def test_two_flows_that_reach_the_merge_before_the_end_at_once_are_two_tokens():
+    start, end = "initial i\naction x\nmerge m\nfinal e\ni -> x", "x -> m\nm -> e"
+    _, sink = tokens(sketch(f"{start}\n{end}"))
+    assert codes(sink) == []
+    _, sink = tokens(sketch(f"{start}\nx -> m\n{end}"))
+    assert codes(sink) == ["SM454"]

@@ -63,14 +63,18 @@ def search_markings(net: Net, limit: int) -> Safety:
         ended = [transition for takes, transition in ends if marking & takes]
         fired.update(node for transition in ended for node in transition.nodes)
         can_move = bool(ended or marking & busy)
-        for takes, gives, resets, transition in () if ended else transitions:
+        for takes, gives, resets, transition in transitions:
             if marking & takes != takes:
+                continue
+            remaining = marking & ~takes
+            # Checked where the region ends, too: in the token game, where all nodes move at once,
+            # a second token may reach a merge in the step in which the first one leaves it.
+            if remaining & gives & ~resets:
+                return Safety(unsafe=_first_place(remaining & gives, bits))
+            if ended:
                 continue
             can_move = True
             fired |= transition.nodes
-            remaining = marking & ~takes
-            if remaining & gives & ~resets:
-                return Safety(unsafe=_first_place(remaining & gives, bits))
             successor = (remaining & ~resets) | gives
             if successor not in visited:
                 visited.add(successor)
