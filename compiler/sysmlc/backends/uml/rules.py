@@ -230,7 +230,7 @@ class Losses:
             if loss in _UNSUPPORTED:
                 facts: dict[str, object] = {"count": count, **dict(pairs)}
                 phrase = loss.phrase.format(**facts)
-                notes.append(phrase.replace(" left out of the saved model", ""))
+                notes.append(phrase.replace(" omitted from the saved model", ""))
                 subject = self.graph.subject(first) if subject is None else subject
                 total += count
         if subject is not None:
