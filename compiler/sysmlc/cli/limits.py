@@ -135,6 +135,7 @@ def _set_memory_limit(size: int | None) -> None:
         return
     import resource
 
+    # RLIMIT_AS would count address space that libraries only reserve.
     _, hard = resource.getrlimit(resource.RLIMIT_DATA)
     highest = resource.RLIM_INFINITY
     is_lower = size is not None and (hard == highest or size < hard)

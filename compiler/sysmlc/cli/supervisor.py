@@ -131,6 +131,7 @@ def _end_with_parent(lifeline: int, parent: int) -> None:
     fcntl.fcntl(lifeline, fcntl.F_SETOWN, os.getpid())
     flags = fcntl.fcntl(lifeline, fcntl.F_GETFL)
     fcntl.fcntl(lifeline, fcntl.F_SETFL, flags | getattr(os, "O_ASYNC", 0))
+    # The parent may have died before the descriptor was set up; then no signal would follow.
     if os.getppid() != parent:
         os._exit(2)
 
@@ -139,7 +140,9 @@ def _find_forwarded_signals() -> "dict[int, _Handler]":
     """Return the signals that are passed on, with their handlers; ignored ones are not."""
     numbers = [getattr(signal, name) for name in _FORWARDED]
     handlers = {number: signal.getsignal(number) for number in numbers}
-    return {number: one for number, one in handlers.items() if one is not signal.SIG_IGN}
+    return {
+        number: handler for number, handler in handlers.items() if handler is not signal.SIG_IGN
+    }
 
 
 def _forward_signals(numbers: Iterable[int], child: int) -> None:
@@ -173,6 +176,7 @@ def _wait_for(child: int) -> int:
 def _end_as(code: int) -> NoReturn:
     """End this process as the child ended: with its exit code, or by the same signal."""
     if code < 0:
+        # A shell sees by the signal that Ctrl-C ended the command, and ends a loop around it.
         signal.signal(-code, signal.SIG_DFL)
         os.kill(os.getpid(), -code)
     os._exit(code)
@@ -180,7 +184,6 @@ def _end_as(code: int) -> NoReturn:
 
 def _report_end(code: int, shared: SharedState) -> None:
     """Report why a child has ended early, unless it has done so itself."""
-
     if -code == signal.SIGALRM:
         report_time_limit(shared.time_limit)
     elif code < 0:

@@ -186,6 +186,7 @@ class _CompilationRun:
         is_broken = not self._read(reading)
         self._validate(reading)
         store_refinements(reading.overlays, self._graph)
+        # all() stops at the first pass with a fault: later passes rely on its result.
         is_broken = not all(self._refine(step) for step in self._passes) or is_broken
         artefacts = [] if is_broken else self._emit(inputs, reading)
         if self._request.strict_input:
@@ -283,8 +284,10 @@ class _CompilationRun:
         try:
             run()
         except SourceError as problem:
+            # A damaged file is a fault of the input: the other files are still compiled.
             faults.report_unreadable(problem, self._sink)
             return True
+        # The command reports the limit; here a diagnostic would need memory as well.
         except MemoryError:
             raise
         except Exception as problem:
@@ -333,6 +336,7 @@ class _CompilationRun:
     def _find_unknown_level_elements(self) -> Iterator[tuple[str, str]]:
         """Yield the names in ``[recipe.levels]`` that no element of the unit has, with advice."""
         levels = self._request.config.passes.get("recipe", {}).get("levels")
+        # The option is absent: the registry refuses other types.
         if not isinstance(levels, dict):
             return
         unknown = [name for name in levels if not self._is_known(name)]

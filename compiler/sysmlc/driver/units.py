@@ -232,6 +232,7 @@ def _split(
     ]
     assigned = frozenset().union(*shares)
     for index, (share, name) in enumerate(zip(shares, names, strict=True)):
+        # Files of no unit, such as unreadable ones, are reported once: with the first unit.
         sink = opened.sink.subset(
             diagnostic
             for diagnostic in opened.sink

@@ -57,6 +57,7 @@ def allocate_greedily(study: Study, travel: TravelTimes) -> Schedule | None:
         }
         if not costs_by_robot:
             return None
+        # Ties go to the first robot, so that equal studies give equal missions.
         best = min(costs_by_robot, key=lambda robot: (costs_by_robot[robot], robot))
         costs[best] = costs_by_robot[best]
         lists[best].append(target)
@@ -101,6 +102,7 @@ def allocate_optimally(
     search = _BranchAndBound(study, travel, max_nodes)
     greedy_schedule = allocate_greedily(study, travel)
     if greedy_schedule is not None:
+        # A good first bound prunes most partial allocations.
         search.offer(_improve_by_local_search(study, travel, greedy_schedule))
     search.run()
     if search.best is None:
@@ -174,7 +176,7 @@ class _BranchAndBound:
             self.best = schedule
 
     def run(self, total: int = 0, last_assignment: tuple[int, int] = (0, -1)) -> None:
-        """Try all continuations; *last* is the time and robot of the last assignment."""
+        """Try all continuations; *last_assignment* is the time and robot of the last assignment."""
         self.nodes += 1
         if self.nodes >= self.max_nodes:
             return
@@ -204,6 +206,7 @@ class _BranchAndBound:
         for robot, targets in enumerate(self.lists):
             if not targets:
                 start = self.study.robots[robot].start
+                # Robots without a stated start are interchangeable until they have a target.
                 if start is None and start in starts_seen:
                     continue
                 starts_seen.add(start)
@@ -215,6 +218,7 @@ class _BranchAndBound:
                     self.reached[earlier_target] for earlier_target in self.earlier[target]
                 )
                 time = max(self.reached[targets[-1]] if targets else 0, *earlier_times, 0) + steps
+                # Independent assignments are tried in one order only.
                 if (time, robot) >= last_assignment:
                     yield time, robot, target, steps
 

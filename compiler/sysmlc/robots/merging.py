@@ -67,6 +67,7 @@ class StateSet:
             for index in range(0, len(bits), _BITS_PER_BYTE)
         ]
         origins_by_state = dict(zip(_transpose(columns, count), reversed(origins), strict=True))
+        # A row of zeros belongs to a bit that is no run.
         origins_by_state.pop(bytes(len(columns)), None)
         self._origins.update(origins_by_state)
 
@@ -82,7 +83,7 @@ class StateSet:
         return bits
 
     def batches(self, max_states: int, model: World[int]) -> Iterator[Batch]:
-        """Yield all states in batches, for worlds like *like*, one of the added worlds."""
+        """Yield all states in batches, for worlds like *model*, one of the added worlds."""
         rows = list(self._origins)
         for start in range(0, len(rows), max_states):
             batch_rows = rows[start : start + max_states]
@@ -151,7 +152,7 @@ def _split_by_condition(
 
 
 def _build_body(model: Body[int], robot_states: Iterable[tuple[_RobotState, int]]) -> Body[int]:
-    """Build a robot from its states; the lists have the lengths of those of *like*."""
+    """Build a robot from its states; the lists have the lengths of those of *model*."""
     places, sent, aside = (
         [0] * len(robot_state) for robot_state in (model.places, model.assigned, model.evasions)
     )

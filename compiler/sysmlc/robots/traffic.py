@@ -239,7 +239,7 @@ class _EvasionPlanner(Generic[P]):
         return self.traffic.without(remaining, moving)
 
     def _is_ahead(self, cell: int, neighbour: int) -> P:
-        """Return the runs in which *there* is nearer to the leader's target than *cell*."""
+        """Return the runs in which *neighbour* is nearer to the leader's target than *cell*."""
         traffic, ahead = self.traffic, self.traffic.none
         for robot in self.robots:
             for goal, wanting in zip(traffic.goals[robot], self.open_targets[robot], strict=True):

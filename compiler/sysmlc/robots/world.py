@@ -95,6 +95,7 @@ class World(Generic[P]):
             ]
         self._note_reached()
         self._dispatch(idle_runs)
+        # A robot may get the target in which it already is.
         self._note_reached()
         self._answer_all()
 

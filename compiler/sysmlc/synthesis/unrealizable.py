@@ -38,7 +38,7 @@ def minimal_conflict(
 ) -> tuple[T, ...]:
     """Return a conflicting subset of the conflicting *items*, in their order.
 
-    No item of the result can be omitted, unless *most* checks were not enough to find that out.
+    No item of the result can be omitted, unless *max_checks* were not enough to find that out.
     """
     return _QuickXplain(items, is_conflict, max_checks).run()
 
@@ -82,8 +82,8 @@ def unrealizable_core(game: Game, max_checks: int = MAX_CHECKS) -> tuple[Conjunc
     """Return guarantees of a lost game that cannot be satisfied together, in the order of the
     contract.
 
-    No guarantee can be omitted, unless *most* games were not enough to find that out. The result is
-    empty if the ranges of variables alone are unrealizable. Raises LimitError.
+    No guarantee can be omitted, unless *max_checks* games were not enough to find that out. The
+    result is empty if the ranges of variables alone are unrealizable. Raises LimitError.
     """
     parts = (*game.init_guarantees, *game.guarantees, *game.goals)
     guarantees = [part for part in parts if part.conjunct is not None]

@@ -93,6 +93,7 @@ def _partition(
             adjacency[source].append(target)
             adjacency[target].append(source)
     sizes = {part.id: 1 + _count_nested_parts(part.id, block_connections) for part in tops}
+    # A part fills the diagram with its nested parts, so they count, too.
     groups = partitioning.partition([part.id for part in tops], adjacency, sizes=sizes) or [[]]
     if len(groups) == 1:
         return [(tops, block_connections)]
@@ -221,6 +222,7 @@ class _InternalBlockDrawing:
 
     def _format_stereotypes(self, part: Element) -> str:
         words = labels.list_stereotypes(self.graph, part)
+        # Tools apply these stereotypes to every part: solid and dashed borders show the difference.
         shown = [word for word in words if word not in ("partProperty", "referenceProperty")]
         return labels.guillemets(shown)
 

@@ -120,6 +120,7 @@ def _compute_ranks(connections: Sequence[Connection]) -> dict[str, int]:
     """Return the number of parts that items pass before each part; cycles are cut."""
     steps = [step for connection in connections for step in _iter_steps(connection)]
     ranks = {top: 0 for connection in connections for top in connection.find_top_parts()}
+    # Bellman and Ford on unit steps: one round for each part, so that a cycle ends, too.
     for _ in ranks:
         for before, after in steps:
             ranks[after] = max(ranks[after], min(ranks[before] + 1, len(ranks) - 1))

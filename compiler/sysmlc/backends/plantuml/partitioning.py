@@ -30,6 +30,7 @@ def partition(
     parts: list[list[str]] = []
     members: set[str] = set()
     for item in _iter_connected(items, neighbours):
+        # A neighbour in another part is drawn as a stub, which needs a place, too.
         grown = members | {item} | set(neighbours.get(item, ()))
         if not parts or sum(size.get(member, 1) for member in grown) > limit:
             parts.append([])

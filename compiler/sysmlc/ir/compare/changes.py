@@ -110,9 +110,9 @@ def _iter_unpaired(pairs: Pairs, side: Side, what: What) -> Iterator[Change]:
 
 
 def _is_transparent(side: Side, owner_id: str, paired: Container[str]) -> bool:
-    """Return whether children are reported alone: *owner* is a new class of an old InternalElement.
+    """Return whether children are reported alone: their owner is a new own class.
 
-    The InternalElement itself is paired, and only its own class is new.
+    The InternalElement of the class is paired, and only the class is new.
     """
     owner = side.graph[owner_id]
     if owner_id in paired or not is_own_class(owner):

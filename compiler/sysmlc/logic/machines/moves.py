@@ -249,6 +249,7 @@ def _trigger_condition(machine: Machine, state: Vertex, occurrence: Occurrence) 
         case OnEvent(literal):
             return f.eq(f.var("event"), Const(literal or ""))
         case AfterTicks(count):
+            # The step that takes the transition is the last tick.
             return f.eq(f.var(state.timer), Const(count - 1))
         case OnRise(memory, expression):
             truth = elaborate_condition(expression, machine.scope)
@@ -289,6 +290,7 @@ def _find_preempting(machine: Machine, move: Move, moves: list[Move]) -> Iterato
 
 
 def _yields_to_completion(transition: Transition, other: Transition) -> bool:
+    # Completion events are dispatched before all others (UML 2.5.1, 14.2.3.8.3).
     return bool(transition.occurrences) and not other.occurrences
 
 

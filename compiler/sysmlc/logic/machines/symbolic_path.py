@@ -77,8 +77,8 @@ def split_by_range(
 ) -> Iterator[tuple[Formula, Formula, bool]]:
     """Yield the results of assigning *value* to a variable of *domain*, clamped to its range.
 
-    Each result is the condition, the value, and whether the value was clamped. *spread* is the
-    range of the expression.
+    Each result is the condition, the value, and whether the value was clamped. *value_range* is
+    the range of the expression.
     """
     low, high = Const(domain.low), Const(domain.high)
     in_range = case

@@ -136,7 +136,7 @@ class _Facts:
         condition.
 
         The run need not continue after the violation. In the violating step the part that assumes
-        the condition need not satisfy *own* guarantees, because it owes nothing any more.
+        the condition need not satisfy *own_guarantees*, because it owes nothing any more.
         """
         facts_of_last_step = _Facts(
             self._universe, (fact for fact in self.facts if fact not in set(own_guarantees))

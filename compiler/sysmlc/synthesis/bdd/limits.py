@@ -85,6 +85,7 @@ def intercept_interrupts(handler: Callable[[int, FrameType | None], None]) -> It
     """
     is_main = threading.current_thread() is threading.main_thread()
     previous = signal.getsignal(signal.SIGINT)
+    # Python allows handlers in the main thread only, and a handler of the host program stays.
     if not is_main or previous is not signal.default_int_handler:
         yield
         return
@@ -121,6 +122,8 @@ def install_termination_callback(
     installed. A stopped operation raises what ``dd`` raises when CUDD returns no result:
     RuntimeError or ValueError.
     """
+    # dd offers neither callbacks nor the address of CUDD's manager: both come from the library
+    # itself.
     manager = _find_manager_address(bdd)
     try:
         cudd = ctypes.CDLL(library.__file__)
@@ -146,6 +149,7 @@ def _find_manager_address(bdd: object) -> int | None:
         for index in range(1, size)
         if words[index : index + len(attribute_addresses)] == attribute_addresses
     ]
+    # Another layout of the object gives no match; then limits apply between operations only.
     return words[matches[0] - 1] or None if len(matches) == 1 else None
 
 

@@ -148,6 +148,7 @@ class Manager:
         if self.engine != "cudd" or care == self.true or care == self.false:
             return node
         restricted = cast("Node", self._library.restrict(node, care))
+        # CUDD's restrict may return a larger diagram (Coudert and Madre, 1990).
         return restricted if len(restricted) < len(node) else node
 
     def support(self, node: Node) -> frozenset[str]:
@@ -163,6 +164,7 @@ class Manager:
         The diagram must not be constant.
         """
         bdd_node: Any = node
+        # CUDD shares a diagram with its complement: a negated edge negates both cofactors.
         low, high = bdd_node.low, bdd_node.high
         return (bdd_node.var, ~low, ~high) if bdd_node.negated else (bdd_node.var, low, high)
 
@@ -189,6 +191,7 @@ class Manager:
 
     def reorder_automatically(self, is_on: bool) -> None:
         """Switch the library's automatic reordering of bits on or off."""
+        # CUDD reorders inside operations, so a switch takes effect with the next one.
         self._bdd.configure(reordering=is_on)
 
     @contextmanager

@@ -92,7 +92,7 @@ class _Fact(Struct, frozen=True):
     """Creates the formula of a bound."""
 
     def weaken(self, index: int) -> Formula:
-        """Return the alternative at *at*."""
+        """Return the alternative at *index*."""
         alternative = self.alternatives[index]
         return alternative if isinstance(alternative, Formula) else self.make_bound(alternative)
 
@@ -155,7 +155,7 @@ class _ConditionWriter:
         return {variable: values_by_step[variable.primed][variable.name] for variable in variables}
 
     def _generalise(self, values: Mapping[Var, Literal], forbidden: Node) -> tuple[Formula, Node]:
-        """Return a formula true of *known* that excludes the forbidden values, and its diagram."""
+        """Return a formula true of *values* that excludes the forbidden values, and its diagram."""
         facts = list(self._facts(values))
         suffixes = self._suffix_conjunctions([fact.formula for fact in facts])
         formulas, condition = list[Formula](), self._manager.true
@@ -177,7 +177,7 @@ class _ConditionWriter:
         return conjunctions[::-1]
 
     def _weaken(self, fact: _Fact, excluded: Node) -> Formula:
-        """Return the weakest alternative of a fact that still excludes *without*."""
+        """Return the weakest alternative of a fact that still excludes *excluded*."""
         weakest, low, high = fact.formula, 0, len(fact.alternatives)
         while low < high:
             middle = (low + high) // 2

@@ -22,7 +22,10 @@ Moves = Mapping[Answer, Node]
 
 
 def minimise(draft: DraftMachine, max_comparisons: int = MAX_COMPARISONS) -> DraftMachine:
-    """Merge equal states, then compatible ones until *most* pairs of moves are compared."""
+    """Merge equal states, then compatible ones.
+
+    The search ends when *max_comparisons* pairs of moves are compared.
+    """
     manager = draft.strategy.manager
     states = _quotient(draft.states, _equivalence_classes(draft.states, manager), manager)
     merger = _StateMerger(states, manager, max_comparisons)
@@ -44,6 +47,7 @@ def _equivalence_classes(states: tuple[Moves, ...], manager: Manager) -> list[in
                 key = output, classes[state]
                 moves_by_class[key] = moves_by_class.get(key, manager.false) | node
             refined.append(keys.setdefault(frozenset(moves_by_class.items()), len(keys)))
+        # Moore's refinement only splits classes, so an equal number means equal classes.
         if len(keys) == count:
             return refined
         classes, count = refined, len(keys)
@@ -110,6 +114,8 @@ class _StateMerger:
         trail: list[tuple[int, int, Moves]] = []
         pairs = [(left, right)]
         while pairs:
+            # The smaller number represents the pair, so the state before the first step stays state
+            # 0.
             first, second = sorted(map(self._find, pairs.pop()))
             if first == second:
                 continue

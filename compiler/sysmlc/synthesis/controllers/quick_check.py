@@ -154,6 +154,8 @@ class QuickCheck:
 
     def _find_invariant_within_limits(self, initial: Node) -> Node | None:
         try:
+            # The invariant only replaces the search: one that is larger than the frontiers saves
+            # nothing.
             with self.manager.limit_nodes(EXTRA_NODES + 2 * self.manager.usage().nodes):
                 return self._find_invariant(initial)
         except TooLargeError:
@@ -170,6 +172,8 @@ class QuickCheck:
             candidate = self.manager.true
             for conjunct in conjuncts:
                 candidate = candidate & conjunct
+            # Strengthening only removes states: no later candidate contains the initial states
+            # again.
             if not initial <= candidate:
                 return None
             escaping = [self._states_violating_next(candidate, conjunct) for conjunct in conjuncts]
@@ -195,6 +199,8 @@ class QuickCheck:
 
     def _states_violating_next(self, states: Node, predicate: Node) -> Node:
         """Return the states from which a step may lead to a violation of *predicate*."""
+        # Fewer transitions allow more steps, so the result is a superset, which keeps the check
+        # sound.
         violation = self.closed_loop.symbols.prime(~predicate)
         self.manager.check("checking the controller")
         return Product(

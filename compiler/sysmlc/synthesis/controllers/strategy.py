@@ -155,7 +155,7 @@ class _StrategyExtractor:
         return {bit.removesuffix("'"): node for bit, node in functions.items()}
 
     def _answers_into(self, target: Node) -> Node:
-        """Return the answers that lead into *there*, over the bits that are open."""
+        """Return the answers that lead into *target*, over the bits that are open."""
         return self._answer_product(
             self.open_answers.substitute_functions(self.symbols, self.symbols.prime(target))
         )
@@ -219,6 +219,7 @@ class _StrategyExtractor:
     def _add_eliminated_outputs(self, outputs: Functions) -> Functions:
         """Add the outputs that were eliminated before solving."""
         completed = dict(outputs)
+        # A definition may read variables that were eliminated after it.
         for name, bits in reversed(list(self.game.definitions.items())):
             if self.symbols.variables[name].owner is Owner.SYSTEM:
                 completed |= {
@@ -236,10 +237,10 @@ def choose_targets(
 ) -> Iterator[Node]:
     """Yield the choices allowed on the way to a goal; each set of choices is about other states.
 
-    *steps* is the operator of the arena. *leading* returns all choices of *bits* that certainly
-    lead into given states. Choices that lead nowhere leave the environment without a next input,
-    which is the best outcome. States that satisfy this goal but not another one have no choice
-    here, because the other goal is in turn.
+    *operator* is that of the arena. *predecessor_choices* returns all choices of *bits* that
+    certainly lead into given states. Choices that lead nowhere leave the environment without a next
+    input, which is the best outcome. States that satisfy this goal but not another one have no
+    choice here, because the other goal is in turn.
     """
     manager = solution.arena.manager
     settled = waiting = previous = manager.false
@@ -268,6 +269,7 @@ def _states_that_wait(
     arena = solution.arena
     goal_states = arena.goals[goal] if arena.goals else arena.manager.true
     remaining = layer.states & solution.winning & ~previous & ~goal_states
+    # Waiting is the second choice: states that can force the layer before have no reason to wait.
     remaining = remaining & ~operator.controllable_predecessors(previous)
     for waiting in layer.waiting:
         waiting_states = remaining & waiting
@@ -329,6 +331,8 @@ class _Elimination:
 
     def run(self) -> OpenAnswers:
         """Eliminate one variable after the other, those with the fewest constraints first."""
+        # Functions of memory and inputs alone come first: substituting them enlarges no other
+        # function.
         for without_other_bits in (True, False):
             while any(self._eliminate(name, without_other_bits) for name in self._names):
                 pass

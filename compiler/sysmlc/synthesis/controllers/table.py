@@ -128,6 +128,7 @@ class _TableBuilder:
 
     def _place_of(self, node: Node) -> int:
         """Return the position of a diagram; all nodes below it come before it."""
+        # No recursion: a diagram has as many levels as the contract has bits, often hundreds.
         stack = [node]
         while stack:
             diagram = stack[-1]

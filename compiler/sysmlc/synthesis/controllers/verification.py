@@ -86,6 +86,7 @@ class _Verification:
 
     def find_faults(self) -> Iterator[Fault]:
         """Yield at most one fault for each conjunct."""
+        # Nearly every controller passes; only a fault needs the runs over all variables.
         if self._passes_quick_check():
             return
         yield from self._find_unanswered_inputs()
@@ -203,6 +204,8 @@ class _Verification:
         self, conjunct: Conjunct | None, violation: Node, parts: Iterable[Node]
     ) -> Iterator[Fault]:
         parts = tuple(parts)
+        # This product quantifies all bits and stays small; the states are needed for a
+        # counterexample.
         if not self._can_step(violation, parts):
             return
         states = Product(self.manager, parts, self.runs.next_bits)(self.runs.reachable & violation)
@@ -212,6 +215,7 @@ class _Verification:
     def find_fair_fault(self, conjunct: Conjunct, violation: Node) -> Iterator[Fault]:
         """Yield a fair run that violates the conjunct forever from some step on."""
         fair_runs, candidates = self.fair_runs, self.runs.reachable & violation
+        # Successors decide; predecessors, which take longer, are needed for the lasso only.
         if not has_fair_run(fair_runs, candidates):
             return
         states = fair_runs.fair_within(candidates)

@@ -150,6 +150,7 @@ def _find_plant_inputs(game: Game, choice: Sequence[Node]) -> dict[str, tuple[No
         own_bits = frozenset(symbols.bits(name, primed=True))
         parts = _parts_over(manager, assumptions, own_bits)
         other_bits = frozenset(game.next_inputs) - own_bits
+        # An assumption about a second input would leave the environment a choice between the two.
         is_alone = all(other_bits.isdisjoint(manager.support(node)) for node in parts)
         if is_alone and _has_unique_values(symbols, parts, own_bits, choice):
             plant[name] = tuple(parts)
@@ -159,7 +160,7 @@ def _find_plant_inputs(game: Game, choice: Sequence[Node]) -> dict[str, tuple[No
 def _has_unique_values(
     symbols: Symbols, parts: Sequence[Node], own_bits: frozenset[str], choice: Sequence[Node]
 ) -> bool:
-    """Return whether the parts leave exactly one value of *own* for all allowed commands."""
+    """Return whether the parts leave exactly one value of *own_bits* for all allowed commands."""
     manager = symbols.manager
     relation = manager.true
     for part in parts:

@@ -122,6 +122,7 @@ def _order_stages(clusters: Sequence[_Cluster]) -> Iterable[_Stage]:
             remaining,
             key=lambda cluster: (_count_dying_bits(cluster, remaining), -len(cluster.support)),
         )
+        # A cluster without quantified bits lets no bit die; it waits until the product is small.
         if not best.support:
             best = next((cluster for cluster in remaining if cluster.support), best)
         remaining.remove(best)

@@ -80,6 +80,7 @@ class Attractor:
 
     def _compute_fast_layer(self, states: Node) -> Layer:
         previous = self.operator.arena.manager.false
+        # Steps without waiting are cheap: the inner fixpoints start when they lead no further.
         while states not in (previous, self.winning):
             previous = states
             states = states | self.operator.extend_attractor(states, self.winning)
@@ -93,6 +94,8 @@ class Attractor:
 
     def _waiting_bounds(self) -> tuple[Node, ...]:
         """Return for each assumption a superset of the states in which the system can wait."""
+        # The winning region only shrinks, so a layer never outgrows the same layer of the previous
+        # iteration.
         if self._index < len(self.previous_layers) and self.previous_layers[self._index].waiting:
             bounds = self.previous_layers[self._index].waiting
         else:
@@ -188,6 +191,7 @@ class _Solver:
             swaps_by_goal or self._goals_without_symmetry()
         )
         all_swaps = [swap for swaps in swaps_by_goal.values() for swap in swaps]
+        # A shared fixpoint is valid only in a region that is closed under the swaps.
         if any(swap_variables(self.arena, winning, swap) != winning for swap in all_swaps):
             self._layers = [() for _ in self._goals]
             winning, is_known = self._compute_winning_region(self._goals_without_symmetry())
@@ -234,6 +238,8 @@ class _Solver:
 
     def _is_lost(self, winning: Node) -> bool:
         """Return whether a cheap test shows that the game is lost."""
+        # Ahead, several turns lie between the first state and the candidates: playing them is not
+        # cheap.
         if self.arena.is_ahead and winning != self.arena.manager.false:
             return False
         return not self._operator.wins_initially(winning)
@@ -242,6 +248,7 @@ class _Solver:
         """Compute the layers of a goal within *winning* and return the largest."""
         self._rounds += 1
         self._operator.confine_to(winning)
+        # A goal has to recur, so it counts only where the play can go on in the region.
         target = self._goals[goal] & self._operator.controllable_predecessors(winning) & winning
         fairness, previous_layers = self.arena.fairness, self._layers[goal]
         attractor = Attractor(

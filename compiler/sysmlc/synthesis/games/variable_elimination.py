@@ -85,6 +85,7 @@ def _find_definition(game: Game, name: str) -> _Definition | None:
     relation = _small_conjunction(manager, (part.node for part in parts))
     if not parts or relation is None:
         return None
+    # Codes outside of the ranges have no meaning, so the definition may be partial there.
     other_names = [name_ for name_ in symbols.names(relation, primed=True) if name_ != name]
     care = domain_constraint(symbols, other_names, primed=True)
     bits = _find_functions(manager, relation, own_bits, care)

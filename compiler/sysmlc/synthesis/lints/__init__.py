@@ -24,7 +24,7 @@ Place = Callable[[str], Subject]
 
 
 def lint(contract: Contract, place: Place, sink: Sink, create_manager: ManagerFactory) -> None:
-    """Report suspicious properties of a contract; *new* creates a manager for each question.
+    """Report suspicious properties of a contract; *create_manager* is called for each question.
 
     Raises OutsideGr1Error for a contract that GR(1) cannot express, LimitError.
     """
