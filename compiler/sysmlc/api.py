@@ -15,7 +15,7 @@ from sysmlc.driver import compile_model as compile_request
 from sysmlc.ir import Edge, Element, Graph, Kind, query
 from sysmlc.logic.contract import Contract
 from sysmlc.passes import pipeline
-from sysmlc.passes.base import Pass
+from sysmlc.passes.pipeline import Pass
 from sysmlc.recipe.model import Model as RecipeModel
 
 __all__ = [

@@ -5,6 +5,7 @@ from itertools import pairwise
 from msgspec.structs import replace
 
 from sysmlc.diagnostics import Sink, Subject
+from sysmlc.recipe import validate
 from sysmlc.recipe.derive import derive
 from sysmlc.recipe.model import (
     FlowEdge,
@@ -20,7 +21,6 @@ from sysmlc.recipe.model import (
     Service,
     Task,
 )
-from sysmlc.recipe.validate import validate
 
 
 def made(order: str, does: dict[str, str], machines: dict[str, str], equipment: str) -> Model:

@@ -4,8 +4,8 @@ import pytest
 
 from sysmlc.diagnostics import Sink, Subject
 from sysmlc.passes.recipe.expressions import read_expression
+from sysmlc.recipe import validate
 from sysmlc.recipe.model import EnumType, FlowEdge, FlowGraph, Model, Node, Parameter, Recipe
-from sysmlc.recipe.validate import validate
 
 COLOUR = EnumType("Colour", ("red", "green"))
 VARIABLES = (

@@ -21,7 +21,7 @@ from sysmlc.frontends.base import DiagramReader, Frontend
 from sysmlc.ir import Graph
 from sysmlc.ir.verify import verify
 from sysmlc.overlay import SUFFIX
-from sysmlc.passes.base import Pass
+from sysmlc.passes.pipeline import Pass
 from sysmlc.sources import Source, SourceError
 from sysmlc.support.output import Artefact, Output
 from sysmlc.support.suggestions import did_you_mean

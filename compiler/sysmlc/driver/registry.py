@@ -19,7 +19,7 @@ from sysmlc.config import ConfigError
 from sysmlc.diagnostics import Rule, catalogue
 from sysmlc.frontends.base import Frontend, LibraryFrontend
 from sysmlc.passes import pipeline
-from sysmlc.passes.base import Pass
+from sysmlc.passes.pipeline import Pass
 from sysmlc.support.suggestions import did_you_mean
 
 if TYPE_CHECKING:

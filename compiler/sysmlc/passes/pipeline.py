@@ -1,15 +1,30 @@
-"""The passes by name, in the order that their ``after`` requires."""
+"""The passes: their interface, and their order by name, as their ``after`` requires."""
 
 from collections.abc import Callable, Iterable, Sequence
 from importlib import import_module
-from typing import cast
+from typing import ClassVar, Protocol, cast
 
 from msgspec import Struct
 
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Graph
 from sysmlc.ir.verify import verify
-from sysmlc.passes.base import Pass
+
+
+class Pass(Protocol):
+    """A refinement of the graph. The graph is valid before and after; running it twice equals once.
+
+    A pass is a frozen value; its fields are its options.
+    """
+
+    name: ClassVar[str]
+    after: ClassVar[tuple[str, ...]]
+
+    def run(self, graph: Graph, sink: Sink) -> None:
+        """Refine the graph in place and report faults of the model."""
+
+
+# -- order -------------------------------------------------------------------------------------
 
 NAMES = (
     "resolve",

@@ -1,1 +1,38 @@
-"""Three-level recipe models: values, derived data, and checks."""
+"""Three-level recipe models: values, derived data, and checks.
+
+The checks are those of the thesis, REC001 to REC012 (SM601 to SM612), and more.
+"""
+
+from sysmlc.diagnostics import Sink
+from sysmlc.recipe import check_data, check_graphs, check_tasks
+from sysmlc.recipe.checks import Check, Locate, report_findings
+from sysmlc.recipe.derive import Tables
+from sysmlc.recipe.model import Model
+
+CHECKS: tuple[Check, ...] = (
+    check_tasks.check_references,
+    check_tasks.check_precedence,
+    check_graphs.check_paths,
+    check_graphs.check_nesting,
+    check_data.check_guards,
+    check_data.check_names,
+    check_data.check_expressions,
+    check_tasks.check_machines,
+    check_graphs.check_task_times,
+    check_graphs.check_groups,
+    check_graphs.check_releases,
+    check_graphs.check_bounds,
+    check_tasks.check_materials,
+    check_tasks.check_opc_ua_calls,
+)
+
+
+def validate(model: Model, sink: Sink, locate: Locate, tolerance: float = 0.1) -> None:
+    """Report the violations of a recipe model; *locate* turns element ids into subjects.
+
+    *tolerance* is the share by which function times may differ from service times.
+    """
+    tables = Tables.from_model(model)
+    for check in CHECKS:
+        report_findings(check(model, tables), sink, locate)
+    report_findings(check_graphs.check_service_times(model, tables, tolerance), sink, locate)

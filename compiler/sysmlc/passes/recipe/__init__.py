@@ -11,8 +11,8 @@ from sysmlc.passes.recipe.context import NODES, Context, is_inlined
 from sysmlc.passes.recipe.derived_levels import add_derived_levels, report_derived_levels
 from sysmlc.passes.recipe.model import build_model
 from sysmlc.passes.recipe.reports import check_tags, report_decisions
+from sysmlc.recipe import validate
 from sysmlc.recipe.model import Model
-from sysmlc.recipe.validate import validate
 
 
 class Recipe(Struct, frozen=True):
