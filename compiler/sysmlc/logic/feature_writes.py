@@ -265,6 +265,6 @@ def _index_candidates(graph: Graph) -> dict[str, list[Element]]:
 
 
 def find_label(graph: Graph, writer: Element) -> str:
-    """Return the name of a writer; a nameless action or effect is called like its owner."""
+    """Return the name of a writer, or else of the nearest owner that has a name."""
     elements = (writer, *graph.ancestors(writer))
     return next((element.name for element in elements if element.name), writer.subkind)

@@ -44,6 +44,6 @@ class Names:
 
 
 def make_unique(names: list[str], fallback: str, *taken: str) -> tuple[str, ...]:
-    """Return identifiers for the names in order, all different and none of the taken ones."""
+    """Return identifiers for the names in order, all different and none of *taken*."""
     source = Names(*taken)
     return tuple(source.new(name, fallback) for name in names)

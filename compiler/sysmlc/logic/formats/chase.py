@@ -1,7 +1,7 @@
 """CHASE's .ltl: contracts with typed inputs and outputs, LTL assumptions and guarantees.
 
-Source: demos and grammar of chase-cps/chase. Real numbers and probabilities are reported as
-outside.
+Source: demos and grammar of chase-cps/chase. Real numbers and probabilities are reported as not
+supported.
 """
 
 import re

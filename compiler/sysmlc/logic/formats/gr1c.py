@@ -56,7 +56,7 @@ _RESERVED = frozenset({*_DECLARATIONS, *_SECTIONS, *SYNTAX.booleans})
 
 
 def read(file: SpecificationFile) -> tuple[Contract, ...]:
-    """Return the contract of the file, called like the file, or nothing after a fault."""
+    """Return the contract, named after the file, or nothing if a fault was reported."""
     draft = ContractDraft(file, "gr1c")
     cursor = Cursor(tokenize(file.text, SYNTAX))
     while not cursor.is_at_end:

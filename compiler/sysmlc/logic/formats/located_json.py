@@ -65,8 +65,8 @@ def parse_json(text: str) -> object:
 class _LocatingDecoder(json.JSONDecoder):
     """Python's decoder with parsers that record offsets.
 
-    These attributes are not documented, but the scanner written in Python, which the standard
-    library ships as the fallback of the one in C, calls all three.
+    The three attributes are not documented. The scanner of the standard library that is written in
+    Python calls all of them; the default scanner, written in C, does not.
     """
 
     parse_string: Callable[..., Any]

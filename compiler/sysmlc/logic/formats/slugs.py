@@ -86,7 +86,7 @@ _SIGN_IN_NAME = re.compile(r"(?<=\w)[.@](?=\w)")
 
 
 def read(file: SpecificationFile) -> tuple[Contract, ...]:
-    """Return the contract of the file, called like the file, or nothing after a fault."""
+    """Return the contract, named after the file, or nothing if a fault was reported."""
     draft = ContractDraft(file, "slugs")
     section = ""
     # Names with "@" and "." are no identifiers in the other formats.

@@ -1,7 +1,7 @@
 """The GR(1) part of Spectra: variables, defines, predicates, patterns, monitors, counters, past.
 
 Source: the Spectra language (S. Maoz, J. O. Ringert) as in its examples. Arrays, quantifiers,
-regular expressions, existential guarantees, weights and imported modules are reported as outside.
+regular expressions, existential guarantees, weights and imports are reported as not supported.
 """
 
 from collections.abc import Callable, Mapping

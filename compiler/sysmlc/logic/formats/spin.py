@@ -57,7 +57,7 @@ _MOST_NAMED = 8
 
 
 def read(file: SpecificationFile) -> tuple[Contract, ...]:
-    """Return the contract of the file, called like the file, or nothing after a fault."""
+    """Return the contract, named after the file, or nothing if a fault was reported."""
     draft = ContractDraft(file, "SPIN")
     text = blank_partition(file.text)
     owners = read_partition(file.text)

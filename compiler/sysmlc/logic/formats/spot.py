@@ -61,7 +61,7 @@ _RESERVED = frozenset({*SYNTAX.prefix, *SYNTAX.infix, *SYNTAX.booleans, "M", "xo
 
 
 def read(file: SpecificationFile) -> tuple[Contract, ...]:
-    """Return the contract of the file, called like the file, or nothing after a fault."""
+    """Return the contract, named after the file, or nothing if a fault was reported."""
     draft = ContractDraft(file, "Spot")
     for line in _PARTITION_LINE.finditer(file.text):
         for name in _NAME.finditer(line.group(2)):

@@ -1,6 +1,6 @@
 """TLSF: sections of assumptions and guarantees over Boolean signals, parameters, definitions.
 
-Source: TLSF v1.1. Enumerations, sets and patterns of its full form are reported as outside.
+Source: TLSF v1.1. Enumerations, sets and patterns of its full form are reported as not supported.
 """
 
 import re
@@ -86,7 +86,7 @@ _SectionReader = Callable[[str], None]
 
 
 def read(file: SpecificationFile) -> tuple[Contract, ...]:
-    """Return the contract of the file, called like the file, or nothing after a fault."""
+    """Return the contract, named after the file, or nothing if a fault was reported."""
     # The evaluator recurses over trees and over calls.
     with allow_recursion(MAX_DEPTH + 2 * MAX_CALL_DEPTH):
         return _TlsfReader(file).read()
