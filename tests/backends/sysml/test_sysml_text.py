@@ -337,6 +337,30 @@ def test_a_signal_with_an_inherited_name_is_named_with_its_package():
     assert "transition first idle accept Plant::start then busy;" in text_of(STARTED)
 
 
+LOGGED = """
+Class c "Cell" role="block"
+  -> classifier-behavior c.m
+  StateMachine c.m "life"
+    Region r
+      State a "idle"
+      State b "busy"
+      Transition t "go"
+        -> flow-source a
+        -> flow-target b
+        -> effect e
+        Activity e "log" body="log(1)" language="C" subkind="opaque"
+        Comment k body="the log needs both"
+          -> references t
+"""
+
+
+def test_a_transition_has_its_comment_behind_an_effect_with_a_body():
+    text = text_of(LOGGED)
+    assert 'language "C" /* log(1) */\n' in text
+    assert "} then busy {" in text
+    assert "/* the log needs both */" in text
+
+
 def test_an_operation_is_typed_by_the_activity_that_implements_it():
     assert "perform action fill : Fill;" in text_of(PERFORMED)
 

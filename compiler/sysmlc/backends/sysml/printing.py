@@ -93,6 +93,8 @@ class Line:
     depth: int = 0
     tail: str = ""
     """The part of the declaration that follows the members (``then`` of a transition)."""
+    tail_body: list["Line"] = field(default_factory=list)
+    """The members between the braces that follow the tail."""
     is_short: bool = False
     """Whether the member and its body stand in one line if they fit."""
 
@@ -134,7 +136,12 @@ def print_lines(lines: Iterable[Line]) -> str:
         end = "" if top.text else (" {" if top.body else ";")
         output += _format_head(top, depth, end)
         if top.body:
-            stack.append((f"}} {top.tail};" if top.tail else "}", depth))
+            if top.tail_body:
+                stack.append(("}", depth))
+                _push(stack, top.tail_body, depth + 1)
+                stack.append((f"}} {top.tail} {{", depth))
+            else:
+                stack.append((f"}} {top.tail};" if top.tail else "}", depth))
             _push(stack, top.body, depth + 1)
     output.append("")
     return "\n".join(output)

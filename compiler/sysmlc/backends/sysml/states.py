@@ -124,7 +124,7 @@ def _write_transition(
     effect = write_subaction(writer, member, "do", effects[0]) if effects else None
     end = f"then {target}"
     if effect is not None and effect.body:
-        return Line(_wrap([*parts, effect.head]), effect.body, tail=end)
+        return Line(_wrap([*parts, effect.head]), effect.body, tail=end, tail_body=body)
     parts += [] if effect is None else [effect.head]
     return Line(_wrap([*parts, end]), body)
 
