@@ -171,3 +171,58 @@ def test_the_architecture_page_shows_the_packages_and_modules_that_exist():
     ]
     assert names
     assert missing == []
+
+
+def test_the_pages_name_modules_that_exist():
+    root = ROOT.parents[1]
+    folders = ("compiler", "tests", "benchmarks", "docs")
+    modules = {path.as_posix() for folder in folders for path in (root / folder).rglob("*.py")}
+    # A repository may contain a module that is named like the package (untrusted-repositories.md).
+    foreign = {"sysmlc.py"}
+    missing = {
+        (page.name, name)
+        for page in (root / "docs").rglob("*.md")
+        for name in re.findall(r"`([\w/]+\.py)`", page.read_text(encoding="utf-8"))
+        if name not in foreign and not any(path.endswith(f"/{name}") for path in modules)
+    }
+    assert missing == set()
+
+
+def list_names_in_scope(node: ast.FunctionDef | ast.ClassDef) -> set[str]:
+    """Return the parameters of a function, or the fields and parameters of a class."""
+    if isinstance(node, ast.ClassDef):
+        constructors = [item for item in node.body if isinstance(item, ast.FunctionDef)]
+        fields = {
+            item.target.id
+            for item in node.body
+            if isinstance(item, ast.AnnAssign) and isinstance(item.target, ast.Name)
+        }
+        return fields.union(
+            *(list_names_in_scope(item) for item in constructors if item.name == "__init__")
+        )
+    arguments = node.args
+    optional = [argument for argument in (arguments.vararg, arguments.kwarg) if argument]
+    every = [*arguments.posonlyargs, *arguments.args, *arguments.kwonlyargs, *optional]
+    return {argument.arg for argument in every}
+
+
+def iter_unknown_parameters(node: ast.AST, known: set[str]) -> Iterator[str]:
+    """Yield the names in ``*asterisks*`` in docstrings that are no parameters in scope."""
+    for child in ast.iter_child_nodes(node):
+        if not isinstance(child, ast.FunctionDef | ast.ClassDef):
+            yield from iter_unknown_parameters(child, known)
+            continue
+        in_scope = known | list_names_in_scope(child)
+        if isinstance(child, ast.FunctionDef):
+            named = re.findall(r"(?<!\*)\*([a-z_]+)\*(?!\*)", ast.get_docstring(child) or "")
+            yield from (f"{child.name}: *{name}*" for name in named if name not in in_scope)
+        yield from iter_unknown_parameters(child, in_scope)
+
+
+def test_docstrings_name_parameters_that_exist():
+    unknown = {
+        module: names
+        for module, tree in TREES.items()
+        if (names := [*iter_unknown_parameters(tree, set())])
+    }
+    assert unknown == {}

@@ -1,6 +1,6 @@
 """Reactions of the reference interpreter: how one transition is taken.
 
-Expressions are evaluated as they are written, independently of ``elaborate`` and ``evaluate``:
+Expressions are evaluated as they are written, independently of ``elaboration`` and ``evaluate``:
 these two belong to the derivation that the interpreter checks.
 """
 

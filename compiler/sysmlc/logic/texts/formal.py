@@ -175,7 +175,7 @@ class _SentenceReader:
         return _ENDINGS[f"{adverb} holds"](scope, condition)
 
     def _read_implication(self, scope: Scope) -> Formula:
-        """Read ``P [holds][,] [then] ...`` after *if*."""
+        """Read ``P [holds][,] [then] ...`` after the word ``if``."""
         trigger = self._read_condition()
         self._accept("holds")
         self._cursor.accept(",")
