@@ -29,7 +29,7 @@ from sysmlc.robots.robot_controller import (
 from sysmlc.robots.study import Grid, Robot, Study, Target
 from sysmlc.robots.system_contract import system_contract
 from sysmlc.synthesis.controller_synthesis import Synthesis, synthesise_controller
-from sysmlc.synthesis.controllers.mealy import Machine
+from sysmlc.synthesis.controllers.forms import Machine
 from sysmlc.synthesis.decision import Options
 
 ROWS = {

@@ -6,7 +6,7 @@ from sysmlc.robots import contract_terms as terms
 from sysmlc.robots.answers import Answers
 from sysmlc.robots.robot_controller import ANY, controller_contract
 from sysmlc.robots.study import STAY, WAYS
-from sysmlc.synthesis.controllers.mealy import Machine, Move
+from sysmlc.synthesis.controllers.forms import Machine, Move
 
 
 def greedy_machine(study):

@@ -15,7 +15,7 @@ from sysmlc.robots.robot_controller import ANY, controller_contract, measure_tra
 from sysmlc.support.cache import Cache
 from sysmlc.synthesis import Limits
 from sysmlc.synthesis.controller_synthesis import Form, synthesise_controller
-from sysmlc.synthesis.controllers.table import Table
+from sysmlc.synthesis.controllers.forms import Table
 from sysmlc.synthesis.decision import Options
 
 FIRST = floor(3, None, None, targets=(0, 8), deadline=40)

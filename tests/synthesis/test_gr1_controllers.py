@@ -10,8 +10,7 @@ from sysmlc.diagnostics import Sink, Subject
 from sysmlc.logic import formats
 from sysmlc.synthesis import Limits
 from sysmlc.synthesis.controller_synthesis import Form, synthesise_controller
-from sysmlc.synthesis.controllers.mealy import Machine
-from sysmlc.synthesis.controllers.table import Table
+from sysmlc.synthesis.controllers.forms import Machine, Table
 from sysmlc.synthesis.decision import Options
 
 CORPUS = os.environ.get("SYSMLC_CORPUS")

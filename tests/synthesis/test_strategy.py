@@ -17,11 +17,10 @@ from sysmlc.synthesis.bdd.limits import TooLargeError
 from sysmlc.synthesis.controller_synthesis import Form
 from sysmlc.synthesis.controllers.conditions import build_machine as written
 from sysmlc.synthesis.controllers.explicit_states import enumerate_states
-from sysmlc.synthesis.controllers.mealy import Move
+from sysmlc.synthesis.controllers.forms import Move, rebuild_in_variable_order
 from sysmlc.synthesis.controllers.minimisation import minimise
 from sysmlc.synthesis.controllers.strategy import extract_strategy
 from sysmlc.synthesis.controllers.strategy_memory import choose_registers, explore_strategy
-from sysmlc.synthesis.controllers.table import rebuild_in_variable_order
 from sysmlc.synthesis.games.arena import nodes_of
 
 SUITE = 200

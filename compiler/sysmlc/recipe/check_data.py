@@ -7,15 +7,16 @@ from sysmlc.ir.algorithms import sort_topologically
 from sysmlc.logic.expressions.expression import Expression
 from sysmlc.recipe.checks import Finding, declared_parameters, iter_graphs
 from sysmlc.recipe.derive import Tables
-from sysmlc.recipe.expression import iter_opaque_texts, iter_variables
-from sysmlc.recipe.flow import forward_edges
-from sysmlc.recipe.guards import (
+from sysmlc.recipe.expression import (
     UndecidedError,
     is_condition,
     is_satisfied,
+    iter_opaque_texts,
     iter_valuations,
+    iter_variables,
     resolve_literals,
 )
+from sysmlc.recipe.flow import forward_edges
 from sysmlc.recipe.model import (
     EnumType,
     FlowEdge,

@@ -2,10 +2,16 @@
 
 A name has one segment, which may contain dots (``belt.places``). The operators are
 + - * / mod == != < <= > >= and or not.
+
+Guards are evaluated for sample values, to find overlaps and gaps of one decision. Booleans and
+enumerations take every value. A number takes the constants that it is compared with, their
+neighbours, and a few small numbers, so that the result is not a proof.
 """
 
-from collections.abc import Callable, Iterator
+import operator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
+from itertools import product
 
 from sysmlc.logic.expressions.expression import (
     Binary,
@@ -16,6 +22,7 @@ from sysmlc.logic.expressions.expression import (
     Name,
     Unary,
 )
+from sysmlc.recipe.model import EnumType, Scalar, ValueType
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,3 +113,166 @@ def iter_opaque_texts(expression: Expression) -> Iterator[str]:
         yield expression.path[0]
     for operand in operands(expression):
         yield from iter_opaque_texts(operand)
+
+
+# -- evaluation of guards ----------------------------------------------------------------------
+
+_MOST_VALUATIONS = 5000
+_COMPARISONS = ("==", "!=", "<", "<=", ">", ">=")
+_NUMERIC = (*"+-*/", "mod", "<", "<=", ">", ">=")
+_OPERATIONS: dict[str, Callable[..., Scalar]] = {
+    "+": operator.add,
+    "-": operator.sub,
+    "*": operator.mul,
+    "/": operator.truediv,
+    "mod": operator.mod,
+    "==": operator.eq,
+    "!=": operator.ne,
+    "<": operator.lt,
+    "<=": operator.le,
+    ">": operator.gt,
+    ">=": operator.ge,
+}
+
+
+class UndecidedError(ValueError):
+    """A part of the expression has no value in the valuation."""
+
+
+def is_condition(expression: Expression, types: Mapping[str, ValueType | None]) -> bool:
+    """Return whether the expression is Boolean; an unknown type counts as Boolean."""
+    name = variable_name(expression)
+    if name is not None:
+        return types.get(name) in ("boolean", None)
+    match expression:
+        case Literal(value):
+            return isinstance(value, bool)
+        case Unary(op, _) | Binary(op, _, _):
+            return op in (*_COMPARISONS, "and", "or", "not")
+        case _:
+            return True
+
+
+def iter_valuations(
+    guards: list[Expression], types: Mapping[str, ValueType | None]
+) -> Iterator[dict[str, Scalar]]:
+    """Iterate over sample valuations of the guards' variables; over none if there are too many."""
+    names = sorted({name for guard in guards for name in iter_variables(guard)})
+    domains = [_sample_domain(name, guards, types.get(name)) for name in names]
+    size = 1
+    for domain in domains:
+        size *= len(domain)
+    if size <= _MOST_VALUATIONS:
+        for values in product(*domains):
+            yield dict(zip(names, values, strict=True))
+
+
+def is_satisfied(expression: Expression, values: Mapping[str, Scalar]) -> bool:
+    """Return whether a condition is true. Raise UndecidedError."""
+    return bool(_evaluate(expression, values))
+
+
+def _evaluate(  # noqa: PLR0911 - one for each kind
+    expression: Expression, values: Mapping[str, Scalar]
+) -> Scalar:
+    name = variable_name(expression)
+    if name is not None and name in values:
+        return values[name]
+    match expression:
+        case Literal(value):
+            return value
+        case Binary("and", left, right):
+            return is_satisfied(left, values) and is_satisfied(right, values)
+        case Binary("or", left, right):
+            return is_satisfied(left, values) or is_satisfied(right, values)
+        case Unary("not", operand):
+            return not is_satisfied(operand, values)
+        case Unary("-", operand):
+            return _calculate("-", 0, _evaluate(operand, values))
+        case Binary(op, left, right):
+            return _calculate(op, _evaluate(left, values), _evaluate(right, values))
+        case _:
+            raise UndecidedError
+
+
+def _calculate(op: str, *values: Scalar) -> Scalar:
+    try:
+        return _OPERATIONS[op](*values)
+    except (TypeError, ZeroDivisionError, KeyError):
+        raise UndecidedError from None
+
+
+def _sample_domain(name: str, guards: list[Expression], type_: ValueType | None) -> list[Scalar]:
+    if isinstance(type_, EnumType):
+        return [*type_.literals]
+    constants = [value for guard in guards for value in _iter_constants(name, guard)]
+    texts = sorted({value for value in constants if isinstance(value, str)})
+    if texts:
+        # One text that is equal to none of the constants stands for all the others.
+        return [*texts, "\x00other"]
+    numeric = type_ in ("integer", "real") or any(_is_numeric(name, guard) for guard in guards)
+    if not numeric:
+        return [False, True]
+    # Guards change their value at a constant: one value below, at and above each is enough.
+    step = 1 if type_ == "integer" else 0.5
+    numbers = {value for value in constants if isinstance(value, int | float)} | {0, 1, 2}
+    return sorted({value + shift for value in numbers for shift in (-step, 0, step)})
+
+
+def _iter_constants(name: str, expression: Expression) -> Iterator[Scalar]:
+    """Iterate over the constants that a variable is compared with."""
+    constant = _compared_constant(name, expression)
+    if constant is not None:
+        yield constant.value
+        return
+    for operand in _operands_of_operator(expression):
+        yield from _iter_constants(name, operand)
+
+
+def _compared_constant(name: str, expression: Expression) -> Literal | None:
+    match expression:
+        case Binary(op, left, right) if op in _COMPARISONS:
+            if variable_name(left) == name and isinstance(right, Literal):
+                return right
+            if variable_name(right) == name and isinstance(left, Literal):
+                return left
+    return None
+
+
+def _operands_of_operator(expression: Expression) -> tuple[Expression, ...]:
+    return operands(expression) if isinstance(expression, Unary | Binary) else ()
+
+
+def _is_numeric(name: str, expression: Expression) -> bool:
+    """Return whether the variable is an operand of arithmetic or is compared with a number."""
+    if not isinstance(expression, Unary | Binary):
+        return False
+    inner = operands(expression)
+    if any(variable_name(operand) == name for operand in inner):
+        has_number = any(
+            isinstance(operand, Literal) and type(operand.value) in (int, float)
+            for operand in inner
+        )
+        if expression.op in _NUMERIC or (expression.op in _COMPARISONS and has_number):
+            return True
+    return any(_is_numeric(name, operand) for operand in inner)
+
+
+def resolve_literals(expression: Expression, types: Mapping[str, ValueType | None]) -> Expression:
+    """Return the expression with values in place of names of enumeration literals."""
+    literals = {
+        literal
+        for type_ in types.values()
+        if isinstance(type_, EnumType)
+        for literal in type_.literals
+    }
+    name = variable_name(expression)
+    if name is not None and name not in types and _local_name(name) in literals:
+        return Literal(_local_name(name))
+    if isinstance(expression, Unary | Binary):
+        return map_operands(expression, lambda operand: resolve_literals(operand, types))
+    return expression
+
+
+def _local_name(name: str) -> str:
+    return name.replace("::", ".").rpartition(".")[2]

@@ -7,8 +7,7 @@ from sysmlc.logic.evaluate import compile_evaluation
 from sysmlc.logic.formula import Literal
 from sysmlc.robots import contract_terms as terms
 from sysmlc.robots.study import WAYS, Grid, Robot, next_move
-from sysmlc.synthesis.controllers.mealy import Machine
-from sysmlc.synthesis.controllers.table import Table
+from sysmlc.synthesis.controllers.forms import Machine, Table
 
 
 class Memory(NamedTuple):

@@ -23,8 +23,7 @@ from sysmlc.robots.study import Study
 from sysmlc.support.cache import Cache
 from sysmlc.synthesis.controller_synthesis import Synthesis
 from sysmlc.synthesis.controllers.closed_loop import Controller
-from sysmlc.synthesis.controllers.mealy import Machine, Move
-from sysmlc.synthesis.controllers.table import Bit, Entry, Table
+from sysmlc.synthesis.controllers.forms import Bit, Entry, Machine, Move, Table
 from sysmlc.synthesis.decision import Verdict
 
 EncodedController = Mapping[str, Any]

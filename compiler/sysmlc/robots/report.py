@@ -13,7 +13,7 @@ from sysmlc.robots.study import Study
 from sysmlc.support.escapes import escape_markdown
 from sysmlc.support.file_names import assign_file_names
 from sysmlc.synthesis.controller_files import controller_files
-from sysmlc.synthesis.controllers.mealy import Machine
+from sysmlc.synthesis.controllers.forms import Machine
 
 
 def study_files(outcome: Outcome) -> Iterator[tuple[str, str]]:

@@ -26,8 +26,7 @@ from sysmlc.synthesis import rules
 from sysmlc.synthesis.bdd.limits import LimitError
 from sysmlc.synthesis.controller_synthesis import Synthesis
 from sysmlc.synthesis.controllers.closed_loop import Controller
-from sysmlc.synthesis.controllers.mealy import Machine, Move
-from sysmlc.synthesis.controllers.table import Entry, Table
+from sysmlc.synthesis.controllers.forms import Entry, Machine, Move, Table
 from sysmlc.synthesis.decision import Place
 
 OWN, TABLE, GR1C = FORMS = ("own", "table", "gr1c")

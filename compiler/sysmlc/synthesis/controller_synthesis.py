@@ -25,11 +25,15 @@ from sysmlc.synthesis.bdd.symbols import Symbols
 from sysmlc.synthesis.controllers.closed_loop import Controller
 from sysmlc.synthesis.controllers.conditions import build_machine
 from sysmlc.synthesis.controllers.explicit_states import enumerate_states
-from sysmlc.synthesis.controllers.mealy import Machine
+from sysmlc.synthesis.controllers.forms import (
+    Machine,
+    Table,
+    build_table,
+    rebuild_in_variable_order,
+)
 from sysmlc.synthesis.controllers.minimisation import minimise
 from sysmlc.synthesis.controllers.strategy import Functions, Mode, Strategy, extract_strategy
 from sysmlc.synthesis.controllers.strategy_memory import choose_registers, explore_strategy
-from sysmlc.synthesis.controllers.table import Table, build_table, rebuild_in_variable_order
 from sysmlc.synthesis.controllers.verification import Fault, find_faults
 from sysmlc.synthesis.decision import Options, Place, Verdict, decide_game
 from sysmlc.synthesis.games.arena import Arena, nodes_of

@@ -13,8 +13,7 @@ from sysmlc.logic.contract import Contract, IntegerDomain, Owner, Variable
 from sysmlc.logic.formula import Var, eq
 from sysmlc.synthesis.bdd.manager import Manager, Node
 from sysmlc.synthesis.bdd.symbols import Symbols, next_bit
-from sysmlc.synthesis.controllers.mealy import Machine, Move
-from sysmlc.synthesis.controllers.table import Entry, Table, table_diagrams
+from sysmlc.synthesis.controllers.forms import Entry, Machine, Move, Table, table_diagrams
 from sysmlc.synthesis.games.arena import domain_constraint
 
 Controller = Machine | Table

@@ -1,9 +1,14 @@
-"""Symbolic controllers: a strategy as one table of decision nodes.
+"""The two forms of a controller: Mealy machines, and tables of decision nodes.
 
-A node tests one bit and continues at one of two other nodes; 0 is false and 1 is true. The
-controller remembers the values of all variables in the previous step, and a mode (the goal in
-turn). A table can be executed as it is, and has the size of the decision diagrams instead of the
-size of the states that they describe.
+In every step a Mealy machine takes the first move of its state whose condition holds. Conditions
+are formulas: a primed variable is an input of this step, an unprimed one is a register, which holds
+the variable's value in the previous step. State 0 is before the first step and has no registers.
+There may be no move for inputs that the assumptions exclude.
+
+A table is a strategy as decision nodes. A node tests one bit and continues at one of two other
+nodes; 0 is false and 1 is true. The controller remembers the values of all variables in the
+previous step, and a mode (the goal in turn). A table can be executed as it is, and has the size of
+the decision diagrams instead of the size of the states that they describe.
 
 The library reorders bits while diagrams grow, at moments that depend on time, but output files must
 be reproducible: ``rebuild_in_variable_order`` builds the table again in the order of its variables.
@@ -15,11 +20,75 @@ from msgspec import Struct
 
 from sysmlc.logic import domains
 from sysmlc.logic.contract import Variable
-from sysmlc.logic.formula import Literal
+from sysmlc.logic.evaluate import compile_evaluation, value_of
+from sysmlc.logic.formula import Formula, Literal
 from sysmlc.synthesis.bdd.limits import LimitError, TooLargeError
 from sysmlc.synthesis.bdd.manager import Manager, Node
 from sysmlc.synthesis.bdd.symbols import Symbols, width
 from sysmlc.synthesis.controllers.strategy import Mode, Strategy
+
+# -- Mealy machines ----------------------------------------------------------------------------
+
+
+class Move(Struct, frozen=True):
+    """The answer under a condition, and the next state."""
+
+    when: Formula
+    output: tuple[Formula, ...]
+    """For each output a literal, or a term over a register: ``n``, ``n + 1`` or ``n - 1``."""
+    state: int
+
+
+class Machine(Struct, frozen=True):
+    """A deterministic machine; ``states[state]`` are the moves of a state."""
+
+    inputs: tuple[Variable, ...]
+    outputs: tuple[Variable, ...]
+    registers: tuple[Variable, ...]
+    """Inputs and outputs whose previous values conditions and outputs may read."""
+    states: tuple[tuple[Move, ...], ...]
+
+    @property
+    def size(self) -> int:
+        """Number of states, including the one before the first step."""
+        return len(self.states)
+
+    @property
+    def count(self) -> int:
+        """Number of moves."""
+        return sum(map(len, self.states))
+
+    def step(
+        self, state: int, last: Mapping[str, Literal], now: Mapping[str, Literal]
+    ) -> tuple[dict[str, Literal], int]:
+        """Return the outputs for the inputs *now*, and the next state.
+
+        *last* has the inputs and outputs of the previous step. Raises LookupError if there is no
+        move.
+        """
+        move = self.find_move(state, last, now)
+        names = (term.name for term in self.outputs)
+        values = (value_of(term, last) for term in move.output)
+        return dict(zip(names, values, strict=True)), move.state
+
+    def find_move(
+        self, state: int, last: Mapping[str, Literal], now: Mapping[str, Literal]
+    ) -> Move:
+        """Return the move for the inputs *now*.
+
+        *last* has the inputs and outputs of the previous step. Raises LookupError if there is no
+        move.
+        """
+        enabled_moves = (
+            move for move in self.states[state] if compile_evaluation(move.when)(last, now)
+        )
+        first_move = next(enabled_moves, None)
+        if first_move is None:
+            raise LookupError(f"state {state} has no move for {dict(now)}")
+        return first_move
+
+
+# -- tables ------------------------------------------------------------------------------------
 
 MAX_NODES = 1_000_000
 
