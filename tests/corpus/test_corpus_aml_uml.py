@@ -1,4 +1,4 @@
-"""Real plants that are saved as UML and read back: what is not the same, and why."""
+"""Real plants that are saved as UML and read back: the differences and their reasons."""
 
 from collections import Counter
 
@@ -15,12 +15,12 @@ from sysmlc.sources import Source
 pytestmark = pytest.mark.corpus
 
 IGNORED = {"id", "source", "trace"}
-NAMED = "a value names an ID, which XML does not allow for xmi:id: another one is written"
+RESPELT_ID = "a value names an ID, which XML does not allow for xmi:id: another one is written"
 
 
-def saved(graph):
+def save(graph):
     sink = Sink()
-    return write_document(graph, sink), Counter(found.rule.code for found in sink)
+    return write_document(graph, sink), Counter(diagnostic.rule.code for diagnostic in sink)
 
 
 def read_back(text):
@@ -34,37 +34,37 @@ def test_every_difference_has_a_reason(corpus, golden):
     lines = []
     for name, paths in sorted(units(corpus).items()):
         graph = refined(sources(corpus, paths))
-        text, told = saved(graph)
-        assert set(told) <= {"SM723", "SM724", "SM726", "SM747"}, name
+        text, codes = save(graph)
+        assert set(codes) <= {"SM723", "SM724", "SM726", "SM747"}, name
         changes = diff(graph, read_back(text), IGNORED)
-        found = Counter(reason(graph, change) for change in changes)
-        assert (found[NAMED] > 0) == ("SM747" in told), name
+        reasons = Counter(find_reason(graph, change) for change in changes)
+        assert (reasons[RESPELT_ID] > 0) == ("SM747" in codes), name
         lines.append(f"{name}: {len(graph)} elements, {len(changes)} differences")
-        lines += [f"  {count} {why}" for why, count in sorted(found.items())]
+        lines += [f"  {count} {reason}" for reason, count in sorted(reasons.items())]
     assert len([line for line in lines if not line.startswith(" ")]) == 34
     assert [line for line in lines if "without a reason" in line] == []
     golden.check("aml-uml", {"corpus.txt": "\n".join(lines) + "\n"})
 
 
-def reason(graph, change):
+def find_reason(graph, change):
     key, _, values = change.detail.partition(": ")
     before, _, after = values.rpartition(" -> ")
     is_value = change.what == "attribute" and key in ("default", "value")
     if is_value and "Kind." in before and after.strip("'") in graph:
-        return NAMED
+        return RESPELT_ID
     return f"without a reason: {change}"
 
 
 @pytest.mark.parametrize("name", ["BayGate.aml", "BayGate.amlx", "BayGate_extlibs.aml"])
-def test_baygate_comes_back_without_any_difference(name, corpus):
+def test_baygate_is_read_back_without_differences(name, corpus):
     graph = refined(sources(corpus, baygate(corpus)[name]))
-    assert diff(graph, read_back(saved(graph)[0]), IGNORED) == []
+    assert diff(graph, read_back(save(graph)[0]), IGNORED) == []
 
 
 @pytest.mark.parametrize("old", [' name="length"', "xs:double", "system-unit-class-lib"])
 def test_the_comparison_sees_a_difference(old, corpus):
     graph = refined(sources(corpus, baygate(corpus)["BayGate.aml"]))
-    text, _ = saved(graph)
+    text, _ = save(graph)
     assert old in text
     changed = text.replace(old, old.replace("t", "d").replace("d", "x"), 1)
     assert changed != text

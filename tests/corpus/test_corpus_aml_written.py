@@ -1,6 +1,6 @@
-"""Real plants that are written as CAEX 3.0 and read back: valid, and what is not the same.
+"""Real plants that are saved as CAEX 3.0 and read back: validity, differences and their reasons.
 
-The schema is the published one of the corpus; nothing of our own judges what is written.
+The published schema in the corpus decides whether a file is valid.
 """
 
 from collections import Counter
@@ -26,14 +26,14 @@ REASONS = {
 }
 
 
-def written(graph):
+def save(graph):
     sink = Sink()
-    return write_files(graph, "plant", sink), Counter(found.rule.code for found in sink)
+    return write_files(graph, "plant", sink), Counter(diagnostic.rule.code for diagnostic in sink)
 
 
 def read_back(texts):
-    named = ((path.removeprefix("aml/"), text) for path, text in texts.items())
-    return refined([Source(path, text.encode()) for path, text in named])
+    paths = {path: path.removeprefix("aml/") for path in texts}
+    return refined([Source(paths[path], text.encode()) for path, text in texts.items()])
 
 
 @pytest.fixture(scope="module")
@@ -46,70 +46,72 @@ def test_every_difference_has_a_reason(corpus, schema, golden):
     lines = []
     for name, paths in sorted(units(corpus).items()):
         graph = refined(sources(corpus, paths))
-        texts, told = written(graph)
+        texts, counts = save(graph)
         for text in texts.values():
             assert schema.validate(etree.fromstring(text.encode())), (name, schema.error_log)
         changes = diff(graph, read_back(texts), IGNORED)
-        found = Counter(reason(change) for change in changes)
-        codes = "".join(f", {count} {code}" for code, count in sorted(told.items()))
+        reasons = Counter(find_reason(change) for change in changes)
+        codes = "".join(f", {count} {code}" for code, count in sorted(counts.items()))
         lines.append(f"{name}: {len(graph)} elements, {len(changes)} differences{codes}")
-        lines += [f"  {count} {why}" for why, count in sorted(found.items())]
+        lines += [f"  {count} {reason}" for reason, count in sorted(reasons.items())]
     assert len([line for line in lines if not line.startswith(" ")]) == 34
     assert [line for line in lines if "without a reason" in line] == []
     golden.check("aml", {"corpus.txt": "\n".join(lines) + "\n"})
 
 
-def reason(change):
+def find_reason(change):
     name = change.element.rpartition("::")[2]
     detail = f"{change.detail} {name}" if change.what == "added" else change.detail
     return REASONS.get((change.what, detail), f"without a reason: {change}")
 
 
 @pytest.mark.parametrize("name", ["BayGate.aml", "BayGate.amlx", "BayGate_extlibs.aml"])
-def test_baygate_comes_back_without_any_difference(name, corpus):
+def test_baygate_is_read_back_without_differences(name, corpus):
     graph = refined(sources(corpus, baygate(corpus)[name]))
-    texts, told = written(graph)
-    assert told == Counter()
+    texts, counts = save(graph)
+    assert counts == Counter()
     assert diff(graph, read_back(texts), IGNORED) == []
 
 
 @pytest.mark.long
-def test_what_is_written_again_is_the_same(corpus):
+def test_saving_twice_gives_the_same_bytes(corpus):
     for name, paths in sorted(units(corpus).items()):
-        texts, _ = written(refined(sources(corpus, paths)))
-        assert written(read_back(texts))[0] == texts, name
+        texts, _ = save(refined(sources(corpus, paths)))
+        assert save(read_back(texts))[0] == texts, name
 
 
 def test_ids_of_elements_links_and_interfaces_are_those_of_the_source(corpus):
-    """Of files whose IDs are unique, and whose elements repeat none of their classes."""
+    """These files have unique IDs, and no element that repeats parts of its class."""
     for name in ("amlsec_casestudy_a.aml", "vera_plant.aml", "eplan_arapc_example.aml"):
         path = corpus / "aml" / "dev" / name
-        texts, _ = written(refined(load(path, name)))
-        before = Counter(ids(path.read_bytes()))
-        after = Counter(id for text in texts.values() for id in ids(text.encode()))
+        texts, _ = save(refined(load(path, name)))
+        before = Counter(iter_ids(path.read_bytes()))
+        after = Counter(id for text in texts.values() for id in iter_ids(text.encode()))
         assert before - after == Counter(), name
         assert before, name
 
 
-def ids(data):
-    """IDs of internal elements and their interfaces, as they are written."""
+def iter_ids(data):
+    """Yield the IDs of internal elements and interfaces."""
     root = etree.fromstring(data)
-    for one in root.iter("{*}InternalElement", "{*}ExternalInterface"):
-        if one.get("ID"):
-            yield one.get("ID")
+    for node in root.iter("{*}InternalElement", "{*}ExternalInterface"):
+        if node.get("ID"):
+            yield node.get("ID")
 
 
 def test_models_of_other_languages_are_valid_plants(corpus, schema):
     from examples.compiling import compile_example
 
-    found = [p for folder in ("papyrus", "ea") for p in (corpus / "xmi" / folder).iterdir()]
+    paths = [path for folder in ("papyrus", "ea") for path in (corpus / "xmi" / folder).iterdir()]
     count = 0
-    for path in sorted(p for p in found if p.is_file() and p.stat().st_size < 1_000_000):
+    for path in sorted(paths):
+        if not path.is_file() or path.stat().st_size >= 1_000_000:
+            continue
         try:
             graph = compile_example(path, "reqtable").graph
         except SourceError:
             continue
-        texts, _ = written(graph)
+        texts, _ = save(graph)
         for text in texts.values():
             assert schema.validate(etree.fromstring(text.encode())), (path.name, schema.error_log)
         read_back(texts)

@@ -1,4 +1,4 @@
-"""The structure of a graph by names alone: what two languages can both say of a plant."""
+"""The structure of a graph by names: what two languages can both express of a plant."""
 
 from collections import Counter
 
@@ -9,58 +9,59 @@ from sysmlc.ir.query.classifiers import unit_of
 CLASSES = (Kind.CLASS, Kind.COMPONENT, Kind.INTERFACE)
 
 
-def structure(graph):
-    """Multisets of sentences by subject."""
-    own = [one for one in graph if not one.attrs.get("external")]
-    blocks = {one.id: one for one in own if one.kind in CLASSES and one.role in ROLES}
-    held = [one for one in own if one.owner in blocks]
+def count_structure(graph):
+    """Return multisets of names by subject."""
+    internal = [element for element in graph if not element.attrs.get("external")]
+    blocks = {e.id: e for e in internal if e.kind in CLASSES and e.role in ROLES}
+    members = [element for element in internal if element.owner in blocks]
+    ports = [member for member in members if member.kind is Kind.PORT]
+    values = [member for member in members if member.role == "value"]
+    connectors = [member for member in members if member.kind is Kind.CONNECTOR]
     return {
-        "classes": Counter((one.name, ROLES[one.role]) for one in blocks.values()),
-        "generalizations": pairs(graph, blocks.values(), Edge.SPECIALIZES, blocks),
-        "parts": features(graph, held, lambda one: one.role == "part"),
-        "values": features(graph, held, lambda one: one.role == "value"),
-        "ports": features(graph, held, lambda one: one.kind is Kind.PORT),
+        "classes": Counter((block.name, ROLES[block.role]) for block in blocks.values()),
+        "generalizations": count_edges(graph, blocks.values(), Edge.SPECIALIZES, blocks),
+        "parts": count_features(graph, [member for member in members if member.role == "part"]),
+        "values": count_features(graph, values),
+        "ports": count_features(graph, ports),
         "directions": Counter(
-            (one.name, one.attrs["direction"])
-            for one in held
-            if one.kind is Kind.PORT and "direction" in one.attrs
+            (port.name, port.attrs["direction"]) for port in ports if "direction" in port.attrs
         ),
-        "units": Counter((one.name, symbol(graph, one)) for one in held if one.role == "value"),
-        "links": Counter(link(graph, one) for one in held if one.kind is Kind.CONNECTOR),
+        "units": Counter((value.name, find_symbol(graph, value)) for value in values),
+        "links": Counter(describe_link(graph, connector) for connector in connectors),
     }
 
 
 ROLES = {"block": "block", "interface block": "interface block", "": "block"}
 
 
-def pairs(graph, sources, edge, among):
-    """Pairs of names on edges inside the model."""
-    found = ((one, target) for one in sources for target in graph.targets(one, edge))
-    return Counter((one.name, target.name) for one, target in found if target.id in among)
+def count_edges(graph, sources, edge, among):
+    """Count the edges inside the model by the names of their ends."""
+    ends = ((source, target) for source in sources for target in graph.targets(source, edge))
+    return Counter((source.name, target.name) for source, target in ends if target.id in among)
 
 
-def features(graph, held, is_meant):
-    """Names of owner, feature and type."""
-    found = Counter()
-    for one in filter(is_meant, held):
-        type_ = type_of(graph, one)
-        found[graph.owner(one).name, one.name, type_.name if type_ else ""] += 1
-    return found
+def count_features(graph, members):
+    """Count features by the names of owner, feature and type."""
+    counts = Counter()
+    for feature in members:
+        type_ = type_of(graph, feature)
+        counts[graph.owner(feature).name, feature.name, type_.name if type_ else ""] += 1
+    return counts
 
 
-def symbol(graph, one):
-    """How the unit of a value is written, or the empty string."""
-    unit = unit_of(graph, one)
+def find_symbol(graph, value):
+    """Return the symbol of the unit of a value, or the empty string."""
+    unit = unit_of(graph, value)
     return "" if unit is None else str(unit.attrs.get("symbol") or unit.name)
 
 
-def link(graph, connector):
-    """Name of the connector, and of the steps to both of its ends."""
+def describe_link(graph, connector):
+    """Return the name of the connector, and the paths to its ends."""
     ends = graph.targets(connector, Edge.END)
-    return connector.name, tuple(sorted(steps(graph, end) for end in ends))
+    return connector.name, tuple(sorted(describe_end(graph, end) for end in ends))
 
 
-def steps(graph, end):
-    """Names of the parts on the way to a port, and of the port."""
-    on_the_way = [*graph.targets(end, Edge.PATH), *graph.targets(end, Edge.ROLE)]
-    return ".".join(one.name for one in on_the_way)
+def describe_end(graph, end):
+    """Return the names of the parts on the path to a port, and of the port."""
+    path = [*graph.targets(end, Edge.PATH), *graph.targets(end, Edge.ROLE)]
+    return ".".join(step.name for step in path)

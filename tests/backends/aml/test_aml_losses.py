@@ -1,7 +1,7 @@
-"""What CAEX says in other words than the graph, and what it cannot say."""
+"""What CAEX expresses in another form than the graph, and what it cannot express."""
 
 import pytest
-from writing_aml import refined, saved
+from writing_aml import refine, save
 
 from sysmlc.backends.aml import rules
 
@@ -18,21 +18,21 @@ RULES = (
 
 @pytest.mark.parametrize("rule", RULES, ids=lambda rule: rule.name)
 def test_a_rule_reports_its_wrong_model_and_not_its_right_one(rule):
-    assert rule.code in [one[:5] for one in saved(refined(rule.read_page().wrong))[1]]
-    assert saved(refined(rule.read_page().right))[1] == []
+    assert rule.code in [message[:5] for message in save(refine(rule.read_page().wrong))[1]]
+    assert save(refine(rule.read_page().right))[1] == []
 
 
-def test_a_loss_is_counted_and_told_once():
+def test_a_loss_is_counted_and_reported_once():
     machines = "".join(f'    StateMachine m{n} "M{n}"\n' for n in range(3))
     gate = 'Package p "Plant"\n  Class gate "Gate" role="block"\n'
-    assert saved(refined(gate + machines))[1] == [
+    assert save(refine(gate + machines))[1] == [
         "SM740 AutomationML cannot express StateMachine (3 omitted from the saved plant)"
     ]
 
 
-def test_an_interface_that_holds_itself_is_written_once():
-    texts, _ = saved(
-        refined(
+def test_an_interface_that_contains_itself_is_written_once():
+    texts, _ = save(
+        refine(
             'Package p "Plant"\n  Class gate "Gate" role="block"\n    -> feature a\n'
             '    Port a "a"\n      -> typed-by t\n'
             '    Class t "a" subkind="external-interface"\n      -> feature b\n'

@@ -1,12 +1,12 @@
-"""What is saved as CAEX is read back as the same graph."""
+"""A graph that is saved as CAEX is read back as the same graph."""
 
 import os
 import subprocess
 import sys
 
 import pytest
-from structure_of import structure
-from writing_aml import IGNORED, at, read, refined, root, round_trip, saved
+from structure_of import count_structure
+from writing_aml import IGNORED, attrs_of, parse_file, read, refine, round_trip, save
 
 from examples.compiling import EXAMPLES, compile_example
 from graph_differences import diff
@@ -113,20 +113,20 @@ def plant():
     return read(Source("plant.aml", PLANT.encode()))
 
 
-def test_everything_that_the_graph_keeps_of_a_plant_comes_back(plant):
+def test_a_plant_is_read_back_without_differences(plant):
     assert len(plant) > 70
     texts, _, changes = round_trip(plant)
     assert list(texts) == ["aml/plant.aml"]
     assert changes == []
 
 
-def test_a_plant_loses_nothing_and_says_so(plant):
-    assert saved(plant)[1] == []
+def test_a_plant_loses_nothing_and_nothing_is_reported(plant):
+    assert save(plant)[1] == []
 
 
 def test_saving_twice_gives_the_same_bytes(plant):
     texts, back, _ = round_trip(plant)
-    assert saved(back)[0] == texts
+    assert save(back)[0] == texts
 
 
 @pytest.mark.parametrize(
@@ -141,17 +141,17 @@ def test_saving_twice_gives_the_same_bytes(plant):
     ],
 )
 def test_the_comparison_sees_a_difference(plant, old, new):
-    (text,) = saved(plant)[0].values()
+    (text,) = save(plant)[0].values()
     assert old in text
     back = read(Source("plant.aml", text.replace(old, new).encode()))
     assert diff(plant, back, IGNORED) != []
 
 
-def test_ids_are_kept_as_they_are(plant):
-    texts, _ = saved(plant)
-    given = set(root({"": PLANT}).xpath("//@ID")) - {"view-in", "all-belt"}
-    assert given <= set(root(texts).xpath("//@ID"))
-    assert at(texts, "//InternalLink[@Name='m']") == {
+def test_ids_are_written_unchanged(plant):
+    texts, _ = save(plant)
+    ids = set(parse_file({"": PLANT}).xpath("//@ID")) - {"view-in", "all-belt"}
+    assert ids <= set(parse_file(texts).xpath("//@ID"))
+    assert attrs_of(texts, "//InternalLink[@Name='m']") == {
         "Name": "m",
         "RefPartnerSideA": "own-p-inner",
         "RefPartnerSideB": "belt-out",
@@ -159,16 +159,16 @@ def test_ids_are_kept_as_they_are(plant):
 
 
 def test_paths_have_brackets_only_where_a_name_needs_them(plant):
-    texts, _ = saved(plant)
-    assert at(texts, "//SystemUnitClass[@Name='Belt']")["RefBaseClassPath"] == "[Lib]/[A/B]"
-    element = at(texts, "//InternalElement[@ID='belt']")
+    texts, _ = save(plant)
+    assert attrs_of(texts, "//SystemUnitClass[@Name='Belt']")["RefBaseClassPath"] == "[Lib]/[A/B]"
+    element = attrs_of(texts, "//InternalElement[@ID='belt']")
     assert element["RefBaseSystemUnitPath"] == "Lib/Belt"
 
 
-def test_what_leads_nowhere_is_written_as_it_was(plant):
-    texts, _ = saved(plant)
-    assert at(texts, "//InternalElement[@Name='lost']")["RefBaseSystemUnitPath"] == "Lib/Gone"
-    assert at(texts, "//InternalLink[@Name='free']")["RefPartnerSideB"] == "connection A0"
+def test_unresolved_references_are_written_unchanged(plant):
+    texts, _ = save(plant)
+    assert attrs_of(texts, "//InternalElement[@Name='lost']")["RefBaseSystemUnitPath"] == "Lib/Gone"
+    assert attrs_of(texts, "//InternalLink[@Name='free']")["RefPartnerSideB"] == "connection A0"
 
 
 def test_aliases_lead_to_the_files_that_are_written():
@@ -184,19 +184,19 @@ def test_aliases_lead_to_the_files_that_are_written():
     assert list(texts) == ["aml/libs/r.aml", "aml/p.aml"]
     assert 'Path="libs/r.aml" Alias="R"' in texts["aml/p.aml"]
     assert 'RefRoleClassPath="R@Roles/Mover"' in texts["aml/p.aml"]
-    assert [e for e in back if "unresolved" in e.attrs] == []
+    assert [element for element in back if "unresolved" in element.attrs] == []
 
 
-def test_an_element_says_again_what_its_class_says_of_attributes(plant):
-    texts, _ = saved(plant)
-    (speed,) = root(texts).xpath("//InternalElement[@ID='belt']/Attribute[@Name='speed']")
+def test_an_element_repeats_the_attributes_of_its_class(plant):
+    texts, _ = save(plant)
+    (speed,) = parse_file(texts).xpath("//InternalElement[@ID='belt']/Attribute[@Name='speed']")
     assert dict(speed.attrib) == {
         "Name": "speed",
         "AttributeDataType": "xs:double",
         "Unit": "m/s",
         "RefAttributeType": "Types/Speed",
     }
-    assert [one.tag for one in speed] == [
+    assert [child.tag for child in speed] == [
         "Description",
         "DefaultValue",
         "Value",
@@ -210,19 +210,19 @@ def test_an_element_says_again_what_its_class_says_of_attributes(plant):
 # -- models of other languages -----------------------------------------------------------------
 
 LOST = {"baygate-behaviour": [("b_palletId", ("palletId", "rf.lastId"))]}
-"""Links of an example between values, not interfaces: a binding."""
+"""Links of an example that CAEX cannot express: a binding joins values, not interfaces."""
 
 
 STRUCTURED = [path for path in EXAMPLES if path.parent.name != "baygate"]
-"""The model beside the plant of that example holds behaviour alone."""
+"""The examples with structure; the model of baygate has only behaviour."""
 
 
 @pytest.mark.parametrize("model", STRUCTURED, ids=lambda path: path.parent.name)
-def test_the_structure_of_an_example_comes_back(model):
+def test_the_structure_of_an_example_is_read_back(model):
     graph = compile_example(model, "aml").graph
     _, back, _ = round_trip(graph)
-    before, after = structure(graph), structure(back)
-    assert sum(map(sum, (found.values() for found in before.values()))) > 20
+    before, after = count_structure(graph), count_structure(back)
+    assert sum(counts.total() for counts in before.values()) > 20
     lost = LOST.get(model.parent.name, [])
     assert list((before["links"] - after["links"]).elements()) == lost
     for subject in before.keys() - {"links"}:
@@ -261,59 +261,64 @@ DataType real "Real" subkind="primitive" external=true
 
 
 def test_blocks_become_classes_and_parts_internal_elements():
-    texts, told = saved(refined(BLOCKS))
-    assert told == []
-    assert at(texts, "//SystemUnitClass[@Name='Fast']")["RefBaseClassPath"] == "Plant/Belt"
-    assert at(texts, "//InterfaceClass") == {"Name": "Passage"}
-    assert at(texts, "//RoleClassLib/RoleClass") == {"Name": "Moves"}
-    assert at(texts, "//SystemUnitClass/SupportedRoleClass") == {"RefRoleClassPath": "Plant/Moves"}
-    element = at(texts, "//SystemUnitClass/InternalElement")
+    texts, messages = save(refine(BLOCKS))
+    assert messages == []
+    assert attrs_of(texts, "//SystemUnitClass[@Name='Fast']")["RefBaseClassPath"] == "Plant/Belt"
+    assert attrs_of(texts, "//InterfaceClass") == {"Name": "Passage"}
+    assert attrs_of(texts, "//RoleClassLib/RoleClass") == {"Name": "Moves"}
+    assert attrs_of(texts, "//SystemUnitClass/SupportedRoleClass") == {
+        "RefRoleClassPath": "Plant/Moves"
+    }
+    element = attrs_of(texts, "//SystemUnitClass/InternalElement")
     assert (element["Name"], element["RefBaseSystemUnitPath"]) == ("belt", "Plant/Fast")
-    assert at(texts, "//InstanceHierarchy/InternalElement")["RefBaseSystemUnitPath"] == "Plant/Line"
-    speed = at(texts, "//SystemUnitClass/Attribute[@Name='speed']")
+    assert (
+        attrs_of(texts, "//InstanceHierarchy/InternalElement")["RefBaseSystemUnitPath"]
+        == "Plant/Line"
+    )
+    speed = attrs_of(texts, "//SystemUnitClass/Attribute[@Name='speed']")
     assert speed == {"Name": "speed", "AttributeDataType": "xs:double"}
-    (port,) = root(texts).xpath("//SystemUnitClass[@Name='Belt']/ExternalInterface")
+    (port,) = parse_file(texts).xpath("//SystemUnitClass[@Name='Belt']/ExternalInterface")
     assert port.xpath("Attribute[@Name='Direction']/Value/text()") == ["Out"]
     assert port.xpath("Attribute[@Name='Cardinality']//Value/text()") == ["2", "2"]
 
 
 def test_a_connector_ends_at_the_interface_of_the_part():
-    texts, _ = saved(refined(BLOCKS))
-    link = at(texts, "//InternalLink")
-    inside = at(texts, "//InternalElement[@Name='belt']/ExternalInterface")
-    frame = at(texts, "//SystemUnitClass[@Name='Line']/ExternalInterface")
+    texts, _ = save(refine(BLOCKS))
+    link = attrs_of(texts, "//InternalLink")
+    inside = attrs_of(texts, "//InternalElement[@Name='belt']/ExternalInterface")
+    frame = attrs_of(texts, "//SystemUnitClass[@Name='Line']/ExternalInterface")
     assert (link["RefPartnerSideA"], link["RefPartnerSideB"]) == (frame["ID"], inside["ID"])
 
 
-def test_ids_of_other_languages_are_computed_and_each_is_there_once():
-    texts, _ = saved(refined(BLOCKS))
-    ids = root(texts).xpath("//@ID")
+def test_ids_of_other_languages_are_derived_and_unique():
+    texts, _ = save(refine(BLOCKS))
+    ids = parse_file(texts).xpath("//@ID")
     assert len(ids) == len(set(ids)) == 5
     assert all(len(id) == 36 for id in ids)
-    assert saved(refined(BLOCKS))[0] == texts
+    assert save(refine(BLOCKS))[0] == texts
 
 
 def test_an_empty_graph_is_an_empty_file():
-    (text,) = saved(refined(""))[0].values()
-    assert [one.tag for one in root({"": text})] == ["SourceDocumentInformation"]
+    (text,) = save(refine(""))[0].values()
+    assert [child.tag for child in parse_file({"": text})] == ["SourceDocumentInformation"]
 
 
-def test_order_of_hashes_is_not_in_the_file(tmp_path):
+def test_the_file_does_not_depend_on_the_order_of_hashes(tmp_path):
     command = [sys.executable, "-m", "sysmlc", "build", str(EXAMPLES[0]), "--emit", "aml"]
     for seed in ("0", "7"):
         environment = os.environ | {"PYTHONHASHSEED": seed}
         arguments = [*command, "--no-cache", "-o", str(tmp_path / seed)]
         subprocess.run(arguments, env=environment, capture_output=True, check=False)
-    made = [next((tmp_path / seed).rglob("*.aml")).read_bytes() for seed in ("0", "7")]
-    assert made[0] == made[1]
+    contents = [next((tmp_path / seed).rglob("*.aml")).read_bytes() for seed in ("0", "7")]
+    assert contents[0] == contents[1]
 
 
-def test_information_of_a_vendor_is_kept_however_deep_it_is():
+def test_information_of_a_vendor_is_preserved_at_any_depth():
     deep = f"{'<x>' * 400}{'</x>' * 400}"
     text = (
         '<CAEXFile xmlns="http://www.dke.de/CAEX" SchemaVersion="3.0" FileName="plant.aml">'
         f"<AdditionalInformation>{deep}</AdditionalInformation></CAEXFile>"
     )
     texts, _, _ = round_trip(read(Source("plant.aml", text.encode())))
-    (written,) = texts.values()
-    assert written.count("<x>") + written.count("<x/>") == 400
+    (copy,) = texts.values()
+    assert copy.count("<x>") + copy.count("<x/>") == 400

@@ -16,7 +16,7 @@ IGNORED = {"id", "source", "trace"}
 
 
 def read(*sources):
-    """The graph of AutomationML files, refined as far as structure goes."""
+    """Return the graph of AutomationML files after the passes for structure."""
     graph, sink = Graph(), Sink()
     FRONTEND.read(list(sources), graph, sink, Coverage())
     pipeline.build_pipeline(PASSES).run(graph, sink)
@@ -24,38 +24,38 @@ def read(*sources):
     return graph
 
 
-def refined(text):
-    """The graph that a text form means, refined."""
+def refine(text):
+    """Return the graph of a text form after the passes for structure."""
     graph = parse_text(text)
     pipeline.build_pipeline(PASSES).run(graph, Sink())
     return graph
 
 
-def saved(graph, unit="plant"):
-    """The files by path, and what they do not say: codes and messages."""
+def save(graph, unit="plant"):
+    """Return the files by path, and the diagnostics: codes and messages."""
     sink = Sink()
     texts = write_files(graph, unit, sink)
-    return texts, [f"{found.rule.code} {found.message}" for found in sink]
+    return texts, [f"{diagnostic.rule.code} {diagnostic.message}" for diagnostic in sink]
 
 
 def round_trip(graph):
-    """The files, the graph that is read back from them, and what differs."""
-    texts, _ = saved(graph)
+    """Return the files, the graph that is read back from them, and the differences."""
+    texts, _ = save(graph)
     paths = {path.removeprefix("aml/"): text for path, text in texts.items()}
     back = read(*(Source(path, text.encode()) for path, text in paths.items()))
     return texts, back, diff(graph, back, IGNORED)
 
 
-def root(texts):
-    """The only file as an XML tree without namespaces."""
+def parse_file(texts):
+    """Return the only file as an XML tree without namespaces."""
     (text,) = texts.values()
     tree = etree.fromstring(text.encode())
-    for one in tree.iter("*"):
-        one.tag = etree.QName(one).localname
+    for element in tree.iter("*"):
+        element.tag = etree.QName(element).localname
     return tree
 
 
-def at(texts, path):
-    """Attributes of the only element on an XPath."""
-    (found,) = root(texts).xpath(path)
-    return dict(found.attrib)
+def attrs_of(texts, path):
+    """Return the XML attributes of the only element on an XPath."""
+    (element,) = parse_file(texts).xpath(path)
+    return dict(element.attrib)

@@ -13,30 +13,30 @@ PASSES = ("resolve", "kept", "inherit", "classify")
 
 
 def read(data, name="model.uml"):
-    """The graph of an XMI document, classified."""
+    """Return the graph of an XMI document after classification."""
     graph, sink = Graph(), Sink()
     FRONTEND.read([Source(name, data)], graph, sink, Coverage())
     pipeline.build_pipeline(PASSES).run(graph, sink)
     return graph
 
 
-def refined(text):
-    """The graph that a text form means, classified."""
+def refine(text):
+    """Return the graph of a text form after classification."""
     graph = parse_text(text)
     pipeline.build_pipeline(PASSES).run(graph, Sink())
     return graph
 
 
-def saved(graph):
-    """The document, and what it could not say: codes and messages."""
+def save(graph):
+    """Return the document, and the diagnostics: codes and messages."""
     sink = Sink()
     text = write_document(graph, sink)
-    return text, [f"{found.rule.code} {found.message}" for found in sink]
+    return text, [f"{diagnostic.rule.code} {diagnostic.message}" for diagnostic in sink]
 
 
 def round_trip(graph):
-    """The document, the graph that is read back from it, and what differs."""
-    text, _ = saved(graph)
+    """Return the document, the graph that is read back from it, and the differences."""
+    text, _ = save(graph)
     back = read(text.encode())
     assert verify(back) == []
     return text, back, diff(graph, back, {"id", "source", "trace"})

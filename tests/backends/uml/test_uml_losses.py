@@ -1,8 +1,8 @@
-"""What UML says in other words than the graph, and what it cannot say."""
+"""What UML expresses in another form than the graph, and what it cannot express."""
 
 import pytest
 from lxml import etree
-from saving import read, refined, round_trip, saved
+from saving import read, refine, round_trip, save
 
 from dialects.papyrus import XMI
 from sysmlc.backends.uml import rules
@@ -21,13 +21,13 @@ RULES = (
 
 @pytest.mark.parametrize("rule", RULES, ids=lambda rule: rule.name)
 def test_a_rule_reports_its_wrong_model_and_not_its_right_one(rule):
-    assert rule.code in [one[:5] for one in saved(refined(rule.read_page().wrong))[1]]
-    assert saved(refined(rule.read_page().right))[1] == []
+    assert rule.code in [message[:5] for message in save(refine(rule.read_page().wrong))[1]]
+    assert save(refine(rule.read_page().right))[1] == []
 
 
-def test_a_loss_is_counted_and_told_once():
+def test_a_loss_is_counted_and_reported_once():
     facets = "".join(f'  Facet f{number} "F{number}"\n' for number in range(3))
-    assert saved(refined('Package p "Plant"\n' + facets))[1] == [
+    assert save(refine('Package p "Plant"\n' + facets))[1] == [
         "SM720 UML cannot express Facet (3 omitted from the saved model)"
     ]
 
@@ -49,24 +49,24 @@ Package p "Plant"
 
 
 def test_roles_without_stereotypes_become_stereotypes_of_sysml():
-    graph = refined(ROLES)
+    graph = refine(ROLES)
     text, back, _ = round_trip(graph)
     for element in graph:
-        same = next(one for one in back if one.name == element.name and one.kind is element.kind)
+        copy = next(e for e in back if e.name == element.name and e.kind is element.kind)
         for key in ("role", "direction", "req_id", "text"):
-            assert same.attrs.get(key) == element.attrs.get(key), (element, key)
+            assert copy.attrs.get(key) == element.attrs.get(key), (element, key)
     assert 'SysML.package_packagedElement_Ports_u0026Flows"' in text
     assert '<Requirements:Requirement xmi:id="_' in text
 
 
-def test_ids_that_xml_cannot_hold_are_derived_and_others_kept():
+def test_only_ids_that_xml_does_not_allow_are_derived():
     text, _, changes = round_trip(
-        refined(
+        refine(
             'Package "a#p" "Plant"\n  Class "2" "Two"\n  Class "b#p" "Three"\n  Class kept "Kept"\n'
         )
     )
     model = etree.fromstring(text.encode())[0]
-    ids = [one.get(f"{{{XMI}}}id", "") for one in model.iter("*")]
+    ids = [element.get(f"{{{XMI}}}id", "") for element in model.iter("*")]
     assert (ids[0], ids[1], ids[3]) == ("p", "_2", "kept")
     assert ids[2].startswith("_")
     assert "#" not in ids[2]
@@ -75,7 +75,7 @@ def test_ids_that_xml_cannot_hold_are_derived_and_others_kept():
 
 def test_text_is_escaped():
     name = 'a <b> & "c"\n\té'
-    graph = refined('Package p "Plant"\n  Comment c ""\n')
+    graph = refine('Package p "Plant"\n  Comment c ""\n')
     graph.rename(graph["p"], name)
     graph.set(graph["c"], body=f"{name}\r\n]]>")
     _, back, changes = round_trip(graph)
@@ -83,23 +83,23 @@ def test_text_is_escaped():
     assert back["p"].name == name
 
 
-def test_what_is_outside_is_an_href():
+def test_a_reference_out_of_the_model_is_an_href():
     text = """
 Package p "Plant"
   Class gate "Gate"
     -> specializes arm
 Class arm "Arm" external=true href="robots.uml#_arm" qualified_name="Robots::Arm"
 """
-    made, back, _ = round_trip(refined(text))
-    assert '<general xmi:type="uml:Class" href="robots.uml#_arm">' in made
-    (stub,) = [one for one in back if one.attrs.get("external")]
+    saved_text, back, _ = round_trip(refine(text))
+    assert '<general xmi:type="uml:Class" href="robots.uml#_arm">' in saved_text
+    (stub,) = [element for element in back if element.attrs.get("external")]
     assert (stub.name, stub.attrs["qualified_name"]) == ("Arm", "Robots::Arm")
 
 
 def test_an_empty_graph_is_an_empty_document():
-    text, told = saved(refined(""))
+    text, messages = save(refine(""))
     assert len(read(text.encode())) == 0
-    assert told == []
+    assert messages == []
 
 
 LIBRARY = """
@@ -114,10 +114,10 @@ Stereotype block "Block" external=true library=true href="SysML Profile.mdzip#_b
 """
 
 
-def test_a_role_that_only_a_library_explains_is_said_by_sysml():
-    text, back, _ = round_trip(refined(LIBRARY))
+def test_a_role_from_an_external_library_gets_a_stereotype_of_sysml():
+    text, back, _ = round_trip(refine(LIBRARY))
     assert 'Blocks:Block xmi:id="_' in text
-    (gate,) = [one for one in back if one.name == "Gate"]
+    (gate,) = [element for element in back if element.name == "Gate"]
     assert gate.role == "block"
 
 
@@ -147,40 +147,40 @@ Package roles "Roles" external=true library=true
 
 
 def test_connectors_of_an_instance_are_saved_with_its_class():
-    graph = refined(PLANT)
-    _, told = saved(graph)
+    graph = refine(PLANT)
+    _, messages = save(graph)
     assert (
         "SM723 UML lets no Instance own Connector: saved with the nearest possible owner (1)"
-        in told
+        in messages
     )
     _, back, _ = round_trip(graph)
-    (wire,) = [one for one in back if one.name == "wire"]
+    (wire,) = [element for element in back if element.name == "wire"]
     assert back.owner(wire).name == "Line"
     path = back.targets(back.owned(wire)[0], Edge.PATH)
-    assert [one.name for one in path] == ["m"]
+    assert [step.name for step in path] == ["m"]
 
 
 def test_a_relation_without_dependency_gets_one():
-    graph = refined(PLANT)
-    text, told = saved(graph)
-    assert "SM724 'realizes' from Class is saved as Realization (1)" in told
+    graph = refine(PLANT)
+    text, messages = save(graph)
+    assert "SM724 'realizes' from Class is saved as Realization (1)" in messages
     assert "pathmap://SYSMLC_LIBRARIES/Roles#Drive" in text
-    (motor,) = [one for one in read(text.encode()) if one.name == "Motor"]
+    (motor,) = [element for element in read(text.encode()) if element.name == "Motor"]
     assert motor.role == "block"
 
 
 @pytest.mark.parametrize(
     ("edge", "role"), [("satisfies", "satisfy"), ("allocated-to", "allocate"), ("depends", None)]
 )
-def test_an_edge_that_nothing_means_comes_back_with_its_dependency(edge, role):
-    graph = refined(f"""
+def test_an_edge_that_nothing_implies_is_saved_as_a_dependency(edge, role):
+    graph = refine(f"""
 Package p "Plant"
   Class a "A"
     -> {edge} b
   Class b "B"
 """)
     _, back, _ = round_trip(graph)
-    a, b = (next(one for one in back if one.name == name) for name in "AB")
+    a, b = (next(element for element in back if element.name == name) for name in "AB")
     assert back.targets(a, Edge(edge)) == [b]
-    (made,) = back.of_kind(Kind.DEPENDENCY)
-    assert made.attrs.get("role") == role
+    (dependency,) = back.of_kind(Kind.DEPENDENCY)
+    assert dependency.attrs.get("role") == role

@@ -1,6 +1,6 @@
-"""Every small model of our rules, right or wrong, can be saved, and what is saved can be read."""
+"""Every example of a rule, right or wrong, can be saved and read back."""
 
-from saving import read, refined, saved
+from saving import read, refine, save
 
 from sysmlc.driver.registry import load_full_catalogue
 from sysmlc.ir import Kind
@@ -10,18 +10,19 @@ UNNAMED = (Kind.COMMENT, Kind.SLOT, Kind.IMPORT, Kind.CONNECTOR_END, Kind.APPLIC
 
 
 def test_models_of_rules_can_be_saved_and_read():
-    graphs = [graph for graph in map(graph_of, texts()) if graph is not None]
+    graphs = [graph for graph in map(parse_or_none, list_texts()) if graph is not None]
     assert len(graphs) > 150
     for graph in graphs:
-        text, told = saved(graph)
-        names = {one.name for one in read(text.encode())}
-        left_out = any(one.startswith(("SM720", "SM725")) for one in told)
-        for one in graph if not left_out else ():
-            is_drawn = one.kind not in UNNAMED and not one.attrs.get("external")
-            assert not is_drawn or "origin" in one.attrs or one.name in names, (one, text)
+        text, messages = save(graph)
+        names = {element.name for element in read(text.encode())}
+        has_losses = any(message.startswith(("SM720", "SM725")) for message in messages)
+        for element in graph if not has_losses else ():
+            is_named = element.kind not in UNNAMED and not element.attrs.get("external")
+            is_written = is_named and "origin" not in element.attrs
+            assert not is_written or element.name in names, (element, text)
 
 
-def texts():
+def list_texts():
     return sorted(
         {
             text
@@ -31,9 +32,9 @@ def texts():
     )
 
 
-def graph_of(text):
-    """The graph, or None for a model that is written in another form."""
+def parse_or_none(text):
+    """Return the graph, or None for an example in another language than the text form."""
     try:
-        return refined(text)
+        return refine(text)
     except (IrSyntaxError, ValueError, KeyError):
         return None

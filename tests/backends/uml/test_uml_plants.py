@@ -1,4 +1,4 @@
-"""Plants of AutomationML that are saved as UML: a comment keeps what UML cannot say."""
+"""Plants of AutomationML that are saved as UML: a comment stores what UML cannot express."""
 
 import json
 from random import Random
@@ -6,7 +6,7 @@ from random import Random
 import jsonschema
 import pytest
 from lxml import etree
-from saving import PASSES, read, refined, round_trip, saved
+from saving import PASSES, read, refine, round_trip, save
 
 from dialects.papyrus import XMI
 from dialects.random_plants import random_plant
@@ -14,7 +14,7 @@ from sysmlc.backends.uml.backend import write_document
 from sysmlc.diagnostics import Coverage, Sink
 from sysmlc.frontends.caex import FRONTEND
 from sysmlc.frontends.xmi import FRONTEND as XMI_FRONTEND
-from sysmlc.ir import Edge, Graph, parse_text
+from sysmlc.ir import Edge, Graph, Kind, parse_text
 from sysmlc.ir.round_trip import PREFIX
 from sysmlc.passes import pipeline
 from sysmlc.passes.kept import UNREADABLE
@@ -63,31 +63,30 @@ def plant():
     return graph
 
 
-def test_a_plant_comes_back_whole(plant):
+def test_a_plant_is_read_back_without_differences(plant):
     assert len(plant) > 40
     _, back, changes = round_trip(plant)
     assert changes == []
-    belt = next(one for one in back if one.name == "speed" and "data_type" in one.attrs)
+    belt = next(e for e in back if e.name == "speed" and "data_type" in e.attrs)
     assert (belt.attrs["unit"], belt.attrs["semantics"]) == ("m/s", ("IRDI:speed",))
 
 
-def test_the_comment_is_told_once_with_what_it_keeps(plant):
+def test_the_comment_is_reported_once_with_its_facts(plant):
     sink = Sink()
     write_document(plant, sink)
-    (told,) = [found for found in sink if found.rule.code == "SM726"]
-    assert "UML cannot express Document (1)" in told.notes
-    assert {found.rule.code for found in sink} <= {"SM723", "SM724", "SM726"}
+    (diagnostic,) = [item for item in sink if item.rule.code == "SM726"]
+    assert "UML cannot express Document (1)" in diagnostic.notes
+    assert {item.rule.code for item in sink} <= {"SM723", "SM724", "SM726"}
 
 
-def comment(text):
-    (found,) = [
-        one for one in etree.fromstring(text.encode()).iter("body") if one.text.startswith(PREFIX)
-    ]
-    return found.text.removeprefix(PREFIX)
+def find_comment(text):
+    bodies = [body.text for body in etree.fromstring(text.encode()).iter("body")]
+    (body,) = [body for body in bodies if body.startswith(PREFIX)]
+    return body.removeprefix(PREFIX)
 
 
 def test_the_comment_follows_its_schema(plant):
-    record = json.loads(comment(saved(plant)[0]))
+    record = json.loads(find_comment(save(plant)[0]))
     schema = json.loads(resources.read_text("metamodels", "sysmlc-kept.schema.json"))
     jsonschema.validate(record, schema)
     assert record["elements"] and record["edges"] and record["made"]  # noqa: PT018
@@ -95,68 +94,68 @@ def test_the_comment_follows_its_schema(plant):
         jsonschema.validate(record | {"elements": [["a"]]}, schema)
 
 
-def test_what_is_changed_in_another_tool_stays_changed(plant):
-    text, _ = saved(plant)
+def test_changes_by_another_tool_are_preserved(plant):
+    text, _ = save(plant)
     assert ' name="Belt"' in text
     back = read(text.replace(' name="Belt"', ' name="Conveyor"').encode())
-    names = {one.name for one in back}
+    names = {element.name for element in back}
     assert "Conveyor" in names
     assert "Belt" not in names
     assert len(back) == len(plant)
 
 
-def test_what_another_tool_removed_is_passed_over(plant):
-    text, _ = saved(plant)
+def test_facts_about_removed_elements_are_skipped(plant):
+    text, _ = save(plant)
     tree = etree.fromstring(text.encode())
     (belt,) = tree.xpath("//packagedElement[@name='Belt']")
     id = belt.get(f"{{{XMI}}}id")
     belt.getparent().remove(belt)
-    for one in tree.xpath(f"//*[@client='{id}' or @type='{id}' or @classifier='{id}']"):
-        one.getparent().remove(one)
+    for user in tree.xpath(f"//*[@client='{id}' or @type='{id}' or @classifier='{id}']"):
+        user.getparent().remove(user)
     back = read(etree.tostring(tree))
-    assert [one for one in back if one.name == "Belt"] == []
-    assert [one for one in back if one.attrs.get("body", "").startswith(PREFIX)] == []
+    assert [element for element in back if element.name == "Belt"] == []
+    assert [e for e in back if e.attrs.get("body", "").startswith(PREFIX)] == []
 
 
-def test_a_model_of_uml_keeps_no_comment():
-    text, told = saved(refined('Package p "Plant"\n  Facet f "Control"\n'))
+def test_a_model_from_uml_has_no_comment():
+    text, messages = save(refine('Package p "Plant"\n  Facet f "Control"\n'))
     assert PREFIX not in text
-    assert [one[:5] for one in told] == ["SM720"]
+    assert [message[:5] for message in messages] == ["SM720"]
 
 
 @pytest.mark.parametrize(
     "body", ["{", "[]", '{"elements": 1}', '{"elements": [["a", "Gone", "", null, null]]}']
 )
-def test_a_comment_that_was_changed_is_told_and_stays(body, plant):
-    text, _ = saved(plant)
-    old = comment(text)
+def test_a_damaged_comment_is_reported_and_preserved(body, plant):
+    text, _ = save(plant)
+    old = find_comment(text)
     escaped = old.replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;")
     assert escaped in text
     graph, sink = Graph(), Sink()
     data = text.replace(escaped, body).encode()
     XMI_FRONTEND.read([Source("model.uml", data)], graph, sink, Coverage())
     pipeline.build_pipeline(PASSES).run(graph, sink)
-    assert "SM189" in [found.rule.code for found in sink]
-    assert [one for one in graph if str(one.attrs.get("body", "")).startswith(PREFIX)]
+    assert "SM189" in [diagnostic.rule.code for diagnostic in sink]
+    assert any(str(element.attrs.get("body", "")).startswith(PREFIX) for element in graph)
 
 
 @pytest.mark.parametrize(("text", "codes"), [("wrong", ["SM189"]), ("right", [])])
 def test_the_rule_reports_its_wrong_model_and_not_its_right_one(text, codes):
     graph, sink = parse_text(getattr(UNREADABLE.read_page(), text)), Sink()
     pipeline.build_pipeline(PASSES).run(graph, sink)
-    assert [found.rule.code for found in sink] == codes
+    assert [diagnostic.rule.code for diagnostic in sink] == codes
 
 
 def test_relations_keep_their_order(plant):
     _, back, _ = round_trip(plant)
-    for one in back:
-        if one.name == "l" and one.kind.value == "Connector":
-            paths = [back.targets(end, Edge.PATH) for end in back.targets(one, Edge.END)]
+    for connector in back.of_kind(Kind.CONNECTOR):
+        if connector.name == "l":
+            paths = [back.targets(end, Edge.PATH) for end in back.targets(connector, Edge.END)]
             assert [[step.name for step in path] for path in paths] == [[], ["belt"]]
 
 
 @pytest.mark.parametrize("seed", range(15))
-def test_a_random_plant_comes_back(seed):
+def test_a_random_plant_is_read_back(seed):
     graph, sink = Graph(), Sink()
     source = Source("plant.aml", random_plant(Random(seed)))
     FRONTEND.read([source], graph, sink, Coverage())

@@ -1,4 +1,4 @@
-"""What is saved as UML is read back as the same graph."""
+"""A graph that is saved as UML is read back as the same graph."""
 
 import os
 import subprocess
@@ -8,7 +8,7 @@ from random import Random
 
 import pytest
 from lxml import etree
-from saving import read, round_trip, saved
+from saving import read, round_trip, save
 
 from dialects.comparing import OF_THE_DIALECT, of_dialect
 from dialects.enterprise_architect import write_xmi
@@ -26,38 +26,37 @@ REFERENCES = _NAMES.split()
 
 
 @pytest.mark.parametrize("model", EXAMPLES, ids=lambda path: path.parent.name)
-def test_an_example_comes_back(model):
+def test_an_example_is_read_back(model):
     text, back, changes = round_trip(read(model.read_bytes()))
     assert changes == []
     assert len(back) > 200
-    assert complaints(text) == []
+    assert find_faults(text) == []
 
 
 @pytest.mark.parametrize("model", EXAMPLES, ids=lambda path: path.parent.name)
-def test_the_refined_graph_of_an_example_and_its_diagrams_come_back(model, tmp_path):
-    one = compile_text(tmp_path, "model.uml", model.read_bytes(), "uml", "plantuml")
-    made = outputs(one)
-    two = compile_text(tmp_path, "model.uml", made["uml/model.uml"].encode(), "uml", "plantuml")
-    assert diff(one.graph, two.graph, {"id", "source", "trace"}) == []
-    again = outputs(two)
-    drawn = [path for path in made if path.endswith(".puml")]
-    assert len(drawn) > 3
-    assert {path: plain(made[path], one) for path in made} == {
-        path: plain(again[path], two) for path in again
+def test_the_refined_graph_of_an_example_is_read_back_with_its_diagrams(model, tmp_path):
+    first = compile_text(tmp_path, "model.uml", model.read_bytes(), "uml", "plantuml")
+    texts = outputs(first)
+    second = compile_text(tmp_path, "model.uml", texts["uml/model.uml"].encode(), "uml", "plantuml")
+    assert diff(first.graph, second.graph, {"id", "source", "trace"}) == []
+    diagrams = [path for path in texts if path.endswith(".puml")]
+    assert len(diagrams) > 3
+    assert {path: strip_digest(text, first) for path, text in texts.items()} == {
+        path: strip_digest(text, second) for path, text in outputs(second).items()
     }
 
 
-def plain(text, compilation):
-    """The text without the digest of the input."""
+def strip_digest(text, compilation):
+    """Return the text without the digest of the input."""
     return text.replace(compilation.inputs[0].sha256, "")
 
 
 @pytest.mark.parametrize("seed", quick_first(range(100), 20))
-def test_a_random_model_comes_back(seed):
+def test_a_random_model_is_read_back(seed):
     text, back, changes = round_trip(read(random_model(Random(seed))))
     assert changes == []
     assert len(back) > 10
-    assert complaints(text) == []
+    assert find_faults(text) == []
 
 
 @pytest.mark.parametrize("write", [write_xml, write_xmi], ids=["magicdraw", "ea"])
@@ -72,45 +71,46 @@ def test_a_model_of_another_tool_is_saved_as_papyrus_would(seed, write):
 
 def test_saving_twice_gives_the_same_bytes():
     for model in EXAMPLES:
-        text, _ = saved(read(model.read_bytes()))
-        assert saved(read(text.encode()))[0] == text
+        text, _ = save(read(model.read_bytes()))
+        assert save(read(text.encode()))[0] == text
 
 
 def test_the_comparison_sees_a_difference():
     graph = read(EXAMPLES[0].read_bytes())
-    text, _ = saved(graph)
+    text, _ = save(graph)
     for old, new in ((' name="Stopper"', ' name="Gate"'), (' isConjugated="true"', "")):
         assert old in text
         back = read(text.replace(old, new, 1).encode())
         assert diff(graph, back, {"id", "source", "trace"}) != []
 
 
-def complaints(text):
-    """Ids that are there twice, and references that lead nowhere: counted with lxml alone."""
+def find_faults(text):
+    """Return the ids that are not unique, and the references without target; only lxml is used."""
     root = etree.fromstring(text.encode())
-    ids = Counter(one.get(f"{{{XMI}}}id") for one in root.iter("*"))
+    ids = Counter(node.get(f"{{{XMI}}}id") for node in root.iter("*"))
     ids.pop(None, None)
-    found = [f"{id} is there {count} times" for id, count in ids.items() if count > 1]
-    for one in root.iter("*"):
-        if one.tag == "eAnnotations":
+    faults = [f"{id} occurs {count} times" for id, count in ids.items() if count > 1]
+    for node in root.iter("*"):
+        if node.tag == "eAnnotations":
             continue
-        named = [one.get(f"{{{XMI}}}idref", "")]
-        named += [one.get(name, "") for name in REFERENCES]
-        named += [value for name, value in one.attrib.items() if str(name).startswith("base_")]
-        found += [f"{id} leads nowhere" for value in named for id in value.split() if id not in ids]
-    return found
+        values = [node.get(f"{{{XMI}}}idref", "")]
+        values += [node.get(name, "") for name in REFERENCES]
+        values += [value for name, value in node.attrib.items() if str(name).startswith("base_")]
+        targets = (id for value in values for id in value.split())
+        faults += [f"{id} does not exist" for id in targets if id not in ids]
+    return faults
 
 
-def test_the_count_of_complaints_can_fail():
-    text, _ = saved(read(EXAMPLES[0].read_bytes()))
-    assert complaints(text.replace(' source="_', ' source="x_', 1)) != []
+def test_the_search_for_faults_can_fail():
+    text, _ = save(read(EXAMPLES[0].read_bytes()))
+    assert find_faults(text.replace(' source="_', ' source="x_', 1)) != []
 
 
-def test_order_of_hashes_is_not_in_the_file(tmp_path):
+def test_the_file_does_not_depend_on_the_order_of_hashes(tmp_path):
     command = [sys.executable, "-m", "sysmlc", "build", str(EXAMPLES[0]), "--emit", "uml"]
     for seed in ("0", "7"):
         environment = os.environ | {"PYTHONHASHSEED": seed}
         arguments = [*command, "--no-cache", "-o", str(tmp_path / seed)]
         subprocess.run(arguments, env=environment, capture_output=True, check=False)
-    made = [next((tmp_path / seed).rglob("*.uml")).read_bytes() for seed in ("0", "7")]
-    assert made[0] == made[1]
+    contents = [next((tmp_path / seed).rglob("*.uml")).read_bytes() for seed in ("0", "7")]
+    assert contents[0] == contents[1]

@@ -1,7 +1,7 @@
-"""A model in SysML v2, saved as SysML 1.6 and read again: the same model in the words of v1.
+"""A model in SysML v2 that is saved as SysML 1.6 and read back is the same model.
 
-What v2 says by metaclasses and features, v1 says by stereotypes and tagged values; item flows stand
-in packages (UML 2.5.1 clause 20.2). Nothing else may differ.
+SysML v1 expresses metaclasses and features of v2 by stereotypes and tagged values, and its item
+flows are in packages (UML 2.5.1 clause 20.2). Nothing else may differ.
 """
 
 import pytest
@@ -10,66 +10,65 @@ from examples.compiling import TEXT, compile_example, compile_text, outputs
 from sysmlc.ir import Edge, Kind, query
 from sysmlc.ir.compare import compare
 
-SAID_BY_STEREOTYPES = {"stereotype", "applies", "text", "req id", "direction"}
+FROM_STEREOTYPES = {"stereotype", "applies", "text", "req id", "direction"}
 
 
 @pytest.fixture(scope="module")
 def graphs(tmp_path_factory):
-    """The graph of the text, and that of what it was saved as."""
-    one = compile_example(TEXT, "uml")
-    (saved,) = [text for path, text in outputs(one).items() if path.startswith("uml/")]
-    two = compile_text(tmp_path_factory.mktemp("v2"), "model.uml", saved.encode(), "uml")
-    return one.graph, two.graph
+    """Return the graph of the text, and that of the saved file."""
+    original = compile_example(TEXT, "uml")
+    (saved,) = [text for path, text in outputs(original).items() if path.startswith("uml/")]
+    copy = compile_text(tmp_path_factory.mktemp("v2"), "model.uml", saved.encode(), "uml")
+    return original.graph, copy.graph
 
 
-def is_in_other_words(change):
-    """Whether a change is only one of notation."""
-    is_stereotype = change.aspect in SAID_BY_STEREOTYPES or change.aspect.startswith("«")
+def is_notation_only(change):
+    """Return whether a change is only one of notation."""
+    is_stereotype = change.aspect in FROM_STEREOTYPES or change.aspect.startswith("«")
     return is_stereotype or change.kind == "item flow"
 
 
-def test_it_is_the_same_model_in_other_words(graphs):
+def test_only_the_notation_differs(graphs):
     changes = compare(*graphs, ("id",))
-    assert [str(one) for one in changes if not is_in_other_words(one)] == []
+    assert [str(change) for change in changes if not is_notation_only(change)] == []
     assert len(graphs[0]) > 300
 
 
 def test_requirements_have_their_id_and_text(graphs):
     old, new = graphs
-    said = {one.name: (one.attrs["req_id"], one.attrs["text"]) for one in requirements(old)}
-    read = {one.name: (tag(new, one, "id"), tag(new, one, "text")) for one in requirements(new)}
-    assert said == read
-    assert len(said) == 6
+    texts = {r.name: (r.attrs["req_id"], r.attrs["text"]) for r in list_requirements(old)}
+    tags = {
+        requirement.name: tuple(query.tag(new, requirement, name) for name in ("id", "text"))
+        for requirement in list_requirements(new)
+    }
+    assert texts == tags
+    assert len(texts) == 6
 
 
-def requirements(graph):
-    return [one for one in graph if query.is_requirement(one)]
+def list_requirements(graph):
+    return [element for element in graph if query.is_requirement(element)]
 
 
-def tag(graph, element, name):
-    return query.tag(graph, element, name)
-
-
-def test_item_flows_lead_from_and_to_the_same_and_carry_the_same(graphs):
-    old, new = map(flows, graphs)
+def test_item_flows_have_the_same_ends_and_items(graphs):
+    old, new = map(list_item_flows, graphs)
     assert old == new
     assert old
 
 
-def flows(graph):
-    """Each item flow by its name: its ends, what it conveys, the names of its connectors."""
+def list_item_flows(graph):
+    """Return name, ends, conveyed items and connectors of each item flow."""
     edges = (Edge.FLOW_SOURCE, Edge.FLOW_TARGET, Edge.CONVEYS, Edge.REALIZING)
     return sorted(
-        (one.name, *(tuple(graph.qualified_name(t) for t in graph.targets(one, e)) for e in edges))
-        for one in graph.of_kind(Kind.ITEM_FLOW)
+        (flow.name, *(tuple(map(graph.qualified_name, graph.targets(flow, e))) for e in edges))
+        for flow in graph.of_kind(Kind.ITEM_FLOW)
     )
 
 
 def test_stereotypes_are_those_of_the_roles(graphs):
-    """Every stereotype that came in is one of SysML, and on what has its role."""
+    """Every stereotype of SysML is applied to an element with its role."""
     old, new = graphs
-    for one in new:
-        names = set(query.stereotypes(new, one)) & {"Block", "Requirement", "FlowProperty"}
+    for element in new:
+        names = set(query.stereotypes(new, element)) & {"Block", "Requirement", "FlowProperty"}
         roles = {"Block": "block", "Requirement": "requirement", "FlowProperty": "flow property"}
-        assert {roles[name] for name in names} <= {one.role}, one
-    assert {one.role for one in old} <= {one.role for one in new}
+        assert {roles[name] for name in names} <= {element.role}, element
+    assert {element.role for element in old} <= {element.role for element in new}
