@@ -127,7 +127,7 @@ def _write_file_headers(context: Context) -> None:
 
 
 def _write_alias(context: Context, element: Element) -> None:
-    """Add an ExternalReference; to a file of the unit, it leads to the saved file."""
+    """Add an ExternalReference; its path leads to the saved file if that is one of the unit."""
     file = context.find_file(element)
     document = context.graph.target(element, Edge.REFERENCES)
     path = str(element.attrs.get("path", ""))

@@ -74,7 +74,7 @@ def _find_kind_of_uml_class(graph: Graph, element: Element) -> ClassKind | None:
 
 
 def _is_only_realised(graph: Graph, element: Element) -> bool:
-    """Return whether other classes realise the element, and it types no feature or instance."""
+    """Return whether the element is realised by others, but is no type of a feature or instance."""
     used = graph.source(element, Edge.TYPED_BY) or graph.source(element, Edge.INSTANCE_OF)
     return used is None and graph.source(element, Edge.REALIZES) is not None
 

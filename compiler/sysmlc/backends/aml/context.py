@@ -32,7 +32,7 @@ class File:
 
 @dataclass(slots=True, eq=False)
 class ClassEntry:
-    """A class in its library; a class of a standard library that no file holds has no node."""
+    """A class and its path; without a node if it is in a standard library that no file holds."""
 
     node: Node | None
     names: tuple[str, ...]
@@ -84,7 +84,7 @@ class ObjectIds(Struct, frozen=True):
 
 @dataclass(slots=True)
 class Context:
-    """The files as far as they are written, and what the omissions are computed from."""
+    """The files written so far, and the records by which ``omissions.py`` finds what they lack."""
 
     graph: Graph
     losses: Losses

@@ -70,7 +70,7 @@ def _fill_unit(context: Context, root: SystemUnit) -> None:
 
 
 def _write_roles(context: Context, unit: SystemUnit) -> None:
-    """Write the roles, those of the class included, and the mappings to features of roles."""
+    """Write the roles of a unit and of its class, and the mappings to features of these roles."""
     elements = unit.elements
     if unit.own_class is not None and unit.part is not None:
         # The inline class has the roles that the file states; the part repeats some of them.
@@ -269,7 +269,7 @@ def _list_mirrors(element: Element, target: Element) -> list[tuple[str, str]]:
 
 
 def _find_group_role(context: Context, element: Element, file: File) -> str:
-    """Return the path of the role class in this file, where an alias may precede it."""
+    """Return the path of the role class as it is written in *file*, with an alias if needed."""
     path = _GROUP_ROLES[element.kind]
     for id, entry in context.classes.items():
         if "/".join(entry.names) == path:

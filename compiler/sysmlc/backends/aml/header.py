@@ -114,7 +114,7 @@ def _write_metadata(context: Context, element: Element, node: Node) -> None:
 
 
 def _complete_fragment(context: Context, element: Element, node: Node) -> None:
-    """Add what the schema of CAEX 3.0 requires and the source lacks, e.g. CAEX 2.15."""
+    """Add what the schema of CAEX 3.0 requires and the source, often CAEX 2.15, lacks."""
     if node.tag == _SOURCE_DOCUMENT:
         _normalise_date(context, element, node)
     for name, value in _REQUIRED_ATTRIBUTES.get(node.tag, {}).items():

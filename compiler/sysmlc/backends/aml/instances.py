@@ -95,7 +95,7 @@ def _list_path(context: Context, element: Element) -> list[Element]:
 
 
 def _find_or_repeat_attribute(context: Context, unit: SystemUnit, path: list[Element]) -> Node:
-    """Return the internal element's copy of a nested attribute; add what is missing of it."""
+    """Return the copy of a nested attribute in an internal element; add absent copies."""
     node = unit.node
     for feature in path:
         attribute = node.find_child("Attribute", feature.name)
@@ -142,7 +142,7 @@ def copy_class_attributes(context: Context) -> None:
 
 
 def _iter_features(context: Context, type_: Element) -> Iterator[Node]:
-    """Yield the own and inherited features of a class; the nearest of those of one name."""
+    """Yield the own and inherited features of a class; a feature hides those of its name."""
     visited: set[tuple[str, str]] = set()
     for base in context.iter_bases(type_):
         node = context.nodes.get(base.id)

@@ -36,7 +36,7 @@ def write_interface(context: Context, port: Element, file: File, parent: Node) -
 
 
 def _replace_attribute(interface: Node, attribute: Node) -> None:
-    """Add an attribute in the place of one of the same name that has only a value."""
+    """Add an attribute, and merge into it one of the same name that has only a value."""
     previous = interface.find_child("Attribute", attribute.attributes["Name"])
     interface.add(attribute)
     if previous is not None:

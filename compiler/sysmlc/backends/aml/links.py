@@ -144,7 +144,10 @@ def _write_dangling_link(context: Context, element: Element, ids: frozenset[str]
 
 
 def _is_resolvable(text: str, ids: frozenset[str]) -> bool:
-    """Return whether a side is an ID, an ``ID:name`` or a path; IDs may contain colons."""
+    """Return whether a side may name an object of the files: an ID, an ``ID:name`` or a path.
+
+    IDs may contain colons.
+    """
     colons = [index for index, char in enumerate(text) if char == ":"]
     return text in ids or any(text[:index] in ids for index in colons) or "/" in text
 
@@ -156,10 +159,10 @@ def _mark_ends(context: Context, element: Element) -> None:
 
 
 def _write_relation(context: Context, element: Element) -> None:
-    """Write a relation of a process or an order of steps as a link between two interfaces.
+    """Write a dependency between two interfaces as a link: a relation of a process, a succession.
 
-    Of a succession, the supplier stands first: without directions, the first side is the earlier
-    step.
+    The supplier of a succession is the first side, because without directions the first side is
+    the earlier step.
     """
     holder = _find_holder(context, element, ())
     ports = element.attrs["ports"]

@@ -112,7 +112,7 @@ def _note_attributes(context: Context, element: Element) -> None:
 
 
 def _is_attribute_expressed(context: Context, element: Element, name: str) -> bool:
-    """Return whether something that is written determines an attribute of this element."""
+    """Return whether an attribute follows from what the files state about the element."""
     if element.kind in (Kind.METADATA, Kind.DOCUMENT):
         return True
     if name == "unresolved":

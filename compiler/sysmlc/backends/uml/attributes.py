@@ -151,7 +151,7 @@ def _write_any_value(context: Context, element: Element, key: str, value: AttrVa
 
 
 def _write_any_guard(context: Context, element: Element, _key: str, _value: AttrValue) -> None:
-    """Write a guard; one that is a constraint of its own is an edge."""
+    """Write a guard that is an attribute; a guard that is a constraint of its own is an edge."""
     if element.kind in (Kind.CONTROL_FLOW, Kind.OBJECT_FLOW):
         write_guard(context, element)
     elif context.graph.target(element, Edge.GUARD) is None:
@@ -290,7 +290,7 @@ def _write_subkind(context: Context, element: Element, _key: str, value: AttrVal
 
 
 def _write_first_event(context: Context, element: Element, _key: str, value: AttrValue) -> None:
-    """Write ``firstEvent``: a duration has one for each of two events, a time has one alone."""
+    """Write ``firstEvent``: one value for each end of a duration, a single one for a time."""
     node = context.find_node(element)
     if isinstance(value, tuple) or element.subkind == "duration":
         for item in _as_tuple(value):

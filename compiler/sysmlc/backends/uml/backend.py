@@ -237,7 +237,7 @@ def _write_content(context: Context) -> None:
 
 
 def _write_condition_reference(context: Context, constraint: Element) -> None:
-    """Refer from the owner to a pre- or postcondition: both are owned rules like any constraint."""
+    """Refer from the owner to its pre- or postcondition, which is an owned rule among others."""
     owner = context.graph.owner(constraint)
     if owner is None or context.find_node(constraint).tag != "ownedRule":
         return
