@@ -25,7 +25,7 @@ PARTICLES = set(
     spoken put apart together of beside between within among below above again whole others own
     """.split()  # noqa: SIM905 - a list of words
 )
-CLEAR_NAMES = {"derived", "inherited", "listed", "owned", "passed", "put", "shown", "unsigned"}
+CLEAR_NAMES = {"derived", "inherited", "listed", "owned", "passed", "put", "shown"}
 """Properties, and names of the public API (``Graph.owned``) that read as nouns."""
 VERBS_IN_ED = {"need", "feed", "embed", "seed", "speed", "exceed", "proceed", "succeed", "shed"}
 

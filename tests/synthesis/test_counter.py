@@ -54,7 +54,7 @@ def defeated(text):
 
 def test_what_never_comes_is_prevented_for_ever():
     found = defeated(LAMP)
-    assert [(one.given, len(one.moves)) for one in found.states] == [((False,), 1), ((True,), 1)]
+    assert [(one.inputs, len(one.moves)) for one in found.states] == [((False,), 1), ((True,), 1)]
     assert list(describe_run(example_run(found))) == [
         "step 1: go=false, at=0",
         "step 2: go=true",
@@ -65,7 +65,7 @@ def test_what_never_comes_is_prevented_for_ever():
 def test_a_component_without_an_answer_ends_the_run():
     found = defeated(STUCK)
     assert list(describe_run(example_run(found)))[-1] == "then there is no answer"
-    assert [one.given for one in found.states if not one.moves] == [(True,)]
+    assert [one.inputs for one in found.states if not one.moves] == [(True,)]
 
 
 def test_the_environment_prevents_what_it_can_and_does_not_wait_for_other_goals():

@@ -169,15 +169,15 @@ def test_gr1c_of_a_table_is_that_of_the_machine():
 def test_what_is_too_large_for_gr1c_is_said():
     machine = machines.controller(COUNTER)
     with pytest.raises(LimitError, match="the limit of 10 steps of the strategy"):
-        gr1c_json(machine, COUNTER, most=10)
+        gr1c_json(machine, COUNTER, max_steps=10)
 
 
 def test_a_form_that_cannot_say_a_controller_is_told(monkeypatch):
-    monkeypatch.setattr(controller_files, "gr1c_json", partial(gr1c_json, most=10))
+    monkeypatch.setattr(controller_files, "gr1c_json", partial(gr1c_json, max_steps=10))
     result, _ = made(COUNTER)
     sink = Sink()
     told = write_controllers([result], lambda origin: Subject(), sink, "gr1c")
-    assert [told.files, [one.exit_code for one in told.made]] == [(), [2]]
+    assert [told.files, [one.exit_code for one in told.results]] == [(), [2]]
     assert [one.rule.code for one in sink] == ["SM543"]
 
 
@@ -269,7 +269,7 @@ def test_a_controller_beyond_limits_is_none(monkeypatch):
 
 
 def test_a_machine_that_cannot_be_listed_is_a_table(monkeypatch):
-    enumerate_states = partial(synthesise.enumerate_states, most_states=1)
+    enumerate_states = partial(synthesise.enumerate_states, max_states=1)
     monkeypatch.setattr(synthesise, "enumerate_states", enumerate_states)
     result, told = made(LAMP)
     assert told == []

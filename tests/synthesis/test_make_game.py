@@ -56,7 +56,7 @@ def test_a_winning_game_has_layers_towards_each_goal():
 def test_what_is_outside_gr1_is_named(line, why):
     with pytest.raises(OutsideGr1Error) as caught:
         make_game(contract(f"{TURN}\n{line}"), Manager())
-    assert why in caught.value.why
+    assert why in caught.value.reason
     assert line.endswith(caught.value.conjunct.text)
 
 

@@ -209,11 +209,11 @@ def test_a_machine_that_never_comes_to_a_goal_shows_the_loop():
 def test_too_many_states_moves_or_conditions_are_said():
     door = contract(DOOR)
     with pytest.raises(TooLargeError, match="the limit of 1 states of the machine"):
-        drafted(door, most_states=1)
+        drafted(door, max_states=1)
     with pytest.raises(TooLargeError, match="the limit of 5 moves of the machine"):
-        drafted(door, most_moves=5)
+        drafted(door, max_moves=5)
     with pytest.raises(TooLargeError, match="the limit of 4 cases in the conditions"):
-        written(minimise(drafted(door)), door, most=4)
+        written(minimise(drafted(door)), door, max_cases=4)
 
 
 def test_states_that_no_allowed_input_tells_apart_are_one():

@@ -179,7 +179,7 @@ def _synthesize(
     written = write_controllers(controllers, read.place, read.sink, form)
     if output is not None:
         write_files((*written.files, *_find_counter_strategies(read, controllers, options)), output)
-    return _report(read, settings, written.made)
+    return _report(read, settings, written.results)
 
 
 def _find_counter_strategies(

@@ -39,7 +39,7 @@ def encode_controller(controller: Controller) -> EncodedController:
         states = [[_encode_move(item) for item in moves] for moves in controller.states]
         return names | {"registers": _variable_names(controller.registers), "states": states}
     return names | {
-        "bits": [[item.variable, item.place, item.is_before] for item in controller.bits],
+        "bits": [[item.variable, item.position, item.is_before] for item in controller.bits],
         "nodes": controller.nodes,
         "entries": [
             [item.outputs, item.successors] for item in (controller.first, *controller.modes)

@@ -1,7 +1,7 @@
 """Synthesis: contracts in GR(1) as games on decision diagrams (docs/synthesis.md).
 
-``game`` turns a contract into initial conditions and relations, ``solve`` decides the game.
-``dd`` is imported when a ``Manager`` is made, not before.
+``make_game`` translates a contract into a game, ``solve`` decides the game. ``dd`` is imported when
+the first ``Manager`` is created.
 """
 
 from sysmlc.synthesis.bdd.limits import LimitError, Limits

@@ -1,8 +1,7 @@
 """Checks of blocks with parts: whether the parts fit together and keep the guarantees of the block.
 
-Parts that share no variable, directly or through others, neither help nor harm one another and are
-composed separately: a line of forty machines is many small questions instead of one that is too
-large.
+Parts without a common variable, directly or through other parts, do not affect one another. They
+are composed separately, because the composition of a line of forty machines would be too large.
 """
 
 from collections.abc import Iterable, Iterator
@@ -86,11 +85,12 @@ class CompositionVerdict(Struct, frozen=True):
     component: str
     parts: int
     has_whole: bool
-    """Whether the block itself promises something."""
-    is_joined: bool
-    """Whether any of the parts has to do with another, or with the block."""
-    is_kept: bool | None
-    """Whether the parts fit together and keep what the block promises; None when undecided."""
+    """Whether the block itself has a contract."""
+    has_shared_variables: bool
+    """Whether a part shares variables with another part or with the block."""
+    is_satisfied: bool | None
+    """Whether all assumptions of parts are discharged and the parts guarantee what the block
+    guarantees; None if that is not decided."""
     witnesses: tuple[Witness, ...] = ()
 
     def text(self) -> str:
@@ -98,23 +98,23 @@ class CompositionVerdict(Struct, frozen=True):
         return f"{self.component}: {self._verdict()}"
 
     def _verdict(self) -> str:
-        if self.is_kept is None:
+        if self.is_satisfied is None:
             return "the composition of its parts is not checked"
-        if self.has_whole and self.is_joined:
-            verb = "satisfy" if self.is_kept else "violate"
+        if self.has_whole and self.has_shared_variables:
+            verb = "satisfy" if self.is_satisfied else "violate"
             return f"its {self.parts} parts together {verb} its contract"
-        if self.is_kept and not self.is_joined:
+        if self.is_satisfied and not self.has_shared_variables:
             return f"its {self.parts} parts are not connected"
-        return f"its {self.parts} parts {'fit' if self.is_kept else 'do not fit'} together"
+        return f"its {self.parts} parts {'fit' if self.is_satisfied else 'do not fit'} together"
 
 
 def check_compositions(
     composites: Iterable[Composite], place: Place, sink: Sink, options: Options
 ) -> Iterator[CompositionVerdict]:
-    """Compose the parts of each block; open assumptions and violations are reported."""
+    """Compose the parts of each block, report open assumptions and violations, yield verdicts."""
     for composite in composites:
         results = [
-            (group, _compose(group, place, sink, options)) for group in _list_questions(composite)
+            (group, _compose(group, place, sink, options)) for group in _list_groups(composite)
         ]
         decided = [
             (group, composition) for group, composition in results if composition is not None
@@ -123,7 +123,8 @@ def check_compositions(
             composition.open or composition.failures or composition.conflict
             for _, composition in decided
         )
-        is_kept = None if len(decided) < len(results) and not is_broken else not is_broken
+        # A violation in one group is a verdict even if another group is undecided.
+        is_satisfied = None if len(decided) < len(results) and not is_broken else not is_broken
         witnesses = tuple(
             witness
             for group, composition in decided
@@ -131,14 +132,17 @@ def check_compositions(
         )
         has_whole, has_shared = composite.whole is not None, has_shared_variables(composite)
         yield CompositionVerdict(
-            composite.component, len(composite.parts), has_whole, has_shared, is_kept, witnesses
+            composite.component,
+            len(composite.parts),
+            has_whole,
+            has_shared,
+            is_satisfied,
+            witnesses,
         )
 
 
-def _list_questions(composite: Composite) -> list[Composite]:
-    """Return the groups to compose; a single part needs no check if the block guarantees
-    nothing.
-    """
+def _list_groups(composite: Composite) -> list[Composite]:
+    """Return the groups of parts to compose, without single parts of a block without a contract."""
     groups = split_composite(composite)
     return [group for group in groups if len(group.parts) > 1 or group.whole is not None]
 
@@ -167,7 +171,7 @@ def _compose(
 
 
 def _note_open_assumptions(composition: Composition) -> tuple[str, ...]:
-    """Return a note that runs do not rely on parts with open assumptions."""
+    """Return a note that the guarantees of parts with open assumptions were not used."""
     names = " and ".join(
         dict.fromkeys(f"'{assumption.part.name}'" for assumption in composition.open)
     )
@@ -219,15 +223,17 @@ def _build_witnesses(composite: Composite, composition: Composition) -> Iterator
 def split_composite(composite: Composite) -> list[Composite]:
     """Return the groups of parts that share variables, in the order of their first parts.
 
-    The whole belongs to the group with its variables; the other groups have a whole without
-    conjuncts.
+    The contract of the whole belongs to the group with its variables; the other groups have one
+    without conjuncts.
     """
+    # All 39 parts of the ICE laboratory's line turned out to be independent of one another.
     variable_sets: DisjointSets[str] = DisjointSets()
     for names in _shared_variable_groups(composite):
         for name in names[1:]:
             variable_sets.union(names[0], name)
     part_numbers: dict[str, list[int]] = {}
     for number, part in enumerate(composite.parts):
+        # A part without variables gets a key of its own, which no variable can equal.
         key_variable = next((variable.name for variable in part.contract.variables), f"#{number}")
         part_numbers.setdefault(variable_sets.find(key_variable), []).append(number)
     if composite.whole is not None and composite.whole.variables:
@@ -250,7 +256,7 @@ def _has_variables(whole: Contract | None) -> bool:
 
 
 def _shared_variable_groups(composite: Composite) -> Iterator[list[str]]:
-    """Yield the variables that each contract and each wire relates."""
+    """Yield for each contract and each wire the names of its variables."""
     for part in composite.parts:
         yield [variable.name for variable in part.contract.variables]
     for wire in composite.wiring:

@@ -65,7 +65,7 @@ class CheckedContract(Struct, frozen=True):
 
     verdict: Verdict
     is_implemented: bool | None
-    """Whether the behaviour satisfies its requirements; None when there are none, or no answer."""
+    """Whether the behaviour refines its requirements; None without requirements or verdict."""
     witnesses: tuple[Witness, ...] = ()
 
 
@@ -78,7 +78,8 @@ def check_contracts(
 ) -> Iterator[CheckedContract]:
     """Decide and lint the chosen contracts, and compare behaviours with their requirements.
 
-    *contracts* are all contracts, because the requirements of a chosen behaviour may not be chosen.
+    *contracts* are all contracts of the model, because the contract of the requirements of a chosen
+    behaviour need not be chosen itself.
     """
     requirement_contracts = {
         contract.component.removesuffix(SUFFIX): contract
@@ -87,6 +88,7 @@ def check_contracts(
     }
     for contract in chosen:
         verdict = decide(contract, place, sink, options)
+        # Lints play games and explore runs, so an undecided contract would meet the same obstacle.
         if verdict.is_realizable is not None:
             _lint_within_limits(contract, place, sink, options)
         if verdict.is_realizable:
@@ -153,21 +155,21 @@ LEANS = rule(
 
 
 def check_viewpoints(contract: Contract, place: Place, sink: Sink, options: Options) -> bool | None:
-    """Return whether the conjunction of the requirements is realizable; None if that is not
-    decided.
+    """Return whether the conjunction of the requirements is realizable; None if undecided.
 
-    *contract* is the realizable contract of all requirements together.
+    *contract* contains the conjuncts of all requirements and is realizable. A conjunction that is
+    not is reported (SM599).
     """
     try:
         game = make_game(
             conjoin_viewpoints(reduce_contract(contract).contract),
             Manager(options.engine, options.limits, options.progress),
         )
-        is_kept = is_won(game)
-        core = () if is_kept else unrealizable_core(game)
+        is_realizable = is_won(game)
+        core = () if is_realizable else unrealizable_core(game)
     except (OutsideGr1Error, LimitError):
         return None
-    if not is_kept:
+    if not is_realizable:
         origins = {conjunct.origin for conjunct in core if conjunct.viewpoint}
         notes = dict.fromkeys(
             f"'{conjunct.viewpoint}' demands '{print_formula(conjunct.formula)}'"
@@ -176,4 +178,4 @@ def check_viewpoints(contract: Contract, place: Place, sink: Sink, options: Opti
         )
         subject = place(contract.origin)
         sink.report(LEANS, subject, notes=tuple(notes), component=contract.component)
-    return is_kept
+    return is_realizable

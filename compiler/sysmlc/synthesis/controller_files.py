@@ -1,10 +1,10 @@
 """Files of synthesised controllers: machines, tables and gr1c's strategies as JSON, and diagrams.
 
-The JSON documents conform to metamodels/sysmlc-machine.schema.json, to metamodels/sysmlc-
-controller.schema.json, and to version 1 of gr1c's "strategy in JSON" (its manual). A node of a gr1c
-strategy is a step: the values of all variables, and the nodes to which the next inputs lead.
-Booleans are 0 and 1, integers and literals count from 0. What gr1c notes about its own run
-(version, date) stays empty, so that equal contracts give equal texts.
+The JSON documents conform to metamodels/sysmlc-machine.schema.json, to
+metamodels/sysmlc-controller.schema.json, and to version 1 of gr1c's "strategy in JSON" (gr1c's
+manual). A node of a gr1c strategy is a step: the values of all variables, and the nodes to which
+the next inputs lead. Booleans are 0 and 1, integers and literals are counted from 0. The members
+for gr1c's version and the date stay empty, so that equal contracts give equal texts.
 """
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -30,23 +30,22 @@ from sysmlc.synthesis.controllers.forms import Entry, Machine, Move, Table
 from sysmlc.synthesis.decision import Place
 
 OWN, TABLE, GR1C = FORMS = ("own", "table", "gr1c")
-"""Forms of controllers as files: machine or table, table, gr1c's JSON."""
+"""Forms of controller files: a machine or a table, always a table, gr1c's JSON."""
 
 
 class ControllerFiles(Struct, frozen=True):
-    """Controllers and their files; a controller that its format cannot express is None."""
+    """The results of syntheses and their files."""
 
-    made: tuple[Synthesis, ...]
+    results: tuple[Synthesis, ...]
+    """The results, without controllers that the format cannot express."""
     files: tuple[tuple[str, str], ...]
-    """Names and texts; small machines have a diagram too."""
+    """Names and texts."""
 
 
 def write_controllers(
     results: Sequence[Synthesis], place: Place, sink: Sink, form: str = OWN
 ) -> ControllerFiles:
-    """Return the files of all controllers; controllers that the format cannot express are
-    reported.
-    """
+    """Return the files of all controllers, and report those that the format cannot express."""
     file_names = assign_file_names([result.contract.component for result in results])
     files: list[tuple[str, str]] = []
     written: list[Synthesis] = []
@@ -67,7 +66,10 @@ def write_controllers(
 def controller_files(
     name: str, controller: Controller, contract: Contract, form: str
 ) -> Iterator[tuple[str, str]]:
-    """Yield the files of one controller. Raises LimitError if it is too large for gr1c's format."""
+    """Yield names and texts of the files of one controller; small machines have a diagram.
+
+    Raises LimitError if the controller is too large for gr1c's format.
+    """
     if form == GR1C:
         yield f"{name}.gr1c.json", gr1c_json(controller, contract)
     elif not isinstance(controller, Machine):
@@ -82,10 +84,11 @@ def controller_files(
 
 MACHINE_FORMAT = "sysmlc-machine/2"
 MAX_DIAGRAM_STATES = 12
+"""States up to which a diagram is readable."""
 MAX_DIAGRAM_ARROWS = 40
-"""States and moves up to which a diagram is readable."""
+"""Moves up to which a diagram is readable."""
 _MAX_LABEL_LINES = 4
-"""Cases of a condition that an arrow lists one by one."""
+"""Lines of a condition on an arrow; further cases are abbreviated."""
 
 
 def machine_json(machine: Machine, contract: Contract) -> str:
@@ -116,7 +119,7 @@ def register_names(machine: Machine) -> dict[str, str]:
 
 
 def rename_registers(formula: Formula, registers: Mapping[str, str]) -> Formula:
-    """Return a condition or an output of a move over the names of inputs and registers."""
+    """Replace the variables of a move by names: primed ones are inputs, unprimed ones registers."""
     match formula:
         case Var(name, primed):
             return Var(name if primed else registers[name])
@@ -195,7 +198,7 @@ def _arrow_label(move: Move, machine: Machine, names: Mapping[str, str]) -> str:
 
 
 def _describe_answer(move: Move, machine: Machine, names: Mapping[str, str]) -> str:
-    """Return the outputs, without registers that stay as they were."""
+    """Return the outputs as text, without registers that keep their values."""
     pairs = zip(machine.outputs, move.output, strict=True)
     outputs = [
         f"{variable.name}={_print_with_registers(value, names)}"
@@ -219,7 +222,7 @@ _NODES_PER_LINE = 8
 
 
 def table_json(table: Table, contract: Contract) -> str:
-    """Return the table as a JSON file with several nodes on a line."""
+    """Return the table as a JSON file with ``_NODES_PER_LINE`` nodes on a line."""
     head = {
         "format": TABLE_FORMAT,
         "name": contract.component,
@@ -244,7 +247,7 @@ def _encode_list(name: str, rows: Iterable[str]) -> str:
 def _encode_bits(table: Table) -> Iterator[str]:
     for bit in table.bits:
         step = "before" if bit.is_before else "now"
-        yield encode_row({"variable": bit.variable, "bit": bit.place, "step": step})
+        yield encode_row({"variable": bit.variable, "bit": bit.position, "step": step})
 
 
 def _encode_nodes(table: Table) -> Iterator[str]:
@@ -258,15 +261,15 @@ def _encode_entry(entry: Entry) -> str:
 
 GR1C_VERSION = 1
 MAX_STEPS = 50_000
-"""Steps that are tried at most; each next input of each node is a step."""
+"""Steps of the controller that are computed: one for each node and each next input."""
 
 Values = Mapping[str, Literal]
 
 
-def gr1c_json(controller: Controller, contract: Contract, most: int = MAX_STEPS) -> str:
+def gr1c_json(controller: Controller, contract: Contract, max_steps: int = MAX_STEPS) -> str:
     """Return the controller as gr1c's JSON with a line for each node.
 
-    Raises LimitError if more than *most* steps would have to be tried.
+    Raises LimitError if more than *max_steps* steps would have to be computed.
     """
     head = {
         "version": GR1C_VERSION,
@@ -276,7 +279,7 @@ def gr1c_json(controller: Controller, contract: Contract, most: int = MAX_STEPS)
         "ENV": [_gr1c_declaration(variable) for variable in controller.inputs],
         "SYS": [_gr1c_declaration(variable) for variable in controller.outputs],
     }
-    nodes = ",\n".join(_Unrolling(controller, contract, most).iter_lines())
+    nodes = ",\n".join(_Unrolling(controller, contract, max_steps).iter_lines())
     return append_members(head, [f'  "nodes": {{\n{nodes}\n  }}'])
 
 
@@ -289,55 +292,59 @@ def _gr1c_declaration(variable: Variable) -> dict[str, object]:
 class _Unrolling:
     """The steps of a controller in all environments that satisfy the assumptions."""
 
-    def __init__(self, controller: Controller, contract: Contract, most: int) -> None:
-        self._controller, self._max_steps, self._steps_left = controller, most, most
+    def __init__(self, controller: Controller, contract: Contract, max_steps: int) -> None:
+        self._controller, self._max_steps, self._steps_left = controller, max_steps, max_steps
         self._first = _compile_conjuncts(contract.assumptions, Class.INIT)
         self._later = _compile_conjuncts(contract.assumptions, Class.SAFETY)
         domains_by_name = {variable.name: variable.domain for variable in controller.inputs}
-        if domains.count(domains_by_name) > most:
-            raise LimitError("steps of the strategy", f"{most:,}")
+        # Check before the inputs are listed.
+        if domains.count(domains_by_name) > max_steps:
+            raise LimitError("steps of the strategy", f"{max_steps:,}")
         self._inputs = list(domains.valuations(domains_by_name))
-        self._places: dict[tuple[tuple[Literal, ...], int], int] = {}
+        self._node_indices: dict[tuple[tuple[Literal, ...], int], int] = {}
         self._nodes: list[tuple[dict[str, Literal], int]] = []
 
     def iter_lines(self) -> Iterator[str]:
         """Yield the nodes in the order of their discovery."""
-        initial_places = set(self._successors({}, 0, self._first))
-        for place, (values, state) in enumerate(self._nodes):
+        initial_nodes = set(self._successors({}, 0, self._first))
+        # The list grows while it is traversed.
+        for index, (values, state) in enumerate(self._nodes):
             successors = self._successors(values, state, self._later)
-            yield self._encode_node(place, values, state, place in initial_places, list(successors))
+            yield self._encode_node(index, values, state, index in initial_nodes, list(successors))
 
     def _successors(self, values: Values, state: int, rules: Sequence[Evaluation]) -> Iterator[int]:
-        """Yield the nodes to which the inputs that are allowed after a step lead."""
+        """Yield the next nodes after a step, one for each next input that *rules* allow."""
         for inputs in self._inputs:
             self._steps_left -= 1
             if self._steps_left < 0:
                 raise LimitError("steps of the strategy", f"{self._max_steps:,}")
             current, following = (values, inputs) if values else (inputs, None)
             if all(rule(current, following) for rule in rules):
-                yield self._place_of(values, state, inputs)
+                yield self._index_node(values, state, inputs)
 
-    def _place_of(self, values: Values, state: int, inputs: Values) -> int:
+    def _index_node(self, values: Values, state: int, inputs: Values) -> int:
+        """Return the index of the node that *inputs* lead to; a new node is added."""
         outputs, next_state = self._controller.step(state, values, inputs)
         step = dict(inputs) | outputs
         key = tuple(step.values()), next_state
-        if key not in self._places:
-            self._places[key] = len(self._nodes)
+        if key not in self._node_indices:
+            self._node_indices[key] = len(self._nodes)
             self._nodes.append((step, next_state))
-        return self._places[key]
+        return self._node_indices[key]
 
     def _encode_node(
-        self, place: int, values: Values, state: int, is_first: bool, successors: list[int]
+        self, index: int, values: Values, state: int, is_first: bool, successors: list[int]
     ) -> str:
         variables = (*self._controller.inputs, *self._controller.outputs)
         node = {
             "state": [_value_code(variable, values[variable.name]) for variable in variables],
             "mode": state,
+            # gr1c's measure of the distance to a goal, which this compiler does not compute.
             "rgrad": -1,
             "initial": is_first,
             "trans": [str(successor) for successor in successors],
         }
-        return f'    "{place}": {encode_row(node)}'
+        return f'    "{index}": {encode_row(node)}'
 
 
 def _compile_conjuncts(conjuncts: Sequence[Conjunct], class_: Class) -> list[Evaluation]:

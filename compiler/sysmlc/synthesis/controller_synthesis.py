@@ -1,8 +1,8 @@
 """Synthesis of a controller that is verified against its contract.
 
-A game may consist of independent games over disjoint variables, whose strategies are combined.
-Whoever wins each of the games wins all of them at once. (The converse does not hold: if the
-environment cannot go on in one game, it loses the others.)
+A game may consist of independent games over disjoint variables. If the system wins each of them,
+the combination of its strategies wins all of them at once. The converse does not hold: an
+environment without a next input in one game loses the others, too.
 """
 
 from collections.abc import Iterable, Iterator, Sequence
@@ -58,7 +58,7 @@ class Form(StrEnum):
 
 
 class Synthesis(Struct, frozen=True):
-    """A verdict, and the controller if there is one that passes verification."""
+    """A verdict, and a controller that has passed verification, if there is one."""
 
     verdict: Verdict
     contract: Contract
@@ -67,7 +67,7 @@ class Synthesis(Struct, frozen=True):
 
     @property
     def exit_code(self) -> int:
-        """0 with a controller, 1 unrealizable, 2 not decided or no controller."""
+        """0 with a controller, 1 for an unrealizable contract, 2 if undecided or no controller."""
         return self.verdict.exit_code or 2 * (self.machine is None)
 
     def text(self) -> str:
@@ -113,12 +113,13 @@ def synthesise_controller(
 def build_controller(
     contract: Contract, game: Game, arena: Arena, options: Options, form: Form = Form.ANY
 ) -> Controller | str:
-    """Return a verified controller, or the reason why the one that was built is none.
+    """Return a verified controller, or as text the fault that verification found.
 
-    ``game`` and ``arena`` are the contract's encoded game (``decision.Decision``), which is won.
-    Raises LimitError.
+    *game* and *arena* are the encoded game of the contract (``decision.Decision``); the system must
+    win it. Raises LimitError.
     """
     with game.manager.guard():
+        # The decision needed a verdict only; a strategy needs the layers of a complete solution.
         winning_strategy = extract_strategy(game, solve_arena(arena))
         result = build_controller_form(contract, game, winning_strategy, form)
     if isinstance(result, Table):
@@ -131,6 +132,8 @@ def build_controller_form(
     contract: Contract, game: Game, winning_strategy: Strategy, form: Form = Form.ANY
 ) -> Controller:
     """Return an unverified controller of a strategy in the requested form. Raises LimitError."""
+    # Tables are built from the strategies of independent games: the three joints of the ICE
+    # laboratory's arm have 1,536 nodes in this way, as one game more than 40,000.
     if form is Form.TABLE:
         return build_table(combine_independent_strategies(game) or winning_strategy)
     try:
@@ -155,7 +158,7 @@ def _build_machine(
 
 
 def _new_manager(manager: Manager, options: Options) -> Manager:
-    """Create another manager with the rest of the time."""
+    """Create another manager with the time that *manager* has left."""
     limits = options.limits
     if limits.seconds:
         seconds_left = max(_MIN_CHECK_SECONDS, limits.seconds - manager.usage().seconds)
@@ -174,7 +177,7 @@ def _describe_fault(fault: Fault) -> str:
 
 
 def split_game(game: Game) -> tuple[Game, ...]:
-    """Return the independent games of which the game consists, often only one."""
+    """Divide a game into independent games, which have no variable in common."""
     related_names = [_variables_of(game, node) for node in _all_nodes(game)]
     for name, bits in game.definitions.items():
         related_names += [frozenset([name, *_variables_of(game, node)]) for node in bits.values()]
@@ -203,9 +206,12 @@ def _variables_of(game: Game, node: Node) -> frozenset[str]:
 
 
 def _restrict_game(game: Game, names: frozenset[str]) -> Game:
-    """Return the game over some variables; constraints over no variable belong to every game."""
+    """Return the game over the variables *names*.
 
-    def keep_constraints(constraints: Iterable[Constraint]) -> tuple[Constraint, ...]:
+    Constraints without variables belong to every game.
+    """
+
+    def select_constraints(constraints: Iterable[Constraint]) -> tuple[Constraint, ...]:
         return tuple(
             constraint
             for constraint in constraints
@@ -215,22 +221,25 @@ def _restrict_game(game: Game, names: frozenset[str]) -> Game:
     return replace(
         game,
         symbols=game.symbols.only(names),
-        init_assumptions=keep_constraints(game.init_assumptions),
-        init_guarantees=keep_constraints(game.init_guarantees),
-        assumptions=keep_constraints(game.assumptions),
-        guarantees=keep_constraints(game.guarantees),
-        fairness=keep_constraints(game.fairness),
-        goals=keep_constraints(game.goals),
+        init_assumptions=select_constraints(game.init_assumptions),
+        init_guarantees=select_constraints(game.init_guarantees),
+        assumptions=select_constraints(game.assumptions),
+        guarantees=select_constraints(game.guarantees),
+        fairness=select_constraints(game.fairness),
+        goals=select_constraints(game.goals),
         definitions={name: bits for name, bits in game.definitions.items() if name in names},
     )
 
 
 MAX_MODES = 16
-"""Modes of the combined strategy above which the game is solved as a whole."""
+"""Modes of a combined strategy above which strategies are not combined."""
 
 
 def combine_independent_strategies(game: Game) -> Strategy | None:
-    """Return the combined strategy of several games; None if there is one game or one is lost."""
+    """Return the combination of the strategies of independent games.
+
+    None if the game cannot be divided, one of the games is lost, or there are too many modes.
+    """
     games = split_game(game)
     if len(games) == 1 or prod(max(1, len(part.goals)) for part in games) > MAX_MODES:
         return None
@@ -254,10 +263,10 @@ def _combine_strategies(strategies: Sequence[Strategy], symbols: Symbols) -> Str
         )
         for owner in Owner
     }
-    first = _combine_modes([variable.first for variable in strategies], symbols)
+    first = _combine_modes([strategy.first for strategy in strategies], symbols)
     modes = tuple(
         _combine_modes(modes, symbols)
-        for modes in product(*(variable.modes for variable in strategies))
+        for modes in product(*(strategy.modes for strategy in strategies))
     )
     return Strategy(symbols, sides[Owner.ENVIRONMENT], sides[Owner.SYSTEM], first, modes)
 
@@ -270,7 +279,7 @@ def _combine_modes(modes: Sequence[Mode], symbols: Symbols) -> Mode:
 
 
 def _combine_successors(modes: Sequence[Mode], symbols: Symbols) -> list[Node]:
-    """Return for each combination of modes the condition under which it is the next one."""
+    """Return for each combination of modes the condition under which it is the next mode."""
     combined = list[Node]()
     for conditions in product(*(mode.successors for mode in modes)):
         node = symbols.manager.true

@@ -1,9 +1,9 @@
-"""The decision whether a contract is realizable, and the smallest bound of a timer.
+"""The decision whether a contract is realizable, and the search for the smallest bound of a timer.
 
-Contracts that cannot be decided are reported. The smallest bound is found by deciding bounded
-contracts. A timer is an integer of the contract that something increments and resets: the steps
-since a target was given. A larger bound is never harder to keep, so binary search applies. The
-upper end of the range is no bound, because a timer that saturates there guarantees nothing.
+A timer is an integer of the contract that counts steps, for instance since a target was assigned.
+The smallest bound is found by binary search over contracts with an additional bound, because a
+larger bound is never harder to guarantee. The upper end of the range is no bound: a timer that
+saturates there guarantees nothing.
 """
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -38,7 +38,7 @@ class Options(Struct, frozen=True):
     limits: Limits = Limits()
     progress: Progress | None = None
     is_explained: bool = False
-    """Whether conflicting guarantees are searched and reported."""
+    """Whether conflicting guarantees of an unrealizable contract are searched and reported."""
 
 
 class Figures(Struct, frozen=True):
@@ -46,7 +46,7 @@ class Figures(Struct, frozen=True):
 
     variables: int
     bits: int
-    """Bits of one step."""
+    """Bits of the variables, without those of next values."""
     conjuncts: int
     rounds: int
     """Number of computed attractors."""
@@ -66,15 +66,16 @@ class Figures(Struct, frozen=True):
 
 
 class Verdict(Struct, frozen=True):
-    """Whether a contract is realizable; None if that is not decided."""
+    """The verdict about a contract."""
 
     component: str
     is_realizable: bool | None
+    """None if that is not decided."""
     figures: Figures | None = None
 
     @property
     def exit_code(self) -> int:
-        """0 realizable, 1 unrealizable, 2 not decided."""
+        """0 for a realizable contract, 1 for an unrealizable one, 2 if it is not decided."""
         return 2 if self.is_realizable is None else int(not self.is_realizable)
 
     def text(self) -> str:
@@ -85,26 +86,27 @@ class Verdict(Struct, frozen=True):
 
 
 class Decision(Struct, frozen=True):
-    """A verdict, with the game that it is about if there is one."""
+    """A verdict, with the encoded game if the contract could be translated and decided."""
 
     verdict: Verdict
     game: Game | None = None
-    """The game without eliminated variables."""
+    """The game after the elimination of determined variables."""
     arena: Arena | None = None
-    """The encoded game that was solved."""
+    """The arena that was solved, after the elimination of commands."""
 
 
 def decide(contract: Contract, place: Place, sink: Sink, options: Options) -> Verdict:
-    """Decide a contract; what is outside GR(1), exceeds the limits or is unrealizable is reported.
+    """Decide whether a contract is realizable.
 
-    LTL beyond GR(1) is expressed with history bits where a reduction is known
-    (``logic.reduction``).
+    Unrealizable contracts, conjuncts outside GR(1) and exceeded limits are reported. Conjuncts of
+    general LTL are first reduced to GR(1) with history bits, if possible (``logic.reduction``).
     """
     return decide_game(contract, place, sink, options).verdict
 
 
 def decide_game(contract: Contract, place: Place, sink: Sink, options: Options) -> Decision:
     """Decide a contract like ``decide``, and also return the game for further use."""
+    # The last activity is part of the message about an exceeded limit.
     current_activity = ["translating the contract"]
 
     def progress(step: str) -> None:
@@ -138,6 +140,7 @@ def decide_game(contract: Contract, place: Place, sink: Sink, options: Options) 
 
 
 def _report_outside(contract: Contract, problem: OutsideGr1Error, place: Place, sink: Sink) -> None:
+    # The exception names one conjunct; report all of its kind at once.
     outside = reduce_contract(contract).irreducible
     for conjunct in outside if problem.conjunct in outside else (problem.conjunct,):
         sink.report(
@@ -145,7 +148,7 @@ def _report_outside(contract: Contract, problem: OutsideGr1Error, place: Place, 
             place(conjunct.origin or contract.origin),
             component=contract.component,
             formula=_print_formula(conjunct),
-            why=problem.why,
+            why=problem.reason,
         )
 
 
@@ -188,20 +191,20 @@ def _collect_figures(contract: Contract, game: Game, solution: Solution) -> Figu
 
 
 class Deadline(Struct, frozen=True):
-    """The result of the search for the smallest bound."""
+    """The result of the search for the smallest bound of timers."""
 
     component: str
     timers: tuple[str, ...]
     bound: int | None
-    """The smallest value that all timers together never have to exceed; None when there is none
-    below the end of their ranges, or when that is not decided."""
+    """The smallest bound that the system can guarantee for all timers at once; None if there is
+    none below the ends of their ranges, or if that is not decided."""
     tried: Mapping[int, Verdict]
-    """The decisions, by bound."""
+    """The verdicts of the contracts with a bound, by bound."""
     exit_code: int
-    """0 found, 1 there is none, 2 not decided."""
+    """0 with a bound, 1 if there is none, 2 if that is not decided."""
 
     def text(self) -> str:
-        """Return the bound on one line."""
+        """Return the result of the search on one line."""
         names = ", ".join(self.timers)
         if self.bound is not None:
             return f"{self.component}: {names} <= {self.bound} can be guaranteed, no smaller bound"
@@ -214,12 +217,12 @@ def find_deadline(
 ) -> Deadline:
     """Return the smallest bound that the system can guarantee for all timers at once.
 
-    Bounds that the contract already guarantees for them are dropped. Unknown timers, undecided
-    contracts and missing bounds are reported (SM575, SM576; SM530, SM531).
+    Bounds of the timers in the contract itself are dropped. Reported are unknown timers (SM575), a
+    search without result (SM576), and undecided contracts (SM530, SM531).
     """
     domains_by_name = {variable.name: variable.domain for variable in contract.variables}
     numbers = [
-        domain for one in timers if isinstance(domain := domains_by_name.get(one), IntegerDomain)
+        domain for name in timers if isinstance(domain := domains_by_name.get(name), IntegerDomain)
     ]
     if not timers or len(numbers) < len(timers):
         _report_unknown_timers(contract, timers, domains_by_name, place, sink)
@@ -229,14 +232,14 @@ def find_deadline(
 
 
 def set_bound(contract: Contract, timers: Iterable[str], bound: int) -> Contract:
-    """Return the contract with this bound of the timers instead of its own bounds."""
+    """Return the contract with *bound* for all timers instead of its own bounds for them."""
     timer_names = frozenset(timers)
     other_guarantees = (
         guarantee for guarantee in contract.guarantees if not _is_bound_of(guarantee, timer_names)
     )
     bounds = (
-        Conjunct(f.compare(Op.LE, Var(guarantee), Const(bound)), Class.SAFETY, contract.origin)
-        for guarantee in sorted(timer_names)
+        Conjunct(f.compare(Op.LE, Var(name), Const(bound)), Class.SAFETY, contract.origin)
+        for name in sorted(timer_names)
     )
     return replace(contract, guarantees=(*other_guarantees, *bounds))
 
@@ -254,12 +257,13 @@ def _search_bound(
     low, high = bounds.start, bounds.stop
     while low < high:
         middle = (low + high) // 2
+        # An unrealizable bound is an ordinary step of the search and must not be reported.
         discarded_sink = Sink()
         verdicts[middle] = decide(
             set_bound(contract, timers, middle), place, discarded_sink, options
         )
         if verdicts[middle].is_realizable is None:
-            # The obstacle is the same for all bounds: decide again to report it.
+            # Decide again, now with the caller's sink, to report what prevents the decision.
             decide(set_bound(contract, timers, middle), place, sink, options)
             return Deadline(contract.component, timers, None, verdicts, 2)
         low, high = (low, middle) if verdicts[middle].is_realizable else (middle + 1, high)
@@ -277,7 +281,7 @@ def _search_bound(
 
 
 def _is_bound_of(conjunct: Conjunct, timers: frozenset[str]) -> bool:
-    """Return whether the conjunct only states that a timer is at most some number."""
+    """Return whether the conjunct is nothing but an upper bound of a timer."""
     if conjunct.class_ is not Class.SAFETY:
         return False
     match conjunct.formula:

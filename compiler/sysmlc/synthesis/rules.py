@@ -1,7 +1,4 @@
-"""Rules about contracts that are decided or suspicious (SM530 to SM549, SM575 to SM579).
-
-The explanations of lints (SM533 to SM542) are contracts in JSON.
-"""
+"""Rules about decisions, syntheses and lints of contracts (SM530 to SM543, SM575 and SM576)."""
 
 from sysmlc.diagnostics import Severity, rule
 

@@ -1,13 +1,13 @@
-"""Unrealizable contracts: the core of their guarantees, and assumptions that would help.
+"""Unrealizable contracts: the unrealizable core, and assumptions that make them realizable.
 
-The core is a set of guarantees that cannot be satisfied together, while all but any one of them
-can; assumptions stay. The search is Junker's QuickXplain (2004): halves are tried before single
-items, so that a small conflict among many items takes few checks.
+The core is a minimal set of guarantees that cannot be satisfied together under the assumptions. It
+is searched with QuickXplain (Junker 2004), which examines halves before single items, so a small
+conflict among many items takes few checks.
 
-The candidates for assumptions take one simple thing from the environment: that an input recurs with
-a value, or that it stays as it is, always or while an output has a value (after Chatterjee,
-Henzinger, Jobstmann 2008; the candidates are ours). An assumption that the component could force
-the environment to break is no help.
+The candidates for assumptions restrict the environment in one simple way: an input recurs with some
+value, or it stays constant, always or while an output has some value (after Chatterjee, Henzinger,
+Jobstmann 2008, with other candidates). Assumptions that the component could force the environment
+to violate are excluded.
 """
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -30,20 +30,22 @@ from sysmlc.synthesis.games.variable_elimination import eliminate_determined_var
 
 T = TypeVar("T")
 MAX_CHECKS = 200
-"""Checks at most; the result may not be minimal after them."""
+"""Checks after which the search ends, although the result may not be minimal."""
 
 
 def minimal_conflict(
     items: Sequence[T], is_conflict: Callable[[Sequence[T]], bool], max_checks: int = MAX_CHECKS
 ) -> tuple[T, ...]:
-    """Return a conflicting subset of the conflicting *items*, in their order.
+    """Return a minimal conflicting subset of the conflicting *items*, in their order.
 
-    No item of the result can be omitted, unless *max_checks* were not enough to find that out.
+    The subset may not be minimal if the search ends after *max_checks* checks.
     """
     return _QuickXplain(items, is_conflict, max_checks).run()
 
 
 class _QuickXplain(Generic[T]):
+    """The search for a minimal conflict (Junker 2004)."""
+
     def __init__(
         self, items: Sequence[T], is_conflict: Callable[[Sequence[T]], bool], max_checks: int
     ) -> None:
@@ -52,14 +54,17 @@ class _QuickXplain(Generic[T]):
         self._checks_left = max_checks
 
     def run(self) -> tuple[T, ...]:
-        """Return the conflict."""
+        """Return the minimal conflict, in the order of the items."""
         conflict = set(self._reduce((), range(len(self._items)), is_new=True))
         return tuple(item for index, item in enumerate(self._items) if index in conflict)
 
     def _reduce(
         self, background: Sequence[int], candidates: Sequence[int], is_new: bool
     ) -> tuple[int, ...]:
-        """Return the candidates that are needed for a conflict together with the background."""
+        """Return a minimal set of candidates that is in conflict with the background.
+
+        *is_new* tells whether the background has been extended since its last check.
+        """
         if is_new and self._check(background):
             return ()
         if len(candidates) == 1 or not self._checks_left:
@@ -72,6 +77,7 @@ class _QuickXplain(Generic[T]):
         )
 
     def _check(self, indices: Sequence[int]) -> bool:
+        """Return whether the items are known to be in conflict; False when no checks are left."""
         if not self._checks_left:
             return False
         self._checks_left -= 1
@@ -79,11 +85,10 @@ class _QuickXplain(Generic[T]):
 
 
 def unrealizable_core(game: Game, max_checks: int = MAX_CHECKS) -> tuple[Conjunct, ...]:
-    """Return guarantees of a lost game that cannot be satisfied together, in the order of the
-    contract.
+    """Return a minimal set of guarantees of a lost game that cannot be satisfied together.
 
-    No guarantee can be omitted, unless *max_checks* games were not enough to find that out. The
-    result is empty if the ranges of variables alone are unrealizable. Raises LimitError.
+    The set may not be minimal if the search ends after *max_checks* games. It is empty if the
+    ranges of variables alone are unrealizable. Raises LimitError.
     """
     parts = (*game.init_guarantees, *game.guarantees, *game.goals)
     guarantees = [part for part in parts if part.conjunct is not None]
@@ -98,7 +103,7 @@ def unrealizable_core(game: Game, max_checks: int = MAX_CHECKS) -> tuple[Conjunc
 def _keep_guarantees(
     game: Game, guarantees: Sequence[Constraint], kept_guarantees: Sequence[Constraint]
 ) -> Game:
-    """Return the game with some of the guarantees, and with the ranges."""
+    """Return the game with *kept_guarantees* only; ranges of variables stay."""
     removed = {id(part) for part in guarantees} - {id(part) for part in kept_guarantees}
 
     def filter_parts(parts: Sequence[Constraint]) -> tuple[Constraint, ...]:
@@ -132,7 +137,7 @@ _PREFIXES = {
 def explain_unrealizability(game: Game, contract: Contract) -> Iterator[str]:
     """Yield a line for each conflicting guarantee of a lost game, then for each helpful assumption.
 
-    *contract* is the one as it was written, before its reduction to GR(1).
+    *contract* is the original contract, before its reduction to GR(1).
     """
     try:
         yield from _describe_conflict(game, contract)
@@ -165,8 +170,10 @@ def _describe_conflict(game: Game, contract: Contract) -> Iterator[str]:
 
 
 def original_conjuncts(conjuncts: Iterable[Conjunct], contract: Contract) -> list[Conjunct]:
-    """Return the distinct conjuncts, with reduced ones replaced by the guarantee that they come
-    from.
+    """Return the conjuncts of *contract* from which *conjuncts* are derived, without repetition.
+
+    A conjunct that the reduction to GR(1) has made belongs to the guarantee with its origin. If
+    several guarantees have the same origin, the reduced conjunct itself is returned.
     """
     guarantee_ids = {id(conjunct) for conjunct in contract.guarantees}
     formulas: dict[str, list[Conjunct]] = {}
@@ -185,12 +192,13 @@ def _print_conjunct(conjunct: Conjunct) -> str:
     return f"{_PREFIXES[conjunct.class_]}{print_formula(conjunct.formula)}"
 
 
-MAX_TRIED = 60
-"""Assumptions that are tried, with one or two games each; fewer in large games, by the square."""
+MAX_CANDIDATES = 60
+"""Candidates that are tried in a small game, with one or two games each. In larger games the number
+decreases with the square of the number of bits."""
 _SMALL_GAME_BITS = 20
 """Bits up to which a game is small."""
 _MAX_VALUES = 6
-"""Values of a variable up to which each value is tried."""
+"""Values of a variable up to which there is a candidate for each value."""
 
 
 def helpful_assumptions(game: Game, max_assumptions: int = 3) -> tuple[Conjunct, ...]:
@@ -199,7 +207,9 @@ def helpful_assumptions(game: Game, max_assumptions: int = 3) -> tuple[Conjunct,
     Raises LimitError.
     """
     bits = max(_SMALL_GAME_BITS, len(game.inputs) + len(game.outputs))
-    candidates = islice(_candidate_assumptions(game), MAX_TRIED * _SMALL_GAME_BITS**2 // bits**2)
+    candidates = islice(
+        _candidate_assumptions(game), MAX_CANDIDATES * _SMALL_GAME_BITS**2 // bits**2
+    )
     with game.manager.guard():
         return tuple(
             islice(
@@ -210,8 +220,10 @@ def helpful_assumptions(game: Game, max_assumptions: int = 3) -> tuple[Conjunct,
 
 
 def _candidate_assumptions(game: Game) -> Iterator[Conjunct]:
-    """Yield candidates: recurring values, constant inputs, inputs constant while an output has a
-    value.
+    """Yield candidates, the simplest first.
+
+    They state that an input recurs with a value, that it is constant, or that it is constant while
+    an output has a value.
     """
     inputs = [game.symbols.variables[name] for name in game.names(Owner.ENVIRONMENT)]
     outputs = [game.symbols.variables[name] for name in game.names(Owner.SYSTEM)]
@@ -231,7 +243,7 @@ def _candidate_assumptions(game: Game) -> Iterator[Conjunct]:
 
 
 def _value_predicates(variable: Variable) -> Sequence[Formula]:
-    """Return the predicates that the variable has a value, for variables with few values."""
+    """Return for each value the predicate that the variable has it; none for many values."""
     if size(variable.domain) > _MAX_VALUES:
         return ()
     variable_term = f.var(variable.name)
@@ -250,6 +262,7 @@ def _frame_condition(variable: Variable) -> Formula:
 
 
 def _makes_realizable(game: Game, assumption: Conjunct) -> bool:
+    """Return whether the assumption makes the game won, and not only because it can be violated."""
     game.manager.check("looking for assumptions that would help")
     part = Constraint(game.symbols.bdd(assumption.formula), assumption)
     if assumption.class_ is Class.LIVENESS:
@@ -260,9 +273,7 @@ def _makes_realizable(game: Game, assumption: Conjunct) -> bool:
 
 
 def _game_against_assumptions(game: Game) -> Game:
-    """Return the game that the system wins if it can force the environment to break an
-    assumption.
-    """
+    """Return a game that the system wins only if it can force a violated assumption."""
     false = Constraint(game.manager.false)
 
     def drop_guarantees(parts: Sequence[Constraint]) -> tuple[Constraint, ...]:

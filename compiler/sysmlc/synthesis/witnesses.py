@@ -1,6 +1,4 @@
-"""Runs as explanations for people: changes in each step as lines and as PlantUML sequence diagrams,
-and reports of conjuncts that a run violates.
-"""
+"""Runs as explanations for users: text, PlantUML sequence diagrams, and notes of diagnostics."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
@@ -20,7 +18,7 @@ from sysmlc.synthesis.decision import Options
 from sysmlc.synthesis.games.game import OutsideGr1Error
 
 _MAX_SHOWN_STEPS = 12
-"""Steps of a run that a message lists."""
+"""Steps of a run that a message lists; further steps are only counted."""
 _ENVIRONMENT = "environment"
 
 Values = Mapping[str, Literal]
@@ -34,7 +32,7 @@ class Party(Struct, frozen=True):
 
 
 class Witness(Struct, frozen=True):
-    """A run that violates a conjunct which *component* relies on or should guarantee."""
+    """A run that violates a conjunct which *component* assumes or should guarantee."""
 
     component: str
     broken: Conjunct
@@ -43,7 +41,7 @@ class Witness(Struct, frozen=True):
 
 
 def iter_changes(trace: Trace) -> Iterator[Values]:
-    """Yield the values that change in each step; in the first step all values."""
+    """Yield for each step the values that have changed; for the first step all values."""
     previous: Values = {}
     for values in trace.steps:
         yield {name: value for name, value in values.items() if previous.get(name) != value}
@@ -53,7 +51,7 @@ def iter_changes(trace: Trace) -> Iterator[Values]:
 def describe_run(trace: Trace, broken: Conjunct | None = None) -> Iterator[str]:
     """Yield a line for each step with the changed values.
 
-    If *broken* is given, other variables that never change are omitted.
+    With *broken*, variables are omitted that never change and that *broken* does not read.
     """
     hidden = _constant_variables(trace, broken) if broken else set()
     for number, changed in enumerate(iter_changes(trace), 1):
@@ -96,8 +94,9 @@ def witness_diagram(witness: Witness) -> str:
 
 
 def run_diagram(title: str, trace: Trace, parties: Sequence[Party]) -> str:
-    """Return a run as a sequence diagram: inputs are messages, variables without readers are
-    notes.
+    """Return a run as a sequence diagram of the environment and the parties.
+
+    A changed variable is a message from its owner to each reader, or a note if it has no reader.
     """
     head = [
         "@startuml",
@@ -148,7 +147,7 @@ def _diagram_messages(changed: Values, contracts: Sequence[Contract]) -> Iterato
 
 
 def _find_sender(name: str, contracts: Sequence[Contract]) -> int:
-    """Return the number of the party that decides the variable; 0 is the environment."""
+    """Return the number of the party that owns the variable; 0 is the environment."""
     return next(iter(_find_parties(name, contracts, Owner.SYSTEM)), 0)
 
 
@@ -169,19 +168,19 @@ def _print_values(values: Values, names: Iterable[str]) -> str:
 
 
 def manager_factory(options: Options) -> Callable[[], Manager]:
-    """Return a function that creates a manager within the limits for each question."""
+    """Return a function that creates a new manager with the engine and limits of *options*."""
     return lambda: Manager(options.engine, options.limits, options.progress)
 
 
 def describe_problem(problem: Exception) -> str:
-    """Return why something was not decided, with the formula that is the reason."""
+    """Return the reason of an undecided question as text, with the formula outside GR(1) if any."""
     if isinstance(problem, OutsideGr1Error):
         return f"'{print_formula(problem.conjunct.formula)}': {problem}"
     return str(problem)
 
 
 def text_in_parentheses(conjunct: Conjunct) -> str:
-    """Return the conjunct's text in parentheses."""
+    """Return the conjunct's text in parentheses, or an empty string if it has none."""
     return f" ({conjunct.text.removesuffix('.')})" if conjunct.text else ""
 
 

@@ -1,1 +1,1 @@
-"""What contracts say of one another: refinement, composition, consistency."""
+"""Relations and operations of contracts: refinement, composition, consistency."""

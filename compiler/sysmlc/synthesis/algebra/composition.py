@@ -3,9 +3,10 @@
 Parts run in step and read each other's values (thesis 2.2.1; Benveniste et al. 2018, section 6).
 Guarantees of the other parts discharge the assumptions of a part; the composition assumes the rest.
 
-Requirements about one subject are viewpoints. Merged into one contract they would assume everything
-that any of them assumes. Their conjunction owes each viewpoint its guarantees as long as this
-viewpoint's assumptions hold (Benveniste et al. 2018, section 6.3).
+Requirements about one subject are viewpoints. One contract with all their conjuncts would guarantee
+something only where the assumptions of all viewpoints hold. Their conjunction guarantees more: each
+viewpoint's guarantees wherever the assumptions of this viewpoint hold (Benveniste et al. 2018,
+section 6.3).
 """
 
 from collections import Counter
@@ -38,10 +39,10 @@ from sysmlc.synthesis.unrealizable import minimal_conflict
 class Composition(Struct, frozen=True):
     """The result of a composition.
 
-    ``contract`` is the contract of the parts together. ``open`` are assumptions of parts that
-    nothing discharges, ``failures`` guarantees of the whole that the parts violate, ``losses`` runs
-    in which a sent event is lost. If no run satisfies the guarantees of all parts, ``conflict`` is
-    a minimal contradiction.
+    ``contract`` is the contract of the parts together. ``open`` contains the assumptions of parts
+    that neither other parts nor the whole entail, ``failures`` the guarantees of the whole that the
+    parts violate, ``losses`` the runs in which a sent event is lost. If no run satisfies the
+    guarantees of all parts, ``conflict`` is a minimal set of contradicting conjuncts.
     """
 
     contract: Contract
@@ -52,7 +53,7 @@ class Composition(Struct, frozen=True):
 
 
 class DriverError(Exception):
-    """Two parts assign the same variable."""
+    """Reports that two parts assign the same variable."""
 
     def __init__(self, variable: str, parts: tuple[str, ...]) -> None:
         super().__init__(f"'{variable}' is decided by {' and '.join(parts)}")
@@ -63,8 +64,8 @@ class DriverError(Exception):
 def compose_parts(composite: Composite, manager: Manager) -> Composition:
     """Compose the parts in the environment that the contract of the whole assumes.
 
-    If the whole has no contract, the composition assumes whatever parts assume of things that no
-    part assigns. Raises DriverError, DomainError, OutsideGr1Error, LimitError.
+    If the whole has no contract, the composition assumes what its parts assume about variables that
+    no part assigns. Raises DriverError, DomainError, OutsideGr1Error, LimitError.
     """
     with manager.guard():
         return _compose(composite, manager)
@@ -74,6 +75,7 @@ def _compose(composite: Composite, manager: Manager) -> Composition:
     _check_drivers(composite.parts)
     whole = composite.whole or _contract_with_environment(composite)
     wiring = Contract("", "", (), composite.wiring, ())
+    # One call for all contracts, so that equal formulas outside GR(1) share their history bits.
     observed = observe_histories((*(part.contract for part in composite.parts), wiring, whole))
     *contracts, wiring_contract, whole_contract = observed.contracts
     parts = tuple(
@@ -83,6 +85,7 @@ def _compose(composite: Composite, manager: Manager) -> Composition:
     universe = Universe(observed.contracts, manager)
     reduced_composite = replace(composite, parts=parts, wiring=wiring_contract.assumptions)
     contract = _compose_contract(composite, whole)
+    # A contradiction entails everything, so no assumption would stay open (decision 31).
     contradiction = _find_contradiction(
         reduced_composite, whole_contract.assumptions, observed.definitions, universe
     )
@@ -103,8 +106,9 @@ def _find_contradiction(
     definitions: Sequence[Conjunct],
     universe: Universe,
 ) -> tuple[Conjunct, ...]:
-    """Return a minimal set of guarantees, wiring and assumptions that no run satisfies, or
-    nothing.
+    """Return a minimal set of guarantees, wiring and assumptions that no run satisfies together.
+
+    The result is empty if some run satisfies all of them.
     """
     guarantees = (conjunct for part in composite.parts for conjunct in part.contract.guarantees)
     conjuncts = tuple(dict.fromkeys((*assumptions, *composite.wiring, *guarantees)))
@@ -116,9 +120,10 @@ def _find_contradiction(
 
 
 def _contract_with_environment(composite: Composite) -> Contract:
-    """Return a contract for a whole without one: the assumptions about things that no part assigns.
+    """Return a contract for a whole that has none: the parts' assumptions about the environment.
 
-    Such an assumption may read outputs of its own part too; only then the environment has to act.
+    These assumptions read a variable that no part assigns, and besides it only outputs of their own
+    part: an environment may be assumed to react to a part.
     """
     inner_names = {name for part in composite.parts for name in outputs_of(part)}
     assumptions = tuple(
@@ -136,7 +141,10 @@ def _is_about_outside(conjunct: Conjunct, inner_names: set[str], own_names: set[
 
 
 def _with_contract(part: Part, contract: Contract) -> Part:
-    """Replace the contract of a part by one in GR(1); history bits are nobody's outputs."""
+    """Replace the contract of a part by its reduction to GR(1).
+
+    The variables stay, because history bits are outputs of no part.
+    """
     return replace(part, contract=replace(contract, variables=part.contract.variables))
 
 
@@ -167,7 +175,7 @@ def _find_violations(conjuncts: Iterable[Conjunct], runs: Entailment) -> Iterato
 
 
 def _merge_variables(parts: Sequence[Part]) -> tuple[Variable, ...]:
-    """All variables; one that a part decides is the composition's own."""
+    """Merge the variables by name; a variable that some part assigns is an output of the whole."""
     merged: dict[str, Variable] = {}
     for variable in (variable for part in parts for variable in part.contract.variables):
         if variable.name not in merged or variable.owner is Owner.SYSTEM:
@@ -201,26 +209,26 @@ def list_viewpoints(contract: Contract) -> tuple[Viewpoint, ...]:
 
 
 def conjoin_viewpoints(contract: Contract) -> Contract:
-    """Return the contract that owes each viewpoint its guarantees where only its own assumptions
-    hold.
+    """Return the contract whose guarantees of each viewpoint depend on its own assumptions only.
 
-    The result is in GR(1); variables of the component record which assumptions were broken. Raises
-    OutsideGr1Error if viewpoints with liveness guarantees have different liveness assumptions.
+    The result is in GR(1); additional outputs record which viewpoints' assumptions were broken.
+    Raises OutsideGr1Error if viewpoints with liveness guarantees have different liveness
+    assumptions.
     """
     viewpoints = list_viewpoints(contract)
     if len({_formulas_of(viewpoint.assumptions) for viewpoint in viewpoints}) < 2:
         return contract
     _check_liveness(viewpoints)
-    names = Names(*(one.name for one in contract.variables))
+    names = Names(*(variable.name for variable in contract.variables))
     bits = [
         Var(names.new("broken")) if _has_breakable_assumptions(viewpoint) else None
         for viewpoint in viewpoints
     ]
-    common_guarantees = [one for one in contract.guarantees if not one.viewpoint]
+    common_guarantees = [conjunct for conjunct in contract.guarantees if not conjunct.viewpoint]
     weakened = [
-        one
+        conjunct
         for viewpoint, bit in zip(viewpoints, bits, strict=True)
-        for one in _weaken_guarantees(viewpoint, bit)
+        for conjunct in _weaken_guarantees(viewpoint, bit)
     ]
     return replace(
         contract,
@@ -235,8 +243,10 @@ def _formulas_of(conjuncts: Iterable[Conjunct]) -> frozenset[tuple[Class, Formul
 
 
 def _check_liveness(viewpoints: Sequence[Viewpoint]) -> None:
-    """Raise OutsideGr1Error if liveness assumptions differ: several such implications exceed
-    GR(1).
+    """Raise OutsideGr1Error if viewpoints with liveness guarantees assume different liveness.
+
+    GR(1) is a single implication between liveness conditions, so it cannot express one for each
+    viewpoint.
     """
     first_guarantees: dict[frozenset[tuple[Class, Formula]], Conjunct] = {}
     for viewpoint in viewpoints:
@@ -257,10 +267,10 @@ def _liveness_assumptions(view: Viewpoint) -> Iterator[Conjunct]:
 
 
 def _common_assumptions(contract: Contract, views: Sequence[Viewpoint]) -> Iterator[Conjunct]:
-    """Yield the assumptions shared by all viewpoints, and the liveness assumptions that guarantees
-    need.
-    """
+    """Yield the assumptions of no viewpoint, and the liveness assumptions of the viewpoints."""
     yield from (conjunct for conjunct in contract.assumptions if not conjunct.viewpoint)
+    # `_check_liveness` has made sure that all viewpoints with liveness guarantees have the same
+    # liveness assumptions, so those of the first one are enough.
     for view in views:
         if any(conjunct.class_ is Class.LIVENESS for conjunct in view.guarantees):
             yield from _liveness_assumptions(view)
@@ -276,7 +286,11 @@ def _has_breakable_assumptions(view: Viewpoint) -> bool:
 
 
 def _weaken_guarantees(view: Viewpoint, broken: Var | None) -> Iterator[Conjunct]:
-    """Yield the guarantees, weakened by *broken*, and the conjuncts that define *broken*."""
+    """Yield the viewpoint's guarantees, each required only while the bit *broken* is false.
+
+    The conjuncts that define *broken* come first: it is set by the first violation of an initial
+    or safety assumption of the viewpoint, and stays set.
+    """
     if broken is None:
         yield from view.guarantees
         return
@@ -287,6 +301,8 @@ def _weaken_guarantees(view: Viewpoint, broken: Var | None) -> Iterator[Conjunct
     yield Conjunct(f.iff(broken, f.negate(first)), Class.INIT, "", "", view.name)
     yield Conjunct(f.iff(next_broken, becomes_broken), Class.SAFETY, "", "", view.name)
     for guarantee in view.guarantees:
+        # A safety guarantee is about a step and the next one. The violation of an assumption in the
+        # same step already releases from it, as in a game (docs/synthesis.md, strict implication).
         escape = next_broken if guarantee.class_ is Class.SAFETY else broken
         yield replace(guarantee, formula=f.either(escape, guarantee.formula))
 

@@ -1,9 +1,10 @@
 """Discharge of the assumptions of parts by the guarantees of other parts in a composition.
 
-Safety is established step by step, also for parts that assume safety of one another. For liveness,
-each part guarantees: if all its liveness assumptions recur, then its liveness guarantees recur. A
-run satisfies this if for each part some assumption no longer recurs or every guarantee does: a
-Streett condition, which is examined case by case.
+Initial and safety assumptions are discharged by induction over the steps of a run, also if parts
+assume safety of one another: no part is the first to fail (Misra and Chandy 1981; Abadi and Lamport
+1993). For liveness, each part guarantees that its liveness guarantees recur if its liveness
+assumptions do. A run satisfies this if, for each part, some assumption stops recurring or every
+guarantee recurs. That is a Streett condition; the check enumerates its cases.
 """
 
 from collections.abc import Iterable, Iterator, Sequence
@@ -23,11 +24,12 @@ from sysmlc.synthesis.algebra.instantaneous_dependencies import (
 from sysmlc.synthesis.algebra.refinement import Entailment
 from sysmlc.synthesis.bdd.manager import Node
 
-MOST_CASES = 256
+MAX_CASES = 256
+"""Cases of the Streett condition above which recurrence is not examined (decision 31)."""
 
 
 class StreettCase(Struct, frozen=True):
-    """Conditions that recur, and a set in which the run stays from some step on."""
+    """One case of a Streett condition: conditions recur, and the run finally stays in a set."""
 
     recurring: tuple[Node, ...]
     stay: Node
@@ -45,7 +47,7 @@ class Recurrence:
     @property
     def is_decided(self) -> bool:
         """Whether there are few enough cases to examine."""
-        return prod(map(len, self._cases)) <= MOST_CASES
+        return prod(map(len, self._cases)) <= MAX_CASES
 
     def find_violation(self, conjunct: Conjunct) -> Trace | None:
         """Return a run in which a conjunct does not recur, or None if there is none."""
@@ -60,7 +62,10 @@ class Recurrence:
         return None
 
     def _find_run(self, recurring: tuple[Node, ...], stay: Node) -> Trace | None:
-        """Return a run that eventually stays in a set and satisfies more fairness."""
+        """Return a run that stays in *stay* from some step on and satisfies *recurring* as well.
+
+        None if there is no such run.
+        """
         system = self._runs.system
         runs = Runs(replace(system, fairness=(*system.fairness, *recurring)))
         states = runs.fair_within(self._runs.reachable & stay)
@@ -85,9 +90,9 @@ class Recurrence:
 class OpenAssumption(Struct, frozen=True):
     """An assumption of a part that its surroundings do not entail.
 
-    If ``is_circular``, the guarantees of the other parts entail it, but these wait for this part in
-    turn. ``trace`` is a run that violates the assumption while all others satisfy their contracts;
-    None if no such run was found, although none was excluded either.
+    If ``is_circular``, guarantees of the other parts entail the assumption, but these parts assume
+    something of this part in turn. ``trace`` is a run that violates the assumption while all other
+    parts satisfy their contracts; None if the search neither found nor excluded such a run.
     """
 
     part: Part
@@ -104,7 +109,7 @@ class Discharge(Struct, frozen=True):
 
 
 class _Facts:
-    """Conjuncts that hold in every run, and their consequences."""
+    """Conjuncts that are established for every run of the composition, to derive others from."""
 
     def __init__(self, universe: Universe, facts: Iterable[Conjunct]) -> None:
         self._universe = universe
@@ -112,7 +117,7 @@ class _Facts:
         self._entailment: Entailment | None = None
 
     def extended_by(self, conjuncts: Iterable[Conjunct]) -> "_Facts":
-        """Return these facts and more."""
+        """Return the facts with additional conjuncts."""
         return _Facts(self._universe, (*self.facts, *conjuncts))
 
     @property
@@ -128,16 +133,18 @@ class _Facts:
         return all(self.runs.find_violation(conjunct) is None for conjunct in new_conjuncts)
 
     def recurrence(self, parts: Sequence[Part]) -> Recurrence:
-        """Return the runs in which these parts also satisfy their liveness guarantees."""
+        """Return the runs of the facts in which *parts* also satisfy their liveness guarantees."""
         return Recurrence(self.runs.runs, parts, self._universe)
 
     def can_break(self, conjunct: Conjunct, own_guarantees: Iterable[Conjunct] = ()) -> bool:
-        """Return whether steps that satisfy the facts can reach a violation of an initial or safety
-        condition.
+        """Return whether a run of the facts can reach a step that violates *conjunct*.
 
-        The run need not continue after the violation. In the violating step the part that assumes
-        the condition need not satisfy *own_guarantees*, because it owes nothing any more.
+        *conjunct* is an initial or a safety condition. The run need not continue after the
+        violation. In the violating step *own_guarantees* need not hold: a part that has seen its
+        assumption violated is released from them.
         """
+        # Facts are kept in all steps before the violating one, without which a guarantee about
+        # inputs would prove the assumption about the same inputs.
         facts_of_last_step = _Facts(
             self._universe, (fact for fact in self.facts if fact not in set(own_guarantees))
         )
@@ -171,8 +178,9 @@ class _Facts:
 def discharge(
     composite: Composite, assumptions: Iterable[Conjunct], universe: Universe
 ) -> Discharge:
-    """Establish as many parts as possible from the assumptions of the whole and the wiring.
+    """Establish as many parts as possible, starting with *assumptions* and the wiring.
 
+    A part is established if its assumptions are entailed; its guarantees are facts from then on.
     The contracts must be in GR(1). Raises OutsideGr1Error, LimitError.
     """
     dependencies = build_dependency_graph(composite, universe)
@@ -205,11 +213,12 @@ def _next_established(
     facts: "_Facts",
     dependencies: DependencyGraph,
 ) -> tuple[_PartSequence, _PartSequence] | None:
-    """Return the parts whose guarantees are established next, completely or only their safety part.
+    """Return the parts that are established next: completely, and for their safety only.
 
-    Single parts come first, then sets of parts step by step, then recurrence if all wait for
-    something.
+    None if no further part can be established.
     """
+    # In the order of cost: entailment for one part alone, induction over a set of parts, and the
+    # Streett cases, which are needed if the remaining parts wait for the liveness of one another.
     complete = [part for part in open_parts if facts.entails(part.contract.assumptions)]
     if complete:
         return complete, ()
@@ -226,9 +235,7 @@ def _next_established(
 
 
 def _parts_with_recurring_assumptions(parts: _PartSequence, facts: "_Facts") -> list[Part]:
-    """Return the parts whose liveness assumptions recur in all runs in which all parts keep their
-    guarantees.
-    """
+    """Return the parts whose liveness assumptions recur in all runs that satisfy all *parts*."""
     recurrence = facts.recurrence(parts)
     if not recurrence.is_decided:
         return []
@@ -256,9 +263,11 @@ def _safety_conjuncts(part: Part, is_assumed: bool) -> list[Conjunct]:
 def _largest_inductive_set(
     parts: Sequence[Part], dependencies: DependencyGraph, facts: _Facts
 ) -> list[Part]:
-    """Return the largest set of parts whose safety holds step by step if all of them keep
-    theirs.
+    """Return the largest set of parts of which none can be the first to violate safety.
+
+    That is a greatest fixpoint: parts whose assumptions the others can break are removed.
     """
+    # Induction over steps is unsound for an output that depends on itself within a step.
     circular = dependencies.circular_parts(parts)
     candidates = [part for part in parts if part not in circular]
     while candidates:
@@ -284,11 +293,10 @@ def _largest_inductive_set(
 def _breaks_first(
     part: Part, assumption: Conjunct, steps: _Facts, dependencies: DependencyGraph
 ) -> bool:
-    """Return whether the other parts, keeping their safety guarantees, can break an assumption
-    first.
+    """Return whether *assumption* can be violated before any part violates a safety guarantee.
 
-    Outputs that the part chooses before it sees an input of the same step remain bound by
-    guarantees.
+    In the violating step the part is released only from guarantees about outputs that depend on
+    inputs of that step. All its other outputs are chosen before the violation is visible.
     """
     return steps.can_break(assumption, dependencies.guarantees_after_inputs(part))
 
@@ -304,26 +312,26 @@ def _find_open_assumptions(
     facts: _Facts,
     dependencies: DependencyGraph,
 ) -> Iterator[OpenAssumption]:
-    """Yield the assumptions that are missing for the parts that are not established.
+    """Yield the assumptions that prevent the remaining parts from being established.
 
-    Of several parts with safety assumptions, only those that break first are open: with them, the
-    others hold.
+    Of the safety assumptions, only those that can be violated first are open: if they held, the
+    others would hold too.
     """
     circular = dependencies.circular_parts(unsafe_parts)
     acyclic = [part for part in unsafe_parts if part not in circular]
     steps = facts.extended_by(
-        assumption for part in acyclic for assumption in _safety_conjuncts(part, is_assumed=False)
+        guarantee for part in acyclic for guarantee in _safety_conjuncts(part, is_assumed=False)
     )
     all_steps = steps.extended_by(
-        assumption for part in circular for assumption in _safety_conjuncts(part, is_assumed=False)
+        guarantee for part in circular for guarantee in _safety_conjuncts(part, is_assumed=False)
     )
     recurrence = all_steps.recurrence(open_parts)
     for part in open_parts:
         other_guarantees = (
-            assumption
+            guarantee
             for other_part in open_parts
             if other_part != part
-            for assumption in other_part.contract.guarantees
+            for guarantee in other_part.contract.guarantees
         )
         surroundings = facts.extended_by(
             (*other_guarantees, *_safety_conjuncts(part, is_assumed=False))
@@ -337,6 +345,8 @@ def _find_open_assumptions(
             ):
                 continue
             trace = surroundings.runs.find_violation(assumption)
+            # The guarantees of the other parts entail it, but these are no facts: their parts are
+            # not established either.
             is_circular = trace is None
             if is_circular and is_liveness and recurrence.is_decided:
                 trace = recurrence.find_violation(assumption)

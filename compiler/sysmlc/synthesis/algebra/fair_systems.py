@@ -1,8 +1,8 @@
 """Contracts as fair transition systems: initial states, steps, recurring conditions, fair runs.
 
-Fair runs are computed as by Emerson and Lei (1986). Conjuncts outside GR(1) are first reduced with
-history bits that observe the run. A run as a witness is a path to a state, and a loop in which the
-run continues forever.
+Fair runs are computed with the fixpoint of Emerson and Lei (1986). Conjuncts outside GR(1) are
+first reduced to GR(1) with history bits, which observe the run. A witness (``Trace``) is a lasso: a
+path, and a loop at its end that the run repeats forever.
 """
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -22,7 +22,7 @@ from sysmlc.synthesis.games.relational_product import Product
 
 
 class DomainError(Exception):
-    """Two contracts have a variable of one name with different domains."""
+    """Reports that two contracts declare a variable with different domains."""
 
     def __init__(self, name: str, domains: tuple[Domain, Domain]) -> None:
         super().__init__(f"'{name}' has different values in the two contracts")
@@ -38,14 +38,12 @@ class FairSystem(Struct, frozen=True):
     symbols: Symbols
     init: Node
     parts: tuple[Node, ...]
-    """Relations over the bits of a step and the next one."""
+    """Conjuncts of the transition relation, over the bits of a state and of the next one."""
     fairness: tuple[Node, ...]
 
 
 class Universe:
-    """The variables of some contracts in one manager; variables of one name are the same
-    variable.
-    """
+    """The variables of several contracts in one manager; equal names denote one variable."""
 
     def __init__(self, contracts: Iterable[Contract], manager: Manager) -> None:
         """Declare the variables; the manager must be new. Raises DomainError."""
@@ -55,7 +53,7 @@ class Universe:
         self._next_ranges = self._compute_ranges(primed=True)
 
     def system(self, conjuncts: Iterable[Conjunct]) -> FairSystem:
-        """Return the runs in which all conjuncts hold and each variable stays in its range.
+        """Return the system whose runs satisfy all conjuncts and keep variables in their ranges.
 
         Raises OutsideGr1Error for a conjunct that is neither initial, nor a safety, nor a liveness
         conjunct.
@@ -70,8 +68,9 @@ class Universe:
         return FairSystem(self.symbols, init, parts, tuple(nodes[Class.LIVENESS]))
 
     def node(self, conjunct: Conjunct) -> Node:
-        """Return the diagram of a conjunct without the temporal operators that its class
-        implies.
+        """Return the diagram of a conjunct, without the temporal operators of its class.
+
+        Raises OutsideGr1Error for a conjunct that has no class of GR(1) or no diagram.
         """
         if conjunct.class_ is Class.OTHER:
             why = "it is neither initial, nor for every step (G), nor recurring (GF)"
@@ -136,21 +135,21 @@ class Runs:
 
     @property
     def fair(self) -> Node:
-        """The reachable states from which a fair run continues."""
+        """The reachable states in which some fair run begins."""
         if self._fair is None:
             self._fair = self.fair_within(self.reachable)
         return self._fair
 
     @property
     def states_with_infinite_runs(self) -> Node:
-        """The states, reachable or not, from which an infinite run continues."""
+        """The states, reachable or not, in which some infinite run begins."""
         states = self.manager.true
         while (shrunk := states & self.predecessors(states)) != states:
             states = shrunk
         return states
 
     def fair_within(self, states: Node) -> Node:
-        """Return the states from which a fair run continues inside *states*."""
+        """Return the states in which a fair run inside *states* begins (Emerson and Lei)."""
         result = states
         while True:
             shrunk = result
@@ -175,8 +174,11 @@ class Runs:
                 return reached
             reached = extended
 
-    def rings(self, within: Node, target: Node) -> list[Node]:
-        """Return these states as layers by the number of steps, beginning with *target*."""
+    def distance_layers(self, within: Node, target: Node) -> list[Node]:
+        """Return the states that reach *target* inside *within*, by the least number of steps.
+
+        The first layer is *target* itself.
+        """
         layers = [target]
         reached = target
         while True:
@@ -196,7 +198,7 @@ class Runs:
 
 
 class ObservedContracts(Struct, frozen=True):
-    """Contracts over shared history bits."""
+    """Contracts that were reduced to GR(1) with shared history bits."""
 
     contracts: tuple[Contract, ...]
     definitions: tuple[Conjunct, ...]
@@ -247,8 +249,8 @@ def _reduce_conjuncts(conjuncts: Iterable[Conjunct], history: History) -> Iterat
 class Trace(Struct, frozen=True):
     """Values of all variables in each step; after the last step the run continues at step ``loop``.
 
-    A run that ends because somebody has no answer has ``loop`` behind its last step, in which the
-    variables of the missing answer have no value.
+    A run may also end because one side has no allowed values. Then ``loop`` is the number of steps,
+    and the variables of this side have no value in the last step.
     """
 
     steps: tuple[Mapping[str, Literal], ...]
@@ -275,14 +277,13 @@ def shortest_path(runs: Runs, target: Node) -> list[Node]:
 
 
 def build_lasso(runs: Runs, path: list[Node], within: Node) -> Trace:
-    """Extend a path by a fair run inside *within*, from whose states fair runs continue.
+    """Extend *path* by a loop inside *within* that visits every goal, and return the whole run.
 
-    The extension visits each goal in turn and then returns to its begin. If there is no way back,
-    the same is tried one step later; since the choice in a state depends only on the state, this
-    ends.
-
-    Raises ValueError if no fair run continues.
+    A fair run inside *within* must begin in each of its states. Raises ValueError if none does.
     """
+    # From the end of the path, visit each goal in turn and return. If there is no way back, the
+    # path has left a strongly connected component for a later one: repeat it one step later. The
+    # components are finitely many, and `pick_state` is deterministic, so this ends.
     extended = list(path)
     while True:
         anchor = len(extended) - 1
@@ -298,7 +299,7 @@ def build_lasso(runs: Runs, path: list[Node], within: Node) -> Trace:
 
 
 def pick_state(runs: Runs, states: Node) -> Node:
-    """Return one of the states, always the same one."""
+    """Return one of the states; the choice is deterministic, whatever the order of bits."""
     assignment = runs.manager.pick(states, runs.bits)
     return runs.manager.false if assignment is None else runs.manager.cube(assignment)
 
@@ -306,14 +307,14 @@ def pick_state(runs: Runs, states: Node) -> Node:
 def _shortest_walk(
     runs: Runs, start: Node, within: Node, target: Node, may_stay: bool = True
 ) -> list[Node]:
-    """Return the states after *start* on a shortest path to *target*, or an empty list if there is
-    none.
+    """Return the states after *start* on a shortest path inside *within* to *target*.
 
-    It is also empty if *start* is in *target*, unless ``may_stay`` is false.
+    The list is empty if there is no path. It is also empty if *start* is in *target* already,
+    unless *may_stay* is false, which asks for a cycle.
     """
     if may_stay and start & target != runs.manager.false:
         return []
-    layers = runs.rings(within, target & within)
+    layers = runs.distance_layers(within, target & within)
     state = start
     walk: list[Node] = []
     successors = runs.successors(start)

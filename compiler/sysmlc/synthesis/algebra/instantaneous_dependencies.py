@@ -1,4 +1,8 @@
-"""Instantaneous dependencies: inputs that outputs of a component read in the same step."""
+"""Instantaneous dependencies: outputs of a component that depend on inputs of the same step.
+
+Proofs by induction over steps are unsound for an output that depends on itself within a step, so
+``discharge`` searches these dependencies for cycles.
+"""
 
 from collections.abc import Iterable, Iterator, Sequence, Set
 
@@ -11,7 +15,7 @@ from sysmlc.synthesis.bdd.manager import Node
 
 
 class Dependency(Struct, frozen=True):
-    """Outputs that are chosen together, and the inputs of the same step that they depend on."""
+    """Outputs that guarantees relate, and the inputs of the same step that they depend on."""
 
     is_first: bool
     """Whether the dependency exists in the first step, or in all later ones."""
@@ -22,8 +26,9 @@ class Dependency(Struct, frozen=True):
 def find_dependencies(contract: Contract, universe: Universe) -> tuple[Dependency, ...]:
     """Return the instantaneous dependencies of a component.
 
-    Outputs belong together if one guarantee is about both of them in its step, or if the condition
-    for infinite runs restricts both. Raises OutsideGr1Error, LimitError.
+    Two outputs are in one dependency if a guarantee relates their values of one step, or if both
+    are restricted in the states from which the guarantees allow an infinite run. Raises
+    OutsideGr1Error, LimitError.
     """
     outputs = {variable.name for variable in contract.variables if variable.owner is Owner.SYSTEM}
     names = {variable.name for variable in contract.variables}
@@ -38,7 +43,11 @@ def find_dependencies(contract: Contract, universe: Universe) -> tuple[Dependenc
 
 
 def _variables_of_guarantees(contract: Contract, is_first: bool) -> Iterator[frozenset[str]]:
-    """Yield the variables of each guarantee in the step that it is about."""
+    """Yield for each guarantee the variables whose values it relates within one step.
+
+    These are all variables of an initial guarantee (*is_first*), and the primed variables of other
+    guarantees.
+    """
     for conjunct in contract.guarantees:
         if (conjunct.class_ is Class.INIT) == is_first:
             variables = f.variables(conjunct.formula)
@@ -46,7 +55,7 @@ def _variables_of_guarantees(contract: Contract, is_first: bool) -> Iterator[fro
 
 
 def _merge_groups(groups: Iterable[frozenset[str]], outputs: Set[str]) -> list[frozenset[str]]:
-    """Merge groups that share an output; groups without outputs are dropped."""
+    """Merge groups that share an output; drop groups without outputs."""
     merged: list[frozenset[str]] = []
     for group in groups:
         if group & outputs:
@@ -57,12 +66,16 @@ def _merge_groups(groups: Iterable[frozenset[str]], outputs: Set[str]) -> list[f
 
 
 def _restricted_together(contract: Contract, universe: Universe) -> frozenset[str]:
-    """Return the variables restricted in states from which the guarantees allow infinite runs."""
+    """Return the variables that the states restrict from which an infinite run is possible.
+
+    A component has to avoid all other states, which relates its outputs to inputs even if no single
+    guarantee does.
+    """
     safety_guarantees = [
         guarantee for guarantee in contract.guarantees if guarantee.class_ is Class.SAFETY
     ]
     live_states = Runs(universe.system(safety_guarantees)).states_with_infinite_runs
-    names = (guarantee.name for guarantee in contract.variables)
+    names = (variable.name for variable in contract.variables)
     return frozenset(name for name in names if _is_restricted(name, live_states, universe))
 
 
@@ -87,15 +100,13 @@ class DependencyGraph(Struct, frozen=True):
             if owner == part and dependency.inputs
         ]
         return [
-            owner
-            for owner in part.contract.guarantees
-            if any(_is_about_outputs(owner, dependency) for dependency in own_dependencies)
+            guarantee
+            for guarantee in part.contract.guarantees
+            if any(_is_about_outputs(guarantee, dependency) for dependency in own_dependencies)
         ]
 
     def circular_parts(self, parts: Sequence[Part]) -> list[Part]:
-        """Return the parts whose outputs depend on themselves in the same step, through other
-        parts.
-        """
+        """Return the parts with an output that depends on itself within a step, via other parts."""
         nodes = [(part, dependency) for part, dependency in self.dependencies if part in parts]
         return [
             part
@@ -117,28 +128,25 @@ class DependencyGraph(Struct, frozen=True):
                 stack += [successor for successor in nodes if self._reads(node, successor)]
         return False
 
-    def _reads(
-        self, reader_node: tuple[Part, Dependency], giver_node: tuple[Part, Dependency]
-    ) -> bool:
-        inputs = reader_node[1].inputs
-        read_names = inputs.union(*(wire for wire in self.wires if wire & inputs))
-        is_same_time = reader_node[1].is_first == giver_node[1].is_first
+    def _reads(self, reader: tuple[Part, Dependency], writer: tuple[Part, Dependency]) -> bool:
+        """Return whether *reader* reads an output of *writer* in the same step, also by wires."""
+        (reading_part, reading), (writing_part, writing) = reader, writer
+        read_names = reading.inputs.union(*(wire for wire in self.wires if wire & reading.inputs))
         return (
-            is_same_time
-            and reader_node[0] != giver_node[0]
-            and bool(read_names & giver_node[1].outputs)
+            reading.is_first == writing.is_first
+            and reading_part != writing_part
+            and bool(read_names & writing.outputs)
         )
 
 
 def _is_about_outputs(conjunct: Conjunct, dependency: Dependency) -> bool:
-    """Return whether the conjunct is about the outputs of a dependency in the step of its
-    inputs.
-    """
+    """Return whether the conjunct reads an output of the dependency in the same step."""
     variables = f.variables(conjunct.formula)
-    is_alone = not any(variable.primed for variable in variables)
-    names = {variable.name for variable in variables if variable.primed or is_alone}
+    is_state_predicate = not any(variable.primed for variable in variables)
+    names = {variable.name for variable in variables if variable.primed or is_state_predicate}
     is_first = conjunct.class_ is Class.INIT
-    is_same_step = is_first == dependency.is_first or (is_alone and not is_first)
+    # A safety guarantee without primes holds in the first step and in all later ones.
+    is_same_step = is_first == dependency.is_first or (is_state_predicate and not is_first)
     return is_same_step and not names.isdisjoint(dependency.outputs)
 
 

@@ -1,9 +1,9 @@
 """Entailment of conjuncts, and refinement, compatibility and consistency of contracts (thesis
 2.2.1; Benveniste et al. 2018).
 
-A contract is a set of environments (its assumptions) and of systems (those that satisfy its
-guarantees in these environments). Questions are decided conjunct by conjunct on fair runs, so an
-answer names the conjunct that fails and shows a run.
+A contract denotes a set of environments (those that satisfy its assumptions) and a set of systems
+(those that satisfy its guarantees in these environments). Each conjunct is decided by itself on the
+fair runs of the others, so a failure names the conjunct and shows a run that violates it.
 """
 
 from collections.abc import Iterator, Sequence
@@ -25,20 +25,20 @@ from sysmlc.synthesis.bdd.manager import Manager, Node
 
 
 class Entailment:
-    """The runs that satisfy some conjuncts, and the question whether others hold in them too."""
+    """The conjuncts that hold in all runs of a system."""
 
-    def __init__(self, universe: Universe, given: FairSystem) -> None:
+    def __init__(self, universe: Universe, system: FairSystem) -> None:
         """Prepare the runs of a system; nothing is explored yet."""
         self._universe = universe
-        self.runs = Runs(given)
+        self.runs = Runs(system)
 
     @property
     def is_possible(self) -> bool:
-        """Whether there is a run at all."""
+        """Whether the system has any fair run."""
         return self.runs.fair & self.runs.system.init != self.runs.manager.false
 
     def find_example(self) -> Trace | None:
-        """Return a run, or None if there is none."""
+        """Return a fair run, or None if there is none."""
         runs = self.runs
         start = runs.fair & runs.system.init
         return build_lasso(runs, [pick_state(runs, start)], runs.fair) if self.is_possible else None
@@ -96,7 +96,7 @@ class Failure(Struct, frozen=True):
 
     conjunct: Conjunct
     is_assumption: bool
-    """Whether the refining contract assumes it; otherwise the refined contract guarantees it."""
+    """Whether it is an assumption of the concrete contract, not a guarantee of the abstract one."""
     trace: Trace
 
 
@@ -105,9 +105,10 @@ def find_refinement_failures(
 ) -> Iterator[Failure]:
     """Yield the reasons why *concrete* does not refine *abstract*; none if it does.
 
-    A contract refines another one if it assumes no more and guarantees no less: the other's
-    assumptions entail its own, and together with the other's assumptions its guarantees entail the
-    other's. Raises DomainError, OutsideGr1Error, LimitError.
+    A contract refines another one if it assumes no more and guarantees no less. That is: the
+    abstract assumptions entail the concrete assumptions, and the abstract assumptions together with
+    the concrete guarantees entail the abstract guarantees. Raises DomainError, OutsideGr1Error,
+    LimitError.
     """
     with manager.guard():
         yield from _find_all_failures(concrete, abstract, manager)
@@ -138,27 +139,25 @@ def _find_failures(
 
 
 def _without_repeated(conjuncts: Sequence[Conjunct], facts: Sequence[Conjunct]) -> list[Conjunct]:
-    """Return the conjuncts that are not literally among the facts."""
+    """Return the conjuncts that are not literally among the facts, which need no search."""
     stated = {(conjunct.class_, conjunct.formula) for conjunct in facts}
     return [conjunct for conjunct in conjuncts if (conjunct.class_, conjunct.formula) not in stated]
 
 
 def find_environment_run(contract: Contract, manager: Manager) -> Trace | None:
-    """Return a run that the assumptions allow, or None if the contract is not compatible."""
-    return _find_run(contract, manager, is_whole=False)
+    """Return a run that satisfies the assumptions, or None if the contract is not compatible."""
+    return _find_run(contract, manager, with_guarantees=False)
 
 
 def find_contract_run(contract: Contract, manager: Manager) -> Trace | None:
-    """Return a run that assumptions and guarantees allow, or None if the contract is not
-    consistent.
-    """
-    return _find_run(contract, manager, is_whole=True)
+    """Return a run that satisfies assumptions and guarantees; None for an inconsistent contract."""
+    return _find_run(contract, manager, with_guarantees=True)
 
 
-def _find_run(contract: Contract, manager: Manager, is_whole: bool) -> Trace | None:
+def _find_run(contract: Contract, manager: Manager, with_guarantees: bool) -> Trace | None:
     observed = observe_histories((contract,))
     (reduced,) = observed.contracts
-    guarantees = reduced.guarantees if is_whole else ()
+    guarantees = reduced.guarantees if with_guarantees else ()
     with manager.guard():
         universe = Universe(observed.contracts, manager)
         system = universe.system((*reduced.assumptions, *guarantees, *observed.definitions))

@@ -1,1 +1,1 @@
-"""Decision diagrams: their manager, the order of their variables, numbers and names on them."""
+"""Decision diagrams: manager and limits, order of bits, bit vectors, symbols of a contract."""

@@ -17,8 +17,8 @@ def constant(manager: Manager, value: int) -> Vector:
     return tuple(_constant_bit(manager, value >> place & 1) for place in range(width))
 
 
-def unsigned(manager: Manager, bits: Sequence[Node]) -> Vector:
-    """Return the vector of a natural number with these bits."""
+def from_unsigned(manager: Manager, bits: Sequence[Node]) -> Vector:
+    """Return the vector of an unsigned binary number: its bits, and a sign bit that is false."""
     return (*bits, manager.false)
 
 
@@ -47,9 +47,10 @@ def _add(manager: Manager, left: Vector, right: Vector, carry: Node) -> Vector:
 def multiply(manager: Manager, left: Vector, right: Vector) -> Vector:
     """Return the product."""
     total = constant(manager, 0)
-    for place, bit in enumerate(right):
-        partial_product = (*(manager.false,) * place, *(left_bit & bit for left_bit in left))
-        is_sign = place == len(right) - 1
+    for position, bit in enumerate(right):
+        partial_product = (*(manager.false,) * position, *(left_bit & bit for left_bit in left))
+        # In two's complement the sign bit has a negative weight.
+        is_sign = position == len(right) - 1
         total = (subtract if is_sign else add)(manager, total, partial_product)
     return total
 
@@ -79,11 +80,11 @@ def _divide_absolute(manager: Manager, left: Vector, right: Vector) -> tuple[Vec
         fits = ~less(manager, remainder, divisor)
         remainder = _select(manager, fits, subtract(manager, remainder, divisor), remainder)
         quotient.append(fits)
-    return unsigned(manager, quotient[::-1]), remainder
+    return from_unsigned(manager, quotient[::-1]), remainder
 
 
 def equal(manager: Manager, left: Vector, right: Vector) -> Node:
-    """Return where both vectors are the same number."""
+    """Return the condition under which both vectors are the same number."""
     width = max(len(left), len(right))
     result = manager.true
     for left_bit, right_bit in zip(
@@ -94,7 +95,7 @@ def equal(manager: Manager, left: Vector, right: Vector) -> Node:
 
 
 def less(manager: Manager, left: Vector, right: Vector) -> Node:
-    """Return where *left* is smaller than *right*."""
+    """Return the condition under which *left* is smaller than *right*."""
     width = max(len(left), len(right))
     result = manager.false
     # A set sign bit makes a number smaller, so the operands are swapped for the sign.

@@ -45,28 +45,28 @@ class Usage(Struct, frozen=True):
 
 
 class LimitError(Exception):
-    """A limit was reached: *what* it limits, and the limit itself as text."""
+    """Reports that a limit was reached: the limited *quantity*, and the limit as text."""
 
-    def __init__(self, what: str, limit: str) -> None:
-        super().__init__(f"the limit of {limit} {what} was reached")
-        self.what = what
+    def __init__(self, quantity: str, limit: str) -> None:
+        super().__init__(f"the limit of {limit} {quantity} was reached")
+        self.quantity = quantity
         self.limit = limit
 
 
 class TooLargeError(LimitError):
-    """One representation of a result is too large; another one may fit the limits."""
+    """Reports that one representation of a result is too large; another one may be small enough."""
 
 
 Progress = Callable[[str], None]
 """Called between operations with the current activity."""
 StopReason = Callable[[], LimitError | KeyboardInterrupt]
-"""Creates the exception that reports why operations stop."""
+"""Creates the exception for the reason why operations stop."""
 
 
 def find_exceeded_limit(usage: Usage, limits: Limits, ceiling: int) -> StopReason | None:
     """Return the first limit that *usage* exceeds, or None.
 
-    *ceiling* is a temporary limit of nodes whose excess raises TooLargeError; 0 means none.
+    *ceiling* is a temporary limit of nodes, reported as TooLargeError; 0 means that there is none.
     """
     if ceiling and usage.nodes > ceiling:
         return lambda: TooLargeError("nodes", f"{ceiling:,}")
@@ -83,6 +83,8 @@ def intercept_interrupts(handler: Callable[[int, FrameType | None], None]) -> It
 
     KeyboardInterrupt would not stop an operation that runs inside the library.
     """
+    # Only the main thread may install handlers, and a handler of an embedding program takes
+    # precedence.
     is_main = threading.current_thread() is threading.main_thread()
     previous = signal.getsignal(signal.SIGINT)
     # Python allows handlers in the main thread only, and a handler of the host program stays.
@@ -102,7 +104,7 @@ _WORD_SIZE = ctypes.sizeof(ctypes.c_void_p)
 
 
 class Stoppable(Protocol):
-    """The owner of operations that may have to stop early."""
+    """Decides whether a running operation has to stop; implemented by ``Manager``."""
 
     def should_stop(self) -> bool:
         """Return whether the running operation has to stop."""
@@ -110,13 +112,15 @@ class Stoppable(Protocol):
 
 
 _stoppables: WeakValueDictionary[int, Stoppable] = WeakValueDictionary()
-_numbers = count(1)
+"""The objects that CUDD asks, by the key that CUDD passes to the callback. A key is no pointer, so
+that a callback after the end of its object finds nothing."""
+_callback_keys = count(1)
 
 
 def install_termination_callback(
     library: ModuleType, bdd: object, stoppable: Stoppable
 ) -> Callable[[], int] | None:
-    """Let CUDD ask *stoppable* during operations of *bdd* whether they shall stop.
+    """Make CUDD ask *stoppable* during operations of *bdd* whether they shall stop.
 
     Return a function that counts the live nodes in constant time, or None if the callback cannot be
     installed. A stopped operation raises what ``dd`` raises when CUDD returns no result:
@@ -133,14 +137,17 @@ def install_termination_callback(
     if manager is None:
         return None
     count_nodes.restype = ctypes.c_long
-    key = next(_numbers)
+    key = next(_callback_keys)
     _stoppables[key] = stoppable
     register(ctypes.c_void_p(manager), _TERMINATION_CALLBACK, ctypes.c_void_p(key))
     return partial(count_nodes, ctypes.c_void_p(manager))
 
 
 def _find_manager_address(bdd: object) -> int | None:
-    """Return the word before the consecutive addresses of the known attributes, or None."""
+    """Return the address of CUDD's manager in the object *bdd*, or None if it is not found.
+
+    It is the word before the consecutive addresses of ``_BDD_ATTRIBUTES``.
+    """
     size = type(bdd).__basicsize__ // _WORD_SIZE
     words = list((ctypes.c_size_t * size).from_address(id(bdd)))
     attribute_addresses = [id(getattr(bdd, name, None)) for name in _BDD_ATTRIBUTES]

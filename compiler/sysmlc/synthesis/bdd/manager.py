@@ -30,21 +30,22 @@ from sysmlc.synthesis.bdd.limits import (
 ENGINES = ("cudd", "autoref")
 """Names of the libraries, the fast one first."""
 _DEFAULT_MEMORY = 8 << 30
-"""Bytes that a manager may use by default."""
+"""Bytes that a manager may use if its limits state nothing."""
 _GIBIBYTE = 1 << 30
 _EXPECTED_MEMORY = 1 << 26
 """Bytes that CUDD is told to expect. CUDD allocates and clears a share of them at once, which for
 8 GiB takes longer than solving most games."""
 REORDER_AT = 40_000
-"""Live nodes above which automatic reordering is switched on."""
-_CALM_REORDER_AT = 1_000_000
-"""The same inside ``without_reordering``, where the order is known to be good."""
+"""Live nodes above which automatic reordering is switched on. With a smaller value, a grid of 25
+cells with four robots did not end."""
+_LATE_REORDER_AT = 1_000_000
+"""Live nodes above which it is switched on inside ``without_reordering``."""
 _CACHE_SLOTS = 1 << 14
 """Initial slots of CUDD's cache, which grows."""
 _NODE_SIZE = 32
 """Bytes of a node in CUDD."""
 _FAST_GROWTH_SHARE = 5
-"""CUDD lets its tables grow fast up to this part (1/n) of the memory limit."""
+"""CUDD lets its tables grow fast until they take 1/n of the memory limit."""
 _SECONDS_BETWEEN_LIMIT_CHECKS = 0.05
 """CPU seconds between checks of the limits: counting nodes takes longer than most operations."""
 
@@ -62,7 +63,10 @@ class Node(Protocol):
 
 
 class Manager:
-    """The owner of the diagrams of one game, with limits; bits are ordered as they are declared."""
+    """The owner of the diagrams of one game: creates and combines them within limits.
+
+    Bits are ordered as they were declared until the library reorders them.
+    """
 
     def __init__(
         self, engine: str = "", limits: Limits | None = None, progress: Progress | None = None
@@ -92,7 +96,7 @@ class Manager:
         )
 
     def declare(self, bits: Collection[str]) -> None:
-        """Add bits below those that are declared."""
+        """Append bits to the order, below all bits declared before."""
         self._bdd.declare(*bits)
         for bit in bits:
             self._declaration_order.setdefault(bit, len(self._declaration_order))
@@ -104,7 +108,7 @@ class Manager:
         return tuple(sorted(levels, key=lambda bit: levels[bit]))
 
     def var(self, bit: str) -> Node:
-        """Return the diagram of one bit."""
+        """Return the diagram that is true where *bit* is true."""
         return cast("Node", self._bdd.var(bit))
 
     def cube(self, values: Mapping[str, bool]) -> Node:
@@ -124,7 +128,7 @@ class Manager:
         return cast("Node", self._bdd.forall(set(bits), node)) if bits else node
 
     def and_exist(self, left: Node, right: Node, bits: Collection[str]) -> Node:
-        """Return ``exist(bits, left & right)``; CUDD computes it without the conjunction."""
+        """Return ``exist(bits, left & right)``; CUDD does not build the conjunction for it."""
         if not bits:
             return left & right
         if self.engine == "cudd":
@@ -135,9 +139,9 @@ class Manager:
         """Replace bits by other bits that the diagram does not depend on."""
         return cast("Node", self._bdd.let(dict(bits), node)) if bits else node
 
-    def compose(self, node: Node, by: Mapping[str, Node]) -> Node:
-        """Replace bits by diagrams, all at once."""
-        return cast("Node", self._bdd.let(dict(by), node)) if by else node
+    def compose(self, node: Node, replacements: Mapping[str, Node]) -> Node:
+        """Replace bits by diagrams simultaneously."""
+        return cast("Node", self._bdd.let(dict(replacements), node)) if replacements else node
 
     def assign(self, node: Node, values: Mapping[str, bool]) -> Node:
         """Return the cofactor of the diagram for these values of bits."""
@@ -153,6 +157,7 @@ class Manager:
 
     def support(self, node: Node) -> frozenset[str]:
         """Return the bits that the diagram depends on."""
+        # Conjuncts are asked for their support again and again, which dd computes by traversal.
         support = self._supports.get(node)
         if support is None:
             support = self._supports[node] = frozenset(self._bdd.support(node))
@@ -163,6 +168,8 @@ class Manager:
 
         The diagram must not be constant.
         """
+        # CUDD marks negation on the edge to a node, and dd returns the cofactors of the node
+        # itself.
         bdd_node: Any = node
         # CUDD shares a diagram with its complement: a negated edge negates both cofactors.
         low, high = bdd_node.low, bdd_node.high
@@ -171,9 +178,9 @@ class Manager:
     def pick(self, node: Node, bits: Collection[str]) -> dict[str, bool] | None:
         """Return values of *bits* that satisfy the diagram, or None if it is unsatisfiable.
 
-        The values are the first ones in the order in which bits were declared, false before true,
-        so that they do not depend on reordering. Bits that do not matter are false. *bits* must
-        contain the support.
+        The values are the lexicographically least ones in the order in which bits were declared,
+        with false before true, so they do not depend on reordering. Bits outside the support are
+        false. *bits* must contain the support.
         """
         if node == self.false:
             return None
@@ -186,6 +193,7 @@ class Manager:
 
     def count(self, node: Node, bits: Collection[str]) -> int:
         """Return the number of satisfying assignments to *bits* (exact up to 2^53)."""
+        # dd counts in floating point.
         models: float = self._bdd.count(node, len(bits))
         return round(models)
 
@@ -196,8 +204,8 @@ class Manager:
 
     @contextmanager
     def without_reordering(self) -> Iterator[None]:
-        """Keep the order of bits until diagrams are much larger than usual."""
-        previous, self._reorder_at = self._reorder_at, _CALM_REORDER_AT
+        """Inside the block, reorder bits only if there are many more nodes than ``REORDER_AT``."""
+        previous, self._reorder_at = self._reorder_at, _LATE_REORDER_AT
         self.reorder_automatically(False)
         try:
             yield
@@ -208,7 +216,7 @@ class Manager:
     def limit_nodes(self, nodes: int) -> Iterator[None]:
         """Raise TooLargeError if the block needs more live nodes than *nodes*.
 
-        The manager can be used again after the error.
+        The manager remains usable after the error.
         """
         previous, self._ceiling = self._ceiling, nodes
         try:
@@ -231,11 +239,12 @@ class Manager:
         return Usage(nodes, self._peak, time.process_time() - self._start_time)
 
     def check(self, activity: str = "") -> None:
-        """Report *activity* as progress. Raises LimitError if a limit is exceeded."""
+        """Report *activity* as progress and adapt reordering. Raises LimitError at a limit."""
         if activity and self._progress is not None:
             self._progress(activity)
         # Reordering depends on nodes alone: results must not depend on the speed of the machine.
         nodes = self._nodes if self._count_live_nodes is None else self._count_live_nodes()
+        # Nodes are compared in each call, because small games end before the next check by time.
         if self._stop_reason is None:
             self._stop_reason = find_exceeded_limit(Usage(nodes, nodes, 0.0), self.limits, 0)
         if self.should_stop() and self._stop_reason is not None:
@@ -244,7 +253,7 @@ class Manager:
             self.reorder_automatically(True)
 
     def should_stop(self) -> bool:
-        """Return whether a limit is exceeded or Ctrl-C was pressed; CUDD asks during operations."""
+        """Return whether a limit is exceeded or Ctrl-C was pressed; called by CUDD, too."""
         time_now = time.process_time()
         if self._stop_reason is None and time_now >= self._next_limit_check:
             self._next_limit_check = time_now + _SECONDS_BETWEEN_LIMIT_CHECKS
@@ -267,8 +276,7 @@ class Manager:
 
     @contextmanager
     def guard(self) -> Iterator[None]:
-        """Convert errors of the library about stopped operations or exhausted memory into
-        LimitError.
+        """Convert the library's errors about stopped operations or exhausted memory to LimitError.
 
         Inside the block Ctrl-C stops operations of the library, too.
         """
@@ -286,7 +294,7 @@ class Manager:
             raise KeyboardInterrupt
 
     def _handle_interrupt(self, number: int, frame: FrameType | None) -> None:
-        """Stop the running operation soon; raise at once if Ctrl-C is pressed again."""
+        """Request that the running operation stops; raise at once if Ctrl-C is pressed again."""
         if self._stop_reason is not None:
             raise KeyboardInterrupt
         self._stop_reason = KeyboardInterrupt
@@ -312,6 +320,7 @@ def _import_library(engine: str) -> tuple[str, ModuleType]:
 
 
 def _create_bdd(library: ModuleType, engine: str, memory: int) -> Any:  # noqa: ANN401
+    # dd logs a warning in each call of `let` that replaces nothing.
     logging.getLogger("dd").setLevel(logging.ERROR)
     if engine != "cudd":
         return library.BDD()

@@ -1,8 +1,8 @@
 """Variables of a contract encoded in bits, and formulas over them as decision diagrams.
 
-A Boolean takes one bit, an integer the binary code of its distance from the lower bound, a literal
-of an enumeration that of its index. ``x.0`` is the most significant bit of ``x``; its next value
-``x.0'`` lies directly below it in the order.
+A Boolean is encoded as one bit, an integer as the binary number of its distance from the lower
+bound, and a literal of an enumeration as the binary number of its index. ``x.0`` is the most
+significant bit of ``x``; the bit of the next value, ``x.0'``, lies directly below it in the order.
 """
 
 from collections.abc import Callable, Collection, Iterable, Mapping
@@ -18,8 +18,9 @@ from sysmlc.synthesis.bdd.variable_order import order_bits
 
 
 class SymbolError(ValueError):
-    """A formula that has no diagram over some variables: an unknown name, a type error, or a
-    temporal operator.
+    """Reports a formula without a diagram: an unknown name, a type error or a temporal operator.
+
+    Also raised for values outside of a domain, and for codes that encode no value.
     """
 
 
@@ -32,9 +33,9 @@ class Symbols:
         variables: Iterable[Variable],
         edges: Iterable[Collection[str]] = (),
     ) -> None:
-        """Declare the bits of the variables, each next to its next value (``variable_order``).
+        """Declare the bits of the variables in the order of ``variable_order``.
 
-        Each of *edges* names variables that occur in one conjunct.
+        Each of *edges* contains the names of the variables of one conjunct.
         """
         self.manager = manager
         self.variables = {variable.name: variable for variable in variables}
@@ -42,9 +43,9 @@ class Symbols:
         self._nodes: dict[Formula, Node] = {}
         self._vectors: dict[Formula, Vector] = {}
         bit_order = order_bits(self.variables.values(), self._bits, edges)
-        manager.declare([variable for bit in bit_order for variable in (bit, next_bit(bit))])
+        manager.declare([name for bit in bit_order for name in (bit, next_bit(bit))])
         self._to_next = {bit: manager.var(next_bit(bit)) for bit in bit_order}
-        self._to_present = {next_bit(bit): manager.var(bit) for bit in bit_order}
+        self._to_current = {next_bit(bit): manager.var(bit) for bit in bit_order}
 
     def only(self, names: Collection[str]) -> "Symbols":
         """Return the same symbols restricted to the variables *names*."""
@@ -76,22 +77,23 @@ class Symbols:
 
     def unprime(self, node: Node) -> Node:
         """Replace next by current values; the diagram must depend on next values only."""
-        return self.manager.compose(node, self._to_present)
+        return self.manager.compose(node, self._to_current)
 
     def names(self, node: Node, primed: bool = False) -> tuple[str, ...]:
-        """Return the variables whose current (or next) value the diagram depends on."""
+        """Return the variables whose current value (next value if *primed*) the diagram reads."""
         support = self.manager.support(node)
         return tuple(
             name for name in self.variables if not support.isdisjoint(self.bits(name, primed))
         )
 
     def domain(self, name: str, primed: bool = False) -> Node:
-        """Return the set of codes of the variable that encode a value."""
+        """Return the condition that the bits of the variable encode a value of its domain."""
+        # Sizes need not be powers of two, so some combinations of bits encode no value.
         size = domains.size(self.variables[name].domain)
         bits = self.bits(name, primed)
         if size == 1 << len(bits):
             return self.manager.true
-        code = vectors.unsigned(self.manager, self._bit_nodes(bits)[::-1])
+        code = vectors.from_unsigned(self.manager, self._bit_nodes(bits)[::-1])
         return vectors.less(self.manager, code, vectors.constant(self.manager, size))
 
     def encode(self, values: Mapping[str, Literal], primed: bool = False) -> Node:
@@ -105,8 +107,9 @@ class Symbols:
         return self.manager.cube(bits)
 
     def code(self, name: str, value: Literal, primed: bool = False) -> dict[str, bool]:
-        """Return the bits that encode one value of a variable. Raises SymbolError for other
-        values.
+        """Return the bits that encode a value of a variable.
+
+        Raises SymbolError for a value outside of the domain.
         """
         domain = self.variables[name].domain
         if not domains.contains(domain, value):
@@ -128,11 +131,11 @@ class Symbols:
         return values
 
     def bdd(self, formula: Formula) -> Node:
-        """Return the diagram of a Boolean formula without temporal operators; primed variables are
-        next values.
+        """Return the diagram of a Boolean formula; primed variables denote next values.
 
-        Raises SymbolError if the formula has none.
+        Raises SymbolError if the formula has none, for instance because of a temporal operator.
         """
+        # Memoised, because the conjuncts of a contract have many subformulas in common.
         node = self._nodes.get(formula)
         if node is None:
             node = self._nodes[formula] = self._encode_boolean(formula)
@@ -178,7 +181,7 @@ class Symbols:
         return result
 
     def _encode_by_literal(self, formula: Formula) -> dict[str, Node]:
-        """Return for each literal the condition under which an operand equals it."""
+        """Return for each literal the condition under which *formula* has it as its value."""
         match formula:
             case Const(str(literal)):
                 return {literal: self.manager.true}
@@ -222,8 +225,8 @@ class Symbols:
                 return self._vector_of_variable(self._variable(name), primed)
             case Apply(op, (left, right)) if op in _ARITHMETIC:
                 return _ARITHMETIC[op](self.manager, self.vector(left), self.vector(right))
-            case Apply(Op.SUB, (only,)):
-                return self.vector(Apply(Op.SUB, (Const(0), only)))
+            case Apply(Op.SUB, (operand,)):
+                return self.vector(Apply(Op.SUB, (Const(0), operand)))
             case _:
                 raise SymbolError("a number is expected")
 
@@ -231,7 +234,7 @@ class Symbols:
         domain = variable.domain
         if not isinstance(domain, IntegerDomain):
             raise SymbolError(f"{variable.name} is not a number")
-        code = vectors.unsigned(
+        code = vectors.from_unsigned(
             self.manager, self._bit_nodes(self.bits(variable.name, primed))[::-1]
         )
         lower_bound = vectors.constant(self.manager, domain.low)
@@ -252,8 +255,9 @@ def next_bit(bit: str) -> str:
 
 
 def width(variable: Variable) -> int:
-    """Return the number of bits of a variable; even a variable with one value has a bit, to be
-    visible.
+    """Return the number of bits of a variable.
+
+    A variable with a single value has a bit too, so that the support of diagrams can show it.
     """
     return max(1, (domains.size(variable.domain) - 1).bit_length())
 

@@ -1,12 +1,12 @@
 """The order in which variables and their bits enter the decision diagrams.
 
-Integers with the same range are usually positions, targets or angles of similar things. Formulas
-compare them, so their bits are interleaved, the most significant ones first: relations between
-three or more of them then need a fifth of the nodes. Wide integers are interleaved whatever their
-ranges, because a comparison of two that follow one another needs as many nodes as they have values.
+Integers with the same range usually are quantities of one kind: positions and targets, or angles.
+Formulas compare them, so their bits are interleaved, the most significant ones first. Relations
+between three or more of them then need a fifth of the nodes. Wide integers are interleaved whatever
+their ranges: without that, the comparison of two integers needs as many nodes as they have values.
 Other variables keep the order of their declaration. If there are many variables (tokens of an
-activity), variables that occur in the same conjuncts are placed close together with the heuristic
-FORCE (Aloul, Markov, Sakallah 2003).
+activity), the heuristic FORCE (Aloul, Markov, Sakallah 2003) places variables close together that
+occur in the same conjuncts.
 """
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
@@ -16,16 +16,16 @@ from sysmlc.logic import domains
 from sysmlc.logic.contract import Domain, IntegerDomain, Variable
 
 MIN_INTERLEAVED_VARIABLES = 5
-"""Variables of one range from which on they are interleaved: relations of fewer are small in any
-order."""
+"""Least number of variables of one range to interleave: relations between fewer variables are small
+in any order."""
 MIN_INTERLEAVED_BITS = 7
-"""Bits of an integer from which on it is interleaved with all integers of at least this width."""
+"""Least width of integers that are interleaved with one another although their ranges differ."""
 MIN_FORCE_VARIABLES = 40
-"""Variables from which on FORCE orders them."""
+"""Least number of variables to order with FORCE."""
 MAX_FORCE_ROUNDS = 300
-"""Rounds of FORCE at most."""
+"""Rounds after which FORCE ends even if the order still improves."""
 MAX_EDGE_VARIABLES = 20
-"""A conjunct about more variables does not tell which of them belong together."""
+"""Conjuncts with more variables are ignored by FORCE: they relate nearly everything."""
 
 
 def order_bits(
@@ -33,9 +33,9 @@ def order_bits(
     bits: Mapping[str, tuple[str, ...]],
     edges: Iterable[Collection[str]] = (),
 ) -> tuple[str, ...]:
-    """Return all bits, with those of variables of the same range interleaved.
+    """Return all bits in the order in which they shall be declared.
 
-    Each of *edges* names the variables of one conjunct.
+    Each of *edges* contains the names of the variables of one conjunct.
     """
     groups: dict[Domain | str | int, list[str]] = {}
     for variable in variables:
@@ -57,6 +57,7 @@ def order_bits(
 def _interleave(bit_lists: list[tuple[str, ...]]) -> Iterable[str]:
     if len(bit_lists) < MIN_INTERLEAVED_VARIABLES and len(bit_lists[0]) < MIN_INTERLEAVED_BITS:
         return (bit for bits in bit_lists for bit in bits)
+    # Align the least significant bits, because equal weights are compared with each other.
     columns = list(zip_longest(*(reversed(bits) for bits in bit_lists), fillvalue=""))
     return (bit for column in reversed(columns) for bit in column if bit)
 
@@ -66,6 +67,7 @@ def order_by_force(names: Sequence[str], relations: Sequence[Collection[str]]) -
     edges = [tuple(edge) for edge in relations if 1 < len(edge) <= MAX_EDGE_VARIABLES]
     best = order = tuple(names)
     best_span = _total_span(order, edges)
+    # The span may oscillate, so the search ends with the first order that is no improvement.
     for _ in range(MAX_FORCE_ROUNDS):
         order = _move_to_centers(order, edges)
         span = _total_span(order, edges)
@@ -95,9 +97,9 @@ def _move_to_centers(order: Sequence[str], edges: Iterable[Sequence[str]]) -> tu
 
 def _total_span(order: Sequence[str], edges: Iterable[Sequence[str]]) -> int:
     """Return the sum of the distances between the first and the last name of each edge."""
-    position = {name: positions for positions, name in enumerate(order)}
+    positions = {name: index for index, name in enumerate(order)}
     return sum(
-        max(positions) - min(positions)
+        max(edge_positions) - min(edge_positions)
         for edge in edges
-        for positions in [[position[name] for name in edge]]
+        for edge_positions in [[positions[name] for name in edge]]
     )

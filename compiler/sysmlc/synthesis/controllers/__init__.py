@@ -1,1 +1,1 @@
-"""Controllers: strategies taken from won games, machines and tables of them, and their check."""
+"""Controllers: strategies of won games, as machines or tables, and their verification."""

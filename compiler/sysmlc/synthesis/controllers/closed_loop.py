@@ -1,8 +1,8 @@
-"""Closed loops: a controller as a relation over the contract's variables and one for its state, and
-its combination with the assumptions.
+"""Closed loops: a controller together with the environments that satisfy the assumptions.
 
-Controllers are translated from their written form, independently of their synthesis: conditions
-and outputs as formulas, tables node by node.
+The controller becomes a relation over the variables of the contract and an additional variable for
+its state. It is translated from its final form, independently of its synthesis: the formulas of a
+machine, the nodes of a table.
 """
 
 from collections.abc import Iterable, Iterator, Sequence
@@ -20,18 +20,17 @@ Controller = Machine | Table
 
 
 class ControllerRelation(Struct, frozen=True):
-    """The behaviour of a controller as conjunctions."""
+    """The behaviour of a controller as two conjunctions."""
 
     first: tuple[Node, ...]
-    """A relation of the first step and the state after it."""
+    """The relation of the values in the first step and the state after it."""
     step: tuple[Node, ...]
-    """A relation of a step and the state after it, and the next step and the state after that."""
+    """The transition relation. The current state is the one after the current step, the next state
+    the one after the next step."""
 
 
 def state_variable(controller: Controller, contract: Contract) -> Variable:
-    """Return a variable for the state of a controller, with a name that the contract does not
-    use.
-    """
+    """Return a variable for the state of a controller, with a name that the contract lacks."""
     name = "state"
     while any(variable.name == name for variable in contract.variables):
         name += "_"
@@ -70,7 +69,7 @@ def _translate_machine(machine: Machine, symbols: Symbols, state: Variable) -> C
 def _translate_moves(
     machine: Machine, moves: Sequence[Move], symbols: Symbols, state: Variable
 ) -> Node:
-    """Translate the moves of a state, of which the first one with a true condition is taken."""
+    """Return the relation of the moves of one state; the first enabled move is taken."""
     transitions = symbols.manager.false
     remaining = symbols.manager.true
     for move in moves:
@@ -87,8 +86,8 @@ def _translate_moves(
 def _translate_table(table: Table, symbols: Symbols, state: Variable) -> ControllerRelation:
     nodes = table_diagrams(table, symbols)
     first = tuple(
-        symbols.unprime(variable)
-        for variable in _translate_entry(table, table.first, nodes, symbols, state)
+        symbols.unprime(condition)
+        for condition in _translate_entry(table, table.first, nodes, symbols, state)
     )
     by_mode = [tuple(_translate_entry(table, mode, nodes, symbols, state)) for mode in table.modes]
     later = list[Node]()
@@ -103,7 +102,7 @@ def _translate_table(table: Table, symbols: Symbols, state: Variable) -> Control
 def _translate_entry(
     table: Table, entry: Entry, nodes: Sequence[Node], symbols: Symbols, state: Variable
 ) -> Iterator[Node]:
-    """Yield the conditions on outputs and next state."""
+    """Yield a condition on each output bit of the entry, then one on the next state."""
     manager = symbols.manager
     bits = symbols.all_bits(variable.name for variable in table.outputs)
     for bit, position in zip(bits, entry.outputs, strict=True):
@@ -136,7 +135,7 @@ class ClosedLoop(Struct, frozen=True):
         return self.symbols.manager
 
     def project_on(self, names: frozenset[str]) -> "ClosedLoop":
-        """Return the closed loop over some variables only; it has all runs of this one."""
+        """Return the closed loop over the variables *names*, with at least the runs of this one."""
         eliminated = self.symbols.all_bits(
             name for name in self.symbols.variables if name not in names
         )
@@ -148,7 +147,7 @@ class ClosedLoop(Struct, frozen=True):
         return ClosedLoop(self.symbols, starts, allowed, moves, fairness)
 
     def select_about(self, nodes: Iterable[Node], names: frozenset[str]) -> list[Node]:
-        """Select the diagrams about some of the variables, or about none at all."""
+        """Return the diagrams that depend on some of the variables, or on no variable at all."""
         variables_by_node = ((node, self.variables_of(node)) for node in nodes)
         return [
             node

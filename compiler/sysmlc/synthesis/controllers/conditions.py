@@ -1,9 +1,9 @@
-"""Conditions of moves, in the words of the contract: formulas for diagrams over registers and
-inputs.
+"""Conditions of moves: formulas in the terms of the contract for diagrams of moves.
 
-A condition must hold for some values, must not hold for others (those of the other moves), and is
-free for the rest. One value is generalised at a time: of all facts that are true of it, the
-least general ones are dropped first if the rest still excludes the other moves. So the condition is
+The condition of a move must hold for the move's own values and must not hold for those of the other
+moves; for impossible values it may do either. It is a disjunction of cases. A case generalises one
+assignment: starting with all facts that are true of it, facts are dropped or weakened, the least
+general first, as long as the remaining ones exclude the other moves. So the condition is
 ``xpos<xtarget`` instead of a list of cells.
 """
 
@@ -38,17 +38,17 @@ from sysmlc.synthesis.controllers.explicit_states import Answer, DraftMachine
 from sysmlc.synthesis.controllers.forms import Machine, Move
 
 MAX_CASES = 5_000
-"""Cases in all conditions of a machine; with more of them an explicit machine is unreadable."""
+"""Cases in all conditions of a machine together; a machine with more of them is unreadable."""
 
 
 Pair = frozenset[str]
 """Two compared variables, or one variable whose values in two steps are compared."""
 
 
-def build_machine(draft: DraftMachine, contract: Contract, most: int = MAX_CASES) -> Machine:
+def build_machine(draft: DraftMachine, contract: Contract, max_cases: int = MAX_CASES) -> Machine:
     """Return the machine of a draft. Raises TooLargeError if its conditions have too many cases."""
     symbols = draft.strategy.symbols
-    writer = _ConditionWriter(symbols, frozenset(compared_pairs(contract)), most)
+    writer = _ConditionWriter(symbols, frozenset(compared_pairs(contract)), max_cases)
     states = tuple(tuple(writer.moves(moves)) for moves in draft.states)
     variables = symbols.variables
     read_registers = writer.read_registers
@@ -62,9 +62,7 @@ def build_machine(draft: DraftMachine, contract: Contract, most: int = MAX_CASES
 
 def compared_pairs(contract: Contract) -> Iterator[Pair]:
     """Yield the pairs of variables that some conjunct compares."""
-    stack = [
-        left_variable.formula for left_variable in (*contract.assumptions, *contract.guarantees)
-    ]
+    stack = [conjunct.formula for conjunct in (*contract.assumptions, *contract.guarantees)]
     while stack:
         match stack.pop():
             case Apply(op, (left, right)) if op in _COMPARISONS:
@@ -83,29 +81,35 @@ _COMPARISONS = (Op.EQ, Op.NE, Op.LT, Op.LE, Op.GT, Op.GE)
 
 
 class _Fact(Struct, frozen=True):
-    """A formula that is true of some values, with weaker alternatives."""
+    """A formula that is true of an assignment, with weaker alternatives."""
 
     formula: Formula
     alternatives: Sequence[Formula | Literal] = ()
-    """Weaker formulas, the weakest first, or only their bounds."""
+    """Weaker formulas, the weakest first. Only the bound is stored of a formula ``x <= bound`` or
+    ``x >= bound``, because wide integers have very many of them."""
     make_bound: Callable[[Literal], Formula] = Const
-    """Creates the formula of a bound."""
+    """Creates the formula for a stored bound."""
 
-    def weaken(self, index: int) -> Formula:
+    def weaker_formula(self, index: int) -> Formula:
         """Return the alternative at *index*."""
         alternative = self.alternatives[index]
         return alternative if isinstance(alternative, Formula) else self.make_bound(alternative)
 
 
 class _ConditionWriter:
-    def __init__(self, symbols: Symbols, pairs: frozenset[Pair], most: int) -> None:
+    """Writes the conditions of all moves of a machine."""
+
+    def __init__(self, symbols: Symbols, pairs: frozenset[Pair], max_cases: int) -> None:
         self._symbols, self._manager = symbols, symbols.manager
-        self._pairs, self._cases_left, self._most = pairs, most, most
+        self._pairs, self._cases_left, self._max_cases = pairs, max_cases, max_cases
         self.read_registers: set[str] = set()
         """Registers that conditions or outputs read."""
 
     def moves(self, moves: Mapping[Answer, Node]) -> Iterator[Move]:
-        """Yield the moves of a state; at most one condition holds for possible values."""
+        """Yield the moves of a state with their conditions, which exclude one another.
+
+        The conditions may overlap for values that are impossible in the state.
+        """
         possible = self._manager.false
         for condition in moves.values():
             possible = possible | condition
@@ -136,6 +140,7 @@ class _ConditionWriter:
     def _cover(
         self, remaining: Node, forbidden: Node, variables: Sequence[Var]
     ) -> Iterator[Formula]:
+        """Yield cases that together cover *remaining* and exclude *forbidden*."""
         bits = [
             bit
             for variable in variables
@@ -145,7 +150,9 @@ class _ConditionWriter:
             self._cases_left -= 1
             self._manager.check("writing the conditions of a machine")
             if self._cases_left < 0:
-                raise TooLargeError("cases in the conditions of the machine", f"{self._most:,}")
+                raise TooLargeError(
+                    "cases in the conditions of the machine", f"{self._max_cases:,}"
+                )
             formula, case_node = self._generalise(self._decode(values, variables), forbidden)
             yield formula
             remaining = remaining & ~case_node
@@ -155,7 +162,11 @@ class _ConditionWriter:
         return {variable: values_by_step[variable.primed][variable.name] for variable in variables}
 
     def _generalise(self, values: Mapping[Var, Literal], forbidden: Node) -> tuple[Formula, Node]:
-        """Return a formula true of *values* that excludes the forbidden values, and its diagram."""
+        """Return a formula that is true of *values* and excludes *forbidden*, and its diagram.
+
+        A fact is kept only if the facts kept so far, together with all facts after it, would admit
+        forbidden values without it.
+        """
         facts = list(self._facts(values))
         suffixes = self._suffix_conjunctions([fact.formula for fact in facts])
         formulas, condition = list[Formula](), self._manager.true
@@ -168,7 +179,7 @@ class _ConditionWriter:
         return both(*_merge_bounds(formulas)), condition
 
     def _suffix_conjunctions(self, formulas: Sequence[Formula]) -> list[Node]:
-        """Return for each formula the conjunction of the formulas behind it."""
+        """Return for each formula the conjunction of the formulas after it."""
         conjunctions = list[Node]()
         conjunction = self._manager.true
         for formula in reversed(formulas):
@@ -177,19 +188,20 @@ class _ConditionWriter:
         return conjunctions[::-1]
 
     def _weaken(self, fact: _Fact, excluded: Node) -> Formula:
-        """Return the weakest alternative of a fact that still excludes *excluded*."""
+        """Return the weakest alternative of a fact that excludes all of *excluded*."""
+        # Binary search: each alternative implies the ones before it.
         weakest, low, high = fact.formula, 0, len(fact.alternatives)
         while low < high:
             middle = (low + high) // 2
-            bound = fact.weaken(middle)
-            if excluded & self._symbols.bdd(bound) == self._manager.false:
-                weakest, high = bound, middle
+            candidate = fact.weaker_formula(middle)
+            if excluded & self._symbols.bdd(candidate) == self._manager.false:
+                weakest, high = candidate, middle
             else:
                 low = middle + 1
         return weakest
 
     def _facts(self, values: Mapping[Var, Literal]) -> Iterator[_Fact]:
-        """Yield the facts that are true of some values, the least general first."""
+        """Yield the facts that are true of the assignment, the least general first."""
         integers = [variable for variable in values if self._is_number(variable)]
         for variable in integers:
             yield from self._bound_facts(variable, values[variable])
@@ -211,12 +223,14 @@ class _ConditionWriter:
             (Op.LE, domain_values[-2:index:-1]),
         ):
             make_bound = partial(_bound, op, variable)
+            # A domain's values may be a range of more than sys.maxsize elements, whose length
+            # Python cannot compute.
             yield _Fact(make_bound(value), weaker_bounds[:maxsize], make_bound)
 
     def _comparison_facts(
         self, integers: Sequence[Var], values: Mapping[Var, Literal]
     ) -> Iterator[_Fact]:
-        """Yield comparisons of integers, also of registers after they have counted."""
+        """Yield comparisons of integers, also of registers plus or minus one (counters)."""
         variables = self._symbols.variables
         pairs = [
             (left_variable, right_variable)
@@ -251,7 +265,7 @@ def _shift(variable: Var, shift: int) -> Formula:
 
 
 def _merge_bounds(facts: Sequence[Formula]) -> Iterator[Formula]:
-    """Replace two bounds that leave one value by an equation."""
+    """Replace a lower and an upper bound that leave a single value by an equation."""
     all_facts = set(facts)
     for fact in facts:
         match fact:

@@ -1,10 +1,10 @@
-"""Enumeration of the reachable states of a strategy, with diagrams for the conditions of their
-moves.
+"""Enumeration of the reachable states of a strategy; conditions of moves are diagrams.
 
-Of the memory of a strategy, counters become registers (``strategy_memory``). A state is a mode
-together with the functions that the rest of the memory leaves: memory contents that leave the same
-functions are one state from the start. Inputs are not enumerated; they are split where outputs or
-next states differ.
+Counters in the memory of the strategy become registers (``strategy_memory``). The rest of the
+memory is enumerated: with its values inserted, the functions of a mode depend on registers and
+inputs only. A state is a mode with such functions, so memory contents with the same functions are
+one state from the start. Inputs are not enumerated; they are split only where outputs or next
+states differ.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -24,15 +24,16 @@ from sysmlc.synthesis.controllers.strategy_memory import (
 
 MAX_STATES = 1_000
 MAX_MOVES = 5_000
+"""States and moves of a machine above which a controller is a table instead."""
 
 Answer = tuple[tuple[Formula, ...], int]
 """The outputs, as in ``mealy.Move``, and the next state."""
 
 
 class DraftMachine(Struct, frozen=True):
-    """States with their moves; conditions are over registers and the possible primed inputs.
+    """A machine whose conditions are diagrams over registers and primed inputs.
 
-    What satisfies no condition of a state cannot occur in that state.
+    Values that satisfy no condition of a state cannot occur in that state.
     """
 
     strategy: Strategy
@@ -43,32 +44,32 @@ class DraftMachine(Struct, frozen=True):
 def enumerate_states(
     reachable: ReachableStrategy,
     registers: Sequence[str],
-    most_states: int = MAX_STATES,
-    most_moves: int = MAX_MOVES,
+    max_states: int = MAX_STATES,
+    max_moves: int = MAX_MOVES,
 ) -> DraftMachine:
     """Enumerate all reachable states of a strategy.
 
     Raises TooLargeError if there are more states or moves than allowed; LimitError.
     """
-    return _StateEnumeration(reachable, tuple(registers), most_states, most_moves).run()
+    return _StateEnumeration(reachable, tuple(registers), max_states, max_moves).run()
 
 
 Functions = Mapping[str, Node]
 
 
 class _State(Struct, frozen=True):
-    """A mode with the functions that a part of the memory leaves."""
+    """A mode with the memory, except for registers, inserted into its functions."""
 
     mode: Mode
     care: Node
-    """The possible registers and primed inputs."""
+    """The values of registers and primed inputs that are possible in the state."""
 
 
 class _MemoryClass(Struct, frozen=True):
-    """The memory contents that lead to one state."""
+    """The memory contents that make a mode one state."""
 
     memory: Node
-    """A set over bits of the previous step that belong to no register."""
+    """The contents, over the bits of the previous step that belong to no register."""
     state: int
 
 
@@ -77,14 +78,14 @@ class _StateEnumeration:
         self,
         reachable: ReachableStrategy,
         registers: tuple[str, ...],
-        most_states: int,
-        most_moves: int,
+        max_states: int,
+        max_moves: int,
     ) -> None:
         self._reached, self._strategy = reachable, reachable.strategy
         self._manager, self._symbols = self._strategy.manager, self._strategy.symbols
         self._registers = registers
-        self._max_counts = most_states, most_moves
-        self._count = 0
+        self._max_states, self._max_moves = max_states, max_moves
+        self._move_count = 0
         self._hidden_bits = [
             bit
             for name in self._symbols.variables
@@ -93,24 +94,25 @@ class _StateEnumeration:
         ]
         outputs = [name for name in self._strategy.outputs if name not in registers]
         self._listed_bits = self._symbols.all_bits(outputs)
-        """Bits of outputs that are described by their values."""
+        """Bits of the outputs that are no registers; moves give their values."""
         self._states = [_State(self._strategy.first, reachable.first)]
         self._classes: list[list[_MemoryClass]] = []
         self._class_cache: dict[tuple[int, tuple[bool, ...]], list[_MemoryClass]] = {}
 
     def run(self) -> DraftMachine:
         """Enumerate all states, then the moves of each."""
-        for place in range(len(self._strategy.modes)):
-            self._classes.append(list(self._split_mode(place)))
+        for mode_index in range(len(self._strategy.modes)):
+            self._classes.append(list(self._split_mode(mode_index)))
+        # The state after steps that no allowed input can follow, so that it needs no moves.
         end = len(self._states)
         states = [self._compute_moves(state, end) for state in self._states]
         if any(after == end for moves in states for _, after in moves):
             states.append({})
         return DraftMachine(self._strategy, self._registers, tuple(states))
 
-    def _split_mode(self, place: int) -> Iterator[_MemoryClass]:
+    def _split_mode(self, mode_index: int) -> Iterator[_MemoryClass]:
         """Yield the memory classes of a mode, and add their states."""
-        mode, care = self._strategy.modes[place], self._reached.care_sets[place]
+        mode, care = self._strategy.modes[mode_index], self._reached.care_sets[mode_index]
         vector = (*mode.outputs.values(), *mode.successors)
         for functions, memory in self._split_functions(vector, care).items():
             possible = self._manager.and_exist(memory, care, self._hidden_bits)
@@ -118,12 +120,15 @@ class _StateEnumeration:
             outputs = dict(zip(mode.outputs, functions, strict=False))
             yield _MemoryClass(memory, len(self._states))
             self._states.append(_State(Mode(outputs, functions[count:]), possible))
-            self._check_count("states", len(self._states), self._max_counts[0])
+            self._check_count("states", len(self._states), self._max_states)
 
     def _split_functions(
         self, vector: tuple[Node, ...], care: Node
     ) -> dict[tuple[Node, ...], Node]:
-        """Return the functions that hidden bits leave, with the values of the hidden bits."""
+        """Return the cofactors of *vector* by the hidden bits, each with the values of these bits.
+
+        *vector* contains the functions of a mode. Equal cofactors have one entry.
+        """
         manager = self._manager
         support = frozenset[str]().union(*map(manager.support, vector))
         deciding_bits = [bit for bit in self._hidden_bits if bit in support]
@@ -136,7 +141,8 @@ class _StateEnumeration:
     def _split_by_bit(
         self, vectors: dict[tuple[Node, ...], Node], bit: str
     ) -> dict[tuple[Node, ...], Node]:
-        """Distinguish the values of one more bit."""
+        """Return the cofactors by one more bit."""
+        # Many vectors have functions in common, so cofactors are memoised.
         manager = self._manager
         cubes = {value: manager.cube({bit: value}) for value in (False, True)}
         cofactors: dict[tuple[Node, bool], Node] = {}
@@ -154,11 +160,11 @@ class _StateEnumeration:
                 if restricted != manager.false:
                     key = tuple(cofactor(function, value) for function in functions)
                     split[key] = split.get(key, manager.false) | restricted
-            self._check_count("states", len(self._states) + len(split), self._max_counts[0])
+            self._check_count("states", len(self._states) + len(split), self._max_states)
         return split
 
     def _compute_moves(self, state: _State, end: int) -> dict[Answer, Node]:
-        """Return the moves of a state: what is possible, split by answer and next state."""
+        """Return the moves of a state: its possible values, split by outputs and next state."""
         moves: dict[Answer, Node] = {}
         outputs = state.mode.outputs
         for mode, condition in enumerate(state.mode.successors):
@@ -171,14 +177,14 @@ class _StateEnumeration:
                     ):
                         key = answer, next_state
                         moves[key] = moves.get(key, self._manager.false) | answer_condition
-                        self._count += 1
-                        self._check_count("moves", self._count, self._max_counts[1])
+                        self._move_count += 1
+                        self._check_count("moves", self._move_count, self._max_moves)
         return moves
 
     def _split_by_output_bits(
         self, outputs: Functions, condition: Node
     ) -> Iterator[tuple[tuple[bool, ...], Node]]:
-        """Split a condition by the values of the bits of listed outputs."""
+        """Split a condition by the values of ``_listed_bits``."""
         stack: list[tuple[tuple[bool, ...], Node]] = [((), condition)]
         while stack:
             bits, remaining = stack.pop()
@@ -206,8 +212,9 @@ class _StateEnumeration:
             yield end, condition
 
     def _possible_classes(self, mode: int, bits: tuple[bool, ...]) -> list[_MemoryClass]:
-        """Return the classes of a mode that outputs with these values may reach, by primed
-        inputs.
+        """Return the memory classes of a mode that are possible after outputs with these *bits*.
+
+        Their memory is expressed by the inputs of the step, primed.
         """
         key = mode, bits
         if key not in self._class_cache:
@@ -229,7 +236,7 @@ class _StateEnumeration:
     def _split_by_output_values(
         self, outputs: Functions, bits: tuple[bool, ...], condition: Node
     ) -> Iterator[tuple[tuple[Formula, ...], Node]]:
-        """Split a condition by the outputs: literals, and changes of registers."""
+        """Split a condition by outputs: values of listed outputs, and changes of registers."""
         values = self._symbols.decode(dict(zip(self._listed_bits, bits, strict=True)))
         cases: list[tuple[dict[str, Formula], Node]] = [
             ({name: Const(value) for name, value in values.items()}, condition)
@@ -249,10 +256,12 @@ class _StateEnumeration:
     def _split_by_register_change(
         self, outputs: Functions, name: str, remaining: Node
     ) -> list[tuple[Formula, Node]]:
-        """Split a condition by the change of a register; one change is enough if it applies
-        everywhere.
+        """Split a condition by the change of a register: unchanged, counted, or set to a value.
+
+        The split ends with the first change that applies to all remaining values.
         """
         variable = self._symbols.variables[name]
+        # Registers have no previous value in the first step.
         steps = () if outputs is self._strategy.first.outputs else counter_changes(name)
         candidates = [*steps, *map(Const, domains.values(variable.domain))]
         changes: list[tuple[Formula, Node]] = []

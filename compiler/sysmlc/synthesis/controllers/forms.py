@@ -2,13 +2,13 @@
 
 In every step a Mealy machine takes the first move of its state whose condition holds. Conditions
 are formulas: a primed variable is an input of this step, an unprimed one is a register, which holds
-the variable's value in the previous step. State 0 is before the first step and has no registers.
-There may be no move for inputs that the assumptions exclude.
+the variable's value in the previous step. State 0 is the state before the first step; its
+conditions read no registers. For inputs that the assumptions exclude there need not be a move.
 
-A table is a strategy as decision nodes. A node tests one bit and continues at one of two other
-nodes; 0 is false and 1 is true. The controller remembers the values of all variables in the
-previous step, and a mode (the goal in turn). A table can be executed as it is, and has the size of
-the decision diagrams instead of the size of the states that they describe.
+A table contains the functions of a strategy as decision nodes. A node tests one bit and continues
+at one of two other nodes; node 0 is false, node 1 is true. The memory of the controller is the
+values of all variables in the previous step, and a mode (the current goal). A table is directly
+executable. Its size is that of the decision diagrams, which may describe very many states.
 
 The library reorders bits while diagrams grow, at moments that depend on time, but output files must
 be reproducible: ``rebuild_in_variable_order`` builds the table again in the order of its variables.
@@ -31,7 +31,7 @@ from sysmlc.synthesis.controllers.strategy import Mode, Strategy
 
 
 class Move(Struct, frozen=True):
-    """The answer under a condition, and the next state."""
+    """Outputs and next state under a condition."""
 
     when: Formula
     output: tuple[Formula, ...]
@@ -91,24 +91,26 @@ class Machine(Struct, frozen=True):
 # -- tables ------------------------------------------------------------------------------------
 
 MAX_NODES = 1_000_000
+"""Nodes above which no table is written."""
 
 
 class Bit(Struct, frozen=True):
     """One bit of the code of a variable, in this step or the previous one."""
 
     variable: str
-    place: int
-    """0 is the most significant one."""
+    position: int
+    """The position of the bit in the code; 0 is the most significant bit."""
     is_before: bool
+    """Whether it is the value in the previous step."""
 
 
 class Entry(Struct, frozen=True):
-    """The behaviour in one mode, as positions of nodes."""
+    """The behaviour in one mode; functions are given by the positions of their nodes."""
 
     outputs: tuple[int, ...]
-    """For each bit of the outputs, in their order."""
+    """The function of each bit of the outputs."""
     successors: tuple[int, ...]
-    """For each mode whether it is the next one; exactly one of them is true."""
+    """For each mode, the condition under which it is next; exactly one of them is true."""
 
 
 class Table(Struct, frozen=True):
@@ -118,9 +120,11 @@ class Table(Struct, frozen=True):
     outputs: tuple[Variable, ...]
     bits: tuple[Bit, ...]
     nodes: tuple[tuple[int, int, int], ...]
-    """Place of a bit, where to go on when it is false and when it is true: 0 false, 1 true, else
-    the place of a node in this list and 2. No node goes on to a later one."""
+    """For each node the index of the tested bit, the position to continue at if it is false, and
+    the position if it is true. Positions 0 and 1 are false and true; the node at index i has the
+    position i + 2. Nodes continue at smaller positions only."""
     first: Entry
+    """The behaviour in the first step."""
     modes: tuple[Entry, ...]
 
     def step(
@@ -128,8 +132,8 @@ class Table(Struct, frozen=True):
     ) -> tuple[dict[str, Literal], int]:
         """Return the outputs for the inputs *now*, and the next state.
 
-        State 0 is before the first step, then a state is the number of a mode plus 1. *last* has
-        the inputs and outputs of the previous step.
+        State 0 is the state before the first step; a later state is the index of a mode plus 1.
+        *last* has the inputs and outputs of the previous step.
         """
         entry = self.modes[state - 1] if state else self.first
         variables = (*self.inputs, *self.outputs)
@@ -138,53 +142,56 @@ class Table(Struct, frozen=True):
             for variable in variables
             if last
         }
-        given = {
+        inputs = {
             variable.name: encode_value(variable, now[variable.name]) for variable in self.inputs
         }
-        bits = [bool(self.value(place, before, given)) for place in entry.outputs]
-        onward = [bool(self.value(place, before, given)) for place in entry.successors]
-        return dict(_decode_row(self.outputs, bits)), onward.index(True) + 1
+        bits = [bool(self.evaluate(position, before, inputs)) for position in entry.outputs]
+        is_next = [bool(self.evaluate(position, before, inputs)) for position in entry.successors]
+        return dict(_decode_row(self.outputs, bits)), is_next.index(True) + 1
 
-    def value(
-        self, place: int, last: Mapping[str, Sequence[bool]], now: Mapping[str, Sequence[bool]]
+    def evaluate(
+        self, position: int, last: Mapping[str, Sequence[bool]], now: Mapping[str, Sequence[bool]]
     ) -> int:
-        """What a node comes to, 0 or 1, for the bits of the variables before and in this step."""
-        while place > 1:
-            bit, low, high = self.nodes[place - 2]
-            variable = self.bits[bit]
-            values = last if variable.is_before else now
-            place = high if values[variable.variable][variable.place] else low
-        return place
+        """Return the value, 0 or 1, of the function whose root node is at *position*.
+
+        *last* and *now* contain the bits of the variables in the previous step and in this one.
+        """
+        while position > 1:
+            bit_index, low, high = self.nodes[position - 2]
+            bit = self.bits[bit_index]
+            values = last if bit.is_before else now
+            position = high if values[bit.variable][bit.position] else low
+        return position
 
 
-def build_table(strategy: Strategy, most: int = MAX_NODES) -> Table:
-    """Return the table of a strategy. Raises TooLargeError if it has more than *most* nodes."""
-    return _TableBuilder(strategy, most).run()
+def build_table(strategy: Strategy, max_nodes: int = MAX_NODES) -> Table:
+    """Return the table of a strategy. Raises TooLargeError above *max_nodes* nodes."""
+    return _TableBuilder(strategy, max_nodes).run()
 
 
 class _TableBuilder:
-    def __init__(self, strategy: Strategy, most: int) -> None:
-        self._strategy, self._manager, self._max_nodes = strategy, strategy.manager, most
+    def __init__(self, strategy: Strategy, max_nodes: int) -> None:
+        self._strategy, self._manager, self._max_nodes = strategy, strategy.manager, max_nodes
         symbols = strategy.symbols
         self._bits = {
-            bit: Bit(name, place, is_before)
+            bit: Bit(name, position, is_before)
             for name in symbols.variables
             for is_before in (True, False)
-            for place, bit in enumerate(symbols.bits(name, primed=not is_before))
+            for position, bit in enumerate(symbols.bits(name, primed=not is_before))
         }
-        self._places = {self._manager.false: 0, self._manager.true: 1}
-        self._known: dict[str, int] = {}
+        self._positions = {self._manager.false: 0, self._manager.true: 1}
+        self._bit_indices: dict[str, int] = {}
         self._nodes: list[tuple[int, int, int]] = []
 
     def run(self) -> Table:
-        """Visit all functions; shared nodes occur once."""
+        """Return the table of all functions; shared nodes occur once."""
         strategy = self._strategy
         variables = strategy.symbols.variables
         first, *modes = map(self._build_entry, (strategy.first, *strategy.modes))
         return Table(
             tuple(variables[name] for name in strategy.inputs),
             tuple(variables[name] for name in strategy.outputs),
-            tuple(self._bits[bit] for bit in self._known),
+            tuple(self._bits[bit] for bit in self._bit_indices),
             tuple(self._nodes),
             first,
             tuple(modes),
@@ -192,31 +199,31 @@ class _TableBuilder:
 
     def _build_entry(self, mode: Mode) -> Entry:
         bits = self._strategy.symbols.all_bits(self._strategy.outputs)
-        outputs = tuple(self._place_of(mode.outputs[bit]) for bit in bits)
-        return Entry(outputs, tuple(map(self._place_of, mode.successors)))
+        outputs = tuple(self._position_of(mode.outputs[bit]) for bit in bits)
+        return Entry(outputs, tuple(map(self._position_of, mode.successors)))
 
-    def _place_of(self, node: Node) -> int:
-        """Return the position of a diagram; all nodes below it come before it."""
+    def _position_of(self, node: Node) -> int:
+        """Return the position of a diagram; its missing nodes are added, lower nodes first."""
         # No recursion: a diagram has as many levels as the contract has bits, often hundreds.
         stack = [node]
         while stack:
             diagram = stack[-1]
-            if diagram in self._places:
+            if diagram in self._positions:
                 stack.pop()
                 continue
             bit, low, high = self._manager.branches(diagram)
-            missing = [below for below in (low, high) if below not in self._places]
+            missing = [child for child in (low, high) if child not in self._positions]
             stack += missing
             if not missing:
-                self._add_node(diagram, bit, self._places[low], self._places[high])
-        return self._places[node]
+                self._add_node(diagram, bit, self._positions[low], self._positions[high])
+        return self._positions[node]
 
     def _add_node(self, node: Node, bit: str, low: int, high: int) -> None:
         if len(self._nodes) >= self._max_nodes:
             raise TooLargeError("nodes of the controller", f"{self._max_nodes:,}")
-        bit_number = self._known.setdefault(bit, len(self._known))
-        self._nodes.append((bit_number, low, high))
-        self._places[node] = len(self._nodes) + 1
+        bit_index = self._bit_indices.setdefault(bit, len(self._bit_indices))
+        self._nodes.append((bit_index, low, high))
+        self._positions[node] = len(self._nodes) + 1
         self._manager.check("writing the controller")
 
 
@@ -229,7 +236,7 @@ def encode_value(variable: Variable, value: Literal) -> tuple[bool, ...]:
 def _decode_row(
     variables: Sequence[Variable], bits: Sequence[bool]
 ) -> Iterator[tuple[str, Literal]]:
-    """Bits in one row as the values of variables."""
+    """Yield names and values of variables whose bits follow one another in *bits*."""
     position = 0
     for variable in variables:
         own_bits = bits[position : position + width(variable)]
@@ -239,9 +246,9 @@ def _decode_row(
 
 
 def rebuild_in_variable_order(table: Table, manager: Manager) -> Table:
-    """Return the table in the order of its variables; the manager must be new.
+    """Return an equivalent table whose nodes test bits in the order of the variables.
 
-    If that exceeds the manager's limits, the table is returned unchanged.
+    The manager must be new. If its limits are exceeded, the table is returned unchanged.
     """
     try:
         with manager.guard(), manager.without_reordering():
@@ -257,7 +264,7 @@ class _Rebuild:
         self._nodes = table_diagrams(table, self._symbols)
 
     def build(self) -> Table:
-        """Build the table of the diagrams of the old nodes."""
+        """Build the table again from the diagrams of its nodes."""
         inputs, outputs = (
             tuple(variable.name for variable in side)
             for side in (self._table.inputs, self._table.outputs)
@@ -269,17 +276,19 @@ class _Rebuild:
 
     def _build_mode(self, entry: Entry) -> Mode:
         bits = self._symbols.all_bits(variable.name for variable in self._table.outputs)
-        outputs = {bit: self._nodes[place] for bit, place in zip(bits, entry.outputs, strict=True)}
-        return Mode(outputs, tuple(self._nodes[place] for place in entry.successors))
+        outputs = {
+            bit: self._nodes[position] for bit, position in zip(bits, entry.outputs, strict=True)
+        }
+        return Mode(outputs, tuple(self._nodes[position] for position in entry.successors))
 
 
 def table_diagrams(table: Table, symbols: Symbols) -> list[Node]:
-    """Return the diagram of each position; the first two are false and true."""
+    """Return the diagrams of all positions; the first two are false and true."""
     manager = symbols.manager
     diagrams = [manager.false, manager.true]
     for bit, low, high in table.nodes:
         table_bit = table.bits[bit]
-        name = symbols.bits(table_bit.variable, primed=not table_bit.is_before)[table_bit.place]
+        name = symbols.bits(table_bit.variable, primed=not table_bit.is_before)[table_bit.position]
         diagrams.append(manager.ite(manager.var(name), diagrams[high], diagrams[low]))
         manager.check("translating the controller")
     return diagrams

@@ -1,10 +1,9 @@
-"""Minimisation of machines: equal states are merged, then states that no possible input
-distinguishes.
+"""Minimisation of machines: merge equivalent states, then states that differ in don't-cares only.
 
-Inputs that the assumptions exclude have no move, so they are don't-cares. Two states can be merged
-if they give the same answer wherever both have a move, and if the same holds for the states to
-which the moves lead. Pairs are chosen greedily in the order of the states. The result answers every
-run of allowed inputs as before.
+Inputs that the assumptions exclude have no move, so they are don't-cares. Two states are compatible
+if they give the same answer wherever both have a move, and if the states to which these moves lead
+are compatible too. Pairs are chosen greedily in the order of the states. For all allowed inputs the
+result gives the same answers as before.
 """
 
 from collections.abc import Mapping
@@ -15,17 +14,14 @@ from sysmlc.synthesis.bdd.manager import Manager, Node
 from sysmlc.synthesis.controllers.explicit_states import Answer, DraftMachine
 
 MAX_COMPARISONS = 400_000
-"""Pairs of moves that are compared at most to use don't-cares; their number grows with the square
-of the states."""
+"""Comparisons of moves after which no further compatible states are searched; their number grows
+with the square of the number of states."""
 
 Moves = Mapping[Answer, Node]
 
 
 def minimise(draft: DraftMachine, max_comparisons: int = MAX_COMPARISONS) -> DraftMachine:
-    """Merge equal states, then compatible ones.
-
-    The search ends when *max_comparisons* pairs of moves are compared.
-    """
+    """Merge equivalent states, then compatible ones until *max_comparisons* is reached."""
     manager = draft.strategy.manager
     states = _quotient(draft.states, _equivalence_classes(draft.states, manager), manager)
     merger = _StateMerger(states, manager, max_comparisons)
@@ -33,8 +29,9 @@ def minimise(draft: DraftMachine, max_comparisons: int = MAX_COMPARISONS) -> Dra
 
 
 def _equivalence_classes(states: tuple[Moves, ...], manager: Manager) -> list[int]:
-    """Return the class of each state: states of one class have the same moves to the same
-    classes.
+    """Return the equivalence class of each state, by partition refinement (Moore).
+
+    States of one class have the same moves to the same classes.
     """
     classes = [0] * len(states)
     count = 0
@@ -54,8 +51,9 @@ def _equivalence_classes(states: tuple[Moves, ...], manager: Manager) -> list[in
 
 
 def _quotient(states: tuple[Moves, ...], classes: list[int], manager: Manager) -> tuple[Moves, ...]:
-    """Return a state for each class, in the order of their occurrence, with the moves of all its
-    states.
+    """Return one state for each class, with the moves of all its states.
+
+    Classes are ordered by their first states.
     """
     numbers: dict[int, int] = {}
     for class_ in classes:
@@ -70,18 +68,18 @@ def _quotient(states: tuple[Moves, ...], classes: list[int], manager: Manager) -
 
 
 class _StateMerger:
-    """Merges states step by step (union-find); a failed trial is undone."""
+    """Merges compatible states with a union-find structure; failed attempts are undone."""
 
-    def __init__(self, states: tuple[Moves, ...], manager: Manager, most: int) -> None:
+    def __init__(self, states: tuple[Moves, ...], manager: Manager, max_comparisons: int) -> None:
         self._states, self._manager = states, manager
-        self._comparisons_left = most
+        self._comparisons_left = max_comparisons
         self._parents = list(range(len(states)))
         self._moves: list[Moves] = list(states)
 
     def run(self, is_first_apart: bool) -> tuple[Moves, ...]:
-        """Merge each state with the first earlier one that is compatible.
+        """Merge each state with the first earlier state that is compatible.
 
-        The state before the first step stays separate if other states read registers.
+        With *is_first_apart*, state 0 stays separate: it has no registers that others may read.
         """
         representatives: list[int] = []
         for state in range(len(self._states)):
@@ -103,13 +101,15 @@ class _StateMerger:
         return _quotient(self._states, classes, self._manager)
 
     def _find(self, state: int) -> int:
+        # No path compression, so that `_undo` can restore the parents.
         while self._parents[state] != state:
             state = self._parents[state]
         return state
 
     def _merge(self, left: int, right: int) -> bool:
-        """Merge two states and all states that must then be merged; change nothing if answers
-        differ.
+        """Merge two states and all pairs of states that follow from it.
+
+        Return False and change nothing if some pair gives different answers.
         """
         trail: list[tuple[int, int, Moves]] = []
         pairs = [(left, right)]
@@ -132,7 +132,7 @@ class _StateMerger:
         return True
 
     def _required_merges(self, first: int, second: int) -> list[tuple[int, int]] | None:
-        """Return the pairs that must be merged as well, or None if an answer differs."""
+        """Return the pairs of next states that must be merged too; None if answers differ."""
         required: list[tuple[int, int]] = []
         for (output, state), node in self._moves[first].items():
             for (other_output, other_state), other_node in self._moves[second].items():

@@ -15,13 +15,13 @@ from sysmlc.synthesis.controllers.closed_loop import ClosedLoop
 from sysmlc.synthesis.games.relational_product import Product, join_conjuncts
 
 LARGE_FRONTIER = 4_000
-"""Nodes of a frontier above which an inductive invariant is tried."""
+"""Nodes of a frontier above which the search tries an inductive invariant instead."""
 MAX_STRENGTHENINGS = 5
 """Rounds in which the candidate for an invariant is strengthened."""
 MONOLITHIC_PARTS = 2
 """Conjuncts of a monolithic transition relation: the relation and the ranges of the outputs."""
 EXTRA_NODES = 100_000
-"""Nodes that the search for an invariant may use in addition to twice the present ones."""
+"""The search for an invariant may use this number of nodes, plus twice the current number."""
 
 
 class QuickCheck:
@@ -33,8 +33,9 @@ class QuickCheck:
         safety_guarantees: Iterable[Node],
         liveness_guarantees: Iterable[Node],
     ) -> None:
-        """*safety_guarantees* are about one or two steps, *liveness_guarantees* about states that
-        recur.
+        """Compute the reachable states, or an invariant that contains them.
+
+        *safety_guarantees* are diagrams over one step or two, *liveness_guarantees* over one.
         """
         self.closed_loop, self.manager = closed_loop, closed_loop.manager
         self.safety_guarantees, self.liveness_guarantees = (
@@ -60,7 +61,7 @@ class QuickCheck:
         )
 
     def successors(self, states: Node) -> Node:
-        """Return the live part of the states that one step leads to."""
+        """Return the successors of *states*, projected on the live variables."""
         return self.closed_loop.symbols.unprime(self._forward(states))
 
     def satisfies_safety(self) -> bool:
@@ -70,6 +71,8 @@ class QuickCheck:
         ]
         if not all(self.closed_loop.initial <= node for node in state_predicates):
             return False
+        # State predicates have been checked for the first step. For later steps they are checked as
+        # predicates of the next state, where dead variables have not been quantified away yet.
         next_step_guarantees = [self._about_next_step(node) for node in self.safety_guarantees]
         is_in_parts = len(self.closed_loop.transitions) > MONOLITHIC_PARTS
         conjunctions = (
@@ -80,11 +83,10 @@ class QuickCheck:
         return not any(self._can_violate(~node) for node in conjunctions)
 
     def _can_violate(self, step: Node) -> bool:
-        """Return whether *step* is possible.
-
-        The cheap test with the transitions about its variables comes first, then the test with all
-        of them.
-        """
+        """Return whether a transition from a reachable state satisfies *step*."""
+        # First test with the few transition parts about the variables of the step. They admit more
+        # steps, so the expensive test with all parts is needed only if this one does not exclude
+        # it.
         all_parts = (*self.closed_loop.assumptions, *self.closed_loop.transitions)
         return self.can_step(step, self._transitions_about(step)) and self.can_step(step, all_parts)
 
@@ -102,7 +104,7 @@ class QuickCheck:
         ]
 
     def _conjunctions_by_support(self, nodes: Iterable[Node]) -> Iterator[Node]:
-        """Yield conjunctions of the diagrams that have the same support."""
+        """Yield the conjunctions of diagrams with equal support, in pieces of limited size."""
         groups: dict[frozenset[str], list[Node]] = {}
         for node in nodes:
             groups.setdefault(self.manager.support(node), []).append(node)
@@ -110,7 +112,7 @@ class QuickCheck:
             yield from join_conjuncts(self.manager, group)
 
     def can_step(self, step: Node, parts: Iterable[Node]) -> bool:
-        """Return whether *step* is possible under *parts* from some reachable state."""
+        """Return whether a reachable state has a transition that satisfies *step* and *parts*."""
         if step == self.manager.false:
             return False
         product = Product(self.manager, [*parts, step], self._all_bits)
@@ -123,7 +125,7 @@ class QuickCheck:
         return self.closed_loop.symbols.prime(node) if self._is_state_predicate(node) else node
 
     def _live_variables(self) -> frozenset[str]:
-        """Return the variables whose current value is read later."""
+        """Return the live variables: those whose current value a later step reads."""
         closed_loop = self.closed_loop
         two_step_guarantees = (
             node for node in self.safety_guarantees if not self._is_state_predicate(node)
@@ -138,7 +140,7 @@ class QuickCheck:
         return frozenset(name for node in readers for name in closed_loop.symbols.names(node))
 
     def _overapproximate_reachable(self, initial: Node) -> Node:
-        """Return the reachable states, or an inductive invariant if a frontier becomes large."""
+        """Return the reachable states, or an inductive invariant if the search becomes large."""
         reachable = frontier = initial
         was_tried = False
         while frontier != self.manager.false:
@@ -183,6 +185,7 @@ class QuickCheck:
         return None
 
     def _list_state_predicates(self) -> Iterator[Node]:
+        """Yield the conjuncts of the contract about single states, as conditions on a state."""
         symbols = self.closed_loop.symbols
         yield from (symbols.domain(name) for name in symbols.variables)
         for node in self._conjunctions_by_support(

@@ -1,18 +1,19 @@
 """Extraction of a strategy from the layers of a solved game: outputs as functions, goal by goal.
 
-A controller remembers the values of all variables in the previous step, and the goal in turn. Its
-outputs are functions, as decision diagrams, of these and of the inputs; states are not enumerated.
-In each step the system moves to the nearest layer of the goal that the inputs allow; if none is
-nearer, it waits among states in which an assumption does not recur (Piterman, Pnueli, Sa'ar 2006,
-section 4).
+The memory of a strategy is the values of all variables in the previous step, and the current goal:
+goals are pursued in turn. Outputs are functions, as decision diagrams, of memory and inputs; states
+are not enumerated. In each step the system moves to the nearest layer of the goal that the inputs
+allow. If no layer is nearer than the current one, it waits among states in which a fairness
+assumption does not hold (Piterman, Pnueli, Sa'ar 2006, section 4).
 
-The arena may be encoded (``variable_elimination``, ``command_elimination``), but the functions give
-the variables of the contract: a command is chosen with the answers of its step, after which the
-arena knows its position, and eliminated variables are computed from the others.
+The arena may be encoded (``variable_elimination``, ``command_elimination``), but the functions are
+those of the contract's outputs. In an encoded arena commands are chosen at the beginning of a step,
+in the contract with the other outputs at the end of the previous step. Eliminated variables are
+computed from the others.
 
 Most outputs of a modelled machine are determined by the previous step, the inputs and other
-outputs: a position by the command before it, a flag by the position. They become functions once,
-whatever the goal is, so few bits remain to be chosen.
+outputs: a position by the command before it, a flag by the position. Their functions are found once
+for all goals, so few bits remain to be chosen.
 """
 
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
@@ -39,25 +40,25 @@ Functions = Mapping[str, Node]
 
 
 class Mode(Struct, frozen=True):
-    """The behaviour of a strategy while one goal is in turn."""
+    """The behaviour of a strategy while it pursues one goal."""
 
     outputs: Functions
     """Each output bit as a function of bits of the previous step and primed bits of the inputs."""
     successors: tuple[Node, ...]
-    """For each mode, over the same bits, the condition under which it is the next one."""
+    """For each mode, the condition over the same bits under which it is the next mode."""
 
 
 class Strategy(Struct, frozen=True):
-    """A winning strategy as functions."""
+    """A winning strategy as functions of memory and inputs."""
 
     symbols: Symbols
     inputs: tuple[str, ...]
     """Names of the environment's variables."""
     outputs: tuple[str, ...]
     first: Mode
-    """The first step, without memory."""
+    """The behaviour in the first step, which has no memory."""
     modes: tuple[Mode, ...]
-    """Later steps: a mode for each goal, and possibly one for the step after the first."""
+    """The behaviour in later steps: a mode for each goal, and possibly one for the second step."""
 
     @property
     def manager(self) -> Manager:
@@ -107,7 +108,11 @@ class _StrategyExtractor:
         return self._build_mode(0, first, ()), tuple(modes)
 
     def _extract_ahead(self) -> tuple[Mode, tuple[Mode, ...]]:
-        """Extract first step and modes if commands are chosen in the state after the answers."""
+        """Extract first step and modes from an arena in which a step begins with commands.
+
+        The additional last mode answers in the second step: the start turns of such an arena lead
+        to the second state.
+        """
         winning = self.solution.winning
         commands = [self._choose_commands(goal) for goal in range(self.goal_count)]
         modes = [
@@ -125,7 +130,7 @@ class _StrategyExtractor:
         ), tuple(modes)
 
     def _first_outputs(self, winning: Node) -> Functions:
-        """Return outputs for the first inputs, such that the rest of the play can be won."""
+        """Return first outputs, as functions of the first inputs, that let the system win."""
         _, turn, *later_turns = self.arena.start
         outputs = [bit for bit in turn.bits if not bit.endswith("'")]
         plant_bits = [bit for bit in turn.bits if bit.endswith("'")]
@@ -136,12 +141,13 @@ class _StrategyExtractor:
         return {bit: self.symbols.prime(node) for bit, node in functions.items()}
 
     def _choose_answers(self, goal: int) -> Functions:
-        """Return the outputs that are chosen after the inputs."""
+        """Return the outputs without commands, chosen in the last turn of a step."""
         return self._complete_answer(self._choose(goal, self._answers_into, self.open_answers.bits))
 
     def _choose(
         self, goal: int, predecessor_choices: Callable[[Node], Node], bits: Sequence[str]
     ) -> Functions:
+        """Return functions for *bits* that lead towards the goal (``choose_targets``)."""
         allowed = self.manager.false
         for choices in choose_targets(
             self.solution, self.operator, goal, predecessor_choices, bits
@@ -155,13 +161,13 @@ class _StrategyExtractor:
         return {bit.removesuffix("'"): node for bit, node in functions.items()}
 
     def _answers_into(self, target: Node) -> Node:
-        """Return the answers that lead into *target*, over the bits that are open."""
+        """Return the answers that lead into *target*, as a relation over the open bits."""
         return self._answer_product(
             self.open_answers.substitute_functions(self.symbols, self.symbols.prime(target))
         )
 
     def _choose_commands(self, goal: int) -> Functions:
-        """Return commands as functions of the state in which they are chosen."""
+        """Return the commands as functions of the state in which they are chosen."""
         command, later_turns = self.arena.command, turn_products(self.manager, self.arena.turns[1:])
         if command is None:
             return {}
@@ -176,9 +182,7 @@ class _StrategyExtractor:
         return self._choose(goal, choices_into, bits)
 
     def _build_mode(self, goal: int, answers: Functions, commands: Sequence[Functions]) -> Mode:
-        """Build a mode from the answers of a step and the commands for each goal that may be
-        next.
-        """
+        """Return the mode with these answers, and with the commands for the goal that is next."""
         successors = self._next_goal_conditions(goal, answers)
         by_case = combine_cases(
             self.manager,
@@ -196,8 +200,10 @@ class _StrategyExtractor:
         )
 
     def _next_goal_conditions(self, goal: int, answers: Functions) -> tuple[Node, ...]:
-        """Return for each goal when it is next: the first goal, from this one on, that does not
-        hold.
+        """Return for each goal the condition under which it is the next goal.
+
+        That is the first goal in cyclic order, from the current one on, that the new state does not
+        satisfy. The goal stays if all goals are satisfied.
         """
         if not self.arena.goals:
             return (self.manager.true,)
@@ -212,7 +218,7 @@ class _StrategyExtractor:
         return tuple(conditions)
 
     def _evaluate_after(self, node: Node, answers: Functions) -> Node:
-        """Express a condition on the step after the answers over its inputs and the memory."""
+        """Return a condition on the state after the answers as a condition on memory and inputs."""
         functions = {next_bit(bit): function for bit, function in answers.items()}
         return substitute(self.manager, self.symbols.prime(node), functions)
 
@@ -235,17 +241,17 @@ def choose_targets(
     predecessor_choices: Callable[[Node], Node],
     bits: Collection[str],
 ) -> Iterator[Node]:
-    """Yield the choices allowed on the way to a goal; each set of choices is about other states.
+    """Yield relations between states and the choices that lead towards a goal, nearest layer first.
 
-    *operator* is that of the arena. *predecessor_choices* returns all choices of *bits* that
-    certainly lead into given states. Choices that lead nowhere leave the environment without a next
-    input, which is the best outcome. States that satisfy this goal but not another one have no
-    choice here, because the other goal is in turn.
+    The relations are about disjoint sets of states. *predecessor_choices* returns the states and
+    choices of *bits* that certainly lead into a set of states.
     """
     manager = solution.arena.manager
     settled = waiting = previous = manager.false
-    nowhere = Layer(manager.false, ())
-    for layer in (nowhere, *solution.layers[goal]):
+    # Choices that lead into the empty set leave the environment without a next input: the system
+    # wins at once. So the empty layer comes first.
+    empty_layer = Layer(manager.false, ())
+    for layer in (empty_layer, *solution.layers[goal]):
         manager.check("looking for what to do")
         for waiting_states, target_states in _states_that_wait(
             solution, operator, goal, layer, previous
@@ -263,7 +269,11 @@ def choose_targets(
 def _states_that_wait(
     solution: Solution, operator: PredecessorOperator, goal: int, layer: Layer, previous: Node
 ) -> Iterator[tuple[Node, Node]]:
-    """Yield the states of a layer in which the system may wait, and where it may wait."""
+    """Yield states of a layer in which the system has to wait, with the states that it may reach.
+
+    States from which the previous layer can be forced need no waiting. In goal states there is
+    nothing to wait for: another goal is pursued there.
+    """
     if not layer.waiting:
         return
     arena = solution.arena
@@ -281,27 +291,28 @@ def _states_that_wait(
 # -- determined outputs ------------------------------------------------------------------------
 
 MAX_RELATION_NODES = 5_000
-"""Nodes of a variable's constraints above which the search is abandoned."""
+"""Nodes of the conjoined constraints of a variable above which it counts as undetermined."""
 
 
 class OpenAnswers(Struct, frozen=True):
-    """The last turn of a step, reduced to the bits that leave a choice."""
+    """The last turn of a step, divided into determined bits and bits with a choice (open bits)."""
 
     bits: tuple[str, ...]
     """The open bits, primed."""
     parts: tuple[Node, ...]
     """The constraints of the open bits."""
     functions: tuple[Mapping[str, Node], ...]
-    """The determined bits of the turn, primed, by variable; each may depend on later entries."""
+    """The determined bits, primed, as functions; one entry for each variable. The functions of an
+    entry may read bits of later entries."""
 
     def substitute_functions(self, symbols: Symbols, node: Node) -> Node:
-        """Replace the determined bits in a condition on the next step."""
+        """Replace the determined bits of *node*, a condition on the next step, by functions."""
         for bits in self.functions:
             node = substitute(symbols.manager, node, bits)
         return node
 
     def complete(self, symbols: Symbols, choices: Mapping[str, Node]) -> dict[str, Node]:
-        """Return all bits of the turn, given functions of the open ones."""
+        """Return functions for all bits of the turn, given functions for the open bits."""
         completed = dict(choices)
         for bits in reversed(self.functions):
             completed |= {
@@ -311,7 +322,7 @@ class OpenAnswers(Struct, frozen=True):
 
 
 def find_open_answers(arena: Arena) -> OpenAnswers:
-    """Return the system's answers of an arena with all determined bits eliminated."""
+    """Divide the last turn of an arena into determined bits and open bits."""
     turn = arena.turns[-1]
     names = [
         variable.name
@@ -323,6 +334,8 @@ def find_open_answers(arena: Arena) -> OpenAnswers:
 
 
 class _Elimination:
+    """Eliminates the determined variables of a turn."""
+
     def __init__(self, arena: Arena, turn: Turn, names: list[str]) -> None:
         self._arena, self._names = arena, names
         self._manager, self._symbols = arena.manager, arena.symbols
@@ -330,7 +343,10 @@ class _Elimination:
         self._functions: list[Mapping[str, Node]] = []
 
     def run(self) -> OpenAnswers:
-        """Eliminate one variable after the other, those with the fewest constraints first."""
+        """Eliminate variables until no further one is determined.
+
+        Constraints about a single variable are tried first, then all constraints of a variable.
+        """
         # Functions of memory and inputs alone come first: substituting them enlarges no other
         # function.
         for without_other_bits in (True, False):
@@ -360,7 +376,10 @@ class _Elimination:
     def _find_functions(
         self, constraints: Iterable[Node], own_bits: frozenset[str]
     ) -> dict[str, Node] | None:
-        """Return each bit as a function of the others if at most one value is left."""
+        """Return each bit as a function of other bits if the constraints leave at most one value.
+
+        For assignments that leave no value, the function is arbitrary.
+        """
         manager = self._manager
         relation = manager.true
         for part in constraints:

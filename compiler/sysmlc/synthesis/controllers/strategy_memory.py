@@ -1,5 +1,6 @@
-"""The memory of a strategy: which states it reaches in environments that satisfy the assumptions,
-and which variables count.
+"""The memory of a strategy: its reachable contents, and the variables that are counters.
+
+Memory is reachable if some environment that satisfies the assumptions leads to it.
 """
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -16,17 +17,17 @@ from sysmlc.synthesis.controllers.strategy import Mode, Strategy
 from sysmlc.synthesis.games.relational_product import Product
 
 MAX_SET_VALUES = 2
-"""Constants to which a counter may be set, besides counting."""
+"""Number of constants to which a counter may be set, besides counting."""
 
 
 class ReachableStrategy(Struct, frozen=True):
-    """A strategy and the memory contents that it can reach."""
+    """A strategy with its reachable memory contents."""
 
     strategy: Strategy
     first: Node
     """The first inputs that the assumptions allow, primed."""
     care_sets: tuple[Node, ...]
-    """For each mode, the possible previous steps together with the inputs allowed after them."""
+    """For each mode, the possible combinations of memory and next inputs."""
 
 
 def explore_strategy(
@@ -34,8 +35,8 @@ def explore_strategy(
 ) -> ReachableStrategy:
     """Explore a strategy in all environments that satisfy the assumptions.
 
-    *first* are the assumptions about inputs of the first step, *later* those about a step and the
-    next inputs. Raises LimitError.
+    *first* contains the assumptions about inputs of the first step, *later* those about a step and
+    the next inputs. Raises LimitError.
     """
     return _Exploration(strategy, tuple(first), tuple(later)).run()
 
@@ -81,11 +82,11 @@ class _Exploration:
 
     def _remembered_names(self) -> frozenset[str]:
         """Return the variables whose previous value some function or assumption reads."""
-        read_nodes = [*self.later, *_all_functions(self.strategy)]
+        read_nodes = [*self.later, *_functions_of_modes(self.strategy)]
         return frozenset[str]().union(*map(self.symbols.names, read_nodes))
 
     def _successors(self, mode: Mode, parts: Sequence[Node], start: Node) -> list[Node]:
-        """Return for each next mode the remembered part of the possible steps."""
+        """Return for each next mode the memory contents that one step from *start* leads to."""
         symbols, manager = self.symbols, self.manager
         remembered_bits = frozenset(symbols.all_bits(sorted(self.names), primed=True))
         graph = [
@@ -102,17 +103,19 @@ class _Exploration:
         return [symbols.unprime(product(start & condition)) for condition in mode.successors]
 
 
-def _all_functions(strategy: Strategy) -> Iterator[Node]:
-    """Yield all functions of later steps."""
+def _functions_of_modes(strategy: Strategy) -> Iterator[Node]:
+    """Yield the functions of all modes: of output bits, and of conditions for the next mode."""
     for mode in strategy.modes:
         yield from mode.outputs.values()
         yield from mode.successors
 
 
 def choose_registers(reachable: ReachableStrategy) -> tuple[str, ...]:
-    """Return the outputs that count, and the remembered integer inputs next to them."""
+    """Return the registers: counters, and the integer inputs that some function reads with one."""
     strategy, symbols = reachable.strategy, reachable.strategy.symbols
-    read_bits = frozenset[str]().union(*map(strategy.manager.support, _all_functions(strategy)))
+    read_bits = frozenset[str]().union(
+        *map(strategy.manager.support, _functions_of_modes(strategy))
+    )
     counters = [
         name
         for name in strategy.outputs
@@ -122,7 +125,7 @@ def choose_registers(reachable: ReachableStrategy) -> tuple[str, ...]:
     counter_bits = frozenset(symbols.all_bits(counters))
     input_registers = {
         name
-        for node in _all_functions(strategy)
+        for node in _functions_of_modes(strategy)
         if not counter_bits.isdisjoint(strategy.manager.support(node))
         for name in symbols.names(node)
         if symbols.variables[name].owner is Owner.ENVIRONMENT and _is_number(strategy, name)
@@ -136,7 +139,11 @@ def _is_number(strategy: Strategy, name: str) -> bool:
 
 
 def is_counter(reachable: ReachableStrategy, name: str) -> bool:
-    """Return whether an output only counts by one, stays, or is set to few values."""
+    """Return whether an output counts: each step adds or subtracts one, keeps it or resets it.
+
+    It may be reset to ``MAX_SET_VALUES`` different values. An output that is only kept or reset is
+    no counter.
+    """
     strategy, manager = reachable.strategy, reachable.strategy.manager
     values = domains.values(strategy.symbols.variables[name].domain)
     unchanged, *changes = counter_changes(name)
@@ -159,7 +166,7 @@ def is_counter(reachable: ReachableStrategy, name: str) -> bool:
 
 
 def counter_changes(name: str) -> tuple[Formula, ...]:
-    """Return the changes of a counter: unchanged, plus one, minus one."""
+    """Return the terms for the next value of a counter: unchanged, plus one, minus one."""
     step = Const(1)
     return Var(name), Apply(Op.ADD, (Var(name), step)), Apply(Op.SUB, (Var(name), step))
 
@@ -167,7 +174,7 @@ def counter_changes(name: str) -> tuple[Formula, ...]:
 def states_with_value(
     strategy: Strategy, outputs: Mapping[str, Node], name: str, value: Formula
 ) -> Node:
-    """Return where an output equals *value*, over the previous step and the inputs."""
+    """Return the condition, over memory and inputs, under which an output equals *value*."""
     equation = strategy.symbols.bdd(eq(Var(name, primed=True), value))
     functions = {next_bit(bit): outputs[bit] for bit in strategy.symbols.bits(name)}
     return substitute(strategy.manager, equation, functions)

@@ -1,7 +1,9 @@
 """Verification of a controller against its contract, independent of the synthesis.
 
-The formulas of the contract are translated anew, the controller becomes a relation over a variable
-for its state (``closed_loop``), and fair runs that violate a guarantee are searched (``algebra``).
+The formulas of the contract are translated again, the controller becomes a relation over a variable
+for its state (``closed_loop``), and the fair runs of both are searched for violations of a
+guarantee (``algebra``). Synthesis and verification share only the semantics of formulas and the
+decision diagrams.
 """
 
 from collections.abc import Iterable, Iterator, Mapping
@@ -34,13 +36,13 @@ from sysmlc.synthesis.games.relational_product import Product
 
 
 class Fault(Struct, frozen=True):
-    """A violation by a controller, with the steps that lead to it."""
+    """A violation of the contract by a controller, with the steps that lead to it."""
 
     conjunct: Conjunct | None
-    """The violated guarantee; None if there is no answer to allowed inputs."""
+    """The violated guarantee; None if the controller has no answer to allowed inputs."""
     steps: tuple[Mapping[str, Literal], ...] = ()
     loop: int | None = None
-    """The step at which the run continues after the last one; None if the steps alone suffice."""
+    """The step at which a fair run continues after the last step; None for other violations."""
 
 
 def find_faults(controller: Controller, contract: Contract, manager: Manager) -> Iterator[Fault]:
@@ -48,8 +50,8 @@ def find_faults(controller: Controller, contract: Contract, manager: Manager) ->
 
     The manager must be new. In every run in which the environment satisfies its assumptions, the
     controller must have an answer, satisfy initial and safety guarantees, and, if all liveness
-    assumptions recur, let the liveness guarantees recur. Raises OutsideGr1Error, LimitError;
-    SymbolError for a machine over other values than the contract's.
+    assumptions recur, satisfy the liveness guarantees. Raises OutsideGr1Error, LimitError;
+    SymbolError for a machine with values that the contract does not have.
     """
     with manager.guard(), manager.without_reordering():
         yield from _Verification(controller, contract, manager).find_faults()
@@ -71,12 +73,12 @@ class _Verification:
 
     @cached_property
     def runs(self) -> Runs:
-        """All runs that satisfy the safety assumptions."""
+        """The runs of the closed loop that satisfy the initial and safety assumptions."""
         return Runs(self._system(()))
 
     @cached_property
     def fair_runs(self) -> Runs:
-        """The runs that satisfy all assumptions."""
+        """The runs of the closed loop that satisfy all assumptions."""
         return Runs(self._system(self.fairness))
 
     def _system(self, fairness: tuple[Node, ...]) -> FairSystem:
@@ -96,7 +98,10 @@ class _Verification:
                 yield from _FAULT_SEARCHES[conjunct.class_](self, conjunct, violation)
 
     def _passes_quick_check(self) -> bool:
-        """Return whether the quick check excludes all faults."""
+        """Return whether the quick check proves that there is no fault.
+
+        Groups of independent variables are checked separately.
+        """
         initial_guarantees, safety_guarantees, liveness_guarantees = (
             [
                 self.universe.node(guarantee)
@@ -126,18 +131,17 @@ class _Verification:
     def _independent_groups(
         self, closed_loop: ClosedLoop, guarantees: Iterable[Node]
     ) -> list[frozenset[str]]:
-        """Return groups of variables that must be checked together.
-
-        A controller with a single state does not relate variables to one another.
-        """
+        """Return the groups of variables that diagrams relate and that must be checked together."""
+        # The state of a controller occurs in all its transitions. A single state relates nothing,
+        # so it does not count as a relation and is added to every group.
         diagrams = (
             *closed_loop.assumptions,
             *closed_loop.transitions,
             *closed_loop.fairness,
             *guarantees,
         )
-        is_only = domains.size(self.state_variable.domain) == 1
-        single_state = frozenset([self.state_variable.name] if is_only else [])
+        has_single_state = domains.size(self.state_variable.domain) == 1
+        single_state = frozenset([self.state_variable.name] if has_single_state else [])
         related_names = [closed_loop.variables_of(node) - single_state for node in diagrams]
         return [
             names | single_state for names in group_related(self.symbols.variables, related_names)
@@ -161,7 +165,7 @@ class _Verification:
         )
 
     def _can_step(self, step: Node, parts: Iterable[Node]) -> bool:
-        """Return whether *step* is possible under all parts from a reachable state."""
+        """Return whether a reachable state has a transition that satisfies *step* and *parts*."""
         if step == self.manager.false:
             return False
         product = Product(self.manager, [*parts, step], self.runs.bits)
@@ -175,14 +179,14 @@ class _Verification:
         )
 
     def _answers_first_inputs(self) -> bool:
-        """Return whether there is an answer to all first inputs."""
+        """Return whether the controller has an answer to all first inputs."""
         product = Product(
             self.manager, self.first_relation, self.symbols.all_bits(self._output_names())
         )
         return self.initial_inputs <= product(self.manager.true)
 
     def _states_without_answer(self, moves: Iterable[Node]) -> Node:
-        """Return the steps and next inputs for which there is no answer."""
+        """Return the steps with next inputs to which the controller has no answer."""
         next_outputs = self.symbols.all_bits(self._output_names(), primed=True)
         return ~Product(self.manager, moves, next_outputs)(self.manager.true)
 
@@ -191,13 +195,13 @@ class _Verification:
         return tuple(variable.name for variable in variables if variable.owner is Owner.SYSTEM)
 
     def find_initial_fault(self, conjunct: Conjunct, violation: Node) -> Iterator[Fault]:
-        """Yield a first step that violates the conjunct."""
+        """Yield the violation of an initial guarantee, if there is one."""
         states = self.runs.system.init & violation
         if states != self.manager.false:
             yield self._build_fault(conjunct, [pick_state(self.runs, states)])
 
     def find_step_fault(self, conjunct: Conjunct, violation: Node) -> Iterator[Fault]:
-        """Yield a reachable step that violates the conjunct."""
+        """Yield a violation of a safety guarantee in a reachable step, if there is one."""
         return self._find_faulty_step(conjunct, violation, self.runs.system.parts)
 
     def _find_faulty_step(
@@ -213,7 +217,7 @@ class _Verification:
             yield self._build_fault(conjunct, shortest_path(self.runs, states))
 
     def find_fair_fault(self, conjunct: Conjunct, violation: Node) -> Iterator[Fault]:
-        """Yield a fair run that violates the conjunct forever from some step on."""
+        """Yield a fair run in which a liveness guarantee never holds again, if there is one."""
         fair_runs, candidates = self.fair_runs, self.runs.reachable & violation
         # Successors decide; predecessors, which take longer, are needed for the lasso only.
         if not has_fair_run(fair_runs, candidates):
@@ -235,10 +239,11 @@ class _Verification:
 def has_fair_run(runs: Runs | QuickCheck, within: Node) -> bool:
     """Return whether some fair run stays inside *within* forever.
 
-    Emerson and Lei's fixpoint, computed on successors: the remaining states have an infinite past
-    inside the set, which in a finite system contains a cycle. For controllers, successors are
-    faster to compute than predecessors.
+    The fixpoint of Emerson and Lei, computed with successors instead of predecessors, which for
+    controllers is faster.
     """
+    # The remaining states have an infinite past inside the set. In a finite system such a past
+    # contains a cycle, and the fixpoint makes it visit all goals.
     states = within
     while states != runs.manager.false:
         shrunk = states
@@ -252,8 +257,9 @@ def has_fair_run(runs: Runs | QuickCheck, within: Node) -> bool:
 
 
 def _states_after(runs: Runs | QuickCheck, within: Node, start: Node) -> Node:
-    """Return the states after one step, or after more that stay inside *within* before the last
-    one.
+    """Return the states that one or more steps from *start* reach.
+
+    All steps but the last one stay inside *within*.
     """
     visited, frontier, result = start, start, runs.manager.false
     while frontier != runs.manager.false:

@@ -1,1 +1,1 @@
-"""Why a contract cannot be kept, shown: how the environment wins, whatever the system does."""
+"""Counter-strategies: how the environment wins the game of an unrealizable contract."""

@@ -1,6 +1,4 @@
-"""Files that show how the environment defeats a contract: a run, a state diagram, and SysML v2
-text.
-"""
+"""Files that show a counter-strategy: a losing run, a state diagram, and SysML v2 text."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
@@ -16,8 +14,6 @@ from sysmlc.logic.formula import Literal
 from sysmlc.logic.printing import print_literal
 from sysmlc.support.file_names import assign_file_names
 from sysmlc.support.plantuml_text import format_label
-from sysmlc.synthesis.counterstrategy import counter_files as drawing
-from sysmlc.synthesis.counterstrategy import counter_files as sysml
 from sysmlc.synthesis.counterstrategy.counter_machine import (
     CounterStrategy,
     Row,
@@ -29,29 +25,27 @@ from sysmlc.synthesis.witnesses import Party, print_temporal, run_diagram
 MAX_DIAGRAM_STATES = 12
 """States up to which a diagram is readable."""
 _MAX_LABEL_LINES = 4
-"""Conditions that an arrow lists one by one."""
+"""Lines of conditions on an arrow; further conditions are abbreviated."""
 
 
 def losing_run_diagram(machine: CounterStrategy, contract: Contract) -> str:
-    """Return a sequence diagram of a run in which the component uses its freedom and fails."""
-    title, trace = (
-        [f"{format_label(contract.component)}", "cannot keep its contract"],
-        example_run(machine),
-    )
+    """Return a sequence diagram of a run in which the component fails in spite of good answers."""
+    title = [f"{format_label(contract.component)}", "cannot keep its contract"]
+    trace = example_run(machine)
+    # A run that ends violates safety guarantees; one that continues misses liveness guarantees.
     if trace.loop < len(trace.steps):
-        verdict = "not kept" if len(machine.missed) == 1 else "not all kept"
-        title += [
-            f"{verdict}: {format_label(print_temporal(conjunct))}" for conjunct in machine.missed
-        ]
+        unmet = machine.unmet_guarantees
+        verdict = "not kept" if len(unmet) == 1 else "not all kept"
+        title += [f"{verdict}: {format_label(print_temporal(conjunct))}" for conjunct in unmet]
     return run_diagram("\\n".join(title), trace, (Party(contract.component, contract),))
 
 
 def state_diagram(machine: CounterStrategy, contract: Contract) -> str:
-    """Return the environment as a state diagram: inputs in the states, answers on the arrows.
+    """Return the counter-strategy as a state diagram: inputs in the states, answers on the arrows.
 
-    Inputs that are the same in all states are listed once.
+    A note lists the inputs that are the same in all states.
     """
-    constant_inputs = _constant_columns([state.given for state in machine.states])
+    constant_inputs = _constant_columns([state.inputs for state in machine.states])
     lines = [
         "@startuml",
         f"title what makes {format_label(contract.component)} fail",
@@ -60,12 +54,12 @@ def state_diagram(machine: CounterStrategy, contract: Contract) -> str:
     if constant_inputs:
         lines += [
             "note as same",
-            f"  always {_print_values(machine.inputs, machine.states[0].given, constant_inputs)}",
+            f"  always {_print_values(machine.inputs, machine.states[0].inputs, constant_inputs)}",
         ]
         lines += ["end note"]
     varying_inputs = [index for index in range(len(machine.inputs)) if index not in constant_inputs]
     for number, state in enumerate(machine.states):
-        inputs = _print_values(machine.inputs, state.given, varying_inputs)
+        inputs = _print_values(machine.inputs, state.inputs, varying_inputs)
         ending = "" if state.moves else "\\n<b>no answer is left</b>"
         lines.append(f'state "{format_label(inputs or "wait")}{ending}" as S{number}')
     lines.append("[*] --> S0")
@@ -77,7 +71,7 @@ def state_diagram(machine: CounterStrategy, contract: Contract) -> str:
 
 
 def _list_arrows(state: State, outputs: Sequence[Variable]) -> Iterator[tuple[int, list[str]]]:
-    """Yield the next states, each with the answers that lead there."""
+    """Yield each next state of *state* with conditions on the answers that lead there."""
     if len(state.moves) == 1:
         ((row, successor),) = state.moves.items()
         yield successor, [f"only {_print_values(outputs, row, range(len(row)))}"]
@@ -109,7 +103,7 @@ def group_by_successor(state: State) -> Mapping[int, list[Row]]:
 def _describe_conditions(
     rows: Sequence[Row], other_rows: Sequence[Row], variables: Sequence[Variable]
 ) -> Iterator[list[str]]:
-    """Describe by few equations what the rows have in common and none of the others has."""
+    """Yield lists of equations: each row satisfies all of some list, no other row does."""
     for row, columns in distinguish_rows(rows, other_rows):
         yield [f"{variables[column].name}={print_literal(row[column])}" for column in columns]
 
@@ -117,8 +111,10 @@ def _describe_conditions(
 def distinguish_rows(
     rows: Sequence[Row], other_rows: Sequence[Row]
 ) -> Iterator[tuple[Row, list[int]]]:
-    """Yield rows with columns that distinguish them from all others; each represents the rows that
-    agree there.
+    """Yield rows, each with columns in which it differs from all *other_rows*.
+
+    A yielded row represents all rows with the same values in these columns. No column of a row can
+    be omitted.
     """
     remaining = list(rows)
     while remaining:
@@ -136,7 +132,7 @@ def _agree_at(left: Row, right: Row, columns: Iterable[int]) -> bool:
 
 
 def _constant_columns(rows: Sequence[Row]) -> list[int]:
-    """Return the columns in which all rows agree; none if there is only one row."""
+    """Return the columns in which all rows agree. A single row has none, which would be all."""
     if len(rows) < 2:
         return []
     return [
@@ -155,7 +151,7 @@ QualifiedNames = Callable[[str], str]
 
 
 def sysml_text(machine: CounterStrategy, contract: Contract, qualified_name: QualifiedNames) -> str:
-    """Return the environment as a part with a state machine, in SysML v2."""
+    """Return the counter-strategy as SysML v2 text: an environment with a state machine."""
     component = contract.component
     comment = f"Made by sysmlc: the environment in which {component} fails."
     lines = [
@@ -167,7 +163,7 @@ def sysml_text(machine: CounterStrategy, contract: Contract, qualified_name: Qua
         lines += _declare_enumeration(variable)
     lines.append("    part def Environment {")
     first_inputs = dict(
-        zip((variable.name for variable in machine.inputs), machine.states[0].given, strict=True)
+        zip((variable.name for variable in machine.inputs), machine.states[0].inputs, strict=True)
     )
     for variable in contract.variables:
         lines += _declare_attribute(variable, first_inputs.get(variable.name), qualified_name)
@@ -185,8 +181,9 @@ def _declare_enumeration(variable: Variable) -> Iterator[str]:
 def _declare_attribute(
     variable: Variable, initial_value: Literal | None, qualified_name: QualifiedNames
 ) -> Iterator[str]:
-    """Declare an attribute: inputs of the component are outputs of the environment, and vice
-    versa.
+    """Yield the declaration of a variable as an attribute of the environment.
+
+    Inputs of the component are outputs of the environment, and vice versa.
     """
     kinds = {BooleanDomain: "Boolean", EnumerationDomain: _quote_name(f"values of {variable.name}")}
     kind = kinds.get(type(variable.domain), "Integer")
@@ -208,7 +205,7 @@ def _print_state_machine(machine: CounterStrategy) -> Iterator[str]:
     for number, state in enumerate(machine.states):
         yield f"            state S{number} {{"
         yield "                entry action {"
-        for variable, value in zip(machine.inputs, state.given, strict=True):
+        for variable, value in zip(machine.inputs, state.inputs, strict=True):
             assignment = f"{_quote_name(variable.name)} := {_print_sysml_literal(variable, value)}"
             yield f"                    assign {assignment};"
         yield "                }"
@@ -252,15 +249,15 @@ def _escape_comment(text: str) -> str:
 
 
 def counterstrategy_files(
-    machines: Iterable[tuple[CounterStrategy, Contract]], qualified_name: sysml.QualifiedNames
+    machines: Iterable[tuple[CounterStrategy, Contract]], qualified_name: QualifiedNames
 ) -> Iterator[tuple[str, str]]:
-    """Yield names and texts of all files; small machines have a state diagram too."""
+    """Yield names and texts of all files; only small machines have a state diagram."""
     machines_by_component = {
         contract.component: (machine, contract) for machine, contract in machines
     }
     for component, name in assign_file_names(machines_by_component).items():
         machine, contract = machines_by_component[component]
-        if len(machine.states) <= drawing.MAX_DIAGRAM_STATES:
-            yield f"{name}.counter.puml", drawing.state_diagram(machine, contract)
-        yield f"{name}.counter-run.puml", drawing.losing_run_diagram(machine, contract)
-        yield f"{name}.counter.sysml", sysml.sysml_text(machine, contract, qualified_name)
+        if len(machine.states) <= MAX_DIAGRAM_STATES:
+            yield f"{name}.counter.puml", state_diagram(machine, contract)
+        yield f"{name}.counter-run.puml", losing_run_diagram(machine, contract)
+        yield f"{name}.counter.sysml", sysml_text(machine, contract, qualified_name)

@@ -1,4 +1,4 @@
-"""Counter-strategies as machines: each state gives inputs, and its moves depend on the answer."""
+"""Counter-strategies as machines: a state gives inputs, the answer selects the next state."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
@@ -24,38 +24,42 @@ from sysmlc.synthesis.unrealizable import is_won, minimal_conflict, original_con
 Row = tuple[Literal, ...]
 """Values of variables, in their order."""
 MAX_MOVES = 50_000
+"""Answers of the system that are explored."""
 _Key = tuple[tuple[bool, ...] | None, tuple[bool, ...], int]
+"""Values of the previous step (None in the first step), inputs, index of a fairness assumption."""
 
 
 class State(Struct, frozen=True):
-    """The environment gives *given* and waits; without moves the system has no answer."""
+    """The environment gives ``inputs``; if there are no moves, the system has no answer."""
 
-    given: Row
+    inputs: Row
     moves: Mapping[Row, int]
     """The next state for each answer that the system may give."""
 
 
 class CounterStrategy(Struct, frozen=True):
-    """A machine that makes the system fail; it starts in state 0."""
+    """An environment that makes every system fail, as a machine with the initial state 0."""
 
     inputs: tuple[Variable, ...]
     outputs: tuple[Variable, ...]
     states: tuple[State, ...]
-    missed: tuple[Conjunct, ...] = ()
-    """Liveness guarantees that do not all recur, if the system always has an answer."""
+    unmet_guarantees: tuple[Conjunct, ...] = ()
+    """Liveness guarantees of which at least one does not recur if the system always answers."""
 
 
 def build_counterstrategy(
     environment: EnvironmentStrategy, contract: Contract, max_moves: int = MAX_MOVES
 ) -> CounterStrategy:
-    """Build the machine over the variables of a contract, with equal states merged.
+    """Build the machine of a strategy over the variables of a contract; equal states are merged.
 
-    *contract* is the one as it was written, without history bits. Raises LimitError.
+    *contract* is the original contract, without history bits. Raises LimitError.
     """
     return _merge_equal_states(_Exploration(environment, contract, max_moves).run())
 
 
 class _Exploration:
+    """Explores a strategy of the environment against all answers of the system."""
+
     def __init__(
         self, environment: EnvironmentStrategy, contract: Contract, max_moves: int
     ) -> None:
@@ -66,18 +70,19 @@ class _Exploration:
             owner: tuple(variable for variable in contract.variables if variable.owner is owner)
             for owner in Owner
         }
-        self._places: dict[_Key, int] = {}
-        self._situations: list[tuple[Bits | None, Bits, int]] = []
+        self._state_indices: dict[_Key, int] = {}
+        self._unexplored_states: list[tuple[Bits | None, Bits, int]] = []
 
     def run(self) -> CounterStrategy:
-        """Explore every answer of the system."""
-        self._place_of(None, self._environment.first, 0)
+        """Return the machine, with one state for each reachable combination of ``_Key``."""
+        self._index_state(None, self._environment.first, 0)
+        # The list grows while it is traversed: `_index_state` appends the states that moves reach.
         states = [
             State(
                 self._values_of(inputs, Owner.ENVIRONMENT),
                 dict(self._iter_moves(state_before, inputs, fair)),
             )
-            for state_before, inputs, fair in self._situations
+            for state_before, inputs, fair in self._unexplored_states
         ]
         return CounterStrategy(
             self._sides[Owner.ENVIRONMENT], self._sides[Owner.SYSTEM], tuple(states)
@@ -92,16 +97,17 @@ class _Exploration:
             next_inputs, next_fairness = self._environment.next_inputs(state, fair)
             yield (
                 self._values_of(answer, Owner.SYSTEM),
-                self._place_of(state, next_inputs, next_fairness),
+                self._index_state(state, next_inputs, next_fairness),
             )
 
-    def _place_of(self, state: Bits | None, inputs: Bits, fair: int) -> int:
+    def _index_state(self, state: Bits | None, inputs: Bits, fair: int) -> int:
+        """Return the index of a state of the machine; a new state is added."""
         state_key = None if state is None else tuple(state.values())
         key = (state_key, tuple(inputs.values()), fair)
-        if key not in self._places:
-            self._places[key] = len(self._situations)
-            self._situations.append((state, inputs, fair))
-        return self._places[key]
+        if key not in self._state_indices:
+            self._state_indices[key] = len(self._unexplored_states)
+            self._unexplored_states.append((state, inputs, fair))
+        return self._state_indices[key]
 
     def _count(self) -> None:
         self._moves_left -= 1
@@ -115,7 +121,8 @@ class _Exploration:
 
 
 def _merge_equal_states(machine: CounterStrategy) -> CounterStrategy:
-    """Merge the states with the same inputs now and after all sequences of answers."""
+    """Merge states from which equal sequences of answers always lead to equal inputs."""
+    # Partition refinement (Moore): split classes until all states of a class have equal keys.
     classes, count = [0] * len(machine.states), 0
     while True:
         keys: dict[object, int] = {}
@@ -128,45 +135,49 @@ def _merge_equal_states(machine: CounterStrategy) -> CounterStrategy:
 
 
 def _state_key(state: State, classes: Sequence[int]) -> tuple[Row, frozenset[tuple[Row, int]]]:
-    return state.given, frozenset((row, classes[place]) for row, place in state.moves.items())
+    return state.inputs, frozenset(
+        (row, classes[successor]) for row, successor in state.moves.items()
+    )
 
 
 def _quotient(machine: CounterStrategy, classes: Sequence[int]) -> CounterStrategy:
     representatives: dict[int, State] = {}
     for state, class_ in zip(machine.states, classes, strict=True):
-        moves = {row: classes[place] for row, place in state.moves.items()}
+        moves = {row: classes[successor] for row, successor in state.moves.items()}
         representatives.setdefault(class_, replace(state, moves=moves))
     return replace(machine, states=tuple(representatives.values()))
 
 
 def example_run(machine: CounterStrategy) -> Trace:
-    """Return a run in which the system survives as long as possible; it ends where there is no
-    answer.
+    """Return a run with the answers that let the system survive longest.
+
+    The run ends in a state without answers, or with a loop.
     """
     steps: list[dict[str, Literal]] = []
     first_steps: dict[int, int] = {}
-    steps_left, place = _steps_until_stuck(machine), 0
-    while place not in first_steps:
-        first_steps[place] = len(steps)
-        state = machine.states[place]
-        steps.append(_by_name(machine.inputs, state.given))
+    steps_left, state_index = _steps_until_stuck(machine), 0
+    while state_index not in first_steps:
+        first_steps[state_index] = len(steps)
+        state = machine.states[state_index]
+        steps.append(_by_name(machine.inputs, state.inputs))
         if not state.moves:
             return Trace(tuple(steps), len(steps))
-        answer, place = max(state.moves.items(), key=lambda move: steps_left[move[1]])
+        answer, state_index = max(state.moves.items(), key=lambda move: steps_left[move[1]])
         steps[-1] |= _by_name(machine.outputs, answer)
-    return Trace(tuple(steps), first_steps[place])
+    return Trace(tuple(steps), first_steps[state_index])
 
 
 def _steps_until_stuck(machine: CounterStrategy) -> list[int]:
-    """Return for each state the most steps until there is no answer; the number of states if
-    unlimited.
+    """Return for each state the largest number of steps until the system has no answer.
+
+    If the system can answer forever, that is the number of states.
     """
     unlimited = len(machine.states)
     steps_left = [unlimited if state.moves else 0 for state in machine.states]
     for _ in range(unlimited):
-        for place, state in enumerate(machine.states):
+        for index, state in enumerate(machine.states):
             if state.moves:
-                steps_left[place] = min(
+                steps_left[index] = min(
                     unlimited, 1 + max(steps_left[successor] for successor in state.moves.values())
                 )
     return steps_left
@@ -188,7 +199,7 @@ NO_COUNTER = rule(
 def find_counterstrategies(
     contracts: Iterable[Contract], place: Place, sink: Sink, options: Options
 ) -> Iterator[tuple[CounterStrategy, Contract]]:
-    """Yield the counter-strategy of each contract, none of which is realizable.
+    """Yield the counter-strategies of *contracts*, which must be unrealizable.
 
     A counter-strategy that exceeds a limit is reported (SM549) and omitted.
     """
@@ -203,15 +214,15 @@ def find_counterstrategies(
 def _find_counterstrategy(contract: Contract, options: Options) -> CounterStrategy:
     environment = find_environment_strategy(contract, options)
     goals = (goal.conjunct for goal in environment.lost_game.game.goals)
-    missed = original_conjuncts((goal for goal in goals if goal is not None), contract)
+    unmet = original_conjuncts((goal for goal in goals if goal is not None), contract)
     with environment.lost_game.arena.manager.guard():
-        return replace(build_counterstrategy(environment, contract), missed=tuple(missed))
+        machine = build_counterstrategy(environment, contract)
+        return replace(machine, unmet_guarantees=tuple(unmet))
 
 
 def find_environment_strategy(contract: Contract, options: Options) -> EnvironmentStrategy:
-    """Return the strategy of the environment against goals that cannot be reached together.
+    """Return a strategy of the environment against liveness guarantees that are in conflict.
 
-    Other goals would hide the reason: the environment could wait forever until they are reached.
     Raises NotLostError if the contract is realizable, OutsideGr1Error, LimitError.
     """
     manager = Manager(options.engine, options.limits, options.progress)
@@ -221,6 +232,9 @@ def find_environment_strategy(contract: Contract, options: Options) -> Environme
 
 
 def _keep_conflicting_goals(game: Game) -> Game:
+    """Return the game with a minimal set of goals that makes the system lose."""
+    # With other goals, the environment could wait forever for the system to reach one of these, and
+    # the strategy would not show the reason.
     if not game.goals or is_won(game):
         return game
     conflicting = minimal_conflict(

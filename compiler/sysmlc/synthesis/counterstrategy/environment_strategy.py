@@ -1,8 +1,8 @@
 """The environment's winning strategy in a lost game: the dual of the fixpoint in ``solver``.
 
-In a state of a rank the environment satisfies its assumptions and prevents one goal forever, unless
-the system moves to a state of an earlier rank (Könighofer, Hofferek, Bloem 2013: counter-strategies
-of GR(1) games).
+States in which the environment wins are divided into ranks. In a state of a rank, the environment
+satisfies its assumptions and prevents one goal forever, unless the system moves to a state of an
+earlier rank (Könighofer, Hofferek, Bloem 2013: counter-strategies of GR(1) games).
 """
 
 from collections.abc import Iterator, Mapping
@@ -16,17 +16,17 @@ from sysmlc.synthesis.games.game import Game
 
 
 class Rank(Struct, frozen=True):
-    """States in which the environment wins because it can prevent one goal."""
+    """States in which the environment wins by preventing one goal or reaching an earlier rank."""
 
     states: Node
     """The states of this rank and of all earlier ones."""
     goal: int
-    """The goal that is prevented."""
+    """The index of the prevented goal."""
     stay: Node
     """The states in which the play stays while the goal is prevented."""
-    ways: tuple[tuple[Node, ...], ...]
-    """For each fairness assumption, the layers of states from which it is reached within a number
-    of steps; each layer contains the one before."""
+    fairness_layers: tuple[tuple[Node, ...], ...]
+    """For each fairness assumption, its attractor as layers: the states from which the environment
+    can satisfy it within 0, 1, 2 ... steps."""
 
 
 class LostGame(Struct, frozen=True):
@@ -69,6 +69,7 @@ class _RankSearch:
         )
 
     def _iter_ranks(self) -> Iterator[Rank]:
+        # A least fixpoint: cycle through the goals until none of them adds states.
         won = self._arena.manager.false
         unchanged_goals, goal = 0, 0
         while unchanged_goals < len(self._goals):
@@ -79,7 +80,9 @@ class _RankSearch:
             won, goal = rank.states, (goal + 1) % len(self._goals)
 
     def _compute_rank(self, goal: int, won: Node) -> Rank:
-        """Return the states from which the goal is prevented or an earlier rank is reached."""
+        """Return the rank of the states in which the goal is prevented or *won* is reached."""
+        # A greatest fixpoint: within `stay`, the environment can reach each fairness assumption
+        # again and again without satisfying the goal.
         allowed = ~self._goals[goal] | self._steps.environment_predecessors(won)
         stay = self._arena.states
         while True:
@@ -93,7 +96,7 @@ class _RankSearch:
             stay = shrunk
 
     def _attractor_layers(self, fair: Node, within: Node) -> tuple[Node, ...]:
-        """Return the states inside *within* that lead to *fair*, as growing layers."""
+        """Return the attractor of *fair* inside *within*; each layer contains the previous one."""
         layers = [within & fair]
         while True:
             extended = layers[-1] | (within & self._steps.environment_predecessors(layers[-1]))
@@ -107,20 +110,24 @@ Bits = Mapping[str, bool]
 
 
 class NotLostError(ValueError):
-    """The environment does not win: the contract is realizable."""
+    """Reports that the environment does not win: the contract is realizable."""
 
 
 class EnvironmentStrategy:
-    """A winning strategy with little memory; valuations assign unprimed bits by name."""
+    """A winning strategy of the environment, evaluated step by step.
 
-    def __init__(self, lost: LostGame) -> None:
-        """Raises NotLostError if the environment does not win."""
-        self.lost_game = lost
-        self._arena = lost.arena
+    Its memory is the index of the fairness assumption that is satisfied next. Valuations (``Bits``)
+    map the names of unprimed bits to values.
+    """
+
+    def __init__(self, lost_game: LostGame) -> None:
+        """Choose the first inputs. Raises NotLostError if the environment does not win."""
+        self.lost_game = lost_game
+        self._arena = lost_game.arena
         self.first = self._first_inputs()
 
     def _first_inputs(self) -> Bits:
-        """Return inputs for which the system loses from all its first answers."""
+        """Return first inputs after which every answer of the system is losing."""
         input_turn, answer_turn = self._arena.start
         manager = self._arena.manager
         winning_inputs = _conjoin(input_turn.parts, manager.true)
@@ -134,10 +141,9 @@ class EnvironmentStrategy:
         return inputs
 
     def iter_answers(self, state: Bits | None, inputs: Bits) -> Iterator[Bits]:
-        """Yield everything that the system may answer, in the first step (no state) or in the next
-        step.
+        """Yield the answers that the guarantees allow after *inputs*; none if the system is stuck.
 
-        Nothing is yielded if the system is stuck.
+        *state* is the previous step, None in the first step.
         """
         answer_turn, values = self._arena.start[1], inputs
         if state is not None:
@@ -150,20 +156,27 @@ class EnvironmentStrategy:
             yield self._unprime(answer)
 
     def rank(self, state: Bits) -> Rank:
-        """Return the first rank with the state. Raises NotLostError if the system wins there."""
+        """Return the first rank that contains the state.
+
+        Raises NotLostError if the system wins from the state.
+        """
         for rank in self.lost_game.ranks:
             if self._holds(rank.states, state):
                 return rank
         raise NotLostError("the system wins from here")
 
     def next_inputs(self, state: Bits, fair: int) -> tuple[Bits, int]:
-        """Return the next inputs, and the assumption that is satisfied next."""
+        """Return the next inputs, and the index of the fairness assumption to satisfy next.
+
+        *fair* is the current index.
+        """
         rank = self.rank(state)
+        # A goal state belongs to the rank only because an earlier rank can be forced from it.
         if self._holds(self.lost_game.goals[rank.goal], state):
             return self._inputs_towards(state, self._earlier_states(rank)), 0
         if self._holds(self.lost_game.fairness[fair], state):
             return self._inputs_towards(state, rank.stay), (fair + 1) % len(self.lost_game.fairness)
-        attractor = rank.ways[fair]
+        attractor = rank.fairness_layers[fair]
         index = next(layer for layer, states in enumerate(attractor) if self._holds(states, state))
         return self._inputs_towards(state, attractor[index - 1]), fair
 
@@ -172,7 +185,7 @@ class EnvironmentStrategy:
         return self.lost_game.ranks[index - 1].states if index else self._arena.manager.false
 
     def _inputs_towards(self, state: Bits, target: Node) -> Bits:
-        """Return inputs after which all answers lead to *target*; unchanged inputs, if possible."""
+        """Return inputs after which all answers lead to *target*; unchanged inputs if possible."""
         manager = self._arena.manager
         input_turn, answer_turn = self._arena.turns
         allowed_answers = _conjoin(
@@ -189,7 +202,7 @@ class EnvironmentStrategy:
         return self._unprime(manager.pick(winning_inputs, input_turn.bits) or {})
 
     def _unprime(self, next_values: Bits) -> Bits:
-        """Return the same values as unprimed bits."""
+        """Return the values with unprimed names of bits."""
         return {bit.removesuffix("'"): value for bit, value in next_values.items()}
 
     def _iter_assignments(self, node: Node, bits: tuple[str, ...]) -> Iterator[Bits]:

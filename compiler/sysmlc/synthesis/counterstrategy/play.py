@@ -1,4 +1,4 @@
-"""Interactive play against a counter-strategy: the environment is simulated, the reader answers."""
+"""Interactive play against a counter-strategy: the program is the environment, the user answers."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from itertools import islice
@@ -13,7 +13,7 @@ from sysmlc.synthesis.counterstrategy.environment_strategy import Bits, Environm
 from sysmlc.synthesis.unrealizable import original_conjuncts
 
 MAX_ANSWERS = 2_000
-"""Answers that are examined in one step."""
+"""Allowed answers that are examined in one step; further answers cannot be given."""
 _MAX_SHOWN_OPTIONS = 10
 _INTRODUCTION = """\
 You are '{component}'. In each step the environment gives its values, then you answer with yours:
@@ -24,50 +24,54 @@ Values = Mapping[str, Literal]
 
 
 class Player:
-    """One play; *read* asks for a line (EOFError ends the play), *say* shows one."""
+    """One play of a user; ``play`` runs it."""
 
     def __init__(
         self,
         environment: EnvironmentStrategy,
         contract: Contract,
         read: Callable[[str], str],
-        say: Callable[[str], None],
+        write: Callable[[str], None],
     ) -> None:
-        """*contract* is the one as it was written, without history bits."""
+        """Prepare a play of *contract*, which is the original contract without history bits.
+
+        *read* shows a prompt and returns a line; its EOFError ends the play. *write* shows a line.
+        """
         self._environment = environment
         self._contract = contract
-        self._read, self._say = read, say
+        self._read, self._write = read, write
         self._outputs = tuple(
             variable for variable in contract.variables if variable.owner is Owner.SYSTEM
         )
         self._symbols = environment.lost_game.arena.symbols
 
     def play(self) -> bool:
-        """Play to the end. Return True if the component has lost, False if the reader gave up."""
-        self._say(_INTRODUCTION.format(component=self._contract.component))
+        """Play to the end. Return True if the component has lost, False if the user gave up."""
+        self._write(_INTRODUCTION.format(component=self._contract.component))
         first_steps: dict[object, int] = {}
         state: Bits | None = None
         inputs, fair = self._environment.first, 0
         for step in range(1, 1_000_000):
-            self._say(f"step {step}: {self._describe_changes(inputs, state)}")
+            self._write(f"step {step}: {self._describe_changes(inputs, state)}")
             answers = list(islice(self._environment.iter_answers(state, inputs), MAX_ANSWERS))
             if not answers:
-                self._say(self._describe_dead_end(state))
+                self._write(self._describe_dead_end(state))
                 return True
             answer = self._choose_answer(state, inputs, answers)
             if answer is None:
                 return False
             state = {**inputs, **answer}
+            # With equal state and memory, the environment can repeat the steps in between forever.
             key = tuple(state.values()), fair
             if key in first_steps:
-                self._say(self._describe_loop(state, step, first_steps[key]))
+                self._write(self._describe_loop(state, step, first_steps[key]))
                 return True
             first_steps[key] = step
             inputs, fair = self._environment.next_inputs(state, fair)
         return False
 
     def _describe_changes(self, inputs: Bits, state: Bits | None) -> str:
-        """Return the inputs that have changed."""
+        """Return the changed inputs as text."""
         current, previous = self._symbols.decode(inputs), self._symbols.decode(state or {})
         changed = {name: value for name, value in current.items() if previous.get(name) != value}
         return _print_values(changed) or "nothing changes"
@@ -75,7 +79,10 @@ class Player:
     def _choose_answer(
         self, state: Bits | None, inputs: Bits, answers: Sequence[Bits]
     ) -> Bits | None:
-        """Return the answer that the reader chooses, or None if the reader gives up."""
+        """Return the answer that the user chooses, or None if the user gives up.
+
+        Of the allowed answers with the entered values, it is the one with the fewest changes.
+        """
         previous = self._symbols.decode(state or {})
         options = [(answer, self._outputs_of(answer)) for answer in answers]
         while (line := self._read_line()) != "quit":
@@ -87,7 +94,7 @@ class Player:
                     answer_bits, outputs = max(
                         matching, key=lambda answer: _count_unchanged(answer[1], previous)
                     )
-                    self._say(f"     {_print_values(outputs)}")
+                    self._write(f"     {_print_values(outputs)}")
                     return answer_bits
                 self._explain_refusal(
                     previous, {**previous, **self._symbols.decode(inputs), **requested}
@@ -106,35 +113,35 @@ class Player:
 
     def _show_options(self, options: Sequence[Values]) -> None:
         for outputs in options[:_MAX_SHOWN_OPTIONS]:
-            self._say(f"     {_print_values(outputs)}")
+            self._write(f"     {_print_values(outputs)}")
         if len(options) > _MAX_SHOWN_OPTIONS:
-            self._say(f"     and {len(options) - _MAX_SHOWN_OPTIONS:,} more")
+            self._write(f"     and {len(options) - _MAX_SHOWN_OPTIONS:,} more")
 
     def _parse_line(self, line: str) -> dict[str, Literal] | None:
-        """Return the values in a line; report the problem and return None if it is invalid."""
+        """Return the values in a line, or show why the line is invalid and return None."""
         variables = {variable.name: variable for variable in self._outputs}
         requested: dict[str, Literal] = {}
         for word in line.replace(",", " ").split():
             name, _, text = word.partition("=")
             if name not in variables:
-                self._say(f"'{name}' is not yours; yours are {', '.join(variables)}")
+                self._write(f"'{name}' is not yours; yours are {', '.join(variables)}")
                 return None
             value = _parse_value(variables[name], text)
             if value is None:
                 all_values = ", ".join(map(print_literal, values(variables[name].domain)))
-                self._say(f"'{name}' is one of {all_values}")
+                self._write(f"'{name}' is one of {all_values}")
                 return None
             requested[name] = value
         return requested
 
     def _explain_refusal(self, previous: Values, current: Values) -> None:
-        """Show the guarantees that an answer violates."""
+        """Show the guarantees that a refused answer violates."""
         messages = list(dict.fromkeys(self._violated_guarantees(previous, current)))
         for message in messages or ["That is not allowed here; 'options' shows what is."]:
-            self._say(message)
+            self._write(message)
 
     def _violated_guarantees(self, previous: Values, current: Values) -> Iterator[str]:
-        """Yield the guarantees that complete values of a step violate."""
+        """Yield a message for each violated guarantee; none if a value is missing."""
         class_ = Class.SAFETY if previous else Class.INIT
         if any(guarantee.name not in current for guarantee in self._contract.variables):
             return
@@ -145,8 +152,10 @@ class Player:
                 yield f"That breaks '{print_formula(guarantee.formula)}'{text}."
 
     def _describe_dead_end(self, state: Bits | None) -> str:
-        """Explain why there is no answer: the last answer violates a guarantee, or every next one
-        would.
+        """Return why no answer is allowed.
+
+        Either the last answer violates a guarantee about a single step, which a game checks in the
+        next step, or every answer would violate some guarantee.
         """
         values = self._symbols.decode(state or {})
         for guarantee in self._contract.guarantees:

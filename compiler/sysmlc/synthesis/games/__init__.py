@@ -1,1 +1,1 @@
-"""GR(1) games: their turns, the encodings that make them small, and who wins where."""
+"""GR(1) games: their turns, the encodings that make them small, and the solver."""

@@ -1,9 +1,8 @@
-"""Arenas: the states of a game and the turns from one state to the next, on which fixpoints are
-computed.
+"""Arenas: the states of a game and the turns of a step, on which fixpoints are computed.
 
-A step of a game as it is written consists of a turn of the environment (next inputs) and a turn of
-the system (next outputs). An encoded arena (``command_elimination``) has fewer bits in a state, and
-a turn of the system before the turn of the environment.
+In a plain arena a step has a turn of the environment (next inputs), then a turn of the system (next
+outputs). An encoded arena (``command_elimination``) has fewer bits in a state, and a turn of the
+system before the turn of the environment.
 """
 
 from collections.abc import Collection
@@ -19,7 +18,7 @@ from sysmlc.synthesis.games.relational_product import Product
 
 
 class Turn(Struct, frozen=True):
-    """One side chooses values of *bits* such that all of *parts* hold."""
+    """A choice of one side: values of ``bits`` that satisfy all of ``parts``."""
 
     owner: Owner
     bits: tuple[str, ...]
@@ -32,17 +31,20 @@ class Arena(Struct, frozen=True):
     manager: Manager
     symbols: Symbols
     states: Node
-    """The valid states: all variables have values of their domains."""
+    """The states in which all variables have values of their domains."""
     turns: tuple[Turn, ...]
     """The turns of a step, in order; they choose primed bits, except for commands."""
     start: tuple[Turn, ...]
-    """The turns that lead to the first state, or to the second one if ``is_ahead``."""
+    """The turns of the first step; if ``is_ahead``, also those that lead to the next state."""
     goals: tuple[Node, ...]
+    """The liveness guarantees."""
     fairness: tuple[Node, ...]
+    """The liveness assumptions."""
     is_ahead: bool = False
+    """Whether a step begins with a turn of the system, which chooses commands."""
     command: Turn | None = None
-    """If ``is_ahead``, the first turn with all its choices, of which ``turns[0]`` may have
-    quantified the commands away."""
+    """If ``is_ahead``, the first turn of a step including the commands, which ``turns[0]`` may not
+    contain any more."""
 
 
 def build_plain_arena(game: Game) -> Arena:
@@ -66,7 +68,7 @@ def build_plain_arena(game: Game) -> Arena:
 
 
 def domain_constraint(symbols: Symbols, names: Collection[str], primed: bool = False) -> Node:
-    """Return the states in which all these variables have values of their domains."""
+    """Return the condition that the variables *names* have values of their domains."""
     result = symbols.manager.true
     for name in names:
         result = result & symbols.domain(name, primed)
@@ -80,7 +82,7 @@ def nodes_of(constraints: Collection[Constraint]) -> tuple[Node, ...]:
 
 @dataclass(slots=True)
 class PredecessorOperator:
-    """The controllable predecessors of an arena."""
+    """Computes controllable predecessors in an arena."""
 
     arena: Arena
     within: Node | None = None
@@ -95,7 +97,7 @@ class PredecessorOperator:
     def controllable_predecessors(self, target: Node) -> Node:
         """Return the states from which the system can force the next state into *target*.
 
-        States in which the environment has no next input belong to them.
+        This includes the states in which the environment has no next input.
         """
         self.count += 1
         if self.within is not None:
@@ -107,9 +109,9 @@ class PredecessorOperator:
         return self.controllable_predecessors(attractor) & winning
 
     def confine_to(self, winning: Node) -> None:
-        """Allow wrong results outside of *winning* from now on.
+        """Permit arbitrary results outside of *winning* from now on.
 
-        This operator makes no use of it; ``SingleMoveOperator`` does.
+        Only ``SingleMoveOperator`` uses the permission.
         """
 
     def environment_predecessors(self, target: Node) -> Node:
@@ -127,12 +129,13 @@ class PredecessorOperator:
 
 
 def turn_products(manager: Manager, turns: Collection[Turn]) -> tuple[tuple[Owner, Product], ...]:
-    """Return each turn as the relational product that ``predecessors_through`` takes."""
+    """Return the owner and the relational product of each turn, for ``predecessors_through``."""
     return tuple((turn.owner, Product(manager, turn.parts, turn.bits)) for turn in turns)
 
 
 def predecessors_through(products: Collection[tuple[Owner, Product]], target: Node) -> Node:
-    """Return the states from which the turns can be played such that *target* holds after them."""
+    """Return the states from which the system can force *target* to hold after the turns."""
+    # Existential quantification for turns of the system, universal for those of the environment.
     for owner, product in reversed(tuple(products)):
         target = product(target) if owner is Owner.SYSTEM else ~product(~target)
     return target

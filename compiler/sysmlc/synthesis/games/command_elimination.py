@@ -1,12 +1,10 @@
-"""Elimination of commands: outputs that nothing remembers leave the state, and a plant that only
-obeys them moves in the same turn.
+"""Elimination of commands: outputs that no later step reads, and inputs that follow from them.
 
-An output that is bound only by the inputs of its own step is a command: it is chosen and used
-between two states, so a state need not contain it. If exactly one next value of an input is left
-for each state and command, the environment has no choice either (a plant). Then command and effect
-are one turn of the system, in which the command is quantified: the command is the chosen step. The
-turn of the environment over its remaining choices follows. The rewritten predecessor operator is
-equivalent; the system has no additional moves.
+A *command* is an output that guarantees restrict by values of its own step only. It is chosen and
+used between two states, so a state need not contain it. A *plant input* has exactly one next value
+for each state and command, so the environment has no choice. Commands and plant inputs become one
+turn of the system, in which commands can be quantified: the system chooses the effect directly. The
+turn of the environment for its other inputs follows. The controllable predecessors stay the same.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
@@ -23,11 +21,11 @@ from sysmlc.synthesis.games.game import Game
 from sysmlc.synthesis.games.relational_product import Product
 
 MAX_JOINED_NODES = 20_000
-"""Nodes up to which parts are joined to quantify a command beforehand."""
+"""Nodes of a conjunction up to which commands are quantified, or values counted, beforehand."""
 
 
 def eliminate_commands(game: Game) -> Arena:
-    """Return the arena of the game, without its commands in the states."""
+    """Return the arena of the game with states that do not contain commands."""
     commands = _find_commands(game)
     return (
         _TurnSplit.split_constraints(game, commands).build_arena()
@@ -37,7 +35,10 @@ def eliminate_commands(game: Game) -> Arena:
 
 
 def _find_commands(game: Game) -> tuple[str, ...]:
-    """Return the outputs that are bound by their own step only and need not recur."""
+    """Return the outputs that guarantees restrict by their own step only.
+
+    Outputs in liveness conditions are none, because these conditions are about states.
+    """
     recurring = frozenset[str]().union(
         *(game.symbols.names(node) for node in nodes_of((*game.goals, *game.fairness)))
     )
@@ -58,20 +59,21 @@ def _is_bound_by_own_step(game: Game, name: str) -> bool:
 
 
 class _TurnSplit(Struct, frozen=True):
-    """The constraints of a game, sorted into the turns to which they belong."""
+    """The constraints of a game, assigned to the turns of an encoded arena."""
 
     game: Game
     commands: tuple[str, ...]
     choice: tuple[Node, ...]
     """The constraints of the commands, over the current step."""
     plant: Mapping[str, tuple[Node, ...]]
-    """Inputs with one next value for each state and command, and the assumptions that say so."""
+    """The plant inputs, each with the assumptions that determine its next value."""
     invariants: tuple[Node, ...]
     """State invariants, which the system ensures before the environment moves."""
     answer: tuple[Node, ...]
     """The constraints of the other outputs."""
-    is_at_once: bool
-    """Whether plant and invariants are the same for first commands that *choice* does not allow."""
+    has_joint_first_turn: bool
+    """Whether first outputs and their effect can be one turn too. *choice* does not restrict first
+    commands, so plant inputs and invariants must be the same without it."""
 
     @classmethod
     def split_constraints(cls, game: Game, commands: tuple[str, ...]) -> "_TurnSplit":
@@ -85,16 +87,16 @@ class _TurnSplit(Struct, frozen=True):
         invariants = _find_state_invariants(game, other_guarantees, choice)
         answer = tuple(node for node in other_guarantees if node not in invariants)
         plant = _find_plant_inputs(game, choice)
-        is_at_once = (
+        has_joint_first_turn = (
             _find_plant_inputs(game, ()) == plant
             and _find_state_invariants(game, other_guarantees, ()) == invariants
         )
-        return cls(game, commands, choice, plant, tuple(invariants), answer, is_at_once)
+        return cls(game, commands, choice, plant, tuple(invariants), answer, has_joint_first_turn)
 
     def build_arena(self) -> Arena:
         """Return the arena with states that do not contain commands.
 
-        A step has three turns: command and effect, the environment's remaining inputs, the answer.
+        A step has three turns: commands and plant inputs, the other inputs, the other outputs.
         """
         game, symbols = self.game, self.game.symbols
         names = (*game.names(Owner.ENVIRONMENT), *game.names(Owner.SYSTEM))
@@ -115,7 +117,7 @@ class _TurnSplit(Struct, frozen=True):
         parts = (*self.choice, *effect, *self.invariants)
         command = Turn(Owner.SYSTEM, (*command_bits, *plant_bits), parts)
         start = build_plain_arena(game).start
-        if self.is_at_once:
+        if self.has_joint_first_turn:
             first_parts = (*start[1].parts, *effect, *self.invariants)
             start = (
                 start[0],
@@ -140,8 +142,9 @@ class _TurnSplit(Struct, frozen=True):
 
 
 def _find_plant_inputs(game: Game, choice: Sequence[Node]) -> dict[str, tuple[Node, ...]]:
-    """Return the inputs whose next value follows from state and command, with the assumptions that
-    say so.
+    """Return the plant inputs: state and command determine their next value.
+
+    Each is returned with the assumptions about this value.
     """
     manager, symbols = game.manager, game.symbols
     assumptions = nodes_of(game.assumptions)
@@ -181,7 +184,10 @@ def _has_unique_values(
 
 
 def _restrict_to_allowed(manager: Manager, states: Node, choice: Sequence[Node]) -> Node:
-    """Return the states in which the commands satisfy *choice*, or a superset of them."""
+    """Return the states in which the commands satisfy *choice*, or a superset if that is large.
+
+    A superset only makes callers find fewer plant inputs or invariants.
+    """
     for node in choice:
         if states == manager.false or len(states) > MAX_JOINED_NODES:
             break
@@ -192,10 +198,10 @@ def _restrict_to_allowed(manager: Manager, states: Node, choice: Sequence[Node])
 def _find_state_invariants(
     game: Game, guarantees: Iterable[Node], choice: Sequence[Node]
 ) -> list[Node]:
-    """Return the guarantees about the current step alone, if the environment always has a next
-    input.
+    """Return the guarantees about the current state alone, if they are state invariants.
 
-    Where the environment has none, the system does not owe them.
+    A game checks them in the next step, so they do not bind the system in a state in which the
+    environment has no next input. Without such states they must hold in all states.
     """
     invariants = [
         node
@@ -214,7 +220,7 @@ def _find_state_invariants(
 def _quantify_unread_bits(
     manager: Manager, command: Turn, command_bits: Sequence[str], later_turns: Iterable[Turn]
 ) -> Turn:
-    """Quantify the bits that no later turn reads, as long as the parts stay small."""
+    """Quantify the commands that no later turn reads, as long as the parts stay small."""
     read_bits = frozenset[str]().union(
         *(manager.support(node) for turn in later_turns for node in turn.parts)
     )

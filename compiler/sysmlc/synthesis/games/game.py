@@ -1,4 +1,4 @@
-"""The GR(1) game of a contract: initial conditions, partitioned relations and recurring conditions.
+"""The GR(1) game of a contract: initial conditions, partitioned transition relations, liveness.
 
 In every step the environment chooses its variables first, then the system answers (Mealy). The
 guarantees bind the system until the environment breaks an assumption (docs/synthesis.md).
@@ -15,16 +15,16 @@ from sysmlc.synthesis.bdd.symbols import SymbolError, Symbols
 
 
 class OutsideGr1Error(Exception):
-    """A conjunct that GR(1) cannot express, with the reason as text."""
+    """Reports a conjunct that GR(1) cannot express, with the reason as text."""
 
     def __init__(self, conjunct: Conjunct, reason: str) -> None:
         super().__init__(reason)
         self.conjunct = conjunct
-        self.why = reason
+        self.reason = reason
 
 
 class Constraint(Struct, frozen=True):
-    """A diagram and the conjunct that it encodes; None for the range of a variable."""
+    """A diagram and the conjunct that it encodes; no conjunct if it is the range of a variable."""
 
     node: Node
     conjunct: Conjunct | None = None
@@ -41,17 +41,18 @@ class Game(Struct, frozen=True):
     manager: Manager
     symbols: Symbols
     init_assumptions: tuple[Constraint, ...]
-    """Over inputs."""
+    """Conditions on inputs."""
     init_guarantees: tuple[Constraint, ...]
-    """Over inputs and outputs."""
+    """Conditions on inputs and outputs."""
     assumptions: tuple[Constraint, ...]
-    """Over inputs, outputs and next inputs; ranges of next inputs too."""
+    """Conditions on inputs, outputs and next inputs, including the ranges of next inputs."""
     guarantees: tuple[Constraint, ...]
-    """Over inputs, outputs, next inputs and next outputs; ranges of next outputs too."""
+    """Conditions on inputs, outputs, next inputs and next outputs, including the ranges of next
+    outputs."""
     fairness: tuple[Constraint, ...]
-    """Liveness assumptions, over inputs and outputs."""
+    """Liveness assumptions, conditions on inputs and outputs."""
     goals: tuple[Constraint, ...]
-    """Liveness guarantees, over inputs and outputs."""
+    """Liveness guarantees, conditions on inputs and outputs."""
     definitions: Mapping[str, Mapping[str, Node]] = field(default_factory=dict)
     """Eliminated variables, with a diagram over the other variables for each of their bits."""
 
@@ -166,6 +167,7 @@ def _check_conjunct(conjunct: Conjunct, names: _VariableNames, is_assumption: bo
 
 
 def _find_objection(conjunct: Conjunct, names: _VariableNames, is_assumption: bool) -> str:
+    """Return why GR(1) does not allow the conjunct, or an empty string."""
     if conjunct.class_ is Class.OTHER:
         return "it is neither initial, nor for every step (G), nor recurring (GF)"
     if conjunct.class_ is not Class.SAFETY:
@@ -179,7 +181,10 @@ def _find_objection(conjunct: Conjunct, names: _VariableNames, is_assumption: bo
 def _find_assumption_objection(conjunct: Conjunct, outputs: frozenset[str]) -> str:
     if conjunct.class_ is Class.INIT:
         output = _first_variable(conjunct.formula, outputs, primed=False)
+        # The environment chooses first, before there is any output.
         return output and f"an initial assumption cannot refer to an output ({output})"
+    # A history bit could express it, but then the system could violate the assumption itself and
+    # would owe nothing afterwards (decision 25).
     output = _first_variable(conjunct.formula, outputs, primed=True)
     return output and f"an assumption cannot refer to the next value of an output ({output}')"
 

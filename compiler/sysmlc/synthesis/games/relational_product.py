@@ -1,7 +1,8 @@
 """Relational products over partitioned relations, with early quantification.
 
-``Product`` computes ``exist bits: start & all parts`` and quantifies each bit as early as possible.
-``successor_product`` leads to next states; the predecessors of a game are in ``arena``.
+``Product`` computes ``exist bits: start & part & part ...`` and quantifies each bit as soon as no
+remaining part depends on it. ``successor_product`` is the product for the next states of a game;
+for predecessors see ``arena``.
 """
 
 from collections.abc import Collection, Iterable, Sequence
@@ -13,28 +14,31 @@ from sysmlc.synthesis.bdd.manager import Manager, Node
 from sysmlc.synthesis.games.game import Game
 
 MAX_CLUSTER_NODES = 2_000
-"""Nodes up to which parts over the same bits are joined beforehand."""
+"""Nodes up to which parts over the same quantified bits are conjoined beforehand."""
 MAX_JOINED_STAGE_NODES = 500
-"""Nodes up to which neighbouring stages are joined, whatever their bits: starting an operation
-takes longer than traversing them."""
+"""Nodes up to which neighbouring stages are conjoined, whatever their bits: the overhead of an
+operation exceeds the time for so few nodes."""
 
 
 @dataclass(slots=True)
 class _Cluster:
+    """A conjunction of parts of the relation."""
+
     node: Node
     support: frozenset[str]
     """The quantified bits that the node depends on."""
 
 
 class _Stage(Struct, frozen=True):
-    """A part of the relation, and the bits that are quantified as soon as it is joined."""
+    """A step of a product: conjoin the node, then quantify bits that no later stage reads."""
 
     node: Node
-    dying: frozenset[str]
+    last_bits: frozenset[str]
+    """The quantified bits that no later stage reads."""
 
 
 class Product:
-    """``exist bits: start & part & part ...`` for many starts."""
+    """The operator ``exist bits: start & part & part ...``, prepared for many values of start."""
 
     def __init__(
         self,
@@ -43,22 +47,22 @@ class Product:
         bits: Collection[str],
         limit: int = MAX_CLUSTER_NODES,
     ) -> None:
-        """Join parts up to *limit* nodes and determine their order."""
+        """Conjoin parts up to *limit* nodes and determine the order of the stages."""
         self.manager = manager
         self._bits = frozenset(bits)
         clusters = _build_clusters(manager, parts, self._bits, limit)
-        unused = self._bits.difference(*(cluster.support for cluster in clusters))
-        self._stages = tuple(_join_small_stages(_order_stages(clusters), unused))
-        self._alone = frozenset() if self._stages else unused
+        unread_bits = self._bits.difference(*(cluster.support for cluster in clusters))
+        self._stages = tuple(_join_small_stages(_order_stages(clusters), unread_bits))
+        self._unread_bits = frozenset() if self._stages else unread_bits
 
     def __call__(self, start: Node) -> Node:
         """Return the product with *start*."""
         manager = self.manager
-        result = manager.exist(self._alone, start)
+        result = manager.exist(self._unread_bits, start)
         for stage in self._stages:
             if result == manager.false:
                 break
-            result = manager.and_exist(result, stage.node, stage.dying)
+            result = manager.and_exist(result, stage.node, stage.last_bits)
             manager.check()
         return result
 
@@ -66,7 +70,7 @@ class Product:
 def _build_clusters(
     manager: Manager, parts: Iterable[Node], bits: frozenset[str], limit: int
 ) -> list[_Cluster]:
-    """Join parts over the same quantified bits, then parts over subsets of them."""
+    """Conjoin parts over the same quantified bits, then parts over subsets of these bits."""
     groups: dict[frozenset[str], list[Node]] = {}
     for part in parts:
         groups.setdefault(manager.support(part) & bits, []).append(part)
@@ -81,7 +85,10 @@ def _build_clusters(
 def join_conjuncts(
     manager: Manager, members: Sequence[Node], limit: int = MAX_CLUSTER_NODES
 ) -> list[Node]:
-    """Return the conjunction in pieces of at most *limit* nodes; neighbours are joined first."""
+    """Return a partitioned conjunction with pieces of at most *limit* nodes.
+
+    Neighbours are conjoined first. A member that is larger than *limit* is a piece by itself.
+    """
     pieces: list[Node] = []
     for member in members:
         conjunction = pieces[-1] & member if pieces else member
@@ -95,7 +102,7 @@ def join_conjuncts(
 
 
 def _absorb_clusters(clusters: list[_Cluster], limit: int) -> list[_Cluster]:
-    """Join a cluster to another one that has all its bits, unless it becomes too large."""
+    """Conjoin each cluster with one that has all its bits, unless the result is too large."""
     result: list[_Cluster] = []
     for cluster in sorted(clusters, key=lambda cluster: -len(cluster.support)):
         host = next(
@@ -115,23 +122,26 @@ def _absorb_clusters(clusters: list[_Cluster], limit: int) -> list[_Cluster]:
 
 
 def _order_stages(clusters: Sequence[_Cluster]) -> Iterable[_Stage]:
-    """Order the clusters such that bits die early; clusters without bits come last."""
+    """Order the clusters such that bits can be quantified early; those without bits come last.
+
+    A greedy choice: next is the cluster with the most bits that no other remaining cluster reads.
+    """
     remaining = list(clusters)
     while remaining:
         best = max(
             remaining,
-            key=lambda cluster: (_count_dying_bits(cluster, remaining), -len(cluster.support)),
+            key=lambda cluster: (_count_last_bits(cluster, remaining), -len(cluster.support)),
         )
         # A cluster without quantified bits lets no bit die; it waits until the product is small.
         if not best.support:
             best = next((cluster for cluster in remaining if cluster.support), best)
         remaining.remove(best)
-        alive = frozenset().union(*(cluster.support for cluster in remaining))
-        yield _Stage(best.node, best.support - alive)
+        later_bits = frozenset().union(*(cluster.support for cluster in remaining))
+        yield _Stage(best.node, best.support - later_bits)
 
 
-def _join_small_stages(stages: Iterable[_Stage], first: frozenset[str]) -> Iterable[_Stage]:
-    """Join small neighbours; the first stage also quantifies the bits of no stage."""
+def _join_small_stages(stages: Iterable[_Stage], unread_bits: frozenset[str]) -> Iterable[_Stage]:
+    """Conjoin small neighbours; the first stage also quantifies the bits that no stage reads."""
     joined_stages: list[_Stage] = []
     for stage in stages:
         conjunction = (
@@ -140,26 +150,23 @@ def _join_small_stages(stages: Iterable[_Stage], first: frozenset[str]) -> Itera
             else None
         )
         if conjunction is not None and len(conjunction) <= MAX_JOINED_STAGE_NODES:
-            joined_stages[-1] = _Stage(conjunction, joined_stages[-1].dying | stage.dying)
+            joined_stages[-1] = _Stage(conjunction, joined_stages[-1].last_bits | stage.last_bits)
         else:
             joined_stages.append(stage)
-    return [_Stage(stage.node, stage.dying | first) for stage in joined_stages[:1]] + joined_stages[
-        1:
-    ]
+    first = [_Stage(stage.node, stage.last_bits | unread_bits) for stage in joined_stages[:1]]
+    return first + joined_stages[1:]
 
 
 def _can_join(left: _Stage, right: _Stage) -> bool:
     return len(left.node) + len(right.node) <= MAX_JOINED_STAGE_NODES
 
 
-def _count_dying_bits(cluster: _Cluster, remaining: Sequence[_Cluster]) -> int:
+def _count_last_bits(cluster: _Cluster, remaining: Sequence[_Cluster]) -> int:
     other_bits = frozenset().union(*(other.support for other in remaining if other is not cluster))
     return len(cluster.support - other_bits)
 
 
 def successor_product(game: Game) -> Product:
-    """Return the product from states to their possible next states, primed
-    (``Symbols.unprime``).
-    """
+    """Return the product that maps states to their possible next states, over primed bits."""
     parts = [part.node for part in (*game.assumptions, *game.guarantees)]
     return Product(game.manager, parts, (*game.inputs, *game.outputs))

@@ -1,17 +1,17 @@
-"""Reductions of the search that keep the verdict: symmetric goals, reachable states, single moves.
+"""Reductions of the search that preserve the verdict, but not the layers (decision 25).
 
-Two goals are symmetric if a swap of their variables leaves every turn of the arena unchanged. From
-a set of states that is closed under the swap, the states that reach one goal are the image of the
-states that reach the other, so one fixpoint serves both. Among many state bits with few reachable
-states (tokens of an activity), a forward search finds these states quickly, whereas backward steps
-from arbitrary states take very long.
+*Symmetric goals*: two goals are symmetric if a swap of their variables leaves every turn of the
+arena unchanged. Within a set of states that is closed under the swap, the states that reach one
+goal are the image of the states that reach the other, so one fixpoint is enough for both.
 
-In a single move, one component moves and all others stay. If a turn of the system chooses next
-values of several integers or enumerations (positions of robots, states of machines), it may change
-them one at a time. A game that is won with these moves is won, since moves are only omitted. The
-steps of a component depend on few next values, so their diagrams are a fraction of those of joint
-steps, and steps of several components can be taken one after the other on the way to a goal.
-Booleans are not frozen.
+*Reachable states*: if many state bits have few reachable combinations (tokens of an activity), a
+forward search finds these states quickly. Backward steps from arbitrary states take very long.
+
+*Single moves*: a turn of the system may choose next values of several integers or enumerations,
+such as positions of robots or states of machines. In a single move only one of these components
+changes. This only omits moves, so a game that is won with single moves is won. The diagrams of
+single moves are a fraction of those of joint moves. On the way to a goal the components can move
+one after the other. Booleans may change in every move.
 """
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -34,12 +34,13 @@ from sysmlc.synthesis.games.arena import (
 from sysmlc.synthesis.games.relational_product import Product
 
 Swap = Mapping[str, str]
-"""Bits, primed ones included, and the bits that replace them."""
+"""A permutation of variables: bits, current and next, with the bits that replace them."""
 
 
 def group_symmetric_goals(arena: Arena) -> dict[int, tuple[Swap, ...]]:
-    """Return one representative of each class of symmetric goals, with the swaps that lead to the
-    others.
+    """Return a representative of each class of symmetric goals, by its index.
+
+    Each representative has the swaps that map it to the other goals of its class.
     """
     groups: dict[int, list[Swap]] = {}
     for index, goal in enumerate(arena.goals):
@@ -80,7 +81,10 @@ def _find_swap(arena: Arena, left_goal: Node, right_goal: Node) -> Swap | None:
 
 
 def _is_symmetric(arena: Arena, swap: Swap) -> bool:
-    """Return whether the swap maps the arena to itself."""
+    """Return whether the swap maps the arena to itself.
+
+    Parts are compared as sets of diagrams, so some symmetries are not recognised.
+    """
     lists: list[Sequence[Node]] = [arena.goals, arena.fairness, [arena.states]]
     lists += [turn.parts for turn in arena.turns]
     are_parts = all(
@@ -95,7 +99,10 @@ MAX_INVARIANT_NODES = 20_000
 
 
 def state_invariant(arena: Arena) -> Node:
-    """Return what the first turn requires of the state in which it is played."""
+    """Return the conditions of the first turn that are about the current state alone.
+
+    Only a turn of the system has any: a state that violates them is lost.
+    """
     result, first = arena.manager.true, arena.turns[0]
     if first.owner is not Owner.SYSTEM:
         return result
@@ -106,9 +113,10 @@ def state_invariant(arena: Arena) -> Node:
 
 
 def drop_irrelevant_ranges(arena: Arena, goal: int, states: Node) -> Node:
-    """Add invalid codes of variables that the goal does not read to the states.
+    """Drop range conditions from *states* to make the diagram smaller.
 
-    Only variables of which the states require nothing but the range are extended.
+    A range is dropped if the goal does not read the variable and *states* state nothing else about
+    the variable. The caller has to intersect its results with the original states.
     """
     symbols, manager = arena.symbols, arena.manager
     named = symbols.names(arena.goals[goal]) if arena.goals else ()
@@ -123,17 +131,17 @@ def drop_irrelevant_ranges(arena: Arena, goal: int, states: Node) -> Node:
 
 
 MIN_STATE_BITS = 48
-"""Bits of a state from which on the forward search is worthwhile."""
+"""Least number of state bits for which the forward search is worthwhile."""
 MAX_REACHED_NODES = 20_000
-"""Nodes of the reached states, or of one step's, above which the search is abandoned."""
+"""Nodes of the reached states, or of the frontier, above which the forward search is abandoned."""
 MAX_STEPS = 2_000
-"""Steps after which the search is abandoned."""
+"""Steps after which the forward search is abandoned."""
 
 
 def find_reachable_states(arena: Arena) -> Node | None:
-    """Return the states that plays can reach, or None if there are too many or the game is small.
+    """Return the states that plays can reach; None if they are too many or the game is small.
 
-    The result is closed under all allowed turns, so that a verdict can ignore all other states.
+    The result is closed under all turns, so a verdict can ignore all other states.
     """
     bits = _state_bits(arena)
     parts = [part for turn in arena.turns for part in turn.parts]
@@ -157,7 +165,7 @@ def _state_bits(arena: Arena) -> tuple[str, ...]:
 
 
 def _first_states(arena: Arena) -> Node:
-    """Return the states after the first turns, or after the second ones if the arena is ahead."""
+    """Return the states after the start turns of the arena."""
     parts = [part for turn in arena.start for part in turn.parts]
     first = Product(arena.manager, parts, _state_bits(arena) if arena.is_ahead else ())
     states = first(arena.manager.true)
@@ -167,26 +175,26 @@ def _first_states(arena: Arena) -> Node:
 # -- single moves ------------------------------------------------------------------------------
 
 MIN_COMPONENTS = 3
-"""Components from which on joint steps are avoided."""
+"""Least number of components for which single moves are tried."""
 MAX_RULE_NODES = 2_000
-"""Nodes above which a constraint about two variables counts as one that joins them."""
+"""Nodes above which a constraint about two variables is not examined: they count as dependent."""
 
 
 class SingleMoves(Struct, frozen=True):
-    """The turns of all components, then for each component the turns in which only it moves."""
+    """The turns of a step, split for moves of single components."""
 
     shared_turns: tuple[Turn, ...]
+    """The turns before the components move."""
     component_turns: tuple[tuple[Turn, ...], ...]
+    """For each component, the remaining turns in which no other component changes."""
     moving_bits: tuple[tuple[str, ...], ...]
     """For each component, the state bits that may change in its turns."""
 
 
 def find_single_moves(arena: Arena) -> SingleMoves | None:
-    """Return the moves of single components, or None if joint steps are the better choice.
-
-    That is so with fairness assumptions, where the system may have to wait, and without goals,
-    where nothing has to be reached.
-    """
+    """Return the moves of single components, or None if joint moves are the better choice."""
+    # With fairness assumptions the system may have to wait, and without goals there is nothing to
+    # reach step by step. In both cases single moves took up to five times as long (decision 25).
     if arena.fairness or not arena.goals:
         return None
     for index, turn in enumerate(arena.turns):
@@ -197,9 +205,9 @@ def find_single_moves(arena: Arena) -> SingleMoves | None:
 
 
 def _find_components(arena: Arena, turn: Turn) -> tuple[frozenset[str], ...]:
-    """Return the sets of variables whose next values the turn chooses.
+    """Return the components: sets of variables whose next values the turn chooses.
 
-    Variables that can only move together are one component.
+    Variables that a constraint forces to change together are in one component.
     """
     variables = arena.symbols.variables
     chosen_names = [
@@ -218,7 +226,7 @@ def _find_components(arena: Arena, turn: Turn) -> tuple[frozenset[str], ...]:
 
 
 def _cannot_move_alone(arena: Arena, turn: Turn, left_name: str, right_name: str) -> bool:
-    """Return whether some constraint forbids that one of the two moves while the other stays."""
+    """Return whether a constraint forbids that one variable changes while the other does not."""
     manager, symbols = arena.manager, arena.symbols
     bit_sets = [frozenset(symbols.bits(name, primed=True)) for name in (left_name, right_name)]
     for part in turn.parts:
@@ -267,7 +275,7 @@ def _build_single_moves(
 def _restrict_turns(
     manager: Manager, turns: Iterable[Turn], frozen_bits: frozenset[str]
 ) -> Iterator[Turn]:
-    """Yield the turns with the next values of *frozen_bits* equal to the current ones."""
+    """Yield the turns with *frozen_bits* unchanged: their next values equal the current ones."""
     frames = _frame_functions(manager, frozen_bits)
     for turn in turns:
         bits = tuple(bit for bit in turn.bits if bit not in frozen_bits)
@@ -292,7 +300,7 @@ def _current_bit(bit: str) -> str:
 
 @dataclass(slots=True)
 class SingleMoveOperator:
-    """Predecessors if one component moves at a time; used like ``PredecessorOperator``."""
+    """Computes predecessors if one component moves at a time; used like ``PredecessorOperator``."""
 
     arena: Arena
     moves: SingleMoves
@@ -313,17 +321,16 @@ class SingleMoveOperator:
         self._winning, self._closed = manager.true, (False,) * len(self._component_products)
 
     def controllable_predecessors(self, target: Node) -> Node:
-        """Return the states from which the move of some component leads to *target*."""
+        """Return the states from which the move of some component forces *target*."""
         result = self.arena.manager.false
         for index in range(len(self._component_products)):
             result = result | self._predecessors_by_move(index, target)
         return predecessors_through(self._shared_products, result)
 
     def extend_attractor(self, attractor: Node, winning: Node) -> Node:
-        """Return *attractor* and the winning states from which moves of the components lead there.
-
-        The components move one after the other, each of them or only some.
-        """
+        """Return *attractor* and the winning states that reach it by moves of the components."""
+        # Each component continues from the states that the components before it have added, so one
+        # call covers several steps. That is enough for a verdict, which needs no exact layers.
         result = attractor
         for index in range(len(self._component_products)):
             result = result | (
@@ -342,9 +349,9 @@ class SingleMoveOperator:
         return PredecessorOperator(self.arena).wins_initially(winning)
 
     def confine_to(self, winning: Node) -> None:
-        """Allow wrong results outside of *winning* from now on.
+        """Permit arbitrary results outside of *winning* from now on.
 
-        A component whose moves never leave *winning* then uses smaller diagrams.
+        Targets can then be simplified for components whose moves never leave *winning*.
         """
         if winning == self._winning:
             return
@@ -354,7 +361,7 @@ class SingleMoveOperator:
         )
 
     def _predecessors_by_move(self, index: int, target: Node) -> Node:
-        """Return where a component's move leads to *target*, after the shared turns."""
+        """Return the states after the shared turns from which the component can force *target*."""
         self.count += 1
         if self._closed[index]:
             target = self.arena.manager.restrict(target, self._winning)
@@ -363,7 +370,7 @@ class SingleMoveOperator:
         )
 
     def _prime_moving(self, index: int, target: Node) -> Node:
-        """Prime the bits that may change; the others keep their values."""
+        """Prime the bits that the component may change; all other bits keep their values."""
         support = self.arena.manager.support(target)
         moving_bits = (bit for bit in self.moves.moving_bits[index] if bit in support)
         return self.arena.manager.rename(target, {bit: next_bit(bit) for bit in moving_bits})

@@ -2,9 +2,9 @@
 
 Piterman, Pnueli, Sa'ar, Synthesis of Reactive(1) Designs (2006); Bloem, Jobstmann, Piterman,
 Pnueli, Sa'ar (2012). The outer (greatest) fixpoint contains the states from which every goal can
-be reached again. The middle (least) fixpoints are the attractors of the goals, layer by layer. The
-inner (greatest) fixpoints contain states in which the system may stay because a fairness
-assumption does not recur.
+be reached again and again. The middle (least) fixpoints are the attractors of the goals, computed
+layer by layer. The inner (greatest) fixpoints contain the states in which the system may wait
+forever, because a fairness assumption does not recur there.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -29,16 +29,16 @@ from sysmlc.synthesis.games.search_reductions import (
 
 
 class Layer(Struct, frozen=True):
-    """States from which the system comes closer to a goal in one step, or waits.
+    """A layer of the attractor of a goal.
 
-    A state of the layer that is not in the layer before it is in the goal (first layer), can force
-    the layer before, or is in one of ``waiting``.
+    A state that the previous layer does not contain satisfies the goal (first layer), or the system
+    can force the previous layer from it in one step, or it is in one of ``waiting``.
     """
 
     states: Node
     """This layer and all layers before it."""
     waiting: tuple[Node, ...]
-    """For each fairness assumption, states from which the system comes closer, or in which it stays
+    """For each fairness assumption, the states in which the system gets closer to the goal or waits
     while the assumption does not hold."""
 
 
@@ -51,9 +51,10 @@ class Attractor:
     winning: Node
     previous_layers: Sequence[Layer]
     """The layers of the same goal in the previous iteration; they contain the new ones."""
-    is_quick: bool
-    """Whether only the last layer counts. Then a layer contains everything that needs no waiting,
-    and the states added by one assumption count at once for the next assumption."""
+    is_verdict_only: bool
+    """Whether the caller needs only the last layer. Then fewer, larger layers are computed: each is
+    extended without waiting as far as possible, and the states added for one fairness assumption
+    are used for the next one already."""
     _index: int = field(init=False, default=0)
 
     def compute_layers(self, target: Node) -> Iterator[Layer]:
@@ -61,7 +62,11 @@ class Attractor:
         attractor = self.operator.arena.manager.false
         while attractor != self.winning:
             start = target | self.operator.extend_attractor(attractor, self.winning)
-            layer = self._compute_fast_layer(start) if self.is_quick else self._compute_layer(start)
+            layer = (
+                self._compute_fast_layer(start)
+                if self.is_verdict_only
+                else self._compute_layer(start)
+            )
             if layer.states == attractor:
                 return
             yield layer
@@ -80,7 +85,8 @@ class Attractor:
 
     def _compute_fast_layer(self, states: Node) -> Layer:
         previous = self.operator.arena.manager.false
-        # Steps without waiting are cheap: the inner fixpoints start when they lead no further.
+        # Steps without waiting are cheap: the inner fixpoints start when they lead no further. For
+        # robot grid gr_3 that takes 1.9 s instead of 14.9 s (decision 25).
         while states not in (previous, self.winning):
             previous = states
             states = states | self.operator.extend_attractor(states, self.winning)
@@ -94,8 +100,8 @@ class Attractor:
 
     def _waiting_bounds(self) -> tuple[Node, ...]:
         """Return for each assumption a superset of the states in which the system can wait."""
-        # The winning region only shrinks, so a layer never outgrows the same layer of the previous
-        # iteration.
+        # The candidates shrink from iteration to iteration, and the fixpoints are monotonic: the
+        # result of the previous iteration is a start for the greatest fixpoint.
         if self._index < len(self.previous_layers) and self.previous_layers[self._index].waiting:
             bounds = self.previous_layers[self._index].waiting
         else:
@@ -104,8 +110,9 @@ class Attractor:
         return tuple(bound & self.winning for bound in bounds)
 
     def _states_to_wait_in(self, start: Node, unfair: Node, bound: Node) -> Node:
-        """Return *start* and the states of *bound* in which the system can stay *unfair* until it
-        is there.
+        """Return *start* and the states of *bound* in which the system can wait.
+
+        Waiting means to stay in *unfair* states forever, or until *start* is reached.
         """
         states = bound | start
         while True:
@@ -116,17 +123,17 @@ class Attractor:
 
 
 class Solution(Struct, frozen=True):
-    """The result of a game."""
+    """The result of solving a game."""
 
     arena: Arena
     is_realizable: bool
     winning: Node
     """The winning region; a superset of it unless ``is_complete``."""
     is_complete: bool
-    """Whether the fixpoint was computed to its end, which a verdict does not always need."""
+    """Whether the fixpoint was computed to its end; a verdict may be known before."""
     layers: tuple[tuple[Layer, ...], ...]
-    """The layers of each goal, the nearest first; a game without goals has the goal true. Unless
-    ``is_complete``, layers of symmetric goals may be missing."""
+    """The layers of each goal, the nearest first. A game without goals has the single goal true.
+    Unless ``is_complete``, layers of symmetric goals may be missing."""
     rounds: int
     """Number of computed attractors."""
     steps: int
@@ -134,7 +141,7 @@ class Solution(Struct, frozen=True):
 
 
 def solve(game: Game, is_complete: bool = True) -> Solution:
-    """Solve a game as it is written; without *is_complete* only the verdict counts.
+    """Solve a game without encoding it first; with *is_complete* false, compute only the verdict.
 
     Raises LimitError if a limit of the manager is exceeded.
     """
@@ -151,18 +158,18 @@ def solve_arena(arena: Arena, is_complete: bool = True) -> Solution:
             return _Solver(arena, PredecessorOperator(arena), is_complete).run()
         return (
             solve_by_single_moves(arena)
-            or _Solver(arena, _reachable_steps(arena), is_complete).run()
+            or _Solver(arena, _reachable_operator(arena), is_complete).run()
         )
 
 
-def _reachable_steps(arena: Arena) -> PredecessorOperator:
+def _reachable_operator(arena: Arena) -> PredecessorOperator:
     """Return the operator of the arena, restricted to reachable states if they are few."""
     with arena.manager.without_reordering():
         return PredecessorOperator(arena, find_reachable_states(arena))
 
 
 def solve_by_single_moves(arena: Arena) -> Solution | None:
-    """Return a solution if the game is won with moves of one component at a time."""
+    """Return a solution if the game is won with single moves, else None: the verdict is open."""
     moves = find_single_moves(arena)
     if moves is None:
         return None
@@ -204,7 +211,7 @@ class _Solver:
     ) -> tuple[Node, bool]:
         """Process the goals in turn until no goal removes a candidate.
 
-        Return False as the second value if the game was found to be lost before that.
+        The second value is false if the game was found to be lost before the fixpoint was reached.
         """
         winning, stable_goals = self._initial_candidates(), 0
         for goal in cycle(swaps_by_goal):
@@ -220,7 +227,8 @@ class _Solver:
         return winning, True
 
     def _initial_candidates(self) -> Node:
-        """Return the states that satisfy the state invariants of the first turn."""
+        """Return the states with which the greatest fixpoint starts."""
+        # Strategies need the exact winning region, so only a verdict may start with fewer states.
         if self.is_complete:
             return self.arena.states
         candidates = self.arena.states & state_invariant(self.arena)
@@ -233,13 +241,13 @@ class _Solver:
         return self._reach_goal(goal, drop_irrelevant_ranges(self.arena, goal, winning)) & winning
 
     def _goals_without_symmetry(self) -> dict[int, tuple[Swap, ...]]:
-        """Map every goal to no swaps: strategies need the layers of all goals."""
+        """Return all goals as representatives, each without swaps."""
         return dict.fromkeys(range(len(self._goals)), ())
 
     def _is_lost(self, winning: Node) -> bool:
-        """Return whether a cheap test shows that the game is lost."""
-        # Ahead, several turns lie between the first state and the candidates: playing them is not
-        # cheap.
+        """Return whether the candidates show already that the game is lost."""
+        # In an arena that is ahead, several turns lie between the first state and the candidates:
+        # playing them is not cheap.
         if self.arena.is_ahead and winning != self.arena.manager.false:
             return False
         return not self._operator.wins_initially(winning)

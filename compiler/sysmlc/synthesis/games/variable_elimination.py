@@ -1,9 +1,10 @@
 """Elimination of variables that are functions of others in every step.
 
-If one side guarantees ``free' <-> pos'!=3`` from the first step on, it has no choice, so the
-definition replaces the variable everywhere. The definition may be spread over many conjuncts
-(``pos'=0 -> !up'``, ``pos'=3 -> (up' <-> free')``): the condition is that exactly one value is left
-for each value of the other variables. The winning region over the other variables stays the same.
+If the owner of ``free`` must satisfy ``free' <-> pos'!=3`` from the first step on, it has no
+choice, so the definition replaces the variable everywhere. The definition may be spread over many
+conjuncts (``pos'=0 -> !up'``, ``pos'=3 -> (up' <-> free')``). The condition is that the conjuncts
+leave exactly one value for all values of the other variables. The winning region over these stays
+the same.
 """
 
 from collections.abc import Collection, Iterable, Mapping
@@ -25,7 +26,10 @@ _LISTS = (*_STEPS, *_RECURRING)
 
 
 def eliminate_determined_variables(game: Game) -> Game:
-    """Return the game without determined variables; its constraints lose their conjuncts."""
+    """Return the game without determined variables.
+
+    Constraints of the result do not refer to conjuncts of the contract any more.
+    """
     game = merge_parts(game)
     is_changed = True
     while is_changed:
@@ -38,7 +42,7 @@ def eliminate_determined_variables(game: Game) -> Game:
 
 
 def merge_parts(game: Game) -> Game:
-    """Join the constraints of each list that have the same support."""
+    """Conjoin the constraints of each list that have the same support."""
     return _replace_lists(
         game, {name: _merge_by_support(game, getattr(game, name)) for name in _STEPS}
     )
@@ -69,10 +73,12 @@ def _small_conjunction(manager: Manager, conjuncts: Iterable[Node]) -> Node | No
 
 
 class _Definition(Struct, frozen=True):
+    """A variable as a function of others."""
+
     bits: Mapping[str, Node]
     """Each primed bit as a function of primed bits of other variables."""
     parts: tuple[Constraint, ...]
-    """The constraints that state the definition."""
+    """The constraints from which the definition follows, and which it makes true."""
 
 
 def _find_definition(game: Game, name: str) -> _Definition | None:
@@ -97,7 +103,11 @@ def _find_definition(game: Game, name: str) -> _Definition | None:
 def _find_functions(
     manager: Manager, relation: Node, own_bits: frozenset[str], care: Node
 ) -> dict[str, Node] | None:
-    """Return each bit as a function of the other bits if the relation leaves exactly one value."""
+    """Return each bit as a function of the other bits if the relation leaves exactly one value.
+
+    Only assignments in *care* are considered.
+    """
+    # A relation that leaves no value for some assignment restricts the other variables.
     if not care <= manager.exist(own_bits, relation):
         return None
     functions: dict[str, Node] = {}
@@ -125,7 +135,7 @@ def _holds_initially(
 
 
 def _substitute_definition(game: Game, name: str, definition: _Definition) -> Game:
-    """Return the game in which the definition replaces the variable."""
+    """Return the game with the definition in place of the variable."""
     next_bits = dict(definition.bits)
     current_bits = {
         _current_bit(bit): game.symbols.unprime(node) for bit, node in next_bits.items()
@@ -155,7 +165,7 @@ def _compose_part(game: Game, part: Constraint, substitution: Mapping[str, Node]
 
 
 def _replace_lists(game: Game, lists: Mapping[str, Iterable[Constraint]]) -> Game:
-    """Return the game with some lists replaced, without constraints of steps that are true."""
+    """Return the game with some lists replaced; drop constraints that are true, except liveness."""
     true = game.manager.true
 
     def list_parts(kind: str) -> tuple[Constraint, ...]:

@@ -1,6 +1,6 @@
-"""Lints of one contract: promises that nobody can keep, and promises that cost nothing.
+"""Lints of one contract: assumptions and guarantees that are impossible, vacuous or misplaced.
 
-The lints of the text come first, then those that need runs and games.
+Lints of the text come first, then those that explore runs and solve games.
 """
 
 from collections.abc import Callable, Iterator
@@ -24,7 +24,7 @@ Place = Callable[[str], Subject]
 
 
 def lint(contract: Contract, place: Place, sink: Sink, create_manager: ManagerFactory) -> None:
-    """Report suspicious properties of a contract; *create_manager* is called for each question.
+    """Report suspicious properties of a contract; *create_manager* is called for each lint.
 
     Raises OutsideGr1Error for a contract that GR(1) cannot express, LimitError.
     """
@@ -37,15 +37,17 @@ def lint(contract: Contract, place: Place, sink: Sink, create_manager: ManagerFa
             component=contract.component,
             formula=formula,
             name=finding.name,
-            said=finding.said,
+            said=finding.detail,
         )
 
 
 def _find_all(contract: Contract, create_manager: ManagerFactory) -> Iterator[LintFinding]:
     findings = list(check_ownership(contract))
     yield from findings
+    # A liveness conjunct about two steps is outside GR(1), so no game can be built.
     if any(finding.rule is rules.NEXT_IN_LIVENESS for finding in findings):
         return
+    # Without any environment, every further lint would only show a consequence of that.
     if find_environment_run(contract, create_manager()) is None:
         yield LintFinding(rules.NO_ENVIRONMENT)
         return

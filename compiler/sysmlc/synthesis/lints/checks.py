@@ -1,7 +1,8 @@
-"""Lints of the text of a contract, and lints that need games and runs.
+"""Lints of the text of a contract, and lints that explore runs or solve games.
 
-The text shows who decides the assumptions and guarantees. Games and runs show vacuous wins, forced
-environments, missing fairness, dead ends of the environment, and outputs without a frame condition.
+The text shows conjuncts on the wrong side of the contract. Games show vacuous wins, missing or
+needless fairness, and assumptions that the component can force the environment to violate. Runs
+show dead ends of the environment, and outputs without a frame condition.
 """
 
 from collections.abc import Callable, Iterable, Iterator
@@ -37,11 +38,13 @@ class LintFinding(Struct, frozen=True):
     rule: Rule
     conjunct: Conjunct | None = None
     name: str = ""
-    said: str = ""
+    """Value of the placeholder ``name`` in the message of the rule."""
+    detail: str = ""
+    """Value of the placeholder ``said`` in the message of the rule."""
 
 
 def check_ownership(contract: Contract) -> Iterator[LintFinding]:
-    """Yield findings about conjuncts that the other side decides, and about misplaced primes."""
+    """Yield findings about conjuncts that the wrong side decides, and about misplaced primes."""
     owners = {variable.name: variable.owner for variable in contract.variables}
     for conjunct in contract.assumptions:
         if _sole_owner(conjunct, owners) is Owner.SYSTEM:
@@ -57,11 +60,10 @@ def check_ownership(contract: Contract) -> Iterator[LintFinding]:
 
 
 def state_assumptions_of_next_step(contract: Contract) -> Contract:
-    """Return the contract with assumptions about inputs alone stated for the step that they are
-    about.
+    """Return the contract with ``G p`` about inputs alone replaced by ``p`` and ``G (next p)``.
 
-    A game checks ``G p`` in the step after: otherwise it would seem that the environment could
-    break the assumption and reach a dead end, or be forced there.
+    A game checks an assumption without primes one step late. The environment would seem to be able
+    to violate it and to have no next input then, although it chooses the inputs itself.
     """
     inputs = {
         variable.name for variable in contract.variables if variable.owner is Owner.ENVIRONMENT
@@ -70,8 +72,8 @@ def state_assumptions_of_next_step(contract: Contract) -> Contract:
         contract,
         assumptions=tuple(
             assumption
-            for variable in contract.assumptions
-            for assumption in _split_assumption(variable, inputs)
+            for conjunct in contract.assumptions
+            for assumption in _split_assumption(conjunct, inputs)
         ),
     )
 
@@ -116,12 +118,12 @@ def _primed_names(formula: Formula) -> set[str]:
 # -- games and runs ----------------------------------------------------------------------------
 
 ManagerFactory = Callable[[], Manager]
-_MAX_TRIED = 40
-"""Assumptions that are removed one by one to find the culprits."""
+_MAX_REMOVED_ASSUMPTIONS = 40
+"""Assumptions up to which each of them is removed in turn to find the culprits."""
 
 
 def check_games(contract: Contract, create_manager: ManagerFactory) -> Iterator[LintFinding]:
-    """Yield findings about how a contract is won or lost; every game has its own manager."""
+    """Yield findings about the games of a contract and of variants of it."""
     if not is_won(contract, create_manager):
         yield from _suggest_fairness(contract, create_manager)
     elif _has_liveness((*contract.assumptions, *contract.guarantees)) and is_won(
@@ -131,7 +133,7 @@ def check_games(contract: Contract, create_manager: ManagerFactory) -> Iterator[
     elif _has_liveness(contract.assumptions) and _has_liveness(contract.guarantees):
         yield from _check_needless_fairness(contract, create_manager)
     if is_forced(contract, create_manager):
-        yield LintFinding(rules.NOT_SEPARATED, said=_describe_culprits(contract, create_manager))
+        yield LintFinding(rules.NOT_SEPARATED, detail=_describe_culprits(contract, create_manager))
 
 
 def is_won(contract: Contract, create_manager: ManagerFactory) -> bool:
@@ -142,7 +144,7 @@ def is_won(contract: Contract, create_manager: ManagerFactory) -> bool:
 def _check_needless_fairness(
     contract: Contract, create_manager: ManagerFactory
 ) -> Iterator[LintFinding]:
-    """Report liveness guarantees that hold although no liveness assumption does."""
+    """Yield a finding if the contract is realizable without its liveness assumptions, too."""
     safety_assumptions = tuple(
         assumption for assumption in contract.assumptions if assumption.class_ is not Class.LIVENESS
     )
@@ -155,12 +157,10 @@ def _has_liveness(conjuncts: Iterable[Conjunct]) -> bool:
 
 
 def _with_idle_outputs(contract: Contract) -> Contract:
-    """Return the contract with all outputs constant."""
+    """Return the contract with the additional guarantee that all outputs stay constant."""
     outputs = [variable.name for variable in contract.variables if variable.owner is Owner.SYSTEM]
     frames = (f.eq(Var(name, primed=True), Var(name)) for name in outputs)
-    frame_conjuncts = tuple(
-        Conjunct(variable, Class.SAFETY, contract.origin) for variable in frames
-    )
+    frame_conjuncts = tuple(Conjunct(frame, Class.SAFETY, contract.origin) for frame in frames)
     return replace(contract, guarantees=(*contract.guarantees, *frame_conjuncts))
 
 
@@ -168,7 +168,8 @@ def _with_idle_outputs(contract: Contract) -> Contract:
 
 
 def _suggest_fairness(contract: Contract, create_manager: ManagerFactory) -> Iterator[LintFinding]:
-    """Report an assumption that would make an unrealizable contract realizable."""
+    """Yield a finding with a liveness assumption that makes an unrealizable contract realizable."""
+    # Fairness helps only if the safety guarantees alone are realizable.
     safety_guarantees = tuple(
         guarantee for guarantee in contract.guarantees if guarantee.class_ is not Class.LIVENESS
     )
@@ -183,7 +184,7 @@ def _suggest_fairness(contract: Contract, create_manager: ManagerFactory) -> Ite
             extended_contract, create_manager
         ):
             text = f", for instance if '{print_formula(condition)}' recurred"
-            yield LintFinding(rules.NO_FAIRNESS, said=text)
+            yield LintFinding(rules.NO_FAIRNESS, detail=text)
             return
 
 
@@ -194,6 +195,7 @@ def _input_predicates(contract: Contract) -> Iterator[Formula]:
 
 
 def _value_predicates(variable: Variable) -> Iterator[Formula]:
+    """Yield the predicates that a Boolean or an enumeration has one of its values."""
     match variable.domain:
         case BooleanDomain():
             yield f.var(variable.name)
@@ -209,13 +211,14 @@ def _value_predicates(variable: Variable) -> Iterator[Formula]:
 
 
 def is_forced(contract: Contract, create_manager: ManagerFactory) -> bool:
-    """Return whether the component, keeping its safety guarantees, can force the environment to
-    break the assumptions from some reachable state.
+    """Return whether the component can force the environment to violate its assumptions.
 
-    Klein and Pnueli (2010), Maoz and Ringert (2016): the component wins although its goal is
-    impossible. They let it break its own safety guarantees too, which a component that wins may
-    not.
+    That is: from some reachable state it can do so while it satisfies its own safety guarantees
+    (well-separation: Klein and Pnueli 2010, Maoz and Ringert 2016).
     """
+    # A component whose only goal is impossible wins only if the environment violates an assumption.
+    # In the literature it may violate its safety guarantees, too. Here it may not, since a
+    # component that wins its contract may not either.
     impossible_goal = Conjunct(f.FALSE, Class.LIVENESS, contract.origin)
     safety_guarantees = tuple(
         guarantee for guarantee in contract.guarantees if guarantee.class_ is not Class.LIVENESS
@@ -231,8 +234,8 @@ def is_forced(contract: Contract, create_manager: ManagerFactory) -> bool:
 
 
 def _describe_culprits(contract: Contract, create_manager: ManagerFactory) -> str:
-    """Name the assumptions without which the others cannot be broken by force."""
-    if len(contract.assumptions) > _MAX_TRIED:
+    """Return a text with the assumptions whose removal makes the contract well-separated."""
+    if len(contract.assumptions) > _MAX_REMOVED_ASSUMPTIONS:
         return ""
     culprits = [
         assumption
@@ -251,7 +254,7 @@ def _without_assumption(contract: Contract, conjunct: Conjunct) -> Contract:
 
 
 _MIN_QUANTITY_VALUES = 3
-"""Values from which on an integer is a quantity, which should not jump."""
+"""Least number of values of an integer that counts as a quantity; quantities should not jump."""
 
 
 def check_runs(contract: Contract, manager: Manager) -> Iterator[LintFinding]:
@@ -267,14 +270,14 @@ def _check_game(contract: Contract, game: Game) -> Iterator[LintFinding]:
     can_continue = Product(manager, _nodes_of(game.assumptions), game.next_inputs)(manager.true)
     dead_ends = reachable & ~can_continue
     if dead_ends != manager.false:
-        yield LintFinding(rules.DEADLOCK, said=_describe_state(game, dead_ends))
+        yield LintFinding(rules.DEADLOCK, detail=_describe_state(game, dead_ends))
     for variable in contract.variables:
-        if variable.owner is Owner.SYSTEM and not _has_unique_value(game, variable):
+        if variable.owner is Owner.SYSTEM and not _is_always_restricted(game, variable):
             yield from _check_frame(game, variable, reachable & can_continue)
 
 
 def system_of_game(game: Game) -> FairSystem:
-    """Return the runs of all steps that both sides may take."""
+    """Return the fair system of all steps that assumptions and guarantees allow."""
     initial = game.manager.true
     for part in (*game.init_assumptions, *game.init_guarantees):
         initial = initial & part.node
@@ -282,24 +285,26 @@ def system_of_game(game: Game) -> FairSystem:
     return FairSystem(game.symbols, initial, parts, _nodes_of(game.fairness))
 
 
-def _has_unique_value(game: Game, variable: Variable) -> bool:
-    """Return whether single guarantees determine the output; most guarantees are about one
-    output.
+def _is_always_restricted(game: Game, variable: Variable) -> bool:
+    """Return whether some guarantee always restricts the output, examining one guarantee at a time.
+
+    A cheap test that often succeeds, because most guarantees are about a single output.
     """
     manager = game.manager
     bits = game.symbols.bits(variable.name, primed=True)
     other_bits = [bit for bit in game.next_outputs if bit not in bits]
-    ambiguous = manager.true
+    # The states and next inputs in which every guarantee examined so far allows all values.
+    unrestricted = manager.true
     for node in _nodes_of(game.guarantees):
         if not manager.support(node).isdisjoint(bits):
-            ambiguous = ambiguous & _states_allowing_any_value(
+            unrestricted = unrestricted & _states_allowing_any_value(
                 game, variable, manager.exist(other_bits, node)
             )
-    return ambiguous == manager.false
+    return unrestricted == manager.false
 
 
 def _states_allowing_any_value(game: Game, variable: Variable, node: Node) -> Node:
-    """Return the states in which each next value of the output is possible."""
+    """Return the states and next inputs for which *node* allows all next values of the output."""
     manager, states = game.manager, game.manager.true
     bits = game.symbols.bits(variable.name, primed=True)
     for value in values(variable.domain):
@@ -309,6 +314,7 @@ def _states_allowing_any_value(game: Game, variable: Variable, node: Node) -> No
 
 
 def _check_frame(game: Game, variable: Variable, states: Node) -> Iterator[LintFinding]:
+    """Yield a finding if the output has no frame condition in *states*."""
     product = Product(game.manager, _nodes_of(game.assumptions), game.next_inputs)
     unconstrained = _states_without_frame(game, variable)
     if _is_quantity(variable):
@@ -322,7 +328,7 @@ def _check_frame(game: Game, variable: Variable, states: Node) -> Iterator[LintF
         condition_text = (
             f"where {_describe_state(game, condition)}" if condition != states else "in any step"
         )
-        yield LintFinding(rules.NO_FRAME, name=variable.name, said=condition_text)
+        yield LintFinding(rules.NO_FRAME, name=variable.name, detail=condition_text)
 
 
 def _is_quantity(variable: Variable) -> bool:
@@ -331,7 +337,10 @@ def _is_quantity(variable: Variable) -> bool:
 
 
 def _states_without_frame(game: Game, variable: Variable) -> Node:
-    """Return where every next value is possible, each with some values of the other outputs."""
+    """Return the states and next inputs for which the guarantees allow all next values.
+
+    Each value may need other values of the other outputs.
+    """
     manager = game.manager
     bits = game.symbols.bits(variable.name, primed=True)
     other_bits = [bit for bit in game.next_outputs if bit not in bits]
@@ -344,7 +353,7 @@ def _states_without_frame(game: Game, variable: Variable) -> Node:
 
 
 def _describe_state(game: Game, states: Node) -> str:
-    """Describe one of the states by the variables on which the states depend."""
+    """Return one of the states as text, without variables on which *states* do not depend."""
     symbols, manager = game.symbols, game.manager
     all_bits = symbols.all_bits(symbols.variables)
     values = symbols.decode(manager.pick(states, all_bits) or {})
