@@ -16,7 +16,9 @@ from sysmlc.ir.compare.pairs import (
     pair_by_move,
     pair_by_name,
 )
-from sysmlc.ir.compare.plants import (
+from sysmlc.ir.compare.refinement import BothFingerprints, pair_by_choice, pair_by_surroundings
+from sysmlc.ir.compare.side import (
+    Side,
     follows_internal_element,
     is_own_class,
     is_part_instance,
@@ -24,8 +26,6 @@ from sysmlc.ir.compare.plants import (
     represented_part,
     users_of_own_class,
 )
-from sysmlc.ir.compare.refinement import BothFingerprints, pair_by_choice, pair_by_surroundings
-from sysmlc.ir.compare.side import Side
 from sysmlc.ir.compare.titles import (
     format_ends_with_owners,
     format_value_exactly,

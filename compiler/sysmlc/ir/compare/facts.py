@@ -7,8 +7,7 @@ from typing import NamedTuple
 from msgspec import Struct
 
 from sysmlc.ir.compare.content import ENDS, NOT_CONTENT, TYPES, WIRES, WORDS
-from sysmlc.ir.compare.plants import declared_class, is_own_class, is_part_instance
-from sysmlc.ir.compare.side import Side
+from sysmlc.ir.compare.side import Side, declared_class, is_own_class, is_part_instance
 from sysmlc.ir.compare.titles import (
     format_detail,
     format_ends,

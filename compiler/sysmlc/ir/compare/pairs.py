@@ -9,8 +9,7 @@ from difflib import SequenceMatcher
 
 from sysmlc.ir.compare.content import MOVABLE, is_external
 from sysmlc.ir.compare.facts import BETWEEN, FROM_TO, Fact, iter_facts
-from sysmlc.ir.compare.plants import alternate_id
-from sysmlc.ir.compare.side import Side
+from sysmlc.ir.compare.side import Side, alternate_id
 from sysmlc.ir.element import Element
 from sysmlc.ir.kinds import Kind
 from sysmlc.ir.query import CLASSIFIERS
