@@ -18,7 +18,7 @@ def test_a_package_of_95_blocks_is_split_and_loses_none():
     made = texts(parse_text(f'Package p "Plant"\n{blocks}'))
     names = [f"Plant.{n}-of-3.bdd.puml" for n in (1, 2, 3)]
     assert sorted(made) == names
-    assert all(text.count('\nclass "') <= partitioning.LIMIT for text in made.values())
+    assert all(text.count('\nclass "') <= partitioning.MAX_BOXES for text in made.values())
     assert all(f"part {n} of 3 of Plant" in made[name] for n, name in enumerate(names, 1))
     assert all(any(f"**Block{n}**" in text for text in made.values()) for n in range(95))
 

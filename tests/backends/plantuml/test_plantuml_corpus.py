@@ -6,7 +6,7 @@ import pytest
 from drawing import emitted
 
 from long_runs import quick_first
-from sysmlc.backends.plantuml.partitioning import LIMIT
+from sysmlc.backends.plantuml.partitioning import MAX_BOXES
 from sysmlc.diagnostics import Coverage, Sink
 from sysmlc.driver.reading import read_unit
 from sysmlc.frontends.xmi import FRONTEND
@@ -25,7 +25,7 @@ MODELS = (
     "magicdraw/Wired_Camera_Example.mdzip",
 )
 _BOX = re.compile(r'^(?:class|state|rectangle) "', re.MULTILINE)
-_MANY_NEIGHBOURS = 2 * LIMIT
+_MANY_NEIGHBOURS = 2 * MAX_BOXES
 
 
 @pytest.mark.corpus

@@ -17,7 +17,7 @@ from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind
 from sysmlc.support.plantuml_text import escape_line, format_label, join_rows, shrink
 
 TINTS = 6
-"""Number of tints in ``_style.j2``; further partitions take them again."""
+"""Number of tints in ``_style.j2``; a seventh partition has the tint of the first."""
 
 
 def choose_tint(number: int) -> str:
@@ -31,8 +31,8 @@ _OBJECT_FLOW = "-->"
 _INTERRUPTING = "-[bold]->"
 _PARTITION, _PARAMETER = Kind.PARTITION, Kind.PARAMETER
 _DRAWN = frozenset([*ACTIVITY_NODES, Kind.PARTITION])
-_LABEL = 30
-_FRAME = 60
+_FLOW_LABEL_WIDTH = 30
+_MAX_SIGNATURE = 60
 
 
 def draw_activities(graph: Graph) -> Iterator[Diagram]:
@@ -62,28 +62,31 @@ def draw_whole(graph: Graph, activity: Element) -> GraphView:
 
 @dataclass(slots=True)
 class _ActivityDrawing:
-    """One activity while its view is built; ``homes`` maps the ids of flow ends to node aliases."""
+    """Builder of the view of one activity.
+
+    ``homes`` maps the id of each possible end of a flow (a node or a pin) to the alias of its node.
+    """
 
     graph: Graph
     activity: Element
     inside: list[Element]
-    """The activity and all below it."""
+    """The activity and all its direct and indirect members."""
     aliases: Aliases = field(default_factory=Aliases)
-    homes: dict[str, str] = field(default_factory=dict)
+    alias_by_end: dict[str, str] = field(default_factory=dict)
     tints: dict[str, str] = field(default_factory=dict)
     signature: str = ""
-    """Parameters for the frame; nothing when they are too long for it."""
+    """The parameters in the heading of the frame; empty if the text would be too long."""
 
     def __post_init__(self) -> None:
         text = labels.signature(self.graph, self.activity)
-        self.signature = text if len(text) <= _FRAME else ""
+        self.signature = text if len(text) <= _MAX_SIGNATURE else ""
 
     def build_view(self) -> GraphView:
         top_nodes = [
             node for node in self._list_nodes(self.activity) if self._find_region(node) is None
         ]
         self.tints = self._assign_tints()
-        nodes = (*self._iter_unwritten_partitions(), *map(self._make_node, top_nodes))
+        nodes = (*self._iter_partition_boxes(), *map(self._make_node, top_nodes))
         note_boxes = make_notes(
             self.graph, self.activity, self.aliases, not self.signature, self.inside
         )
@@ -95,6 +98,7 @@ class _ActivityDrawing:
 
     def _find_region(self, node: Element) -> Element | None:
         """Return the interruptible region that contains the node."""
+        # The activity owns the node: regions, like partitions, only refer to their nodes.
         groups = self.graph.targets(node, Edge.IN_PARTITION)
         return next((item for item in groups if item.kind is Kind.STRUCTURED), None)
 
@@ -108,8 +112,8 @@ class _ActivityDrawing:
         groups = self.graph.targets(node, Edge.IN_PARTITION)
         return [group for group in groups if group.kind is Kind.PARTITION]
 
-    def _iter_unwritten_partitions(self) -> Iterator[Node]:
-        """Yield boxes for the partitions that no node has written on it."""
+    def _iter_partition_boxes(self) -> Iterator[Node]:
+        """Yield a box for each partition that appears in the title of no node."""
         for partition in map(self.graph.__getitem__, self.tints):
             nodes = self.graph.sources(partition, Edge.IN_PARTITION)
             if all(node.kind is Kind.CONTROL for node in nodes):
@@ -133,10 +137,12 @@ class _ActivityDrawing:
 
     def _make_node(self, node: Element) -> Node:
         alias = self.aliases.make(node.id, node.name, node.subkind or str(node.kind))
+        # Pins are rows of the action: squares on its border would have their labels on the lines
+        # (decision 10). A flow to a pin therefore ends at the action.
         look = activity_nodes.choose_look(self.graph, node)
-        self.homes[node.id] = alias
-        self.homes.update(dict.fromkeys(look.pins, alias))
-        lanes = self._list_written_partitions(node)
+        self.alias_by_end[node.id] = alias
+        self.alias_by_end.update(dict.fromkeys(look.pins, alias))
+        lanes = self._list_title_partitions(node)
         where = shrink(escape_line(", ".join(f"({lane})" for lane in lanes.values())))
         title = join_rows([where, shrink(escape_line(labels.guillemets(look.words))), look.title])
         return Node(
@@ -150,8 +156,11 @@ class _ActivityDrawing:
             next((self.tints[lane] for lane in lanes if lane in self.tints), ""),
         )
 
-    def _list_written_partitions(self, node: Element) -> dict[str, str]:
-        """Return the names of the node's partitions; diamonds and bars have no room for them."""
+    def _list_title_partitions(self, node: Element) -> dict[str, str]:
+        """Return the names of the node's partitions by id.
+
+        The result is empty for control nodes: PlantUML prints no text in diamonds and bars.
+        """
         partitions = () if node.kind is Kind.CONTROL else self._list_partitions(node)
         return {partition.id: self._format_partition(partition) for partition in partitions}
 
@@ -179,25 +188,32 @@ class _ActivityDrawing:
             target = self.graph.target(flow, Edge.FLOW_TARGET)
             if source is None or target is None:
                 continue
-            if source.id in self.homes and target.id in self.homes:
+            # An end without alias has no shape in this activity, and PlantUML would invent one.
+            if source.id in self.alias_by_end and target.id in self.alias_by_end:
                 yield self._make_line(flow, source, target)
 
     def _iter_handler_lines(self) -> Iterator[Line]:
         """Yield lines from each protected node to the bodies of its exception handlers."""
         for node in (element for element in self.inside if "handlers" in element.attrs):
             for body, types in activity_nodes.iter_handlers(self.graph, node):
-                if node.id in self.homes and body in self.homes:
-                    text = format_label(" ".join(["⚡", ", ".join(types)]).strip(), _LABEL)
-                    yield Line(self.homes[node.id], _INTERRUPTING, self.homes[body], text)
+                if node.id in self.alias_by_end and body in self.alias_by_end:
+                    text = format_label(
+                        " ".join(["⚡", ", ".join(types)]).strip(), _FLOW_LABEL_WIDTH
+                    )
+                    yield Line(
+                        self.alias_by_end[node.id], _INTERRUPTING, self.alias_by_end[body], text
+                    )
 
     def _make_line(self, flow: Element, source: Element, target: Element) -> Line:
         arrow = _CONTROL_FLOW if flow.kind is Kind.CONTROL_FLOW else _OBJECT_FLOW
         if flow.attrs.get("interrupts"):
             arrow = _INTERRUPTING
-        text = format_label(self._format_flow(flow, source, target), _LABEL)
+        text = format_label(self._format_flow(flow, source, target), _FLOW_LABEL_WIDTH)
         owned = [item.id for item in self._list_owned(flow) if item.kind is not Kind.APPLICATION]
         shows = (flow.id, *owned)
-        return Line(self.homes[source.id], arrow, self.homes[target.id], text, shows=shows)
+        return Line(
+            self.alias_by_end[source.id], arrow, self.alias_by_end[target.id], text, shows=shows
+        )
 
     def _format_flow(self, flow: Element, source: Element, target: Element) -> str:
         pins = [item.name for item in (source, target) if item.kind is Kind.PIN and item.name]
@@ -214,16 +230,16 @@ class _ActivityDrawing:
 
 
 def _is_default_guard(flow: Element, source: Element) -> bool:
-    """Whether the guard is the literal true that tools write by themselves.
+    """Whether the guard is the literal ``true`` that tools add to every flow.
 
-    After a decision the literal has a meaning and is shown.
+    After a decision the literal is shown because it tells that this branch is always possible.
     """
     is_literal = flow.attrs.get("guard_literal") is True and flow.attrs.get("guard") == "true"
     return is_literal and source.subkind != "decision"
 
 
 def _is_weighted(weight: AttrValue) -> bool:
-    """Whether the author set the weight: 1 is the default, and Papyrus writes 0 by itself."""
+    """Whether the author set the weight: 1 is the default, and 0 is what Papyrus writes unasked."""
     return weight is not None and str(weight) not in ("0", "1")
 
 

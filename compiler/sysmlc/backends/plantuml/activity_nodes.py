@@ -10,7 +10,7 @@ from sysmlc.backends.plantuml.state_machine import format_trigger
 from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind
 from sysmlc.support.plantuml_text import format_label, wrap_lines
 
-_CONTROL = {
+_CONTROL_SHAPES = {
     "initial": "start",
     "final": "end",
     "flow-final": "flowfinal",
@@ -19,9 +19,9 @@ _CONTROL = {
     "fork": "fork",
     "join": "join",
 }
-_PLAIN = frozenset(["initial", "final"])
-_QUIET = frozenset(["call-behavior", "call-operation", "opaque", ""])
-_WORDS = {
+_WITHOUT_NAME = frozenset(["initial", "final"])
+_WITHOUT_KEYWORD = frozenset(["call-behavior", "call-operation", "opaque", ""])
+_KEYWORDS = {
     "send": "send signal",
     "accept": "accept event",
     "accept-call": "accept call",
@@ -29,11 +29,15 @@ _WORDS = {
     "write": "write",
 }
 _SHAPES = {"accept": "accept", "accept-call": "accept", "send": "send", "broadcast": "send"}
-_ROW = 44
+_ROW_WIDTH = 44
 
 
 class Look(Struct, frozen=True):
-    """The look of a node; ``pins`` and ``shows`` are the ids of the elements that its rows show."""
+    """The look of a node.
+
+    ``words`` are keywords and stereotypes. ``pins`` are the ids of the pins that the rows show, and
+    ``shows`` the ids of the other elements that they show.
+    """
 
     shape: str
     title: str
@@ -54,8 +58,9 @@ def choose_look(graph: Graph, node: Element) -> Look:
 
 
 def iter_handlers(graph: Graph, node: Element) -> Iterator[tuple[str, list[str]]]:
-    """Yield the exception handlers of a protected node: id of the body, names of the exception
-    types.
+    """Yield the exception handlers of a protected node.
+
+    Each is the id of the handler body with the names of the exception types.
     """
     value = node.attrs.get("handlers")
     for handler in value if isinstance(value, tuple) else ():
@@ -73,8 +78,9 @@ def _list_ids(value: AttrValue) -> tuple[str, ...]:
 
 
 def _look_of_control(graph: Graph, node: Element) -> Look:
-    shape = _CONTROL.get(node.subkind, "control")
+    shape = _CONTROL_SHAPES.get(node.subkind, "control")
     if shape == "flowfinal":
+        # State diagrams of PlantUML have no flow final node, so a large sign is drawn as text.
         return Look("flowfinal", "<size:22>⊗</size>")
     return Look(
         shape, format_label(labels.name(node)), note=format_label(_format_control_note(graph, node))
@@ -85,7 +91,7 @@ def _format_control_note(graph: Graph, node: Element) -> str:
     """Return the texts that PlantUML cannot print inside a diamond or a bar."""
     behaviour = graph.get(str(node.attrs.get("decision_input", "")))
     parts = [
-        "" if node.subkind in _PLAIN else node.name,
+        "" if node.subkind in _WITHOUT_NAME else node.name,
         f"«decisionInput» {labels.name(behaviour)}" if behaviour is not None else "",
         f"{{joinSpec = {node.attrs['join_spec']}}}" if node.attrs.get("join_spec") else "",
     ]
@@ -98,6 +104,7 @@ def _look_of_object(graph: Graph, node: Element) -> Look:
         words[Kind.OBJECT_NODE] = ("expansionNode",)
     direction = node.attrs.get("direction")
     applied = labels.list_stereotypes(graph, node)
+    # A node without a name has the name of the parameter or state that it refers to.
     typed = next((t for t in (node, *graph.targets(node, Edge.REFERENCES)) if t.name), node)
     text = labels.format_typed(graph, node)
     if node.kind is Kind.ACTIVITY_PARAMETER:
@@ -155,9 +162,12 @@ def _list_keywords(graph: Graph, node: Element) -> tuple[str, ...]:
         return (str(node.attrs.get("mode") or "parallel"), *applied)
     if node.kind is Kind.STRUCTURED:
         return (node.subkind or "structured", *applied)
-    kind = _WORDS.get(node.subkind, node.subkind.replace("-", " "))
+    # State diagrams of PlantUML have no shapes for accept and send actions (decision 10).
+    kind = _KEYWORDS.get(node.subkind, node.subkind.replace("-", " "))
     return (
-        applied if node.subkind in _QUIET and applied else tuple(w for w in (kind, *applied) if w)
+        applied
+        if node.subkind in _WITHOUT_KEYWORD and applied
+        else tuple(w for w in (kind, *applied) if w)
     )
 
 
@@ -165,24 +175,24 @@ def _iter_body_rows(node: Element) -> Iterator[str]:
     """Yield the body of an opaque action, or the value of a value action."""
     if node.attrs.get("body"):
         for part in labels.literal(node.attrs["body"]).splitlines():
-            yield from wrap_lines(part, _ROW)
+            yield from wrap_lines(part, _ROW_WIDTH)
     if "value" in node.attrs and node.name:
-        yield from wrap_lines(f"= {labels.literal(node.attrs['value'])}", _ROW)
+        yield from wrap_lines(f"= {labels.literal(node.attrs['value'])}", _ROW_WIDTH)
 
 
 def _iter_called_rows(node: Element, behaviours: list[Element]) -> Iterator[str]:
     for item in behaviours:
         if node.name and item.name.lower() != node.name.lower():
-            yield from wrap_lines(f"calls {labels.name(item)}", _ROW)
+            yield from wrap_lines(f"calls {labels.name(item)}", _ROW_WIDTH)
 
 
 def _iter_detail_rows(graph: Graph, node: Element, details: list[Element]) -> Iterator[str]:
     for item in details:
         if item.kind is Kind.TRIGGER:
             text = format_trigger(graph, item)
-            yield from wrap_lines(text, _ROW) if text != node.name else ()
+            yield from wrap_lines(text, _ROW_WIDTH) if text != node.name else ()
         else:
-            yield from wrap_lines(labels.condition(item), _ROW)
+            yield from wrap_lines(labels.condition(item), _ROW_WIDTH)
 
 
 def _format_pin(graph: Graph, pin: Element) -> tuple[str, ...]:
@@ -192,4 +202,4 @@ def _format_pin(graph: Graph, pin: Element) -> tuple[str, ...]:
     value = f" = {labels.literal(pin.attrs['value'])}" if "value" in pin.attrs else ""
     unit = f" {pin.attrs['value_unit']}" if "value_unit" in pin.attrs else ""
     text = f"{direction} {labels.format_typed(graph, pin, name)}{value}{unit}".strip()
-    return wrap_lines(text, _ROW)
+    return wrap_lines(text, _ROW_WIDTH)

@@ -58,6 +58,8 @@ class PlantUml(Struct, frozen=True):
 
     def emit(self, graph: Graph, output: Output, sink: Sink, options: EmitOptions) -> None:
         """Write every diagram that is not empty; report the elements that no diagram shows."""
+        # The views of nested states are built by recursion; 200 levels of nesting exceeded the
+        # limit of the interpreter.
         with allow_recursion(state_machine.find_depth(graph)):
             self._emit(graph, output, sink, options)
 
@@ -66,6 +68,7 @@ class PlantUml(Struct, frozen=True):
             traced = [
                 _Traced(diagram, diagram.list_trace()) for kind in KINDS for diagram in kind(graph)
             ]
+            # Author diagrams do not count: an element in none of the derived diagrams is reported.
             undrawn.report_undrawn(graph, {id for item in traced for id in item.trace}, sink)
             report_overtaken_messages(graph, sink)
             _write(graph, traced, "", output, sink, options)
@@ -94,6 +97,7 @@ def _write(
 ) -> None:
     if not traced:
         return
+    # groupby needs adjacent kinds; the sort is stable, so that numbers follow the model order.
     traced.sort(key=lambda item: item.diagram.kind)
     with Templates("plantuml", options.templates) as templates:
         for kind, group in groupby(traced, lambda item: item.diagram.kind):

@@ -33,8 +33,8 @@ ACTIVITY_NODES = frozenset(
         Kind.ACTIVITY_PARAMETER,
     ]
 )
-_WITH_BOX = frozenset([*BOXES, Kind.ACTIVITY])
-_UPWARDS = {"--|>": "<|--", "..|>": "<|.."}
+_BOX_KINDS = frozenset([*BOXES, Kind.ACTIVITY])
+_REVERSED_ARROWS = {"--|>": "<|--", "..|>": "<|.."}
 _DRAWN_AS_LINE = frozenset(["part", "reference"])
 
 
@@ -43,23 +43,25 @@ def draw_block_definitions(graph: Graph) -> Iterator[Diagram]:
     candidates = [
         relation for relation in list_relations(graph) if _is_between_boxes(graph, relation)
     ]
-    homes = _group_classifiers(graph)
-    relations_of = _group_by_package(candidates, homes)
-    for package, classifiers in homes.items():
+    classifiers_by_package = _group_classifiers(graph)
+    relations_of = _group_by_package(candidates, classifiers_by_package)
+    for package, classifiers in classifiers_by_package.items():
         ids = tuple(item.id for item in classifiers)
         package_relations = tuple(relations_of.get(package, ()))
         yield from _draw_package(graph, package, ids, package_relations)
 
 
 def _group_by_package(
-    candidates: Iterable[Relation], homes: Mapping[str | None, list[Element]]
+    candidates: Iterable[Relation], classifiers_by_package: Mapping[str | None, list[Element]]
 ) -> dict[str | None, list[Relation]]:
     """Return the relations that the diagrams of each package show, in their order.
 
     A relation belongs to the package of its source; if no diagram shows the source, to the package
     of its target.
     """
-    package_of = {item.id: package for package, items in homes.items() for item in items}
+    package_of = {
+        item.id: package for package, items in classifiers_by_package.items() for item in items
+    }
     groups: dict[str | None, list[Relation]] = {}
     for relation in candidates:
         end = relation.source if relation.source in package_of else relation.target
@@ -72,14 +74,16 @@ def _group_classifiers(graph: Graph) -> dict[str | None, list[Element]]:
     """Return the classifiers that each package shows: its own and those nested in its
     classifiers.
     """
-    homes: dict[str | None, list[Element]] = {}
+    classifiers_by_package: dict[str | None, list[Element]] = {}
     of_use_cases = use_case.find_use_case_actors(graph)
     for root in graph.roots():
         for element in graph.subtree(root):
-            is_shown = element.kind in _WITH_BOX and _is_shown(graph, element)
+            is_shown = element.kind in _BOX_KINDS and _is_shown(graph, element)
             if is_shown and element.id not in of_use_cases:
-                homes.setdefault(labels.find_package(graph, element), []).append(element)
-    return homes
+                classifiers_by_package.setdefault(labels.find_package(graph, element), []).append(
+                    element
+                )
+    return classifiers_by_package
 
 
 def is_block(element: Element) -> bool:
@@ -89,7 +93,10 @@ def is_block(element: Element) -> bool:
 
 
 def _is_shown(graph: Graph, element: Element) -> bool:
-    """Whether a diagram shows the element; a behaviour without a diagram of its own has a box."""
+    """Whether a block definition diagram shows the element.
+
+    An activity has a box if it has no activity diagram and no classifier owns it.
+    """
     if element.kind is not Kind.ACTIVITY and not is_block(element):
         return False
     owner = graph.owner(element)
@@ -103,8 +110,9 @@ def _is_shown(graph: Graph, element: Element) -> bool:
 
 
 def is_in_frame(graph: Graph, instance: Element) -> bool:
-    """Whether an internal block diagram shows the instance, in its own frame or in that of an
-    owner.
+    """Whether an internal block diagram shows the instance.
+
+    It does if the instance, or an instance that contains it, owns a connector.
     """
     around = (instance, *graph.ancestors(instance))
     frames = (outer for outer in around if outer.kind is Kind.INSTANCE)
@@ -115,6 +123,7 @@ def _draw_package(
     graph: Graph, package: str | None, ids: tuple[str, ...], candidates: tuple[Relation, ...]
 ) -> Iterator[Diagram]:
     about, own_ids = graph.get(package), set(ids)
+    # A part whose type another package shows is a row: a grey box would carry a name only.
     in_rows = {r.row: r.shows for r in candidates if r.row and r.target not in own_ids}
     lines = [relation for relation in candidates if relation.row not in in_rows]
     lines += _list_containments(graph, [graph[id] for id in ids])
@@ -146,8 +155,8 @@ def _is_boxable(element: Element) -> bool:
     return element.kind in _BOXABLE and element.role != "requirement"
 
 
-_STUBS = (Kind.ACTIVITY, Kind.STATE_MACHINE, Kind.USE_CASE, Kind.UNIT, Kind.PACKAGE)
-_BOXABLE = frozenset([*BOXES, *_STUBS])
+_STUB_KINDS = (Kind.ACTIVITY, Kind.STATE_MACHINE, Kind.USE_CASE, Kind.UNIT, Kind.PACKAGE)
+_BOXABLE = frozenset([*BOXES, *_STUB_KINDS])
 
 
 def _list_containments(graph: Graph, classifiers: list[Element]) -> list[Relation]:
@@ -160,7 +169,7 @@ def _list_containments(graph: Graph, classifiers: list[Element]) -> list[Relatio
 
 
 def find_neighbours(ids: set[str], candidates: Iterable[Relation]) -> dict[str, list[str]]:
-    """Return, for each of *ids*, the ids that relations connect it with."""
+    """Return the ids that are connected by relations with each of *ids*."""
     adjacency: dict[str, list[str]] = {id: [] for id in sorted(ids)}
     for relation in candidates:
         for end, opposite_end in (
@@ -173,7 +182,9 @@ def find_neighbours(ids: set[str], candidates: Iterable[Relation]) -> dict[str, 
 
 
 def _belongs_to_part(relation: Relation, part: set[str], own: set[str]) -> bool:
-    """Whether a part of a split package shows the relation: at its source, else at its own
+    """Whether this part of a package that was split shows the relation.
+
+    The part with the source shows it; if the source belongs to another package, the part with the
     target.
     """
     return relation.source in part or (relation.source not in own and relation.target in part)
@@ -182,8 +193,9 @@ def _belongs_to_part(relation: Relation, part: set[str], own: set[str]) -> bool:
 def _list_property_lines(
     graph: Graph, shown: list[Element], inside: Iterable[Relation]
 ) -> list[Relation]:
-    """Return parts and references without association whose type has a box, as lines instead of
-    rows.
+    """Return lines for the parts and references whose types have boxes in the diagram.
+
+    Only properties without an association are considered: the association has a line already.
     """
     boxes = {item.id for item in shown}
     shown_ids = {id for relation in inside for id in relation.shows}
@@ -210,7 +222,11 @@ def _build_view(
     in_rows: Mapping[str, tuple[str, ...]],
     rows: Mapping[str, list[Relation]],
 ) -> BoxView:
-    """Build the view; *in_rows* maps a property to the other ids that its row shows."""
+    """Build the view of *shown* and of the relations *inside* the diagram.
+
+    *in_rows* maps a property to the further ids that its row shows; *rows* has the relations that
+    became rows of a box.
+    """
     aliases = Aliases()
     in_lines = {id for relation in inside for id in relation.shows}
     boxes = [make_box(graph, item, aliases, in_lines, in_rows) for item in shown]
@@ -224,11 +240,14 @@ def _build_view(
 
 
 def make_line(relation: Relation, aliases: Aliases | Mapping[str, str]) -> Line:
-    """Return the line between the aliases of both ends; the general classifier stands above."""
-    if relation.arrow in _UPWARDS:
+    """Return the line between the aliases of both ends of the relation.
+
+    A generalization starts at the general classifier, which PlantUML then draws above.
+    """
+    if relation.arrow in _REVERSED_ARROWS:
         upper, lower = aliases[relation.target], aliases[relation.source]
         text = format_keyword_label(relation.label)
-        return Line(upper, _UPWARDS[relation.arrow], lower, text, shows=relation.shows)
+        return Line(upper, _REVERSED_ARROWS[relation.arrow], lower, text, shows=relation.shows)
     return Line(
         aliases[relation.source],
         relation.arrow,
@@ -241,7 +260,7 @@ def make_line(relation: Relation, aliases: Aliases | Mapping[str, str]) -> Line:
 
 
 MAX_FOREIGN_CLIENTS = 3
-"""Foreign clients in one diagram that still are boxes with lines."""
+"""The largest number of clients of other packages that are drawn as boxes with lines."""
 
 _CLIENTS_TITLE = "depended on by"
 _CLIENT_WIDTH = 46
@@ -250,11 +269,11 @@ _CLIENT_WIDTH = 46
 def fold_foreign_clients(
     candidates: Iterable[Relation], own: set[str]
 ) -> tuple[list[Relation], dict[str, list[Relation]]]:
-    """Return the relations that stay lines, and those that become rows, by the id of the box.
+    """Return the relations to draw as lines, and by box the relations to show as rows.
 
-    Dependencies of clients that other diagrams show become rows of the supplier's box if there are
-    more than three: a package of machines on which twenty services depend would otherwise be as
-    wide as twenty grey boxes.
+    If more than three classifiers of other packages depend on the package, their dependencies
+    become rows of the supplier's box: a package of machines on which twenty services depend would
+    otherwise be as wide as twenty grey boxes.
     """
     all_relations = list(candidates)
     inward_relations = [relation for relation in all_relations if _is_inward(relation, own)]

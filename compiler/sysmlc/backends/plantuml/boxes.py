@@ -37,7 +37,7 @@ _TITLES = (
     "parameters constraints operations receptions slots collaborations behaviors allocations"
 )
 _ORDER = tuple(title.replace("_", " ") for title in _TITLES.split())
-_ROW = 64
+_ROW_WIDTH = 64
 
 
 def make_box(
@@ -48,10 +48,10 @@ def make_box(
     in_rows: Mapping[str, tuple[str, ...]],
     features: Sequence[Element] | None = None,
 ) -> Box:
-    """Return the box of a classifier, with all its features in compartments, or only *features*.
+    """Return the box of a classifier, with its features in compartments.
 
-    A feature in *in_lines* is drawn as a line instead of a row; *in_rows* lists further ids that a
-    row shows.
+    If *features* is given, only these have rows. A feature in *in_lines* is drawn as a line, so it
+    has no row; *in_rows* lists further ids that the row of a feature shows.
     """
     rows: dict[str, list[str]] = {}
     shows = [item.id]
@@ -82,13 +82,13 @@ def _find_compartment(feature: Element) -> str:
 def _format_rows(graph: Graph, feature: Element) -> tuple[str, ...]:
     text = _TEXTS.get(feature.kind)
     if text is not None:
-        return wrap_lines(text(graph, feature), _ROW)
+        return wrap_lines(text(graph, feature), _ROW_WIDTH)
     parts = (
         _format_keywords(graph, feature),
         labels.feature(graph, feature),
         _format_value_unit(graph, feature),
     )
-    return wrap_lines(" ".join(part for part in parts if part), _ROW)
+    return wrap_lines(" ".join(part for part in parts if part), _ROW_WIDTH)
 
 
 def _format_behaviour(graph: Graph, feature: Element) -> str:
@@ -106,7 +106,7 @@ _TEXTS: dict[Kind, Callable[[Graph, Element], str]] = {
     Kind.COLLABORATION_USE: labels.collaboration_use,
     Kind.ENUMERATION_LITERAL: lambda _, feature: labels.name(feature),
 }
-"""How features read that are no properties, ports or parameters."""
+"""Functions that format features other than properties, ports and parameters."""
 
 
 def _format_value_unit(graph: Graph, feature: Element) -> str:
@@ -130,7 +130,7 @@ def _format_keywords(graph: Graph, feature: Element) -> str:
 
 
 def make_heading(graph: Graph, item: Element, where: str = "") -> str:
-    """Return the heading of a box: stereotypes, name, and the origin of a foreign element."""
+    """Return the heading of a box: stereotypes, name, and *where* a foreign element is defined."""
     words = shrink(escape_line(labels.guillemets(labels.keywords(graph, item))))
     mark = "//" if item.attrs.get("abstract") else "**"
     is_instance = item.kind is Kind.INSTANCE
@@ -180,7 +180,7 @@ def list_measure_rows(graph: Graph, item: Element) -> tuple[str, ...]:
 
 
 def iter_measure_ids(graph: Graph, item: Element) -> Iterator[str]:
-    """Yield the ids of the units and quantity kinds that the rows show."""
+    """Yield the ids of the units and quantity kinds that ``list_measure_rows`` shows."""
     for element in graph.targets(item, Edge.REFERENCES):
         if is_unit(element) or is_quantity_kind(element):
             yield element.id

@@ -15,10 +15,10 @@ from sysmlc.support.plantuml_text import format_keyword_label, format_label, joi
 
 
 class Path(Struct, frozen=True):
-    """The path to the end of a connection: through ``parts`` and ``ports`` to ``port``.
+    """The path from the frame to the end of a connection, as ids, outermost first.
 
-    All are ids, outermost first. Without a port it ends at the last part, without parts at the
-    frame.
+    It leads through ``parts``, then through the outer ``ports`` of a nested port, to ``port``. A
+    path without ``port`` ends at the last part; a port without ``parts`` is on the frame.
     """
 
     parts: tuple[str, ...] = ()
@@ -27,7 +27,7 @@ class Path(Struct, frozen=True):
 
     @property
     def top(self) -> str:
-        """The id of the part of the frame's block that the path leads into, or an empty text."""
+        """The id of the outermost part, or an empty text for a port of the frame."""
         return self.parts[0] if self.parts else ""
 
     def ids(self) -> tuple[str, ...]:
@@ -51,7 +51,7 @@ class Connection(Struct, frozen=True):
     carried: tuple[tuple[str, str], ...] = ()
 
     def find_top_parts(self) -> set[str]:
-        """Return the ids of the parts of the frame's block that the line connects."""
+        """Return the ids of the outermost parts of both ends."""
         return {end.top for end in (self.source, self.target) if end.top}
 
     def format_label(self) -> str:
@@ -65,11 +65,11 @@ FreeFlow = tuple[str, str, str]
 
 
 def list_connections(graph: Graph, block: Element, flows: Iterable[FreeFlow]) -> list[Connection]:
-    """Return the connectors of the block, item flows without connector, allocations between
-    features.
+    """Return the lines of an internal block diagram of the block.
 
-    *flows* are those of the block (``find_free_flows``). Bindings to constraint parameters stand in
-    the parametric diagram.
+    These are its connectors, its item flows without a connector (*flows*, see ``find_free_flows``)
+    and allocations between its features. Bindings to constraint parameters are omitted, because the
+    parametric diagram shows them.
     """
     members = [item for item in graph.owned(block) if item.kind is Kind.CONNECTOR]
     connectors = [
@@ -82,7 +82,11 @@ def list_connections(graph: Graph, block: Element, flows: Iterable[FreeFlow]) ->
 
 
 def _iter_connector_lines(graph: Graph, connector: Element) -> Iterator[Connection]:
-    """Yield the line, or lines from the first end to all others (UML 2.5.1 clause 11.2.3)."""
+    """Yield the line of a connector.
+
+    A connector with more than two ends (UML 2.5.1 clause 11.2.3) has a line from its first end to
+    each other end.
+    """
     if is_parametric(graph, connector):
         return
     ends = graph.targets(connector, Edge.END)
@@ -127,9 +131,10 @@ def _name_of_end(graph: Graph, path: Path) -> str:
 
 
 def _format_item(text: str, way: str, end_names: Mapping[str, str], is_both: bool) -> str:
-    """Return the text of an item flow; with two directions it names the end that the flow leads to.
+    """Return the text of an item flow.
 
-    A layout may draw either end on the left, so that an arrow sign alone would mislead.
+    If the connector has flows in both directions, the text names the end to which the item flows.
+    An arrow sign would mislead, because the layout may draw either end on the left.
     """
     return f"to {end_names[way]}: {text}" if is_both and way in end_names else text
 
@@ -142,8 +147,7 @@ def is_parametric(graph: Graph, connector: Element) -> bool:
 
 
 def path_of(graph: Graph, end: Element) -> Path | None:
-    """Return the path to a connector end, seen from the connector's owner; None for an end without
-    role.
+    """Return the path from the owner of the connector to its end, or None for an end without role.
 
     A flow property inside a port is drawn as an inner port.
     """
@@ -180,15 +184,16 @@ def _choose_arrow(connector: Element, ways: list[str]) -> str:
 
 
 def _find_direction(graph: Graph, flow: Element, first: Path, second: Path) -> str:
-    """Return ``→`` for a flow from the first end to the second, ``←`` back, ``⇄`` in both
-    directions.
+    """Return the direction of an item flow along a connector from *first* to *second*.
 
-    An unknown direction is ``↔``.
+    ``→`` leads to the second end, ``←`` to the first, ``⇄`` in both directions; ``↔`` is an unknown
+    direction.
     """
     sources = {item.id for item in graph.targets(flow, Edge.FLOW_SOURCE)}
     targets = {item.id for item in graph.targets(flow, Edge.FLOW_TARGET)}
     if runs_both_ways(graph, flow):
         return "⇄"
+    # Tools let a flow refer to parts, ports or only to their types; exact matches weigh more.
     forward = _count_matches(graph, first, sources) + _count_matches(graph, second, targets)
     back = _count_matches(graph, second, sources) + _count_matches(graph, first, targets)
     if forward == back:
@@ -197,7 +202,10 @@ def _find_direction(graph: Graph, flow: Element, first: Path, second: Path) -> s
 
 
 def _count_matches(graph: Graph, path: Path, ids: set[str]) -> int:
-    """Return 2 if the flow names an element of the path, 1 if it names the type of one, else 0."""
+    """Return how well *ids*, the ends of a flow, match the path.
+
+    2: they contain an element of the path; 1: they contain the type of such an element; 0: neither.
+    """
     if ids & set(path.ids()):
         return 2
     steps = [graph[id] for id in path.ids()]
@@ -245,14 +253,15 @@ def _make_direct_path(feature: Element) -> Path:
     return Path(port=feature.id) if _is_port(feature) else Path((feature.id,))
 
 
-# The template gives these PlantUML variables their colours and line styles; a name of the model
-# never has a ``$`` that is not escaped.
+# The template assigns colours and line styles to these variables of PlantUML. A name of the model
+# cannot refer to them, because ``$`` is escaped in names.
 
 
 def style_arrow(arrow: str, domain: str) -> str:
     """Return the arrow in the style of a domain; an arrow with a style of its own is unchanged."""
     if domain not in DOMAINS or "[" in arrow:
         return arrow
+    # PlantUML reads the style between the two signs of a line: ``-[$physical_line]-``.
     for sign in ("-", "."):
         if sign * 2 in arrow:
             return arrow.replace(sign * 2, f"{sign}[${domain}_line]{sign}", 1)

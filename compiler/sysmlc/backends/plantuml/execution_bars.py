@@ -1,4 +1,7 @@
-"""Execution bars across the operands of a combined fragment, of which only one runs."""
+"""Execution bars of lifelines in the operands of a combined fragment.
+
+Operands are alternatives, so each begins with the bars that are open before the fragment.
+"""
 
 from collections import Counter
 from collections.abc import Iterator, Sequence
@@ -9,12 +12,12 @@ _CHANGES = {"activate": 1, "deactivate": -1}
 
 
 def balance_operands(contents: Sequence[Sequence[Step]]) -> list[list[Step]]:
-    """Return the steps of the operands, so that each begins with the bars that the first begins
-    with.
+    """Return the steps of the operands with corrections, and a list of steps after the fragment.
 
-    PlantUML continues from one operand to the next as if all of them ran. Bars are corrected after
-    the first message, because one line cannot end and start a bar. The last list closes the bars
-    that end in any of the operands.
+    PlantUML continues the bars of one operand in the next, as if the operands ran in sequence. The
+    corrections restore the bars that were open before the fragment; they follow the first message
+    of the operand, because PlantUML cannot end and start a bar on one line. The last list changes
+    the bars by the sum of what the operands change.
     """
     balanced: list[list[Step]] = []
     open_bars: Counter[str] = Counter()
@@ -36,7 +39,7 @@ def _correct(content: Sequence[Step], open_bars: Counter[str]) -> list[Step]:
 
 
 def _count_bars(steps: Sequence[Step]) -> Counter[str]:
-    """Return by how many bars each lifeline has more (or less) after the steps."""
+    """Return, by lifeline, how many bars the steps open, minus those that they close."""
     bars: Counter[str] = Counter()
     for step in steps:
         if step.word in _CHANGES:

@@ -1,6 +1,7 @@
 """Internal block diagrams: one for each block with connectors or item flows between its parts.
 
-An instance, and a hierarchy of AutomationML whose instances are linked, have one too.
+There is also a diagram for each instance, and for each instance hierarchy of AutomationML, that has
+connections between its instances.
 """
 
 from collections.abc import Iterator
@@ -23,12 +24,12 @@ from sysmlc.ir.query.classifiers import unit_of
 from sysmlc.support.plantuml_text import escape_line, format_label, join_rows, shrink, wrap_lines
 
 FORMS = {"in": "portin", "out": "portout"}
-"""How ports are drawn, by direction."""
+"""PlantUML's keyword for a port, by direction: ``portin`` stands on the left."""
 _CLASSES = (Kind.CLASS, Kind.COMPONENT)
 _DRAWN_ROLES = frozenset(["part", "reference"])
 _PORT_WIDTH = 24
 _TYPE = (Edge.TYPED_BY, Edge.INSTANCE_OF)
-"""What leads from a part to its type, and from an instance that is drawn like one."""
+"""The edge to the type: of a part, and of an instance that is drawn as a part."""
 
 
 def draw_internal_blocks(graph: Graph) -> Iterator[Diagram]:
@@ -65,7 +66,7 @@ def _format_keywords(graph: Graph, block: Element) -> str:
 
 
 def _format_title(graph: Graph, block: Element) -> str:
-    """Return the name of the block; an instance with its classifier."""
+    """Return the name of the block, or ``name : Classifier`` of an instance."""
     classifier = _classifier_of(graph, block)
     if classifier is block:
         return labels.name(block)
@@ -73,7 +74,7 @@ def _format_title(graph: Graph, block: Element) -> str:
 
 
 def _classifier_of(graph: Graph, block: Element) -> Element:
-    """Return the element whose parts and ports the frame shows: the classifier of an instance."""
+    """Return the owner of the drawn parts: the classifier of an instance, else the block itself."""
     classifier = graph.target(block, Edge.INSTANCE_OF) if block.kind is Kind.INSTANCE else None
     return block if classifier is None else classifier
 
@@ -83,7 +84,8 @@ def _partition(
 ) -> list[tuple[list[Element], list[Connection]]]:
     """Return groups of parts, each with all connections of its parts.
 
-    A connection between two groups is drawn in both; the foreign part is a neighbour there.
+    A connection between two groups is drawn in both diagrams, and each shows the part of the other
+    group at the end of the line.
     """
     tops = _list_top_parts(graph, block, block_connections)
     adjacency: dict[str, list[str]] = {part.id: [] for part in tops}
@@ -92,8 +94,8 @@ def _partition(
         if source in adjacency and target in adjacency and source != target:
             adjacency[source].append(target)
             adjacency[target].append(source)
-    sizes = {part.id: 1 + _count_nested_parts(part.id, block_connections) for part in tops}
     # A part fills the diagram with its nested parts, so they count, too.
+    sizes = {part.id: 1 + _count_nested_parts(part.id, block_connections) for part in tops}
     groups = partitioning.partition([part.id for part in tops], adjacency, sizes=sizes) or [[]]
     if len(groups) == 1:
         return [(tops, block_connections)]
@@ -110,7 +112,10 @@ def _make_group(
     block_connections: list[Connection],
     index: int,
 ) -> tuple[list[Element], list[Connection]]:
-    """Return one group; connections of the frame with itself stand in the first."""
+    """Return the parts and connections of one group.
+
+    The first group also has the connections that lead from the frame to the frame.
+    """
     inside = [
         c
         for c in block_connections
@@ -130,8 +135,9 @@ def _count_nested_parts(top: str, block_connections: list[Connection]) -> int:
 def _list_top_parts(
     graph: Graph, block: Element, block_connections: list[Connection]
 ) -> list[Element]:
-    """Return the parts and references of the block, with inherited and foreign ones that are
-    connected.
+    """Return the parts and references of the block.
+
+    Inherited parts, and parts of other blocks, are included if a connection leads to them.
     """
     properties = list(_iter_properties(graph, block))
     connected = [end.top for c in block_connections for end in (c.source, c.target) if end.top]
@@ -141,8 +147,9 @@ def _list_top_parts(
 
 
 def _iter_properties(graph: Graph, block: Element) -> Iterator[Element]:
-    """Yield the properties of the block; of an instance those of its classifier, with inherited
-    ones.
+    """Yield the properties of the block.
+
+    For an instance, these are the own and inherited properties of its classifier.
     """
     if block.kind is not Kind.INSTANCE:
         yield from (item for item in graph.owned(block) if item.kind is Kind.PROPERTY)
@@ -156,7 +163,7 @@ def _iter_properties(graph: Graph, block: Element) -> Iterator[Element]:
 
 @dataclass(slots=True)
 class _InternalBlockDrawing:
-    """One internal block diagram while its view is built."""
+    """Builder of the view of one internal block diagram."""
 
     graph: Graph
     block: Element
@@ -166,13 +173,14 @@ class _InternalBlockDrawing:
     has_ports: bool = False
     sides: dict[tuple[str, ...], str] = field(default_factory=dict)
     instances: dict[tuple[str, ...], Element] = field(default_factory=dict)
-    """Instances with the values of parts, by the parts that lead to them."""
+    """Instances whose slots have the values of a part, by the path to the part."""
 
     def __post_init__(self) -> None:
         self.sides = find_port_sides(self.connections)
         self.instances |= {(top.id,): top for top in self.tops if top.kind is Kind.INSTANCE}
         worklist: list[tuple[tuple[str, ...], Element]] = [((), self.block)]
         worklist += self.instances.items()
+        # The loop also visits the entries that its body appends.
         for path, owner in worklist:
             for inner in self.graph.owned(owner):
                 part = self.graph.target(inner, Edge.REPRESENTS)
@@ -227,8 +235,9 @@ class _InternalBlockDrawing:
         return labels.guillemets(shown)
 
     def _list_inner_parts(self, path: tuple[str, ...]) -> list[Element]:
-        """Return the parts inside the part at *path* that are connected or have values, in order of
-        use.
+        """Return the parts inside the part at *path* to show: those with connections or values.
+
+        The order is that of their first use.
         """
         ids: dict[str, None] = {}
         for connection in self.connections:
@@ -245,8 +254,9 @@ class _InternalBlockDrawing:
         return [self.graph[id] for id in ids]
 
     def _iter_ports(self, path: tuple[str, ...], owner: Element | None) -> Iterator[PortView]:
-        """Yield all ports of the part's type, inherited ones included, and those that connections
-        name.
+        """Yield the ports of *owner*, the type of the part at *path*.
+
+        Inherited ports are included, and further ports at which connections end.
         """
         type_ports = (
             [port.id for port in _list_ports(self.graph, owner)] if owner is not None else []
@@ -275,11 +285,12 @@ class _InternalBlockDrawing:
         alias = self.aliases.make(_make_key((*path, *key)), port.name, "port")
         text = dotted_name if port.name.strip() else labels.format_typed(self.graph, port)
         form = FORMS.get(self._find_direction(key)) or self.sides.get((*path, *key), "port")
+        # The name lies on the border of the part; white hides the border behind it (decision 10).
         rows = (f"<back:#FFFFFF>{row}</back>" for row in wrap_lines(text, _PORT_WIDTH))
         return PortView(alias, join_rows(rows), form, key)
 
     def _find_direction(self, key: tuple[str, ...]) -> str:
-        """Return the direction of the innermost port; conjugated ports around it reverse it."""
+        """Return the direction of the innermost port; each outer conjugated port reverses it."""
         direction = str(self.graph[key[-1]].attrs.get("direction", ""))
         outer_ports = [self.graph[id] for id in key[:-1]]
         is_turned = len([port for port in outer_ports if port.attrs.get("conjugated")]) % 2 == 1
@@ -340,6 +351,7 @@ def domains_of(lines: list[Connection]) -> tuple[str, ...]:
 
 
 def _make_key(path: tuple[str, ...]) -> str:
+    # XML documents cannot contain U+001F, so that different paths have different keys.
     return "\x1f".join(("part", *path))
 
 
@@ -356,6 +368,7 @@ def _list_ports(graph: Graph, classifier: Element) -> list[Element]:
     """Return the ports of a classifier and of its generalizations, without redefined ports."""
     ports: dict[str, Element] = {}
     visited: dict[str, None] = {}
+    # The loop visits the types that its body appends: breadth first, each once, also in a cycle.
     queue = [classifier]
     for type_ in queue:
         if type_.id not in visited:

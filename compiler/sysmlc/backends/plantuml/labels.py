@@ -1,6 +1,6 @@
-"""Labels of single elements in UML notation (UML 2.5.1, clauses 9 and 11), and notes of behaviours.
+"""Labels of single elements in UML notation (UML 2.5.1, clauses 9 and 11).
 
-Comments and constraints of a behaviour are notes beside its nodes.
+The last section makes notes of the comments and constraints of a behaviour.
 """
 
 import re
@@ -12,15 +12,15 @@ from sysmlc.ir.query import applications, lineage, redefined_features, templates
 from sysmlc.support.plantuml_text import format_label, join_rows, wrap_lines
 
 _TOOL_ID = re.compile(r"_\d+_\d+_\d+_[0-9a-f]+_\d+_\d+_\d+|(EAID)?_[\w-]{20,}")
-"""Ids as MagicDraw, Papyrus and Enterprise Architect make them."""
+"""Ids as MagicDraw, Papyrus and Enterprise Architect generate them."""
 _TOOL_NAMESPACE = re.compile(
     r"https?://www\.magicdraw\.com/(spec/Customization/|schemas/additional_stereotypes)"
 )
-"""MagicDraw's own stereotypes (PartProperty, ValueProperty) repeat what the type says."""
+"""Namespaces of MagicDraw's own stereotypes, such as PartProperty, which repeat the type."""
 _PACKAGES = (Kind.PACKAGE, Kind.PROFILE)
 _MODIFIERS = ("ordered", "readonly", "static")
 _APPLICATION, _PARAMETER = Kind.APPLICATION, Kind.PARAMETER
-"""Members by names of the module: in Python 3.11 those of a class take twice as long."""
+"""Enumeration members as globals: in Python 3.11 access through the class takes twice as long."""
 _ROLE_WORDS = {
     "block": "block",
     "interface block": "interfaceBlock",
@@ -55,7 +55,10 @@ _KIND_WORDS = {
 
 
 def keywords(graph: Graph, element: Element) -> tuple[str, ...]:
-    """Return the stereotypes of the model, else the keyword of the role, else that of the kind."""
+    """Return the words in guillemets: applied stereotypes, else the keyword of role or kind.
+
+    A keyword that no stereotype expresses stands before the stereotypes.
+    """
     stereotypes = list_stereotypes(graph, element)
     by_kind = _KIND_WORDS.get(element.kind, "")
     if stereotypes:
@@ -72,7 +75,10 @@ def keywords(graph: Graph, element: Element) -> tuple[str, ...]:
 
 
 def _find_role_keyword(graph: Graph, element: Element, stereotypes: tuple[str, ...]) -> str:
-    """Return the keyword of a role that no applied stereotype expresses: SysML v2 uses keywords."""
+    """Return the keyword of the role, or an empty text if an applied stereotype expresses the role.
+
+    In SysML v2 the role is expressed by a keyword of the language, never by a stereotype.
+    """
     word = _ROLE_WORDS.get(element.role, "")
     if not word:
         return ""
@@ -94,6 +100,7 @@ def list_stereotypes(graph: Graph, element: Element) -> tuple[str, ...]:
 
 
 def _is_shown(application: Element) -> bool:
+    # The stereotype is applied to a part of the element that has no element of its own.
     if "on" in application.attrs:
         return False
     return not _TOOL_NAMESPACE.match(str(application.attrs.get("namespace", "")))
@@ -109,7 +116,10 @@ def guillemets(words: Iterable[str]) -> str:
 
 
 def name(element: Element) -> str:
-    """Return the element's name, or its kind if it has none; a stub may be named by a tool's id."""
+    """Return the element's name, or its kind if it has none.
+
+    A stub is called "external" if its only name is an id that a tool generated.
+    """
     if element.attrs.get("external") and _TOOL_ID.fullmatch(element.name):
         return "external"
     return element.name.strip() or str(element.attrs.get("subkind") or element.kind)
@@ -275,16 +285,17 @@ def _name_of_redefined(graph: Graph, feature: Element) -> str:
 
 
 def _lower_first(text: str) -> str:
-    """Return ``ValueType`` as SysML prints it, ``valueType``; abbreviations (``SD_DD``) are
-    unchanged.
+    """Return the name of a stereotype as SysML prints it: ``valueType`` for ``ValueType``.
+
+    Abbreviations such as ``SD_DD`` are unchanged.
     """
     return text[:1].lower() + text[1:] if text[1:2].islower() else text
 
 
 # -- notes of behaviours -----------------------------------------------------------------------
 
-_WIDTH = 48
-_NOTED = (Kind.COMMENT, Kind.CONSTRAINT)
+_NOTE_WIDTH = 48
+_NOTE_KINDS = (Kind.COMMENT, Kind.CONSTRAINT)
 _FEATURES = (Kind.PROPERTY, Kind.PORT, Kind.OPERATION, Kind.RECEPTION)
 
 
@@ -301,7 +312,7 @@ def make_notes(
     texts = tuple(
         _make_note(graph, item, aliases)
         for item in (graph.subtree(behaviour) if inside is None else inside)
-        if item.kind in _NOTED and _is_note(item, behaviour) and format_label(note_text(item))
+        if item.kind in _NOTE_KINDS and _is_note(item, behaviour) and format_label(note_text(item))
     )
     kinds = (Kind.PARAMETER, *_FEATURES) if with_parameters else _FEATURES
     return (*_make_feature_note(graph, behaviour, aliases, kinds), *texts)
@@ -310,13 +321,16 @@ def make_notes(
 def _make_feature_note(
     graph: Graph, behaviour: Element, aliases: Aliases, kinds: tuple[Kind, ...]
 ) -> tuple[Note, ...]:
-    """Return one note with the attributes and operations of the behaviour, which is a class as
-    well.
+    """Return one note with the attributes and operations of the behaviour.
+
+    A behaviour may have them because it is a class (UML 2.5.1, clause 13.2).
     """
     members = [item for item in graph.owned(behaviour) if item.kind in kinds]
     if not members:
         return ()
-    rows = [row for item in members for row in wrap_lines(_format_feature(graph, item), _WIDTH)]
+    rows = [
+        row for item in members for row in wrap_lines(_format_feature(graph, item), _NOTE_WIDTH)
+    ]
     alias = aliases.make(f"features of {behaviour.id}", "", "note")
     return (Note(alias, join_rows(rows), (), tuple(item.id for item in members)),)
 
@@ -336,4 +350,4 @@ def _make_note(graph: Graph, item: Element, aliases: Aliases) -> Note:
     about = about or ([item.owner] if item.owner else [])
     targets = tuple(aliases[id] for id in about if id in aliases)
     alias = aliases.make(item.id, "", "note")
-    return Note(alias, format_label(note_text(item), _WIDTH), targets, (item.id,))
+    return Note(alias, format_label(note_text(item), _NOTE_WIDTH), targets, (item.id,))

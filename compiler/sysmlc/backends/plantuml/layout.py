@@ -1,4 +1,4 @@
-"""Hints for the layout by Graphviz: grids, invisible lines, and the sides of ports."""
+"""Layout hints for Graphviz: lengths of lines, invisible lines, and the sides of ports."""
 
 from collections import Counter
 from collections.abc import Iterator, Sequence
@@ -9,28 +9,32 @@ from msgspec.structs import replace
 from sysmlc.backends.plantuml.connections import Connection, Path
 from sysmlc.backends.plantuml.views import Box, BoxView, Line, PartView
 
-_FEW = 3
-_ROW = 5
+_MIN_COLUMNS = 3
+_BOXES_PER_ROW = 5
 
 
 def arrange_boxes(boxes: Sequence[Box], lines: Sequence[Line]) -> BoxView:
-    """Return the view with unconnected boxes in columns, and with boxes below one box in rows of
-    five.
+    """Return the view with layout hints.
+
+    Boxes without lines form a grid. Boxes below the same box form rows of five.
     """
     connected = {end for line in lines for end in (line.source, line.target)}
     unconnected = [box.alias for box in boxes if box.alias not in connected]
-    columns = max(_FEW, ceil(sqrt(len(unconnected))))
+    columns = max(_MIN_COLUMNS, ceil(sqrt(len(unconnected))))
     pairs = zip(unconnected, unconnected[columns:], strict=False)
     guides = tuple(Line(upper, "-[hidden]-", lower) for upper, lower in pairs)
     return BoxView(tuple(boxes), tuple(_lengthen_lines(lines)), guides)
 
 
 def _lengthen_lines(lines: Sequence[Line]) -> Iterator[Line]:
-    """Yield longer lines for the sixth and later boxes below another, so that they stand lower."""
+    """Lengthen the lines to the sixth and later boxes below the same box.
+
+    PlantUML puts a box one rank lower for each additional sign of its line.
+    """
     counts: Counter[str] = Counter()
     pairs_done: set[tuple[str, str]] = set()
     for line in lines:
-        row = counts[line.source] // _ROW
+        row = counts[line.source] // _BOXES_PER_ROW
         if (line.source, line.target) not in pairs_done:
             counts[line.source] += 1
         pairs_done.add((line.source, line.target))
@@ -45,12 +49,11 @@ def _lengthen_arrow(arrow: str, rows: int) -> str:
 
 
 def iter_port_guides(part: PartView, lines: Sequence[Line]) -> Iterator[Line]:
-    """Yield invisible lines that keep the ports of internal block diagrams on the border of their
-    parts.
+    """Yield invisible lines that hold ports on the border of a part that contains parts.
 
-    PlantUML puts the ports of a side on one rank, so that a line for the first port of each side is
-    enough. A part that has a visible line to that side needs none; another one would only make
-    lines cross.
+    PlantUML puts all ports of one side on one rank, so an invisible line for the first port of each
+    side suffices. It is omitted for an inner part that has a visible line to that side, because it
+    would only make lines cross.
     """
     connected = {frozenset((line.source, line.target)) for line in lines}
     yield from _iter_part_guides(part, connected)
@@ -82,11 +85,12 @@ _Key = tuple[str, ...]
 
 
 def find_port_sides(connections: Sequence[Connection]) -> dict[_Key, str]:
-    """Return ``portin`` (left) or ``portout`` (right) for each end, by the ids on its path.
+    """Return ``portin`` (left) or ``portout`` (right) for the port at each end, by its path.
 
-    Parts stand from left to right as items flow; a link without direction is drawn from its first
-    end to its second. The first connection of a port decides. Nested parts and ports all stay on
-    the left: dot fails for some diagrams with nested clusters and ports on both sides.
+    Parts stand from left to right as items flow; a connection without direction counts as leading
+    from its first end to its second. The first connection of a port decides. The result is empty if
+    parts or ports are nested, and all ports then stand on the left: dot fails for some diagrams
+    with nested clusters and ports on both sides.
     """
     ends = [end for connection in connections for end in (connection.source, connection.target)]
     if any(end.ports or len(end.parts) > 1 for end in ends):
@@ -110,6 +114,7 @@ def _is_right(near: Path, far: Path, is_first: bool, ranks: dict[str, int]) -> b
         return ranks[near.top] < ranks[far.top]
     if bool(near.top) == bool(far.top):
         return is_first
+    # One end is on the frame. The frame has its port on the side that is nearer to the part.
     last = max(ranks.values())
     if last == 0:
         return is_first == bool(near.top)
@@ -117,10 +122,13 @@ def _is_right(near: Path, far: Path, is_first: bool, ranks: dict[str, int]) -> b
 
 
 def _compute_ranks(connections: Sequence[Connection]) -> dict[str, int]:
-    """Return the number of parts that items pass before each part; cycles are cut."""
+    """Return the length of the longest flow that leads to each outermost part.
+
+    In a cycle the rank is limited by the number of parts.
+    """
     steps = [step for connection in connections for step in _iter_steps(connection)]
     ranks = {top: 0 for connection in connections for top in connection.find_top_parts()}
-    # Bellman and Ford on unit steps: one round for each part, so that a cycle ends, too.
+    # Bellman-Ford with unit lengths: one round for each part, so that it ends for cycles, too.
     for _ in ranks:
         for before, after in steps:
             ranks[after] = max(ranks[after], min(ranks[before] + 1, len(ranks) - 1))

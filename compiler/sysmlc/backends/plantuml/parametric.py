@@ -1,7 +1,7 @@
 """Parametric diagrams: one for each block or constraint block with constraint properties.
 
-SysML 1.6 clause 10: usages of constraint blocks with their parameters, and the bindings to them. A
-feature of a part stands in a box of its own, with the path as its name (clause 8.3.1.2).
+A diagram has the usages of constraint blocks with their parameters, and the bindings to them (SysML
+1.6 clause 10). A feature of a part has its own box, with the path as name (clause 8.3.1.2).
 """
 
 from collections.abc import Iterable, Iterator
@@ -20,10 +20,10 @@ from sysmlc.ir.query import features, type_of
 from sysmlc.support.plantuml_text import escape_line, format_label, join_rows, shrink, wrap_lines
 
 OWNERS = (Kind.CLASS, Kind.COMPONENT)
-_DEEPEST = 4
-_WIDEST = 1000
-"""Steps from a block to a feature of its parts that a connector without a path can mean, and
-the ways that are followed in each."""
+_MAX_STEPS = 4
+"""The longest path from a block to a feature that is searched for a connector without paths."""
+_MAX_PATHS = 1000
+"""The largest number of paths of one length that the search extends."""
 
 
 class Binding(Struct, frozen=True):
@@ -45,12 +45,12 @@ def list_usages(graph: Graph, block: Element) -> list[Element]:
 
 
 def find_bindings(graph: Graph) -> dict[str, list[Binding]]:
-    """Return the bindings at constraint parameters, by the block whose parametric diagram shows
-    them.
+    """Return the bindings to constraint parameters, by the block whose diagram shows them.
 
-    That is the owner of the connector. Papyrus before 1.0 put the connectors of a parametric
-    diagram below any classifier, and wrote no paths. A connector to features of another block with
-    constraint properties belongs to that block if each feature has a single shortest path.
+    This block is the owner of the connector, with one exception: Papyrus before 1.0 stored the
+    connectors of a parametric diagram below any classifier, and without paths. A connector that
+    leads to features of another block with constraint properties therefore belongs to that block if
+    each feature has a single shortest path.
     """
     bindings_by_block: dict[str, list[Binding]] = {}
     users = _find_users(graph)
@@ -106,7 +106,7 @@ def _iter_bindings(graph: Graph, connector: Element, paths: list[Path]) -> Itera
 
 
 def _is_stray(graph: Graph, connector: Element) -> bool:
-    """Whether the connector has no paths and leads to features that its owner does not have."""
+    """Whether the connector has no paths and connects features that its owner does not have."""
     owner, ends = graph.owner(connector), graph.targets(connector, Edge.END)
     if owner is None or any(graph.targets(end, Edge.PATH) for end in ends):
         return False
@@ -118,13 +118,13 @@ def _find_path(graph: Graph, block: Element, end: Element) -> Path | None:
     """Return the single shortest path from the block to the role of the end, or None."""
     role = graph.target(end, Edge.ROLE)
     level: list[tuple[Element, ...]] = [(feature,) for feature in features(graph, block)]
-    for _ in range(_DEEPEST):
+    for _ in range(_MAX_STEPS):
         ways = [way for way in level if way[-1] is role]
         if ways:
             return _as_path(ways[0]) if len(ways) == 1 else None
         level = [
             (*way, feature)
-            for way in level[:_WIDEST]
+            for way in level[:_MAX_PATHS]
             for feature in _list_features_below(graph, way)
         ]
     return None
@@ -144,7 +144,7 @@ def _as_path(way: tuple[Element, ...]) -> Path:
     return Path(ids)
 
 
-_ROW = 40
+_ROW_WIDTH = 40
 
 
 def draw_parametric_diagrams(graph: Graph) -> Iterator[Diagram]:
@@ -199,7 +199,7 @@ def _draw_block(
 def _partition(
     property_paths: list[tuple[str, ...]], block_bindings: list[Binding]
 ) -> list[tuple[list[tuple[str, ...]], list[Binding]]]:
-    """Return groups of boxes with all bindings of each group; the boxes at both ends come along."""
+    """Return groups of boxes, each with its bindings and the boxes at both ends of these."""
     boxes = dict.fromkeys(
         [*property_paths, *(end.parts for binding in block_bindings for end in binding.ends)]
     )
@@ -239,18 +239,18 @@ def _make_key(path: tuple[str, ...]) -> str:
 
 @dataclass(slots=True)
 class _ParametricDrawing:
-    """One parametric diagram while its view is built; ``boxes`` are paths from the block."""
+    """Builder of the view of one parametric diagram; ``boxes`` are paths from the block."""
 
     graph: Graph
     block: Element
     boxes: list[tuple[str, ...]]
-    found: list[Binding]
+    bindings: list[Binding]
     aliases: Aliases = field(default_factory=Aliases)
-    right: frozenset[str] = frozenset()
+    right_ports: frozenset[str] = frozenset()
 
     def __post_init__(self) -> None:
-        self.found = [_orient_towards_parameter(one) for one in self.found]
-        self.right = _find_right_ports(self.found)
+        self.bindings = [_orient_towards_parameter(binding) for binding in self.bindings]
+        self.right_ports = _find_right_ports(self.bindings)
 
     def build_view(self) -> InternalView:
         frame = PartView(
@@ -261,33 +261,41 @@ class _ParametricDrawing:
             tuple(self._make_box(path) for path in self.boxes),
             (self.block.id,),
         )
-        return InternalView(frame, tuple(self._make_line(binding) for binding in self.found), True)
+        return InternalView(
+            frame, tuple(self._make_line(binding) for binding in self.bindings), True
+        )
 
     def _make_box(self, path: tuple[str, ...]) -> PartView:
         shown = self.graph[path[-1]]
         type_ = type_of(self.graph, shown)
-        is_law = _is_usage(shown)
+        is_usage = _is_usage(shown)
         return PartView(
             self.aliases.make(_make_key(path), shown.name, "property"),
-            self._format_label(path, shown, type_ if is_law else None),
-            "law" if is_law else "value",
-            tuple(self._iter_ports(path, type_ if is_law else None)),
+            self._format_label(path, shown, type_ if is_usage else None),
+            "law" if is_usage else "value",
+            tuple(self._iter_ports(path, type_ if is_usage else None)),
             (),
             (
                 *path,
-                *(condition.id for condition in self._list_conditions(type_ if is_law else None)),
+                *(condition.id for condition in self._list_conditions(type_ if is_usage else None)),
             ),
         )
 
-    def _format_label(self, path: tuple[str, ...], shown: Element, law: Element | None) -> str:
+    def _format_label(
+        self, path: tuple[str, ...], shown: Element, constraint_block: Element | None
+    ) -> str:
         steps = ".".join(labels.name(self.graph[id]) for id in path)
         text = labels.format_typed(self.graph, shown, steps)
         rows = [
-            wrap_lines(labels.condition(condition), _ROW)
-            for condition in self._list_conditions(law)
+            wrap_lines(labels.condition(condition), _ROW_WIDTH)
+            for condition in self._list_conditions(constraint_block)
         ]
-        words = shrink(escape_line(labels.guillemets(["constraint"]))) if law is not None else ""
-        unit = format_unit(self.graph, shown) if law is None else ""
+        words = (
+            shrink(escape_line(labels.guillemets(["constraint"])))
+            if constraint_block is not None
+            else ""
+        )
+        unit = format_unit(self.graph, shown) if constraint_block is None else ""
         return join_rows(
             [
                 words,
@@ -297,16 +305,16 @@ class _ParametricDrawing:
             ]
         )
 
-    def _list_conditions(self, law: Element | None) -> list[Element]:
-        members = [] if law is None else self.graph.owned(law)
+    def _list_conditions(self, constraint_block: Element | None) -> list[Element]:
+        members = [] if constraint_block is None else self.graph.owned(constraint_block)
         return [member for member in members if member.kind is Kind.CONSTRAINT]
 
     def _iter_ports(self, path: tuple[str, ...], owner: Element | None) -> Iterator[PortView]:
-        """Yield all parameters of a usage, and the other ports that bindings name."""
+        """Yield all parameters of a usage, and further ports at which bindings end."""
         features_of_type = [] if owner is None else features(self.graph, owner)
         ids = [item.id for item in features_of_type if item.role == "constraint parameter"]
         bound_ends = [
-            end for item in self.found for end in item.ends if end.parts == path and end.port
+            end for item in self.bindings for end in item.ends if end.parts == path and end.port
         ]
         keys = dict.fromkeys(
             [*((id,) for id in ids), *((*end.ports, end.port) for end in bound_ends)]
@@ -317,7 +325,7 @@ class _ParametricDrawing:
                 _make_key((*path, *key)), self.graph[key[-1]].name, "parameter"
             )
             text = join_rows(f"<back:#FFFFFF>{row}</back>" for row in wrap_lines(name))
-            form = "portout" if _make_key((*path, *key)) in self.right else "port"
+            form = "portout" if _make_key((*path, *key)) in self.right_ports else "port"
             yield PortView(alias, text, form, key)
 
     def _make_line(self, binding: Binding) -> Line:
@@ -333,8 +341,9 @@ class _ParametricDrawing:
 
 
 def _orient_towards_parameter(binding: Binding) -> Binding:
-    """Return the binding directed from property to parameter, so that all properties stand on the
-    left.
+    """Return the binding with the property as its source and the parameter as its target.
+
+    Graphviz then draws all properties on the left.
     """
     if binding.source.port and not binding.target.port:
         return replace(binding, source=binding.target, target=binding.source)
@@ -342,7 +351,7 @@ def _orient_towards_parameter(binding: Binding) -> Binding:
 
 
 def _find_right_ports(lines_drawn: list[Binding]) -> frozenset[str]:
-    """Return the parameters that only start lines to parameters of other usages."""
+    """Return the keys of parameters that are the source of bindings and never the target."""
     starts = {
         _make_end_key(binding.source)
         for binding in lines_drawn

@@ -1,4 +1,4 @@
-"""Partitioning of diagrams that are too large to read, without losing a line."""
+"""Partitioning of diagrams that are too large to read; every line remains in some part."""
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
 
@@ -6,21 +6,21 @@ from msgspec.structs import replace
 
 from sysmlc.backends.plantuml.views import GraphView, Line, Node, Note
 
-LIMIT = 40
-"""Boxes in one diagram; above it pictures measured on real models are no longer readable."""
+MAX_BOXES = 40
+"""The largest number of boxes in a diagram; pictures of real models with more were unreadable."""
 
 
 def partition(
     items: Sequence[str],
     neighbours: Mapping[str, Collection[str]],
-    limit: int = LIMIT,
+    limit: int = MAX_BOXES,
     sizes: Mapping[str, int] | None = None,
 ) -> list[list[str]]:
-    """Divide *items* so that each part with its neighbours has at most *limit* members.
+    """Divide *items* into parts so that each part and its neighbours have at most *limit* members.
 
-    *sizes* states for how many members an item counts (1 by default). An item with more neighbours
-    than fit is a part of its own. Connected items stay together where possible, and a part has the
-    order of *items*.
+    *sizes* states as how many members an item counts (1 by default). An item with too many
+    neighbours is a part by itself. The algorithm is greedy: it fills parts with connected items,
+    breadth first. Each part has the order of *items*.
     """
     size = sizes or {}
     all_members = {*items, *(neighbour for item in items for neighbour in neighbours.get(item, ()))}
@@ -43,7 +43,7 @@ def partition(
 def _iter_connected(
     items: Sequence[str], neighbours: Mapping[str, Collection[str]]
 ) -> Iterator[str]:
-    """Yield the items component by component, each breadth first from its first item."""
+    """Yield the items by connected component, each in breadth-first order from its first item."""
     unvisited = dict.fromkeys(items)
     for start in items:
         queue = [start] if start in unvisited else []
@@ -66,15 +66,15 @@ def number_part(name: str, index: int, count: int) -> str:
 
 
 def make_footer(index: int, count: int, whole: str) -> str:
-    """Return the note that names the whole of a part; an empty text if there is only one part."""
+    """Return the footer of part *index* of *whole*; an empty text if there is only one part."""
     return "" if count == 1 else f"part {index + 1} of {count} of {whole}; grey: shown elsewhere"
 
 
-def split_view(view: GraphView, limit: int = LIMIT) -> list[GraphView]:
-    """Return the view itself if it is small, else parts of it.
+def split_view(view: GraphView, limit: int = MAX_BOXES) -> list[GraphView]:
+    """Return the view itself if it has at most *limit* nodes, else its parts.
 
-    A node with more than *limit* nodes inside is closed in its own part and opened in later parts.
-    A line that leaves a part ends at a grey stub. Notes stand in the first part.
+    A node with too many nodes inside is drawn without its content; later parts show the content. A
+    line that leaves a part ends at a grey stub. All notes are in the first part.
     """
     if _count_nodes(view.nodes) <= limit:
         return [view]
@@ -93,7 +93,7 @@ def _detach_notes(notes: tuple[Note, ...]) -> tuple[Note, ...]:
 def _iter_groups(
     nodes: Sequence[Node], lines: Sequence[Line], limit: int
 ) -> Iterator[tuple[Node, ...]]:
-    """Yield groups of nodes, large nodes closed, and then the groups inside the large nodes."""
+    """Yield groups of nodes, in which large nodes have no content, then groups of that content."""
     large = [node for node in nodes if 1 + _count_nodes(node.children) > limit]
     shown = [_close_node(node) if node in large else node for node in nodes]
     by_alias = {node.alias: node for node in shown}
@@ -137,8 +137,9 @@ def _make_part(view: GraphView, group: tuple[Node, ...]) -> GraphView:
 
 
 def _is_hidden(line: Line, inside: set[str], nodes_by_alias: dict[str, Node]) -> bool:
-    """Whether the line connects a closed node with its content, which is shown where the node is
-    open.
+    """Whether the line connects a node that has no content in this part with that content.
+
+    The part with the content shows the line.
     """
     for end, opposite_end in ((line.source, line.target), (line.target, line.source)):
         if (

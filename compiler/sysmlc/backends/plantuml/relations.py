@@ -1,6 +1,6 @@
 """Relations between classifiers, use cases and actors, as lines of diagrams.
 
-Allocations are rows where no line can show them (SysML 1.6 clause 15.3.1).
+An allocation that no line can show is a row of a box (SysML 1.6 clause 15.3.1).
 """
 
 from collections.abc import Iterator
@@ -36,7 +36,7 @@ class Relation(Struct, frozen=True):
 
 
 def list_relations(graph: Graph) -> list[Relation]:
-    """Return all relations between classifiers that are elements or edges of their own."""
+    """Return all relations between classifiers except containment, include and extend."""
     return [
         *_iter_generalizations(graph),
         *_iter_associations(graph),
@@ -56,6 +56,7 @@ def _iter_generalizations(graph: Graph) -> Iterator[Relation]:
     for _, source, target in graph.edges(Edge.SPECIALIZES):
         yield Relation(source, target, "--|>")
     for _, source, target in graph.edges(Edge.REALIZES):
+        # A realization that has an element is drawn with the dependencies, with its name.
         if (source, target) not in represented:
             yield Relation(source, target, "..|>")
 
@@ -71,9 +72,9 @@ def _iter_associations(graph: Graph) -> Iterator[Relation]:
 def _make_association(
     graph: Graph, association: Element, ends: list[Element], types: tuple[Element, Element]
 ) -> Relation:
-    """Return the line of an association; it starts at the whole.
+    """Return the line of an association; an aggregation starts at the whole.
 
-    An end stands at the classifier that is its type.
+    The name and multiplicity of an end stand beside the classifier that is its type.
     """
     first, second = 0, 1
     if ends[0].attrs.get("aggregation") in _SHAPES or _is_navigable(association, ends[0]):
@@ -82,10 +83,12 @@ def _make_association(
         ends[first].attrs.get("aggregation") in _SHAPES
     ):
         first, second = second, first
+    # The attribute ``aggregation`` belongs to the end at the part, the diamond to the opposite end.
     whole = _SHAPES.get(str(ends[second].attrs.get("aggregation")), "")
     back = _SHAPES.get(str(ends[first].attrs.get("aggregation")), "")
     tip = ">" if _is_navigable(association, ends[second]) else ""
     tail = "<" if not whole and _is_navigable(association, ends[first]) else ""
+    # UML 2.5.1, 11.5.4: an association that is navigable both ways may be drawn without arrows.
     if tip and tail:
         tip = tail = ""
     return Relation(
@@ -101,8 +104,9 @@ def _make_association(
 
 
 def _find_row(association: Element, ends: list[Element], end: Element, owner: Element) -> str:
-    """Return the property that shows the whole association if the association has no name of its
-    own.
+    """Return the id of the property whose row can replace the line, or an empty text.
+
+    A row cannot show the name of an association.
     """
     is_plain = not association.name or _is_default_name(association, ends)
     return end.id if is_plain and end.owner == owner.id else ""
@@ -119,7 +123,10 @@ def _is_default_name(association: Element, ends: list[Element]) -> bool:
 
 
 def _format_end(association: Element, end: Element, type_: Element) -> str:
-    """Return name and multiplicity, without the default name that tools give to the far end."""
+    """Return the name and multiplicity of an end.
+
+    The name is omitted if it is the name of the type, which tools assign by default.
+    """
     is_default = end.owner == association.id and end.name.lower() == type_.name.lower()
     name = "" if is_default else end.name
     return " ".join(part for part in (name, labels.multiplicity(end)) if part)
@@ -216,10 +223,10 @@ def _make_extend(graph: Graph, extend: Element, source: str, case: Element) -> R
 
 # -- allocations as rows -----------------------------------------------------------------------
 
-_WIDTH = 44
-_PLACES = (Kind.PROPERTY, Kind.PORT)
-_FEATURES = (*_PLACES, Kind.OPERATION)
-_BOXED = (
+_ROW_WIDTH = 44
+_STRUCTURAL_FEATURES = (Kind.PROPERTY, Kind.PORT)
+_FEATURES = (*_STRUCTURAL_FEATURES, Kind.OPERATION)
+_BOX_KINDS = (
     Kind.CLASS,
     Kind.COMPONENT,
     Kind.INTERFACE,
@@ -235,19 +242,17 @@ _BOXED = (
 
 
 def list_node_allocations(graph: Graph, node: Element) -> tuple[list[str], list[str]]:
-    """Return the rows of an activity node, and the ids of the allocations that they show."""
+    """Return rows for the allocations of an activity node, and the ids of these allocations."""
     rows: list[str] = []
     ids: list[str] = []
     for dependency, target in _iter_opposite_ends(graph, node, Edge.CLIENT):
-        rows += wrap_lines(f"allocated to {_format_opposite_end(graph, target)}", _WIDTH)
+        rows += wrap_lines(f"allocated to {_format_opposite_end(graph, target)}", _ROW_WIDTH)
         ids.append(dependency.id)
     return rows, ids
 
 
 def list_block_allocations(graph: Graph, block: Element) -> tuple[list[str], list[str]]:
-    """Return the rows of a block and its features, and the ids of the allocations that they
-    show.
-    """
+    """Return rows for the allocations of a block and its features, and the ids of these."""
     rows: list[str] = []
     ids: list[str] = []
     for element in (block, *_list_features(graph, block)):
@@ -255,14 +260,14 @@ def list_block_allocations(graph: Graph, block: Element) -> tuple[list[str], lis
             if not _has_line(element, other):
                 rows += wrap_lines(
                     f"{_format_own_end(block, element)}→ {_format_opposite_end(graph, other)}",
-                    _WIDTH,
+                    _ROW_WIDTH,
                 )
                 ids.append(dependency.id)
         for dependency, other in _iter_opposite_ends(graph, element, Edge.SUPPLIER):
             if not _has_line(element, other) and not _has_row_at_client(graph, other):
                 rows += wrap_lines(
                     f"{_format_own_end(block, element)}← {_format_opposite_end(graph, other)}",
-                    _WIDTH,
+                    _ROW_WIDTH,
                 )
                 ids.append(dependency.id)
     return rows, ids
@@ -274,7 +279,11 @@ def iter_feature_allocations(
     """Yield allocations between two features of the block: dependency, client, supplier."""
     for client in _list_features(graph, block):
         for dependency, other in _iter_opposite_ends(graph, client, Edge.CLIENT):
-            if client.kind in _PLACES and other.kind in _PLACES and other.owner == block.id:
+            if (
+                client.kind in _STRUCTURAL_FEATURES
+                and other.kind in _STRUCTURAL_FEATURES
+                and other.owner == block.id
+            ):
                 yield dependency, client, other
 
 
@@ -294,17 +303,17 @@ def _list_features(graph: Graph, block: Element) -> list[Element]:
 
 def _has_line(left: Element, right: Element) -> bool:
     """Whether a block definition or an internal block diagram draws the allocation as a line."""
-    if left.kind in _PLACES and right.kind in _PLACES:
+    if left.kind in _STRUCTURAL_FEATURES and right.kind in _STRUCTURAL_FEATURES:
         return left.owner == right.owner
-    return left.kind in _BOXED and right.kind in _BOXED
+    return left.kind in _BOX_KINDS and right.kind in _BOX_KINDS
 
 
 def _has_row_at_client(graph: Graph, client: Element) -> bool:
-    """Whether the box of the client's own block has a row for the allocation."""
+    """Whether the box of the client, or of the block that owns it, has a row for the allocation."""
     block = graph.owner(client) if client.kind in _FEATURES else client
     if block is None or block.attrs.get("external"):
         return False
-    return block.kind in _BOXED and block.kind is not Kind.ACTIVITY
+    return block.kind in _BOX_KINDS and block.kind is not Kind.ACTIVITY
 
 
 def _format_own_end(block: Element, element: Element) -> str:
@@ -312,7 +321,7 @@ def _format_own_end(block: Element, element: Element) -> str:
 
 
 def _format_opposite_end(graph: Graph, element: Element) -> str:
-    """Return the name of an element; a feature or an action with its owner."""
+    """Return the name of an element, or ``owner.name`` of a feature or an action."""
     owner = graph.owner(element)
     if element.kind in (*_FEATURES, Kind.ACTION) and owner is not None:
         return f"{labels.name(owner)}.{labels.name(element)}"

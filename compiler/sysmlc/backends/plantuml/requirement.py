@@ -38,9 +38,7 @@ def draw_requirements(graph: Graph) -> Iterator[Diagram]:
 
 
 def list_relations(graph: Graph) -> list[Relation]:
-    """Return the lines between requirements, and to the elements that satisfy, verify or refine
-    them.
-    """
+    """Return the lines between requirements, and to elements that satisfy, verify or refine one."""
     return [*_iter_containments(graph), *_iter_relations(graph)]
 
 
@@ -52,7 +50,7 @@ def _iter_containments(graph: Graph) -> Iterator[Relation]:
 
 
 def _iter_relations(graph: Graph) -> Iterator[Relation]:
-    """Yield dependencies of requirements, and bare edges where there is no dependency."""
+    """Yield the dependencies of requirements, and edges that no dependency represents."""
     drawn: set[tuple[str, str, str]] = set()
     for item in graph.of_kind(Kind.DEPENDENCY):
         if item.role not in REQUIREMENT_ROLES:
@@ -117,7 +115,7 @@ def make_box(graph: Graph, item: Element, aliases: Aliases) -> Box:
     rows = [f"id = {item.attrs['req_id']}"] if item.attrs.get("req_id") else []
     rows += [f"text = {item.attrs['text']}"] if item.attrs.get("text") else []
     text_rows = tuple(row for text in rows for row in wrap_lines(text, _TEXT_WIDTH))
-    members = [part for part in graph.owned(item) if part.kind in _INSIDE]
+    members = [part for part in graph.owned(item) if part.kind in _ROW_KINDS]
     conditions = tuple(row for part in members for row in _format_row(graph, part))
     compartments = (Compartment("", text_rows), Compartment("constraints", conditions))
     alias = aliases.make(item.id, item.name, "requirement")
@@ -130,7 +128,7 @@ def make_box(graph: Graph, item: Element, aliases: Aliases) -> Box:
     )
 
 
-_INSIDE = (Kind.CONSTRAINT, Kind.PROPERTY)
+_ROW_KINDS = (Kind.CONSTRAINT, Kind.PROPERTY)
 
 
 def _format_row(graph: Graph, part: Element) -> tuple[str, ...]:
@@ -140,8 +138,9 @@ def _format_row(graph: Graph, part: Element) -> tuple[str, ...]:
 
 
 def _make_other_box(graph: Graph, item: Element, aliases: Aliases) -> Box:
-    """Return the box of an element that satisfies, verifies or refines; foreign requirements are
-    grey.
+    """Return the box of an element at the other end of a line.
+
+    A requirement of another package is a grey stub.
     """
     if is_requirement(item) or item.attrs.get("external"):
         return boxes.make_stub(graph, item, aliases)

@@ -23,7 +23,7 @@ _NOTE_WIDTH = 44
 
 @dataclass(slots=True)
 class Walk:
-    """The state while the steps of one interaction are listed; ``aliases`` has the lifelines."""
+    """State of the traversal of one interaction; ``aliases`` has the lifelines."""
 
     graph: Graph
     aliases: Aliases
@@ -40,8 +40,9 @@ class Walk:
         self._notes = index_notes(self.graph, interaction)
 
     def list_lifelines(self, item: Element) -> tuple[str, ...]:
-        """Return the aliases of the lifelines that *item* covers; a use without lifelines covers
-        all.
+        """Return the aliases of the lifelines that *item* covers.
+
+        An interaction use that names no lifelines covers all.
         """
         covered = interactions.covered_lifelines(self.graph, item)
         if not covered and item.subkind in interactions.INTERACTION_USES:
@@ -57,7 +58,10 @@ class Walk:
         return is_new
 
     def format_text(self, about: Sequence[Element], *texts: str) -> tuple[str, tuple[str, ...]]:
-        """Return the texts with the times about these elements, and the ids of the times."""
+        """Return a label and the ids of the time constraints and observations in it.
+
+        The label has the *texts*, then the times that refer to an element of *about*.
+        """
         times_found = [
             item
             for element in about
@@ -69,7 +73,7 @@ class Walk:
         return text, tuple(item.id for item in times_found)
 
     def iter_notes(self, item: Element, over: Sequence[str] = ()) -> Iterator[Step]:
-        """Yield the notes about the element, over these lifelines or all."""
+        """Yield the notes about the element; they span the lifelines *over* (all if empty)."""
         for note in self._notes.get(item.id, ()):
             text = format_label(labels.note_text(note), _NOTE_WIDTH)
             if self.is_new(note) and text:
@@ -92,7 +96,7 @@ def _make_diagram(graph: Graph, interaction: Element, lifelines: list[Element]) 
     aliases = Aliases()
     participants = tuple(_make_participant(graph, lifeline, aliases) for lifeline in lifelines)
     title = graph.qualified_name(interaction)
-    features = [item.id for item in graph.owned(interaction) if item.kind in _IN_FRAME]
+    features = [item.id for item in graph.owned(interaction) if item.kind in _FRAME_KINDS]
     return Diagram(
         kind="sd",
         name=title,
@@ -104,7 +108,7 @@ def _make_diagram(graph: Graph, interaction: Element, lifelines: list[Element]) 
     )
 
 
-_IN_FRAME = (Kind.PARAMETER,)
+_FRAME_KINDS = (Kind.PARAMETER,)
 
 
 def _make_participant(graph: Graph, lifeline: Element, aliases: Aliases) -> Participant:
@@ -133,7 +137,10 @@ def _format_lifeline(graph: Graph, lifeline: Element) -> str:
 
 
 def _name_of_lifeline(graph: Graph, lifeline: Element) -> str:
-    """Return the name of the represented element; tools number lifelines by themselves."""
+    """Return the name of the represented element, else the name of the lifeline.
+
+    Tools generate names such as ``Lifeline1``.
+    """
     represented = interactions.participant(graph, lifeline)
     if represented is None:
         return lifeline.name.strip()
@@ -187,8 +194,9 @@ def _find_end(walk: Walk, message: Element, edge: Edge) -> str:
 
 
 def _choose_outer_end(graph: Graph, message: Element, edge: Edge) -> str:
-    """Return the end of a message outside all lifelines: a gate on the frame, else a point
-    (17.4.4).
+    """Return PlantUML's sign for an end that is on no lifeline (17.4.4).
+
+    It is a gate on the frame, or a point for a lost or found message.
     """
     is_sent = edge is Edge.SEND_EVENT
     end = graph.target(message, Edge.SEND_EVENT if is_sent else Edge.RECEIVE_EVENT)
@@ -197,8 +205,8 @@ def _choose_outer_end(graph: Graph, message: Element, edge: Edge) -> str:
     return "?o" if is_sent else "o?"
 
 
-_FRAMES = frozenset(["alt", "opt", "loop", "par", "break", "critical"])
-"""Operators that PlantUML has words for; others are groups."""
+_OPERATOR_KEYWORDS = frozenset(["alt", "opt", "loop", "par", "break", "critical"])
+"""Operators with a keyword in PlantUML; other operators are drawn as ``group``."""
 
 
 def iter_steps(graph: Graph, interaction: Element, aliases: Aliases) -> Iterator[Step]:
@@ -206,6 +214,7 @@ def iter_steps(graph: Graph, interaction: Element, aliases: Aliases) -> Iterator
     walk = Walk(graph, aliases)
     walk.begin(interaction)
     known_aliases: set[str] = set()
+    # PlantUML rejects "create" for a participant that an earlier line has used.
     for step in _iter_all_steps(walk, interaction):
         if step.word != "create" or (step.source and step.source not in known_aliases):
             yield step
@@ -213,12 +222,13 @@ def iter_steps(graph: Graph, interaction: Element, aliases: Aliases) -> Iterator
 
 
 def _iter_all_steps(walk: Walk, interaction: Element) -> Iterator[Step]:
-    """Yield all steps, also "create" of lifelines that exist already (SM447 reports these)."""
+    """Yield all steps, including "create" for existing lifelines, which SM447 reports."""
     graph, aliases = walk.graph, walk.aliases
     yield from walk.iter_notes(interaction)
     for lifeline in interactions.lifelines(graph, interaction):
         yield from walk.iter_notes(lifeline, [aliases[lifeline.id]])
     yield from _iter_container(walk, interaction)
+    # Messages without occurrences in a fragment come last; is_new skips those already drawn.
     for message in interactions.messages(graph, interaction):
         yield from iter_message_steps(walk, message)
 
@@ -246,6 +256,7 @@ def _iter_occurrence(walk: Walk, item: Element) -> Iterator[Step]:
         yield from iter_message_steps(walk, message)
     if not messages:
         yield from _iter_note_steps(walk, item)
+    # Finish before start: a bar that ends where the next one starts is not nested in it.
     for execution in walk.graph.sources(item, Edge.FINISH):
         yield from _iter_finish(walk, execution)
     for execution in walk.graph.sources(item, Edge.START):
@@ -319,7 +330,7 @@ def _iter_combined_fragment(walk: Walk, item: Element) -> Iterator[Step]:
     parts = interactions.operands(walk.graph, item)
     contents = [[*walk.iter_notes(part), *_iter_container(walk, part)] for part in parts]
     heads = [_make_operand_head(walk, part) for part in parts] or [("", ())]
-    is_group = item.subkind not in _FRAMES
+    is_group = item.subkind not in _OPERATOR_KEYWORDS
     first = f"[{heads[0][0]}]" if heads[0][0] and is_group else heads[0][0]
     yield Step("open", first, arrow=_format_operator(walk, item), shows=(item.id, *heads[0][1]))
     *inside, after = balance_operands(contents) or [[]]
@@ -339,7 +350,7 @@ def _make_operand_head(walk: Walk, operand: Element) -> tuple[str, tuple[str, ..
 
 
 def _format_operator(walk: Walk, item: Element) -> str:
-    if item.subkind in _FRAMES:
+    if item.subkind in _OPERATOR_KEYWORDS:
         return item.subkind
     gates = ", ".join(labels.name(gate) for gate in walk.graph.targets(item, Edge.REFERENCES))
     text = f"{item.subkind} {{{gates}}}" if gates else item.subkind

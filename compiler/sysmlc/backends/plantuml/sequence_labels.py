@@ -31,8 +31,9 @@ def format_arguments(item: Element) -> str:
 
 
 def format_operand(operand: Element) -> str:
-    """Return ``(1, 3) guard`` of an operand, or its name; the bounds are those of a loop
-    (17.6.4).
+    """Return ``(1, 3) guard`` of an operand, or its name if it has no guard.
+
+    The numbers are the bounds of a loop (17.6.4).
     """
     bounds = [operand.attrs.get(key) for key in ("min", "max")]
     bound_texts = [labels.literal(value) for value in bounds if value is not None]
@@ -46,8 +47,9 @@ def format_operand(operand: Element) -> str:
 
 
 def format_time(graph: Graph, item: Element) -> str:
-    """Return ``{2..5 s}`` of a constraint or ``t = now`` of an observation, ``since`` the first
-    event.
+    """Return ``{2..5 s}`` of a time constraint, or ``t = now`` of an observation.
+
+    If it refers to two events, ``since`` and the name of the first event follow.
     """
     if item.kind is Kind.OBSERVATION:
         text = f"{labels.name(item)} = {'now' if item.subkind == 'time' else 'duration'}"
@@ -58,7 +60,7 @@ def format_time(graph: Graph, item: Element) -> str:
 
 
 def name_of_event(graph: Graph, event: Element) -> str:
-    """Return the message of an occurrence, else the name of the element."""
+    """Return the label of the message that is sent or received at *event*, else its name."""
     message = (
         interactions.sent_message(graph, event)
         or interactions.received_message(graph, event)
@@ -70,9 +72,7 @@ def name_of_event(graph: Graph, event: Element) -> str:
 
 
 def index_times(graph: Graph, interaction: Element) -> dict[str, list[Element]]:
-    """Return constraints and observations of time, by the id of the last event that they refer
-    to.
-    """
+    """Return time constraints and observations, by the id of the last event to which they refer."""
     constraints = [item for item in graph.owned(interaction) if _is_time(item)]
     inside = {item.id for item in graph.subtree(interaction)}
     times_by_event: dict[str, list[Element]] = {}

@@ -23,8 +23,8 @@ _SHAPES = {
 }
 _POINTS = frozenset(["entry-point", "exit-point"])
 _TRANSITION = Kind.TRANSITION
-_REFERENCE = "connection-point"
-_ROW = 44
+_POINT_REFERENCE = "connection-point"
+_ROW_WIDTH = 44
 
 
 def draw_state_machines(graph: Graph) -> Iterator[Diagram]:
@@ -69,6 +69,7 @@ def draw_whole(graph: Graph, machine: Element) -> GraphView:
     """Return the complete view of a state machine, however large."""
     aliases = Aliases()
     nodes = _list_content(graph, machine, aliases)
+    # Entry and exit points stand on a border, so the machine gets a state around its content.
     if any(child.subkind in _POINTS for child in graph.owned(machine)):
         alias = aliases.make(machine.id, machine.name, "machine")
         nodes = (Node(alias, format_label(labels.name(machine)), "machine", children=nodes),)
@@ -88,8 +89,9 @@ def find_depth(graph: Graph) -> int:
 
 
 def _list_content(graph: Graph, owner: Element, aliases: Aliases) -> tuple[Node, ...]:
-    """Return the content of a state or state machine: one region directly, several in dashed
-    boxes.
+    """Return the vertices inside a state or state machine.
+
+    Two or more regions have a dashed box each.
     """
     regions = _list_regions(graph, owner)
     points = [
@@ -146,9 +148,9 @@ def _make_vertex(graph: Graph, vertex: Element, aliases: Aliases) -> Node:
 
 
 def _make_pseudostate(graph: Graph, vertex: Element, alias: str, name: str) -> Node:
-    """Return the node of a pseudostate; a connection point reference is drawn as its point."""
+    """Return the node of a pseudostate; a connection point reference has the shape of its point."""
     points = (item.subkind for item in graph.targets(vertex, Edge.REFERENCES))
-    shape = _SHAPES.get(next(points, "") if vertex.subkind == _REFERENCE else vertex.subkind)
+    shape = _SHAPES.get(next(points, "") if vertex.subkind == _POINT_REFERENCE else vertex.subkind)
     if shape is not None:
         return Node(alias, name, shape, shows=(vertex.id,))
     sign = "✕" if vertex.subkind == "terminate" else f"«{escape_line(vertex.subkind)}»"
@@ -174,19 +176,19 @@ def _list_rows(graph: Graph, state: Element) -> tuple[tuple[str, ...], list[str]
     ids: list[str] = []
     for word, edge in (("entry", Edge.ENTRY), ("do", Edge.DO), ("exit", Edge.EXIT)):
         for behaviour in graph.targets(state, edge):
-            rows += wrap_lines(f"{word} / {format_behaviour(behaviour)}", _ROW)
+            rows += wrap_lines(f"{word} / {format_behaviour(behaviour)}", _ROW_WIDTH)
             ids.append(behaviour.id)
     for item in graph.owned(state):
         if item.kind is Kind.TRIGGER:
-            rows += wrap_lines(f"{format_trigger(graph, item)} / defer", _ROW)
+            rows += wrap_lines(f"{format_trigger(graph, item)} / defer", _ROW_WIDTH)
         elif item.kind is Kind.CONSTRAINT:
-            rows += wrap_lines(labels.condition(item), _ROW)
+            rows += wrap_lines(labels.condition(item), _ROW_WIDTH)
         else:
             continue
         ids.append(item.id)
     for transition in graph.sources(state, Edge.FLOW_SOURCE):
         if transition.subkind == "internal":
-            rows += wrap_lines(format_transition(graph, transition), _ROW)
+            rows += wrap_lines(format_transition(graph, transition), _ROW_WIDTH)
             ids += _list_label_ids(graph, transition)
     return tuple(rows), ids
 
@@ -211,8 +213,9 @@ def _list_label_ids(graph: Graph, transition: Element) -> list[str]:
 
 
 def format_transition(graph: Graph, transition: Element) -> str:
-    """Return ``trigger [guard] / effect``, of protocols ``/ [postcondition]`` (UML 2.5.1,
-    14.2.4).
+    """Return ``trigger [guard] / effect`` (UML 2.5.1, 14.2.4).
+
+    A protocol transition has ``/ [postcondition]`` instead of effects.
     """
     triggers = [format_trigger(graph, item) for item in graph.targets(transition, Edge.TRIGGER)]
     effects = [format_behaviour(item) for item in graph.targets(transition, Edge.EFFECT)]
@@ -228,8 +231,9 @@ def format_transition(graph: Graph, transition: Element) -> str:
 
 
 def format_guard(graph: Graph, flow: Element) -> str:
-    """Return ``[guard]`` of a transition or flow, from its text or from the constraint it refers
-    to.
+    """Return ``[guard]`` of a transition or flow, or an empty text.
+
+    The guard is an attribute of the flow, or a constraint to which the flow refers.
     """
     texts = [str(item.attrs.get("body", item.name)) for item in graph.targets(flow, Edge.GUARD)]
     text = flow.attrs.get("guard", ", ".join(texts))

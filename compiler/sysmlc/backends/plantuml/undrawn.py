@@ -69,7 +69,7 @@ DRAWN_KINDS = (
     Kind.EXTEND,
     Kind.EXTENSION_POINT,
 )
-"""Kinds that have a place in the diagrams."""
+"""Kinds that some diagram shows."""
 
 OTHER_KINDS = (
     Kind.UNIT,
@@ -81,18 +81,18 @@ OTHER_KINDS = (
     Kind.STEREOTYPE,
     Kind.DOCUMENT,
 )
-"""Kinds with a meaning of their own that no diagram has a place for."""
+"""Kinds that no diagram shows although authors give their elements a meaning."""
 
 _FILES = frozenset({"caex", "collada", "plcopen", "external-data"})
-"""Subkinds of documents that stand for files, of the model and of others it refers to."""
+"""Subkinds of documents that represent files, of which no diagram is expected."""
 _NAMES_SHOWN = 3
 
 
 def report_undrawn(graph: Graph, shown: Collection[str], sink: Sink) -> None:
-    """Report every element of the model whose id is not in *shown*, once for each owner and kind.
+    """Report the elements whose ids are not in *shown*, in one diagnostic for each owner and kind.
 
-    An element inside a reported element is not reported again. Parameters of a template are part of
-    the template's name.
+    Elements inside a reported element are not reported. Template parameters count as shown, because
+    the name of the template lists them.
     """
     candidates = graph.of_kind(*DRAWN_KINDS, *OTHER_KINDS)
     undrawn = [item for item in candidates if item.id not in shown and _is_expected(item)]
@@ -179,8 +179,10 @@ def _check_overtaking(
 
 
 def _find_drawn_position(graph: Graph, positions: dict[str, int], event: Element) -> int:
-    """Return the height of an event: a message is drawn at its first end, an execution with its
-    ends.
+    """Return the position at which PlantUML draws an event.
+
+    A received message is drawn where it is sent. An execution has no position of its own (-1),
+    because its occurrences draw it.
     """
     if event.kind is Kind.EXECUTION:
         return -1

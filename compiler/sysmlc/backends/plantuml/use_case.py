@@ -26,8 +26,8 @@ from sysmlc.support.plantuml_text import (
 
 FIGURES = (Kind.USE_CASE, Kind.ACTOR)
 _PACKAGES = (Kind.PACKAGE, Kind.PROFILE)
-_ROWS = (Kind.PROPERTY, Kind.OPERATION, Kind.CONSTRAINT)
-_WIDTH = 28
+_ROW_KINDS = (Kind.PROPERTY, Kind.OPERATION, Kind.CONSTRAINT)
+_ROW_WIDTH = 28
 
 
 def draw_use_cases(graph: Graph) -> Iterator[Diagram]:
@@ -53,8 +53,9 @@ def find_use_case_actors(graph: Graph) -> set[str]:
         item.id
         for item in graph.of_kind(Kind.ACTOR)
         if labels.find_package(graph, item) in packages
-        and not any(feature.kind in _ROWS for feature in graph.owned(item))
+        and not any(feature.kind in _ROW_KINDS for feature in graph.owned(item))
     }
+    # A line of a block definition diagram needs a box at both ends.
     for relation in list_relations(graph):
         ends = {relation.source, relation.target}
         if any(graph[id].kind not in FIGURES for id in ends):
@@ -120,7 +121,7 @@ def _find_neighbours(
 def _add_connected_actors(
     part: list[str], package_actors: list[Element], candidates: Sequence[Relation]
 ) -> set[str]:
-    """Return the ids of a part, and of the package's actors that have relations."""
+    """Return the ids of *part* and of the actors of the package that have relations."""
     connected = {id for relation in candidates for id in (relation.source, relation.target)}
     return {*part, *(actor.id for actor in package_actors if actor.id in connected)}
 
@@ -165,7 +166,9 @@ def _make_subject_frame(subject: Element, cases: list[Figure], aliases: Aliases)
 
 def _make_figure(graph: Graph, item: Element, aliases: Aliases, is_own: bool) -> Figure:
     is_case = item.kind is Kind.USE_CASE
-    members = [member for member in graph.owned(item) if member.kind in _ROWS] if is_own else []
+    members = (
+        [member for member in graph.owned(item) if member.kind in _ROW_KINDS] if is_own else []
+    )
     points = [member for member in graph.owned(item) if member.kind is Kind.EXTENSION_POINT]
     alias = aliases.make(item.id, item.name, "case" if is_case else "actor")
     rows = [_format_title(graph, item), *_iter_compartments(graph, item, members, points)]
@@ -178,7 +181,7 @@ def _format_title(graph: Graph, item: Element) -> str:
     words = shrink(escape_line(labels.guillemets(labels.list_stereotypes(graph, item))))
     mark = "//" if item.attrs.get("abstract") else ""
     return join_rows(
-        [words, *(f"{mark}{row}{mark}" for row in wrap_lines(labels.name(item), _WIDTH))]
+        [words, *(f"{mark}{row}{mark}" for row in wrap_lines(labels.name(item), _ROW_WIDTH))]
     )
 
 
@@ -199,14 +202,14 @@ def _iter_compartments(
 
 def _format_row(graph: Graph, member: Element) -> str:
     if member.kind is Kind.CONSTRAINT:
-        return format_label(labels.condition(member), _WIDTH)
+        return format_label(labels.condition(member), _ROW_WIDTH)
     if member.kind is Kind.OPERATION:
-        return format_label(labels.operation(graph, member), _WIDTH)
-    return format_label(labels.feature(graph, member), _WIDTH)
+        return format_label(labels.operation(graph, member), _ROW_WIDTH)
+    return format_label(labels.feature(graph, member), _ROW_WIDTH)
 
 
 def _format_name(element: Element) -> str:
-    return format_label(labels.name(element), _WIDTH)
+    return format_label(labels.name(element), _ROW_WIDTH)
 
 
 # -- lines and notes ---------------------------------------------------------------------------

@@ -1,6 +1,7 @@
-"""View models: the data of the templates, and the aliases that stand for elements in them.
+"""View models: the data of the templates, and the aliases of elements.
 
-Every text is PlantUML text, already escaped. An alias is the same in every run.
+Every text is PlantUML text, already escaped. Aliases are deterministic. ``shows`` are the ids of
+the elements that a shape or line shows.
 """
 
 import re
@@ -41,9 +42,9 @@ class Line(Struct, frozen=True):
 
 
 class BoxView(Struct, frozen=True):
-    """Boxes and lines: block definition and requirement diagrams.
+    """Boxes and lines of block definition and requirement diagrams.
 
-    ``guides`` are invisible lines that set boxes without lines in a grid.
+    ``guides`` are invisible lines that arrange unconnected boxes in a grid.
     """
 
     boxes: tuple[Box, ...]
@@ -79,7 +80,7 @@ class Note(Struct, frozen=True):
 
 
 class GraphView(Struct, frozen=True):
-    """Nodes and lines: activities and state machines."""
+    """Nodes and lines of activity and state machine diagrams."""
 
     nodes: tuple[Node, ...]
     lines: tuple[Line, ...]
@@ -107,14 +108,14 @@ class PartView(Struct, frozen=True):
 
 
 class InternalView(Struct, frozen=True):
-    """Parts in their frame: internal block diagrams. ``guides`` are invisible, for the layout."""
+    """Parts in the frame of an internal block diagram; ``guides`` are invisible layout lines."""
 
     frame: PartView
     lines: tuple[Line, ...]
     has_ports: bool
     guides: tuple[Line, ...] = ()
     domains: tuple[str, ...] = ()
-    """``physical`` and ``information``, where something of the kind flows."""
+    """The domains (``physical``, ``information``) of the items that flow in the diagram."""
 
 
 class Participant(Struct, frozen=True):
@@ -145,7 +146,7 @@ class Step(Struct, frozen=True):
 
 
 class SequenceView(Struct, frozen=True):
-    """Lifelines and the steps between them: sequence diagrams."""
+    """Lifelines and steps of sequence diagrams."""
 
     participants: tuple[Participant, ...]
     steps: tuple[Step, ...]
@@ -162,7 +163,7 @@ class Figure(Struct, frozen=True):
 
 
 class SubjectView(Struct, frozen=True):
-    """A subject as a rectangle with its use cases."""
+    """The subject of use cases, drawn as a rectangle around them."""
 
     alias: str
     label: str
@@ -252,42 +253,40 @@ def _iter_part_ids(part: PartView) -> Iterator[str]:
 
 # -- aliases -----------------------------------------------------------------------------------
 
-_REMEMBERED = 1 << 12
-"""Names whose words are kept: those of states and actions come again and again."""
+_NORMALIZED_NAMES = 1 << 12
+"""Size of the cache of normalised names; the same names of states and actions occur often."""
 
 
 class Aliases:
-    """Assigns an alias to each key: words of its name and a number, never a keyword of PlantUML.
+    """Assigns an alias to each key: words of its name and a number.
 
-    The number counts equal words in the order of the diagram, so that an element that is added
-    elsewhere changes no other line.
+    An alias is never a keyword of PlantUML, because no keyword ends in a number. The number counts
+    equal words in the order of the diagram, so that adding an element elsewhere changes no line.
     """
 
     def __init__(self) -> None:
-        self._of: dict[str, str] = {}
-        self._taken: Counter[str] = Counter()
+        self._alias_by_key: dict[str, str] = {}
+        self._uses_of_words: Counter[str] = Counter()
 
-    def make(self, key: str, name: str, otherwise: str) -> str:
-        """Return the alias of *key*, made from *name* or, if that has no letters, from
-        *otherwise*.
-        """
-        if key not in self._of:
-            words = _normalize(name) or _normalize(otherwise) or "e"
-            self._taken[words] += 1
-            self._of[key] = f"{words}_{self._taken[words]}"
-        return self._of[key]
+    def make(self, key: str, name: str, fallback: str) -> str:
+        """Return the alias of *key*, made of *name*, or of *fallback* if *name* has no letters."""
+        if key not in self._alias_by_key:
+            words = _normalize(name) or _normalize(fallback) or "e"
+            self._uses_of_words[words] += 1
+            self._alias_by_key[key] = f"{words}_{self._uses_of_words[words]}"
+        return self._alias_by_key[key]
 
     def __contains__(self, key: object) -> bool:
-        return key in self._of
+        return key in self._alias_by_key
 
     def __getitem__(self, key: str) -> str:
-        return self._of[key]
+        return self._alias_by_key[key]
 
     def keys(self) -> KeysView[str]:
         """Return the keys that have an alias."""
-        return self._of.keys()
+        return self._alias_by_key.keys()
 
 
-@lru_cache(_REMEMBERED)
+@lru_cache(_NORMALIZED_NAMES)
 def _normalize(name: str) -> str:
     return re.sub(r"[^a-z0-9]+", "_", name.lower())[:24].strip("_")

@@ -1,7 +1,7 @@
-"""Diagrams of authors: their selection of elements and lines, our notation.
+"""Author diagrams: the elements and lines that an author selected, in the notation of the back end.
 
-A behaviour is the derived drawing without the elements that the author omitted. Block definition,
-class, package and requirement diagrams consist of boxes and lines.
+The diagram of a behaviour is the derived diagram without the elements that the author omitted.
+Block definition, class, package and requirement diagrams consist of boxes and lines (decision 14).
 """
 
 from collections.abc import Callable, Iterable, Iterator
@@ -60,7 +60,7 @@ LEFT_OUT = rule(
 )
 
 FOLDER = "author/"
-"""Where these diagrams are, below those that are derived."""
+"""The folder of author diagrams, below the folder of derived diagrams."""
 _TITLES = {
     "bdd": "Block definition diagram",
     "class": "Class diagram",
@@ -109,54 +109,57 @@ class _Drawer:
     def _sequences(self) -> dict[str, Diagram]:
         return {diagram.about: diagram for diagram in sequence.draw_sequences(self.graph)}
 
-    def draw(self, choice: Selection, sink: Sink) -> Diagram | None:
-        kind = str(choice.view.attrs.get("diagram", ""))
-        view = self._build_view(choice, kind) if choice.shown else None
+    def draw(self, selection: Selection, sink: Sink) -> Diagram | None:
+        kind = str(selection.view.attrs.get("diagram", ""))
+        view = self._build_view(selection, kind) if selection.shown else None
         if view is None or _is_empty(view):
-            _report_not_drawn(choice, kind, sink)
+            _report_not_drawn(selection, kind, sink)
             return None
-        diagram = _make_diagram(choice, kind, view)
-        _report_left_out(choice, diagram, sink)
+        diagram = _make_diagram(selection, kind, view)
+        _report_left_out(selection, diagram, sink)
         return diagram
 
-    def _build_view(self, choice: Selection, kind: str) -> View | None:
+    def _build_view(self, selection: Selection, kind: str) -> View | None:
         if kind in ("bdd", "class", "pkg", "req"):
-            return build_box_view(choice, self._relations)
+            return build_box_view(selection, self._relations)
         if kind == "uc":
-            return self._build_use_case_view(choice)
+            return self._build_use_case_view(selection)
         if kind in ("ibd", "par"):
-            return self._build_parametric_view(choice) or author_parts.build_view(choice)
+            return self._build_parametric_view(selection) or author_parts.build_view(selection)
         if kind in ("act", "stm"):
             kind = Kind.ACTIVITY if kind == "act" else Kind.STATE_MACHINE
-            return build_behaviour_view(choice, kind)
-        return self._find_sequence_view(choice) if kind == "sd" else None
+            return build_behaviour_view(selection, kind)
+        return self._find_sequence_view(selection) if kind == "sd" else None
 
-    def _build_use_case_view(self, choice: Selection) -> View:
-        figures = [element for element in choice.shown if element.kind in use_case.FIGURES]
+    def _build_use_case_view(self, selection: Selection) -> View:
+        figures = [element for element in selection.shown if element.kind in use_case.FIGURES]
         ids = {element.id for element in figures}
-        inside = [r for r in self._relations if is_inside(choice, r, ids)]
+        inside = [r for r in self._relations if is_inside(selection, r, ids)]
         cases = [element for element in figures if element.kind is Kind.USE_CASE]
         actors = [element for element in figures if element not in cases]
         view = use_case.build_view(self.graph, cases, actors, inside)
-        notes = (note for note in view.notes if not choice.ids.isdisjoint(note.shows))
+        notes = (note for note in view.notes if not selection.ids.isdisjoint(note.shows))
         return replace(view, notes=tuple(notes))
 
-    def _find_sequence_view(self, choice: Selection) -> View | None:
-        about = find_behaviour(choice, Kind.INTERACTION)
+    def _find_sequence_view(self, selection: Selection) -> View | None:
+        about = find_behaviour(selection, Kind.INTERACTION)
         diagram = self._sequences.get(about.id) if about is not None else None
         return diagram.view if diagram is not None else None
 
-    def _build_parametric_view(self, choice: Selection) -> View | None:
-        """Return the usages of constraint blocks; None for a diagram without bindings.
+    def _build_parametric_view(self, selection: Selection) -> View | None:
+        """Return the parametric view of the selection, or None if it contains no binding.
 
-        A diagram without bindings is drawn as parts and ports.
+        The caller then draws parts and ports: a diagram of type "par" may have no binding, and one
+        of type "ibd" may have bindings.
         """
-        about = choice.about
+        about = selection.about
         candidates = self._bindings.get(about.id, []) if about is not None else []
-        selected = [binding for binding in candidates if not choice.ids.isdisjoint(binding.shows)]
+        selected = [
+            binding for binding in candidates if not selection.ids.isdisjoint(binding.shows)
+        ]
         if about is None or not selected:
             return None
-        return parametric.build_selected_view(self.graph, about, choice.shown, selected)
+        return parametric.build_selected_view(self.graph, about, selection.shown, selected)
 
 
 def _is_empty(view: View) -> bool:
@@ -169,94 +172,97 @@ def _is_empty(view: View) -> bool:
     return isinstance(view, InternalView) and not (view.frame.parts or view.frame.ports)
 
 
-def _make_diagram(choice: Selection, kind: str, view: View) -> Diagram:
-    graph, about = choice.graph, choice.about
-    name = graph.qualified_name(choice.view)
+def _make_diagram(selection: Selection, kind: str, view: View) -> Diagram:
+    graph, about = selection.graph, selection.about
+    name = graph.qualified_name(selection.view)
     frame = [kind]
     if about is not None:
         frame += [f"[{' '.join(labels.keywords(graph, about)) or about.kind}]", labels.name(about)]
-    frame.append(f"[{choice.view.name or choice.view.attrs.get('diagram_type', '')}]")
+    frame.append(f"[{selection.view.name or selection.view.attrs.get('diagram_type', '')}]")
     return Diagram(
         kind=kind,
         name=name,
         frame=escape_line(" ".join(frame)),
         heading=(_TITLES[kind], name),
         view=view,
-        about=choice.view.id,
+        about=selection.view.id,
     )
 
 
 # -- what is not there -------------------------------------------------------------------------
 
 
-def _report_not_drawn(choice: Selection, kind: str, sink: Sink) -> None:
-    type_ = str(choice.view.attrs.get("diagram_type", "")) or kind or "diagram"
+def _report_not_drawn(selection: Selection, kind: str, sink: Sink) -> None:
+    type_ = str(selection.view.attrs.get("diagram_type", "")) or kind or "diagram"
     is_drawable = kind in _TITLES
     reason = f"a {type_} is not drawn"
     if is_drawable:
         reason = "it shows nothing of the model that its notation has a place for"
-    subject = choice.graph.subject(choice.view)
-    sink.report(NOT_DRAWN, subject, name=choice.view.name, reason=reason)
+    subject = selection.graph.subject(selection.view)
+    sink.report(NOT_DRAWN, subject, name=selection.view.name, reason=reason)
 
 
-def _report_left_out(choice: Selection, diagram: Diagram, sink: Sink) -> None:
+def _report_left_out(selection: Selection, diagram: Diagram, sink: Sink) -> None:
     drawn = set(diagram.list_trace())
     missing = [
         element
-        for element in choice.shown
-        if element.id not in drawn and not _is_shown_otherwise(choice, element)
+        for element in selection.shown
+        if element.id not in drawn and not _is_shown_otherwise(selection, element)
     ]
     if missing:
         names = [element.name or str(element.kind) for element in missing[:_NAMES_SHOWN]]
         names += ["..."] if len(missing) > _NAMES_SHOWN else []
         sink.report(
             LEFT_OUT,
-            choice.graph.subject(choice.view),
+            selection.graph.subject(selection.view),
             count=len(missing),
-            all=len(choice.shown),
-            name=choice.view.name,
+            all=len(selection.shown),
+            name=selection.view.name,
             names=", ".join(names),
         )
 
 
-def _is_shown_otherwise(choice: Selection, element: Element) -> bool:
-    """Whether the frame or another element of the diagram shows an element.
+def _is_shown_otherwise(selection: Selection, element: Element) -> bool:
+    """Whether the frame or another shape of the diagram shows the element.
 
-    Papyrus draws the frame as a shape of its own, and regions in it. A classifier that is only
-    listed is the type of an element that is drawn.
+    Papyrus stores the frame as a shape, and the regions of a state machine as shapes inside the
+    frame. A classifier that is only listed is the type of a drawn element.
     """
-    is_named = element.id in choice.listed and element.kind in CLASSIFIERS
-    return is_named or element is choice.about or element.kind in (Kind.APPLICATION, Kind.REGION)
+    is_named = element.id in selection.listed and element.kind in CLASSIFIERS
+    return is_named or element is selection.about or element.kind in (Kind.APPLICATION, Kind.REGION)
 
 
 # -- behaviours --------------------------------------------------------------------------------
 
-_WHOLE: dict[Kind, Callable[[Graph, Element], GraphView]] = {
+_DRAW_WHOLE: dict[Kind, Callable[[Graph, Element], GraphView]] = {
     Kind.ACTIVITY: activity.draw_whole,
     Kind.STATE_MACHINE: state_machine.draw_whole,
 }
 
 
-def find_behaviour(choice: Selection, kind: Kind) -> Element | None:
-    """Return the behaviour of the frame, else the behaviour that owns the shown elements."""
-    graph, about = choice.graph, choice.about
-    starts = [*([about] if about else []), *choice.shown]
+def find_behaviour(selection: Selection, kind: Kind) -> Element | None:
+    """Return the behaviour that the frame represents, else the owner of the shown elements."""
+    graph, about = selection.graph, selection.about
+    starts = [*([about] if about else []), *selection.shown]
     candidates = (element for start in starts for element in (start, *graph.ancestors(start)))
     return next((element for element in candidates if element.kind is kind), None)
 
 
-def build_behaviour_view(choice: Selection, kind: Kind) -> GraphView:
-    """Return the nodes that the author selected, with their content, and the lines between them."""
-    about = find_behaviour(choice, kind)
+def build_behaviour_view(selection: Selection, kind: Kind) -> GraphView:
+    """Return the view of a behaviour, reduced to the nodes and lines that the author selected.
+
+    A node that the author omitted stays if a selected node lies inside it.
+    """
+    about = find_behaviour(selection, kind)
     if about is None:
         return GraphView((), ())
-    whole = _WHOLE[kind](choice.graph, about)
-    nodes = tuple(_select_nodes(whole.nodes, choice.ids))
+    whole = _DRAW_WHOLE[kind](selection.graph, about)
+    nodes = tuple(_select_nodes(whole.nodes, selection.ids))
     aliases = set(_iter_aliases(nodes))
     return GraphView(
         nodes,
-        tuple(line for line in whole.lines if _is_drawn(line, aliases, choice.ids)),
-        tuple(_select_notes(whole.notes, aliases, choice.ids)),
+        tuple(line for line in whole.lines if _is_drawn(line, aliases, selection.ids)),
+        tuple(_select_notes(whole.notes, aliases, selection.ids)),
     )
 
 
@@ -288,7 +294,7 @@ def _select_notes(notes: Iterable[Note], aliases: set[str], ids: frozenset[str])
 # -- boxes and lines ---------------------------------------------------------------------------
 
 _ARROWS = {"--|>": Edge.SPECIALIZES, "..|>": Edge.REALIZES}
-_TEXT = 44
+_COMMENT_WIDTH = 44
 
 
 def list_all_relations(graph: Graph) -> list[Relation]:
@@ -301,22 +307,22 @@ def list_all_relations(graph: Graph) -> list[Relation]:
     ]
 
 
-def build_box_view(choice: Selection, candidates: Iterable[Relation]) -> BoxView:
+def build_box_view(selection: Selection, candidates: Iterable[Relation]) -> BoxView:
     """Return the boxes that the author selected, and the lines that the diagram shows between
     them.
     """
-    boxed = [item for item in choice.shown if _is_boxed(choice, item)]
+    boxed = [item for item in selection.shown if _is_boxed(selection, item)]
     ids = {item.id for item in boxed}
-    inside = [relation for relation in candidates if is_inside(choice, relation, ids)]
+    inside = [relation for relation in candidates if is_inside(selection, relation, ids)]
     in_lines = {id for relation in inside for id in relation.shows}
     aliases = Aliases()
-    boxes = [_make_box(choice, item, aliases, in_lines) for item in boxed]
+    boxes = [_make_box(selection, item, aliases, in_lines) for item in boxed]
     return arrange_boxes(
         boxes, [block_definition.make_line(relation, aliases) for relation in inside]
     )
 
 
-def _is_boxed(choice: Selection, item: Element) -> bool:
+def _is_boxed(selection: Selection, item: Element) -> bool:
     if item.kind in LINES or item.kind is Kind.VIEW:
         return False
     if item.kind in FEATURES or item.kind is Kind.CONSTRAINT:
@@ -324,14 +330,16 @@ def _is_boxed(choice: Selection, item: Element) -> bool:
     return True
 
 
-def is_inside(choice: Selection, relation: Relation, boxes: set[str]) -> bool:
-    """Whether the author drew the relation, and both its ends have boxes with these ids."""
+def is_inside(selection: Selection, relation: Relation, boxes: set[str]) -> bool:
+    """Whether the author drew the relation and both its ends are among *boxes* (ids)."""
     if not {relation.source, relation.target} <= boxes:
         return False
+    # A generalization or realization is an edge of the graph without id, so that the view lists it
+    # by its two ends.
     edge = _ARROWS.get(relation.arrow)
     if edge is not None and not relation.shows:
-        return choice.shows_edge(edge, relation.source, relation.target)
-    return not relation.shows or relation.shows[0] in choice.ids
+        return selection.shows_edge(edge, relation.source, relation.target)
+    return not relation.shows or relation.shows[0] in selection.ids
 
 
 def _iter_comment_anchors(graph: Graph) -> Iterator[Relation]:
@@ -343,35 +351,39 @@ def _iter_comment_anchors(graph: Graph) -> Iterator[Relation]:
 # -- boxes -------------------------------------------------------------------------------------
 
 
-def _make_box(choice: Selection, item: Element, aliases: Aliases, in_lines: set[str]) -> Box:
-    graph = choice.graph
+def _make_box(selection: Selection, item: Element, aliases: Aliases, in_lines: set[str]) -> Box:
+    graph = selection.graph
     if item.kind is Kind.COMMENT:
-        text = "\\n".join(wrap_lines(str(item.attrs.get("body", "")), _TEXT))
+        text = "\\n".join(wrap_lines(str(item.attrs.get("body", "")), _COMMENT_WIDTH))
         alias = aliases.make(item.id, "", "note")
         return Box(alias, text or labels.name(item), "requirement", shows=(item.id,))
     if item.attrs.get("external"):
         return boxes.make_stub(graph, item, aliases)
     if is_requirement(item):
         return requirement.make_box(graph, item, aliases)
-    features = _list_features(choice, item)
+    features = _list_features(selection, item)
     return boxes.make_box(graph, item, aliases, in_lines, {}, features)
 
 
-def _list_features(choice: Selection, item: Element) -> list[Element]:
-    """Return the features in the compartments: own, nested in the drawing, or inherited ones."""
-    graph = choice.graph
+def _list_features(selection: Selection, item: Element) -> list[Element]:
+    """Return the features in the compartments of *item* that the author selected.
+
+    These are owned features, features whose shapes lie inside the shape of *item*, and inherited
+    features that no other box of the diagram owns.
+    """
+    graph = selection.graph
     owned = graph.owned(item)
-    if choice.is_summary:
+    if selection.is_summary:
         return owned
-    nested = [id for path in choice.nesting for id in _list_below(path, item.id)]
-    inherited = graph.targets(item, Edge.FEATURE) if item.id in choice.ids else []
+    nested = [id for path in selection.nesting for id in _list_below(path, item.id)]
+    inherited = graph.targets(item, Edge.FEATURE) if item.id in selection.ids else []
     foreign = [
         feature
         for feature in inherited
-        if feature.id in choice.ids and feature.owner not in choice.ids
+        if feature.id in selection.ids and feature.owner not in selection.ids
     ]
     drawn = [graph[id] for id in nested if graph[id].kind in FEATURES]
-    selected = [feature for feature in owned if feature.id in choice.ids]
+    selected = [feature for feature in owned if feature.id in selection.ids]
     return list(dict.fromkeys([*selected, *drawn, *foreign]))
 
 

@@ -1,4 +1,4 @@
-"""Authors' internal block diagrams: parts in parts as they were drawn, ports, connectors."""
+"""Internal block diagrams of authors: parts nested as the author drew them, ports, connectors."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
@@ -25,24 +25,27 @@ _PARTS = (Kind.PROPERTY, Kind.FLOW_PROPERTY)
 _PORT_WIDTH = 24
 
 
-def build_view(choice: Selection) -> InternalView:
-    """Return the elements that the author selected, in the frame of the block."""
-    return _AuthorDrawing(choice).build()
+def build_view(selection: Selection) -> InternalView:
+    """Return the view of the selected elements in the frame of the block."""
+    return _AuthorDrawing(selection).build()
 
 
 @dataclass(slots=True)
 class _AuthorDrawing:
-    """One internal block diagram while its view is built; ``paths`` lead to all parts and ports."""
+    """Builder of the view of one internal block diagram.
 
-    choice: Selection
+    ``paths`` has the path of ids to each part and port, as an ordered set.
+    """
+
+    selection: Selection
     aliases: Aliases = field(default_factory=Aliases)
     paths: dict[_Ids, None] = field(default_factory=dict)
     used: list[Connection] = field(default_factory=list)
     """Connections that are drawn."""
 
     def build(self) -> InternalView:
-        self.paths = find_paths(self.choice)
-        about = self.choice.about
+        self.paths = find_paths(self.selection)
+        about = self.selection.about
         frame = PartView(
             self.aliases.make("frame", about.name if about else "", "block"),
             " ",
@@ -58,7 +61,7 @@ class _AuthorDrawing:
     # -- parts ---------------------------------------------------------------------------------
 
     def _find_element(self, path: _Ids) -> Element:
-        return self.choice.graph[path[-1]]
+        return self.selection.graph[path[-1]]
 
     def _is_port(self, path: _Ids) -> bool:
         return self._find_element(path).kind in _PORTS
@@ -72,8 +75,12 @@ class _AuthorDrawing:
                 yield self._make_part(inner)
 
     def _make_part(self, path: _Ids) -> PartView:
-        graph, part = self.choice.graph, self._find_element(path)
-        words = (word for word in labels.list_stereotypes(graph, part) if word not in _SAID)
+        graph, part = self.selection.graph, self._find_element(path)
+        words = (
+            word
+            for word in labels.list_stereotypes(graph, part)
+            if word not in _IMPLIED_STEREOTYPES
+        )
         features = list(self._iter_listed_features(part))
         rows = [
             *internal_block.embolden(labels.format_typed(graph, part)),
@@ -90,11 +97,14 @@ class _AuthorDrawing:
 
     def _iter_listed_features(self, part: Element) -> Iterator[Element]:
         """Yield the features of the part's type that a compartment of the part lists."""
-        type_ = type_of(self.choice.graph, part)
-        if type_ is not None and self.choice.listed:
-            candidates = (*self.choice.graph.owned(type_), *features(self.choice.graph, type_))
+        type_ = type_of(self.selection.graph, part)
+        if type_ is not None and self.selection.listed:
+            candidates = (
+                *self.selection.graph.owned(type_),
+                *features(self.selection.graph, type_),
+            )
             yield from dict.fromkeys(
-                feature for feature in candidates if feature.id in self.choice.listed
+                feature for feature in candidates if feature.id in self.selection.listed
             )
 
     def _iter_ports(self, path: _Ids) -> Iterator[PortView]:
@@ -106,10 +116,12 @@ class _AuthorDrawing:
 
     def _make_port(self, path: _Ids) -> PortView:
         port = self._find_element(path)
-        outer = [id for id in path[:-1] if self.choice.graph[id].kind in _PORTS]
-        names = [labels.name(self.choice.graph[id]) for id in (*outer, port.id)]
+        outer = [id for id in path[:-1] if self.selection.graph[id].kind in _PORTS]
+        names = [labels.name(self.selection.graph[id]) for id in (*outer, port.id)]
         text = (
-            ".".join(names) if port.name.strip() else labels.format_typed(self.choice.graph, port)
+            ".".join(names)
+            if port.name.strip()
+            else labels.format_typed(self.selection.graph, port)
         )
         rows = (f"<back:#FFFFFF>{row}</back>" for row in wrap_lines(text, _PORT_WIDTH))
         form = internal_block.FORMS.get(str(port.attrs.get("direction", "")), "port")
@@ -123,14 +135,14 @@ class _AuthorDrawing:
     # -- lines ---------------------------------------------------------------------------------
 
     def _iter_lines(self) -> Iterator[Line]:
-        graph = self.choice.graph
-        owners = [element.owner for element in self.choice.shown if element.kind in _CONNECTIONS]
+        graph = self.selection.graph
+        owners = [element.owner for element in self.selection.shown if element.kind in _CONNECTIONS]
         for id in dict.fromkeys(owners):
             owner = graph.get(id)
             if owner is not None:
                 for prefix in self._list_prefixes(owner):
                     yield from self._iter_connection_lines(owner, prefix)
-        for item in self.choice.shown:
+        for item in self.selection.shown:
             if item.kind is Kind.DEPENDENCY:
                 yield from self._iter_dependency_lines(item)
 
@@ -139,15 +151,15 @@ class _AuthorDrawing:
 
         These are the frame, and the parts that are typed by the classifier.
         """
-        graph, about = self.choice.graph, self.choice.about
+        graph, about = self.selection.graph, self.selection.about
         in_frame = about is None or owner in (about, *generals(graph, about))
         typed = [path for path in self.paths if _is_typed(graph, self._find_element(path), owner)]
         return [(), *typed] if in_frame or not typed else typed
 
     def _iter_connection_lines(self, owner: Element, prefix: _Ids) -> Iterator[Line]:
-        graph = self.choice.graph
+        graph = self.selection.graph
         for connection in list_connections(graph, owner, find_free_flows(graph).get(owner.id, ())):
-            if not self.choice.ids.isdisjoint(connection.shows):
+            if not self.selection.ids.isdisjoint(connection.shows):
                 source, target = (
                     self._find_end_alias(prefix, connection.source),
                     self._find_end_alias(prefix, connection.target),
@@ -157,7 +169,7 @@ class _AuthorDrawing:
                     yield _make_line(source, target, connection)
 
     def _find_end_alias(self, prefix: _Ids, end: Path) -> str:
-        """Return the alias of the end, or of the nearest shape around it."""
+        """Return the alias of the end, or of the innermost drawn part or port that contains it."""
         full = (*prefix, *end.ids())
         for length in range(len(full), len(prefix), -1):
             drawn = self._find_drawn_path(full[:length], prefix)
@@ -166,7 +178,10 @@ class _AuthorDrawing:
         return "" if prefix or end.parts else self.aliases["frame"]
 
     def _find_drawn_path(self, path: _Ids, prefix: _Ids) -> _Ids | None:
-        """Return the path as it is drawn: the author may omit parts on the way."""
+        """Return the drawn path to the last element of *path*, or None if it is not drawn.
+
+        The author may have omitted parts between the frame and the element.
+        """
         if path in self.paths:
             return path
         ends = [candidate for candidate in self.paths if candidate[-1] == path[-1]]
@@ -175,7 +190,7 @@ class _AuthorDrawing:
         return next(iter(through or fitting), None)
 
     def _iter_dependency_lines(self, item: Element) -> Iterator[Line]:
-        graph = self.choice.graph
+        graph = self.selection.graph
         text = format_keyword_label(labels.guillemets(labels.keywords(graph, item)))
         for client in graph.targets(item, Edge.CLIENT):
             for supplier in graph.targets(item, Edge.SUPPLIER):
@@ -185,8 +200,8 @@ class _AuthorDrawing:
                     yield Line(source, "..>", target, text, shows=(item.id,))
 
 
-_SAID = frozenset(["partProperty", "referenceProperty"])
-"""Stereotypes that every part has."""
+_IMPLIED_STEREOTYPES = frozenset(["partProperty", "referenceProperty"])
+"""Stereotypes that tools apply to every part; the border already shows the difference."""
 
 
 def _format_row(graph: Graph, feature: Element) -> str:
@@ -211,19 +226,21 @@ def _is_typed(graph: Graph, part: Element, classifier: Element) -> bool:
 # -- nesting -----------------------------------------------------------------------------------
 
 
-def find_paths(choice: Selection) -> dict[_Ids, None]:
-    """Return a path to each part and port: as it is drawn, else derived from the types of the
-    parts.
+def find_paths(selection: Selection) -> dict[_Ids, None]:
+    """Return a path to each part and port.
+
+    The path follows the nesting of the shapes. If the tool stores no nesting, it follows the types
+    of the parts.
     """
-    graph = choice.graph
-    candidates = (element for element in choice.shown if element.id not in choice.listed)
+    graph = selection.graph
+    candidates = (element for element in selection.shown if element.id not in selection.listed)
     drawables = [element for element in candidates if element.kind in (*_PARTS, *_PORTS)]
-    drawn = [_select_parts_and_ports(graph, path) for path in choice.nesting]
+    drawn = [_select_parts_and_ports(graph, path) for path in selection.nesting]
     deeper = {path[-1] for path in drawn if len(path) > 1}
     paths_found: dict[_Ids, None] = {
         (element.id,): None for element in drawables if element.id not in deeper
     }
-    if not choice.nesting:
+    if not selection.nesting:
         paths_found = _nest_by_type(graph, drawables)
     for path in drawn:
         for length in range(1, len(path) + 1):
@@ -237,7 +254,7 @@ def _select_parts_and_ports(graph: Graph, path: _Ids) -> _Ids:
 
 
 def _nest_by_type(graph: Graph, elements: list[Element]) -> dict[_Ids, None]:
-    """Nest each element in the parts whose type has it as a feature, else in the frame."""
+    """Nest each element in all parts whose types have it as a feature, else in the frame."""
     holders = {element.id: _find_holders(graph, element, elements) for element in elements}
     paths_found: dict[_Ids, None] = {
         (element.id,): None for element in elements if not holders[element.id]
@@ -248,6 +265,7 @@ def _nest_by_type(graph: Graph, elements: list[Element]) -> dict[_Ids, None]:
             (*path, element.id)
             for path in level
             for element in elements
+            # A block may contain itself through its parts; no path has an element twice.
             if path[-1] in holders[element.id] and element.id not in path
         ]
         paths_found |= dict.fromkeys(level)

@@ -1,6 +1,4 @@
-"""The selection of an author for a diagram: a View and the elements that it refers to
-(docs/ir.md).
-"""
+"""The elements that an author selected for a diagram: a View and its references (docs/ir.md)."""
 
 from functools import cached_property
 
@@ -42,7 +40,7 @@ LINES = frozenset(
 
 
 class Selection(Struct, frozen=True, dict=True):
-    """The selection of elements of one author's diagram."""
+    """The elements and lines of one author diagram, as its View stores them."""
 
     graph: Graph
     view: Element
@@ -71,15 +69,19 @@ class Selection(Struct, frozen=True, dict=True):
 
     @cached_property
     def relations(self) -> frozenset[tuple[str, ...]] | None:
-        """The lines that are bare edges of the graph (edge, from, to); None if the tool does not
-        list them.
+        """The drawn lines that have no element, as (edge, source, target).
+
+        The value is None if the tool does not list such lines.
         """
         entries = self.view.attrs.get("relations")
         return frozenset(map(_convert_to_texts, entries)) if isinstance(entries, tuple) else None
 
     @property
     def is_summary(self) -> bool:
-        """Whether the tool does not store which features are shown, so that all are."""
+        """Whether the diagram lists no feature at all, so that boxes show all their features.
+
+        Some tools store the shown classifiers only.
+        """
         return not any(element.kind in FEATURES for element in self.shown)
 
     @cached_property
@@ -88,7 +90,10 @@ class Selection(Struct, frozen=True, dict=True):
         return self.graph.target(self.view, Edge.REPRESENTS) or self.graph.owner(self.view)
 
     def shows_edge(self, edge: Edge, source: str, target: str) -> bool:
-        """Whether the author drew a line that has no element of its own."""
+        """Whether the author drew the line of an edge, which has no element of its own.
+
+        True if the tool does not list such lines.
+        """
         return self.relations is None or (edge.value, source, target) in self.relations
 
 
