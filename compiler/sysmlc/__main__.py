@@ -1,4 +1,4 @@
-"""``python -m sysmlc``: the same as the command ``sysmlc``."""
+"""Entry point of ``python -m sysmlc``, which equals the command ``sysmlc``."""
 
 import os
 import sys

@@ -8,7 +8,7 @@ from collections.abc import Iterable
 from os import PathLike
 from pathlib import Path
 
-from sysmlc.config import Config, find, load
+from sysmlc.config import Config, find_config_file, read_config
 from sysmlc.diagnostics import Diagnostic, Rule, Severity, Sink, rule
 from sysmlc.driver import Compilation, Request, registry, select_backends
 from sysmlc.driver import compile_model as compile_request
@@ -46,14 +46,14 @@ def compile_model(
     passes: Iterable[Pass] = (),
     config: Config | None = None,
 ) -> Compilation:
-    """Compile files or folders as one compile unit, in memory. Write nothing.
+    """Compile files or folders as one compile unit, in memory; no file is written.
 
     *emit* names back ends as ``--emit`` does; without it the compilation has no artefacts.
-    *passes* run besides those of sysmlc, behind the passes that they name in ``after``. *config*
-    is by default the configuration of the project that holds the first path. A ``Request``
-    instead of paths states everything by itself.
+    *passes* run in addition to those of sysmlc, after the passes that they name in ``after``.
+    *config* is by default the configuration of the project that contains the first path. A
+    ``Request`` instead of paths contains all options itself.
 
-    Faults of the model, missing files among them, are diagnostics of the result. Raise
+    Faults of the model, including missing files, are diagnostics of the result. Raises
     ``ConfigError`` for a configuration that cannot be used and ``BackendError`` for an unknown
     back end.
     """
@@ -61,7 +61,7 @@ def compile_model(
         return compile_request(paths)
     inputs = _list_paths(paths)
     if config is None:
-        config = load(find(inputs[0].absolute())) if inputs else Config()
+        config = read_config(find_config_file(inputs[0].absolute())) if inputs else Config()
     request = Request(
         inputs=inputs,
         config=config,

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any, cast
 from msgspec import Struct, field
 
 from sysmlc.diagnostics import Severity
-from sysmlc.diagnostics.suppress import Suppression
+from sysmlc.diagnostics.sink import Suppression
 from sysmlc.sources import Roots, SourceError
-from sysmlc.sources.limits import DOCUMENT_LIMITS
-from sysmlc.sources.whole import read_whole
+from sysmlc.sources.files import read_whole
+from sysmlc.sources.source import DOCUMENT_LIMITS
 from sysmlc.support import resources
 from sysmlc.support.suggestions import did_you_mean
 from sysmlc.support.toml_text import TomlError, parse_toml
@@ -22,21 +22,21 @@ if TYPE_CHECKING:
 
 FILE_NAME = "sysmlc.toml"
 _MAX_PARTS = 100
+"""Folders in a path of the configuration."""
 _MAX_BYTES = 240
-"""Folders in a path of the configuration, and bytes in the name of one: file systems allow 255,
-and outputs add suffixes."""
-_LONGEST_MESSAGE = 300
+"""Bytes of the name of one folder: file systems allow 255, and outputs add suffixes."""
+_MAX_MESSAGE = 300
 _EXCERPT = 100
-"""Characters of either end of a longer message that are shown."""
+"""Characters of a longer message that are shown from its start and from its end."""
 _WILDCARDS = "*?["
 
 
 class ConfigError(Exception):
-    """The configuration cannot be used; the message says where and why."""
+    """The configuration cannot be used; the message gives the location and the reason."""
 
 
 class ModelUnit(Struct, frozen=True):
-    """One ``[[model]]``: files that are compiled together, and where their outputs go."""
+    """An entry ``[[model]]``: files that are compiled together, and their output folder."""
 
     name: str
     files: tuple[str, ...]
@@ -45,9 +45,9 @@ class ModelUnit(Struct, frozen=True):
 
 
 class Config(Struct, frozen=True):
-    """What a project chose; ``folder`` is where its file stands, None when there is none.
+    """The settings of a project; ``folder``, ``root`` and ``file`` are None without a file.
 
-    Paths of the file may not lead out of ``root``, the project root of the file.
+    ``folder`` contains the file. Paths may not lead out of ``root``, the project root.
     """
 
     folder: Path | None = None
@@ -64,9 +64,9 @@ class Config(Struct, frozen=True):
     passes: Mapping[str, Mapping[str, object]] = field(default_factory=dict)
     models: tuple[ModelUnit, ...] = ()
     time_limit: float = 0.0
-    """Seconds for a command; 0 is no limit besides that of the command line."""
+    """Seconds for a command; 0 adds no limit to that of the command line."""
     memory_limit: float = 0.0
-    """GiB for a command; 0 is no limit besides that of the command line."""
+    """GiB for a command; 0 adds no limit to that of the command line."""
 
 
 def find_project_root(start: Path) -> Path:
@@ -94,7 +94,7 @@ def find_boundary(output: Path) -> Path:
     return output
 
 
-def find(start: Path) -> Path | None:
+def find_config_file(start: Path) -> Path | None:
     """Return the configuration file of the project that holds *start*, if it has one.
 
     ``sysmlc.toml`` of the project root wins; else the nearest ``pyproject.toml`` inside the root
@@ -111,7 +111,7 @@ def find(start: Path) -> Path | None:
             break
         if project.is_file():
             _refuse_outside(project, root)
-            if _tool_table(_parse(project, _read(project))) is not None:
+            if _find_tool_table(_parse_file(project, _read_file(project))) is not None:
                 return project
     return None
 
@@ -130,12 +130,12 @@ def _refuse_outside(file: Path, root: Path) -> Path:
     return file
 
 
-def load(file: Path | None) -> Config:
-    """The configuration of a file; the defaults when there is none. Raises ConfigError."""
+def read_config(file: Path | None) -> Config:
+    """Return the configuration in a file, or the defaults without a file. Raises ConfigError."""
     if file is None:
         return Config()
-    text = _read(file)
-    config = _config(file.absolute(), _table(file, text))
+    text = _read_file(file)
+    config = _make_config(file.absolute(), _read_settings(file, text))
     _check_paths(file, text, config)
     return config
 
@@ -151,20 +151,20 @@ def _check_paths(file: Path, text: str, config: Config) -> None:
     for unit in config.models:
         if not _is_inside(unit.name):
             message = f"the name '{unit.name}' leads out of the output folder"
-            raise ConfigError(f"{file}:{_line(text, 'name')}: {message}; use a plain name")
+            raise ConfigError(f"{file}:{_find_line(text, 'name')}: {message}; use a plain name")
         entries += [("files", pattern) for pattern in unit.files]
-    # Links in the path of an output folder count when something is written to it.
+    # Links in the path of an output folder are checked when a file is written to it.
     entries += [("output", output) for output in outputs if not _is_inside(output)]
     for key, value in entries:
         if not _is_confined(value, config):
             raise ConfigError(
-                f"{file}:{_line(text, key)}: '{key}': '{value}' leads out of the project root "
+                f"{file}:{_find_line(text, key)}: '{key}': '{value}' leads out of the project root "
                 f"'{config.root}'; only paths on the command line may do that"
             )
 
 
 def _check_lengths(file: Path, text: str, config: Config) -> None:
-    """Refuse paths that no file system can hold. Raises ConfigError."""
+    """Refuse paths that are longer than file systems allow. Raises ConfigError."""
     entries = [("output", config.output), ("templates", config.templates)]
     for unit in config.models:
         entries += [("name", unit.name), ("output", unit.output)]
@@ -173,25 +173,27 @@ def _check_lengths(file: Path, text: str, config: Config) -> None:
         parts = Path(value).parts
         if len(parts) > _MAX_PARTS or any(len(os.fsencode(part)) > _MAX_BYTES for part in parts):
             message = f"'{value[:_EXCERPT]}...' is longer than file systems allow"
-            raise ConfigError(f"{file}:{_line(text, key)}: '{key}': {message}")
+            raise ConfigError(f"{file}:{_find_line(text, key)}: '{key}': {message}")
 
 
 def _is_inside(name: str) -> bool:
-    """Whether the name of a unit, used as a folder, stays below the folder that it is in."""
+    """Whether a relative path stays below its folder, as far as its text shows."""
     return not Path(name).is_absolute() and ".." not in Path(name).parts and "\0" not in name
 
 
 def _is_confined(pattern: str, config: Config) -> bool:
-    """Whether a path lies in the project root; of a pattern, what stands before wildcards."""
+    """Whether a path, or the part of a pattern before its wildcards, is in the project root."""
     if "\0" in pattern:
         return False
     parts = Path(pattern).parts
-    wild = next((at for at, part in enumerate(parts) if set(part) & set(_WILDCARDS)), len(parts))
-    if config.folder is None or config.root is None or ".." in parts[wild:]:
+    wildcard_parts = (index for index, part in enumerate(parts) if set(part) & set(_WILDCARDS))
+    first = next(wildcard_parts, len(parts))
+    if config.folder is None or config.root is None or ".." in parts[first:]:
         return False
-    if wild < len(parts) and Path(pattern).is_absolute():
-        return False  # Path.glob does not expand absolute patterns
-    return Roots((config.root,)).allows(config.folder.joinpath(*parts[:wild]))
+    # Path.glob does not expand absolute patterns.
+    if first < len(parts) and Path(pattern).is_absolute():
+        return False
+    return Roots((config.root,)).allows(config.folder.joinpath(*parts[:first]))
 
 
 def expand_files(config: Config, patterns: Iterable[str]) -> list[Path]:
@@ -213,16 +215,19 @@ def expand_files(config: Config, patterns: Iterable[str]) -> list[Path]:
     return files
 
 
-def _table(file: Path, text: str) -> dict[str, Any]:
-    """Return the settings of a file. Raises ConfigError."""
-    table = _parse(file, text)
+# -- reading -----------------------------------------------------------------------------------
+
+
+def _read_settings(file: Path, text: str) -> dict[str, Any]:
+    """Return the settings of a file, which the JSON Schema allows. Raises ConfigError."""
+    table = _parse_file(file, text)
     if file.name == "pyproject.toml":
-        table = _tool_table(table) or {}
+        table = _find_tool_table(table) or {}
     _validate(file, text, table)
     return table
 
 
-def _read(file: Path) -> str:
+def _read_file(file: Path) -> str:
     try:
         text = read_whole(file, str(file), DOCUMENT_LIMITS).decode("utf-8")
     except SourceError as problem:
@@ -232,31 +237,31 @@ def _read(file: Path) -> str:
     return text.replace("\r\n", "\n")
 
 
-def _parse(file: Path, text: str) -> dict[str, Any]:
+def _parse_file(file: Path, text: str) -> dict[str, Any]:
     try:
         return parse_toml(text)
     except TomlError as problem:
         raise ConfigError(f"{file}:{problem.line}:{problem.column}: {problem}") from problem
 
 
-def _tool_table(project: Mapping[str, Any]) -> dict[str, Any] | None:
+def _find_tool_table(project: Mapping[str, Any]) -> dict[str, Any] | None:
+    """Return the table ``[tool.sysmlc]`` of a ``pyproject.toml``, None if it has none."""
     tool = project.get("tool")
     table = tool.get("sysmlc") if isinstance(tool, dict) else None
     return table if isinstance(table, dict) else None
 
 
 def _validate(file: Path, text: str, table: object) -> None:
-
     from jsonschema import Draft202012Validator
 
     schema = resources.read_text("metamodels", "sysmlc-config.schema.json")
     validator = Draft202012Validator(json.loads(schema))
-    errors = sorted(validator.iter_errors(table), key=lambda e: list(e.path))
+    errors = sorted(validator.iter_errors(table), key=lambda error: list(error.path))
     if errors:
-        raise ConfigError(_explain(file, text, errors[0]))
+        raise ConfigError(_explain_error(file, text, errors[0]))
 
 
-def _explain(file: Path, text: str, error: "ValidationError") -> str:
+def _explain_error(file: Path, text: str, error: "ValidationError") -> str:
     path = [str(part) for part in error.absolute_path]
     if error.validator == "additionalProperties":
         schema = cast("dict[str, dict[str, object]]", error.schema)
@@ -264,16 +269,18 @@ def _explain(file: Path, text: str, error: "ValidationError") -> str:
         instance = cast("dict[str, object]", error.instance)
         key = next(key for key in instance if key not in properties)
         advice = did_you_mean(key, properties)
-        return f"{file}:{_line(text, key)}: unknown key '{'.'.join([*path, key])}'; {advice}"
+        line = _find_line(text, key)
+        return f"{file}:{line}: unknown key '{'.'.join([*path, key])}'; {advice}"
     key = next((part for part in reversed(path) if not part.isdigit()), "")
     message = error.message
-    if len(message) > _LONGEST_MESSAGE:  # it quotes the value; what is wrong with it comes last
+    # The message quotes the value, which can be long, and gives the reason at its end.
+    if len(message) > _MAX_MESSAGE:
         message = f"{message[:_EXCERPT]} ... {message[-_EXCERPT:]}"
-    return f"{file}:{_line(text, key)}: '{'.'.join(path)}': {message}"
+    return f"{file}:{_find_line(text, key)}: '{'.'.join(path)}': {message}"
 
 
-def _line(text: str, key: str) -> int:
-    """Line of the first mention of a key: TOML parsers of the standard library keep no places."""
+def _find_line(text: str, key: str) -> int:
+    """Return the first line that mentions a key: tomllib does not store the lines of keys."""
     for number, line in enumerate(text.splitlines(), 1):
         head = line.partition("=")[0] if "=" in line else line
         if key and key in head.strip(" []").replace('"', "").split("."):
@@ -283,50 +290,7 @@ def _line(text: str, key: str) -> int:
     return 1
 
 
-def _config(file: Path, table: dict[str, Any]) -> Config:
-    return Config(
-        folder=file.parent,
-        root=find_project_root(file),
-        file=file,
-        output=table.get("output", "out"),
-        emit=tuple(table.get("emit", ())),
-        strict=table.get("strict", False),
-        strict_input=table.get("strict-input", False),
-        diagrams=table.get("diagrams", "derived"),
-        templates=table.get("templates", ""),
-        rules={key: _severity(word) for key, word in table.get("rules", {}).items()},
-        suppress=tuple(Suppression(**entry) for entry in table.get("suppress", ())),
-        passes=_pass_options(table),
-        models=tuple(_model(entry) for entry in table.get("model", ())),
-        time_limit=float(table.get("time-limit", 0)),
-        memory_limit=float(table.get("memory-limit", 0)),
-    )
-
-
-def _severity(word: str) -> Severity | None:
-    return None if word == "off" else Severity(word)
-
-
-def _pass_options(table: dict[str, Any]) -> dict[str, dict[str, object]]:
-    options = {name: dict(fields) for name, fields in table.get("passes", {}).items()}
-    levels = _levels(table.get("recipe", {}).get("levels", {}))
-    if levels:
-        options.setdefault("recipe", {})["levels"] = dict(sorted(levels.items()))
-    return options
-
-
-def _levels(given: dict[str, str | list[str]]) -> dict[str, str]:
-    """Levels by element, said by element (``"A::B" = "task"``) or by level (``task = "A::B"``)."""
-    found: dict[str, str] = {}
-    for key, value in given.items():
-        word = key.replace("-", " ").replace("_", " ")
-        if isinstance(value, list) or (value not in LEVELS and word in LEVELS):
-            names = [value] if isinstance(value, str) else value
-            found |= dict.fromkeys(names, word)
-        else:
-            found[key] = value
-    return found
-
+# -- settings ----------------------------------------------------------------------------------
 
 LEVELS = (
     "recipe",
@@ -341,10 +305,58 @@ LEVELS = (
     "opc ua variable",
     "delay",
 )
-"""Levels of a recipe, as docs/ir.md has them."""
+"""Levels of a recipe (docs/ir.md)."""
 
 
-def _model(entry: dict[str, Any]) -> ModelUnit:
+def _make_config(file: Path, table: dict[str, Any]) -> Config:
+    return Config(
+        folder=file.parent,
+        root=find_project_root(file),
+        file=file,
+        output=table.get("output", "out"),
+        emit=tuple(table.get("emit", ())),
+        strict=table.get("strict", False),
+        strict_input=table.get("strict-input", False),
+        diagrams=table.get("diagrams", "derived"),
+        templates=table.get("templates", ""),
+        rules={
+            key: None if word == "off" else Severity(word)
+            for key, word in table.get("rules", {}).items()
+        },
+        suppress=tuple(Suppression(**entry) for entry in table.get("suppress", ())),
+        passes=_make_pass_options(table),
+        models=tuple(_make_unit(entry) for entry in table.get("model", ())),
+        time_limit=float(table.get("time-limit", 0)),
+        memory_limit=float(table.get("memory-limit", 0)),
+    )
+
+
+def _make_pass_options(table: dict[str, Any]) -> dict[str, dict[str, object]]:
+    """Return the options of passes; ``[recipe.levels]`` is an option of the pass ``recipe``."""
+    options = {name: dict(fields) for name, fields in table.get("passes", {}).items()}
+    levels = _read_levels(table.get("recipe", {}).get("levels", {}))
+    if levels:
+        options.setdefault("recipe", {})["levels"] = dict(sorted(levels.items()))
+    return options
+
+
+def _read_levels(table: dict[str, str | list[str]]) -> dict[str, str]:
+    """Return the levels by element.
+
+    The table has entries by element (``"A::B" = "task"``) or by level (``task = "A::B"``).
+    """
+    levels: dict[str, str] = {}
+    for key, value in table.items():
+        level = key.replace("-", " ").replace("_", " ")
+        if isinstance(value, list) or (value not in LEVELS and level in LEVELS):
+            names = [value] if isinstance(value, str) else value
+            levels |= dict.fromkeys(names, level)
+        else:
+            levels[key] = value
+    return levels
+
+
+def _make_unit(entry: dict[str, Any]) -> ModelUnit:
     name = entry["name"]
     emit = tuple(entry.get("emit", ()))
     return ModelUnit(name, tuple(entry["files"]), entry.get("output", f"out/{name}"), emit)

@@ -5,7 +5,7 @@ import re
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sysmlc.support.file_names import assign_file_names
+from sysmlc.support.output import assign_file_names
 
 
 def name_of(qualified_name: str) -> str:

@@ -8,8 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from sysmlc.support.atomic_files import write_if_changed
-from sysmlc.support.json_text import append_members, encode_json, encode_row
-from sysmlc.support.output import Output
+from sysmlc.support.output import Output, append_members, encode_json, encode_row
 
 _JSON = st.recursive(
     st.none() | st.booleans() | st.integers() | st.floats(allow_nan=False) | st.text(),

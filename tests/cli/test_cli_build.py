@@ -119,7 +119,9 @@ def test_check_lists_what_is_stale_missing_or_too_much_and_writes_nothing(here):
 
 def test_plus_adds_and_plain_names_replace(here, monkeypatch):
     monkeypatch.setattr(
-        registry, "_BACKENDS", {"graph": "sysmlc.backends.graph", "ir": "sysmlc.backends.ir"}
+        registry,
+        "_BACKENDS",
+        {"graph": "sysmlc.backends.graph:JSON", "ir": "sysmlc.backends.graph:TEXT"},
     )
     here.sysmlc("plant.ir", "-o", "none")
     here.sysmlc("plant.ir", "-o", "added", "--emit", "+ir")
@@ -130,7 +132,7 @@ def test_plus_adds_and_plain_names_replace(here, monkeypatch):
 
 
 def test_backends_lists_them_with_the_default_ones_marked(here, monkeypatch):
-    monkeypatch.setattr(registry, "_BACKENDS", {"graph": "sysmlc.backends.graph"})
+    monkeypatch.setattr(registry, "_BACKENDS", {"graph": "sysmlc.backends.graph:JSON"})
     assert here.sysmlc("backends").stdout == "  graph  the refined graph as graph.json\n"
 
 

@@ -156,7 +156,7 @@ def test_a_fault_of_ours_is_one_sentence(tmp_path):
     script = (
         "import sys, sysmlc.config\n"
         "def fails(*_): raise ZeroDivisionError('by zero')\n"
-        "sysmlc.config.find = fails\n"
+        "sysmlc.config.find_config_file = fails\n"
         "from sysmlc.cli import main\nsys.argv = ['sysmlc', 'x.uml']\nmain()"
     )
     done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, env=env)

@@ -6,9 +6,9 @@ import re
 import pytest
 from jsonschema import Draft202012Validator
 
-from sysmlc.diagnostics.coverage import covered_tenths, tenths
+from sysmlc.diagnostics.coverage import compute_covered_permille, compute_permille
 from sysmlc.diagnostics.coverage_report import FileReport
-from sysmlc.diagnostics.render import coverage
+from sysmlc.diagnostics.renderers import coverage
 from sysmlc.driver import Request
 from sysmlc.driver.coverage import measure_coverage
 from sysmlc.support import resources
@@ -82,7 +82,7 @@ def test_columns_stand_below_each_other(plant):
 
 def test_colours_are_for_terminals_and_move_no_column(plant):
     files = measure_coverage(Request(inputs=(plant.folder / "plant.uml",))).files
-    plain, coloured = coverage.text(files), coverage.text(files, color=True)
+    plain, coloured = coverage.render_text(files), coverage.render_text(files, color=True)
     assert "\x1b" not in plain
     assert "\x1b[31munsupported\x1b[0m" in coloured
     assert re.sub(r"\x1b\[\d+m", "", coloured) == plain
@@ -92,7 +92,7 @@ def test_what_a_front_end_only_counts_is_said_to_have_no_place():
     totals = {"mapped": 5, "approximated": 1, "unsupported": 2, "external": 0}
     totals["ignored_notation"] = 4
     file = FileReport("big.xml", totals, {"sysml.Slot": totals}, ())
-    last = coverage.text([file]).splitlines()[-1]
+    last = coverage.render_text([file]).splitlines()[-1]
     assert last == "big.xml: 3 of these elements without a place"
 
 
@@ -238,10 +238,10 @@ def test_a_name_cannot_steer_the_terminal(here):
     "counts", [{"a": 1, "b": 1, "c": 1}, {"a": 0, "b": 0}, {"a": 999, "b": 1, "c": 1000}]
 )
 def test_shares_add_up(counts):
-    assert sum(tenths(counts).values()) == (1000 if sum(counts.values()) else 0)
+    assert sum(compute_permille(counts).values()) == (1000 if sum(counts.values()) else 0)
 
 
 def test_a_loss_is_never_rounded_away():
     counts = {"mapped": 999_999, "approximated": 0, "unsupported": 1, "external": 0}
-    assert covered_tenths(counts) == 999
-    assert covered_tenths({"ignored_notation": 7}) == 1000
+    assert compute_covered_permille(counts) == 999
+    assert compute_covered_permille({"ignored_notation": 7}) == 1000

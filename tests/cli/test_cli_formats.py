@@ -9,7 +9,7 @@ from msgspec.structs import replace
 from json_documents import SARIF
 from sysmlc.cli.reports import has_color
 from sysmlc.diagnostics import Place, Severity, Sink, Subject, rule
-from sysmlc.diagnostics.render import FORMATS, Report, make_report, render
+from sysmlc.diagnostics.renderers import FORMATS, Report, make_report, render
 from sysmlc.sources import Source
 from sysmlc.support import resources
 

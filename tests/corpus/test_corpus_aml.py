@@ -15,7 +15,7 @@ from lxml import etree
 
 from graph_differences import diff
 from sysmlc.diagnostics import Coverage, Place, Severity, Sink
-from sysmlc.diagnostics.locate import locate
+from sysmlc.diagnostics.locations import locate
 from sysmlc.driver import Request, compile_model, select_backends
 from sysmlc.frontends.caex import FRONTEND
 from sysmlc.ir import Edge, Graph, Kind

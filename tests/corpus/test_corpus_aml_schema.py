@@ -5,9 +5,9 @@ import json
 import pytest
 
 from sysmlc.diagnostics import Place
-from sysmlc.diagnostics.locate import locate
+from sysmlc.diagnostics.locations import locate
 from sysmlc.sources import load
-from sysmlc.sources.schema import load_schemas
+from sysmlc.sources.user_schemas import load_schemas
 
 pytestmark = pytest.mark.corpus
 
@@ -26,7 +26,7 @@ def test_the_files_that_violate_their_schema_are_those_that_were_measured(corpus
         if path.suffix != ".aml":
             continue
         (source,) = load(path, path.name)
-        schema, found = schemas.violations(source)
+        schema, found = schemas.find_violations(source)
         assert schema is not None, name
         assert (found == []) == is_valid, (name, found[:2])
         places = [Place(source.name, ordinal=one.ordinal) for one in found]
@@ -58,6 +58,6 @@ def test_the_files_that_violate_their_schema_are_those_that_were_measured(corpus
 def test_a_violation_is_told_in_the_words_of_the_file(name, element, problem, corpus):
     path = corpus / "aml" / name
     (source,) = load(path, path.name)
-    _, (first, *_) = load_schemas(corpus / "aml" / "schema").violations(source)
+    _, (first, *_) = load_schemas(corpus / "aml" / "schema").find_violations(source)
     assert first.element == element
     assert first.problem.startswith(problem)

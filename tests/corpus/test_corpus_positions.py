@@ -9,7 +9,7 @@ import pytest
 from dialects.mutate import mutate
 from fuzz.aml_changes import AML_CHANGES
 from long_runs import quick_first
-from sysmlc.diagnostics.render import make_report
+from sysmlc.diagnostics.renderers import make_report
 from sysmlc.diagnostics.xpath import is_xml
 from sysmlc.driver import Request, compile_model, select_backends
 

@@ -4,7 +4,7 @@ import re
 
 import pytest
 
-from sysmlc.diagnostics.rule_page import FOLDER
+from sysmlc.diagnostics.rule import FOLDER
 from sysmlc.driver import load_full_catalogue
 
 RULES = [rule for rule in load_full_catalogue().values() if not rule.name.startswith("test-")]

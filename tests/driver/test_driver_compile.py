@@ -12,9 +12,9 @@ from driver_fakes import FAULTY, PLANT, UNNAMED_PORT, Outlines, Ports, compiled
 
 from sysmlc.config import Config
 from sysmlc.diagnostics import Severity
-from sysmlc.diagnostics.suppress import Suppression
+from sysmlc.diagnostics.sink import Suppression
 from sysmlc.driver import Observer, Request, compile_model, faults, inputs
-from sysmlc.sources import whole
+from sysmlc.sources import files
 from sysmlc.support.output import Output
 
 
@@ -166,7 +166,7 @@ def test_a_file_that_may_not_be_opened_stops_us(plant, monkeypatch):
     def refuses(*_):
         raise PermissionError(13, "Permission denied")
 
-    monkeypatch.setattr(whole, "_without_waiting", refuses)
+    monkeypatch.setattr(files, "_open_nonblocking", refuses)
     made = compiled(plant)
     assert (codes(made), made.exit_code()) == (["SM179"], 2)
 
@@ -175,9 +175,9 @@ def test_a_file_that_is_being_saved_is_not_compiled_and_compiled_when_it_is_whol
     plant, monkeypatch
 ):
     stamps = [(0, 1), (0, 2), (0, 3), (0, 4)]
-    monkeypatch.setattr(whole, "_PAUSE", 0)
+    monkeypatch.setattr(files, "_PAUSE", 0)
     with monkeypatch.context() as writing:
-        writing.setattr(whole, "_make_state", lambda _: stamps.pop(0))
+        writing.setattr(files, "_make_state", lambda _: stamps.pop(0))
         made = compiled(plant)
     assert (codes(made), made.exit_code(), made.is_complete) == (["SM127"], 2, False)
     assert compiled(plant).exit_code() == 0

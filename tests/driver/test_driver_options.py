@@ -14,7 +14,7 @@ from sysmlc.passes import pipeline
 def passes(folder, text):
     """The passes with the options of a configuration, by name."""
     (folder / "sysmlc.toml").write_text(text)
-    options = config.load(folder / "sysmlc.toml").passes
+    options = config.read_config(folder / "sysmlc.toml").passes
     return {one.name: one for one in registry.load_passes(options)}
 
 

@@ -152,7 +152,7 @@ def _warm_up() -> None:
     from importlib import import_module
 
     from sysmlc.cli import group
-    from sysmlc.diagnostics.render import make_report, render
+    from sysmlc.diagnostics.renderers import make_report, render
     from sysmlc.driver import (
         Request,
         compile_model,

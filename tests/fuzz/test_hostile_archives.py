@@ -9,7 +9,7 @@ from random import Random
 import pytest
 
 from fuzz.answers import model
-from sysmlc.sources import DEFAULT_LIMITS, Source, SourceError, entries
+from sysmlc.sources import DEFAULT_LIMITS, Source, SourceError, read_entries
 
 ENTRY = "com.nomagic.magicdraw.uml_model.model"
 MODEL = model().encode()
@@ -169,7 +169,7 @@ def test_an_archive_is_damaged_wherever_it_is_cut():
     whole = archive((ENTRY, MODEL), ("BINARY-1", b"x" * 100))
     for length in range(4, len(whole)):
         with pytest.raises(SourceError, match="its table of contents is missing") as raised:
-            entries(Source("m.mdzip", whole[:length]), lambda _: True, DEFAULT_LIMITS)
+            read_entries(Source("m.mdzip", whole[:length]), lambda _: True, DEFAULT_LIMITS)
         assert raised.value.exit_code == 1
 
 
@@ -179,7 +179,7 @@ def test_a_byte_of_the_table_that_lies_is_no_exception_of_zipfile():
         for value in (0, 1, 0xFF):
             lying = whole[:at] + bytes([value]) + whole[at + 1 :]
             with suppress(SourceError):
-                entries(Source("m.mdzip", lying), lambda _: True, DEFAULT_LIMITS)
+                read_entries(Source("m.mdzip", lying), lambda _: True, DEFAULT_LIMITS)
 
 
 def test_the_table_may_be_followed_by_a_comment(asked):

@@ -163,7 +163,7 @@ def test_long_references_lead_nowhere_and_are_told_shortly(asked, name):
 
 
 def test_a_truncated_file_is_reported_whichever_byte_is_the_last(tmp_path):
-    from sysmlc.diagnostics.locate import locate
+    from sysmlc.diagnostics.locations import locate
     from sysmlc.driver import Request, compile_model
 
     whole = model().encode()

@@ -5,7 +5,7 @@ from graphs import graphs
 from hypothesis import given
 
 from graph_differences import Change, diff
-from sysmlc.backends.ecore import to_xmi
+from sysmlc.backends.ecore import print_xmi
 from sysmlc.ir import Edge, Element, Graph, Kind, derived_id, parse_text, print_text, verify
 from sysmlc.ir.generate import generate
 from sysmlc.support import resources
@@ -90,13 +90,13 @@ def test_a_graph_equals_itself(graph):
 @given(graph=graphs(max_size=6))
 def test_pyecore_loads_a_saved_graph_unchanged(graph, tmp_path_factory):
     saved = tmp_path_factory.mktemp("ecore") / "graph.xmi"
-    saved.write_text(to_xmi(graph), encoding="utf-8")
+    saved.write_text(print_xmi(graph), encoding="utf-8")
     assert print_text(read_ecore_xmi(str(saved))) == print_text(graph)
 
 
 def test_an_empty_graph_is_saved_too(tmp_path):
     saved = tmp_path / "graph.xmi"
-    saved.write_text(to_xmi(Graph()), encoding="utf-8")
+    saved.write_text(print_xmi(Graph()), encoding="utf-8")
     assert len(read_ecore_xmi(str(saved))) == 0
 
 

@@ -53,7 +53,7 @@ def test_the_index_lists_every_page():
 
 def test_the_configuration_shown_is_valid(tmp_path):
     (tmp_path / "sysmlc.toml").write_text(block("docs/configuration.md", "sysmlc.toml"))
-    loaded = config.load(tmp_path / "sysmlc.toml")
+    loaded = config.read_config(tmp_path / "sysmlc.toml")
     assert loaded.models[0].files == ("models/plant.uml", "profiles/*.uml")
 
 

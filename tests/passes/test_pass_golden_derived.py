@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from sysmlc.backends.recipe.document import document
+from sysmlc.backends.recipe.document import describe_model
 from sysmlc.diagnostics import Sink
 from sysmlc.ir.text import parse_text, print_text
 from sysmlc.ir.verify import verify
@@ -47,7 +47,7 @@ def contracts(graph):
 def recipes(graph):
     """The recipe document, without inputs."""
     for found in graph.derived(Model):
-        yield json.dumps(document(found, ()), indent=1, ensure_ascii=False)
+        yield json.dumps(describe_model(found, ()), indent=1, ensure_ascii=False)
 
 
 SHOWN = {"activities": tokens, "contracts": contracts, "recipe": recipes}

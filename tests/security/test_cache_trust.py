@@ -10,7 +10,7 @@ import msgspec
 import pytest
 
 from sysmlc.diagnostics import Diagnostic, Place, Rule, Severity, Subject
-from sysmlc.diagnostics.render import Finding
+from sysmlc.diagnostics.renderers import Finding
 from sysmlc.driver import compilation
 from sysmlc.driver.outcome import Outcome, OutputFile, Withheld
 from sysmlc.driver.outcome_cache import load_outcome, store_outcome

@@ -9,7 +9,7 @@ from click.testing import CliRunner
 
 import sysmlc
 from sysmlc.cli import group
-from sysmlc.sources.limits import DOCUMENT_LIMITS
+from sysmlc.sources.source import DOCUMENT_LIMITS
 
 ROOT = Path(sysmlc.__file__).parent
 SHIPPED = {

@@ -7,9 +7,9 @@ import pytest
 from machine_samples import arrow, machine
 from sysmlc.backends.base import EmitOptions
 from sysmlc.backends.contracts import BACKEND
+from sysmlc.backends.reqtable.backend import format_csv
 from sysmlc.backends.reqtable.table import Cell, Table
 from sysmlc.backends.reqtable.table import Row as TableRow
-from sysmlc.backends.reqtable.text import csv_text
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Element, Kind
 from sysmlc.ir.text import parse_text
@@ -78,7 +78,7 @@ def test_an_ordinary_contract_page_has_no_escapes():
 @pytest.mark.parametrize("text", ["=cmd|' /C calc'!A0", "\n=1+1", " @x", "＝1", "-2+3"])
 def test_cells_of_spreadsheets_are_no_formulas(text):
     row = TableRow(Element("r", Kind.CLASS), (Cell((text,)), Cell(("plain",))))
-    lines = csv_text(Table("t", "", ("id", "name"), (row,))).partition("\r\n")[2]
+    lines = format_csv(Table("t", "", ("id", "name"), (row,))).partition("\r\n")[2]
     assert lines.lstrip('"').startswith("'")
     assert lines.endswith("plain\r\n")
 

@@ -3,7 +3,7 @@
 import pytest
 
 from sysmlc import config
-from sysmlc.config import ConfigError, find, find_project_root
+from sysmlc.config import ConfigError, find_config_file, find_project_root
 
 
 @pytest.fixture
@@ -33,15 +33,15 @@ def test_configuration_above_the_root_is_ignored(models):
     (project.parent / "sysmlc.toml").write_text('output = "elsewhere"\n')
     (project.parent / "pyproject.toml").write_text('[tool.sysmlc]\noutput = "elsewhere"\n')
     (project / ".git").mkdir()
-    assert find(models / "plant.ir") is None
+    assert find_config_file(models / "plant.ir") is None
     (project / "pyproject.toml").write_text('[tool.sysmlc]\noutput = "gen"\n')
-    assert find(models / "plant.ir") == project / "pyproject.toml"
+    assert find_config_file(models / "plant.ir") == project / "pyproject.toml"
 
 
 def test_without_marker_no_parent_is_searched(models, monkeypatch):
     (models.parent / "pyproject.toml").write_text('[tool.sysmlc]\noutput = "elsewhere"\n')
     monkeypatch.chdir(models.parent)
-    assert find(models / "plant.ir") is None
+    assert find_config_file(models / "plant.ir") is None
 
 
 @pytest.mark.parametrize("name", ["sysmlc.toml", "pyproject.toml"])
@@ -49,10 +49,10 @@ def test_a_configuration_that_is_a_link_out_of_the_root_is_refused(models, name)
     (models.parent / "secret.toml").write_text("token = 1\n")
     (models / name).symlink_to("../secret.toml")
     with pytest.raises(ConfigError, match=r"is a link that leads out of the project root"):
-        find(models)
+        find_config_file(models)
 
 
 def test_a_configuration_that_is_a_link_inside_the_root_is_read(models):
     (models / "ci.toml").write_text('output = "gen"\n')
     (models / "sysmlc.toml").symlink_to("ci.toml")
-    assert config.load(find(models)).output == "gen"
+    assert config.read_config(find_config_file(models)).output == "gen"

@@ -5,7 +5,7 @@ import zipfile
 
 import pytest
 
-from sysmlc.sources import Fault, Limits, Source, SourceError, entries, is_model_entry
+from sysmlc.sources import Fault, Limits, Source, SourceError, is_model_entry, read_entries
 
 
 def archive(*files, method=zipfile.ZIP_DEFLATED):
@@ -22,12 +22,12 @@ def everything(_name):
 
 def refusal(source, limits=None):
     with pytest.raises(SourceError) as raised:
-        entries(source, everything, limits or Limits())
+        read_entries(source, everything, limits or Limits())
     return raised.value
 
 
 def test_entries_come_sorted_and_are_named_after_their_archive():
-    found = entries(archive(("b", b"2"), ("a", b"1")), everything)
+    found = read_entries(archive(("b", b"2"), ("a", b"1")), everything)
     assert [(entry.name, entry.data) for entry in found] == [
         ("plant.mdzip!a", b"1"),
         ("plant.mdzip!b", b"2"),
@@ -81,13 +81,13 @@ def test_a_bomb_that_lies_about_its_size_is_stopped_too():
 def test_all_entries_together_are_limited():
     two = archive(("a", b"x" * 3000), ("b", b"y" * 3000))
     assert refusal(two, Limits(total_size=4000)).fault is Fault.LIMIT
-    assert len(entries(two, everything, Limits(total_size=6000))) == 2
+    assert len(read_entries(two, everything, Limits(total_size=6000))) == 2
 
 
 def test_too_many_entries_are_refused():
     many = archive(*((str(number), b"") for number in range(11)))
     assert refusal(many, Limits(entries=10)).fault is Fault.LIMIT
-    assert len(entries(many, everything, Limits(entries=11))) == 11
+    assert len(read_entries(many, everything, Limits(entries=11))) == 11
 
 
 def test_damage_is_an_error_and_not_an_exception_of_zipfile():

@@ -5,7 +5,7 @@ from itertools import pairwise
 import pytest
 from lxml import etree
 
-from sysmlc.sources.caex import ATTRIBUTES, ORDER, TEXTS
+from sysmlc.sources.caex_vocabulary import ATTRIBUTES, ORDER, TEXTS
 
 XS = "{http://www.w3.org/2001/XMLSchema}"
 

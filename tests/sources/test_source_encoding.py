@@ -5,8 +5,8 @@ import hashlib
 import pytest
 
 from sysmlc.sources import Source, SourceError, load
-from sysmlc.sources.encoding import codec, in_utf8
-from sysmlc.sources.xml import parse, parser
+from sysmlc.sources.encoding import convert_to_utf8, find_codec
+from sysmlc.sources.xml import make_parser, parse
 
 TEXT = '<?xml version="1.0" encoding="%s"?>\n<a name="%s"/>'
 
@@ -14,9 +14,9 @@ TEXT = '<?xml version="1.0" encoding="%s"?>\n<a name="%s"/>'
 def names(data):
     """Names in the file as it is read from disk."""
     seen = []
-    made = parser()
+    made = make_parser()
     made.StartElementHandler = lambda _tag, values: seen.append(values["name"])
-    parse(in_utf8(Source("m.uml", data)), made)
+    parse(convert_to_utf8(Source("m.uml", data)), made)
     return seen
 
 
@@ -101,6 +101,6 @@ def test_utf_16_that_is_declared_but_not_there_is_refused():
 
 
 def test_a_mark_says_more_than_a_wrong_declaration():
-    assert codec((TEXT % ("windows-1252", "é")).encode("utf-8-sig")) == (3, "utf-8")
-    assert codec("<a/>".encode("utf-16-le")) == (0, "utf-16-le")
-    assert codec("<a/>".encode("utf-32")) == (4, "utf-32-le")
+    assert find_codec((TEXT % ("windows-1252", "é")).encode("utf-8-sig")) == (3, "utf-8")
+    assert find_codec("<a/>".encode("utf-16-le")) == (0, "utf-16-le")
+    assert find_codec("<a/>".encode("utf-32")) == (4, "utf-32-le")

@@ -3,9 +3,9 @@
 import pytest
 
 from sysmlc.diagnostics import Place
-from sysmlc.diagnostics.locate import Location, locate, positions, start_tags
+from sysmlc.diagnostics.locations import Location, find_positions, find_start_tags, locate
 from sysmlc.sources import Source
-from sysmlc.sources.xml import parse, parser
+from sysmlc.sources.xml import make_parser, parse
 
 
 def where(text, *places, encoding="utf-8"):
@@ -67,27 +67,27 @@ HIDDEN = [
 def test_start_tags_are_where_a_parser_sees_them(text):
     encoding = "windows-1252" if "1252" in text else "utf-8"
     source = Source("f", text.encode(encoding))
-    seen, made = [], parser()
+    seen, made = [], make_parser()
     made.StartElementHandler = lambda *_: seen.append(made.CurrentByteIndex)
     parse(source, made)
-    assert start_tags(source.data) in (seen, None)
+    assert find_start_tags(source.data) in (seen, None)
     places = [Place("f", ordinal) for ordinal in range(len(seen))]
     located = locate([source], places)
     assert {p.ordinal: (located[p].line, located[p].column) for p in places} == (
-        positions([source], {"f": range(len(seen))})["f"]
+        find_positions([source], {"f": range(len(seen))})["f"]
     )
 
 
 def test_only_plain_text_is_searched_for_tags():
-    assert start_tags(b"<a><b/></a>") == [0, 3]
-    assert start_tags("<?xml version='1.0' encoding='utf-16'?><a/>".encode("utf-16")) is None
-    assert start_tags(b"<a><!-- <b/> --></a>") is None
-    assert start_tags(b"<?xml version='1.0'") is None
+    assert find_start_tags(b"<a><b/></a>") == [0, 3]
+    assert find_start_tags("<?xml version='1.0' encoding='utf-16'?><a/>".encode("utf-16")) is None
+    assert find_start_tags(b"<a><!-- <b/> --></a>") is None
+    assert find_start_tags(b"<?xml version='1.0'") is None
 
 
 def test_what_is_not_there_has_no_position():
     source = Source("f", b"<a>\n<b/></a>")
-    assert positions([source], {"f": [1, 2, -1, 1], "g": [0]}) == {"f": {1: (2, 1)}}
+    assert find_positions([source], {"f": [1, 2, -1, 1], "g": [0]}) == {"f": {1: (2, 1)}}
 
 
 def test_of_a_long_line_the_part_around_the_place_is_kept():

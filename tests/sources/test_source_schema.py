@@ -3,7 +3,7 @@
 import pytest
 
 from sysmlc.sources import Source
-from sysmlc.sources.schema import SchemaError, load_schemas
+from sysmlc.sources.user_schemas import SchemaError, load_schemas
 
 HEAD = '<xs:schema xmlns:xs="http://www.w3.org/2001/XMLSchema"{}>{}</xs:schema>'
 ITEM = """<xs:complexType name="Item"><xs:sequence>
@@ -27,7 +27,7 @@ def plain(version="1"):
 
 
 def problems(loaded, body):
-    _, found = loaded.violations(Source("a.xml", f"<File>{body}</File>".encode()))
+    _, found = loaded.find_violations(Source("a.xml", f"<File>{body}</File>".encode()))
     return [(one.ordinal, one.element, one.problem) for one in found]
 
 
@@ -76,7 +76,7 @@ def test_the_schema_is_chosen_by_namespace_element_and_version(tmp_path):
     loaded = schemas(tmp_path, one=plain("1"), two=plain("2"), other=space)
 
     def chosen(text):
-        schema, _ = loaded.violations(Source("a.xml", text))
+        schema, _ = loaded.find_violations(Source("a.xml", text))
         return schema.name if schema else None
 
     assert chosen(b"<File/>") == "one.xsd"
@@ -91,7 +91,7 @@ def test_the_schema_is_chosen_by_namespace_element_and_version(tmp_path):
 def test_what_is_no_safe_xml_is_not_validated(text, tmp_path):
     loaded = schemas(tmp_path, file=plain())
     with pytest.raises(ValueError, match=r"DOCTYPE|tag"):
-        loaded.violations(Source("a.xml", text))
+        loaded.find_violations(Source("a.xml", text))
 
 
 def test_a_schema_may_include_another_of_its_folder(tmp_path):

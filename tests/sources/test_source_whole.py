@@ -4,7 +4,7 @@ import os
 
 import pytest
 
-from sysmlc.sources import Fault, Limits, SourceError, whole
+from sysmlc.sources import Fault, Limits, SourceError, files
 
 LIMITS = Limits()
 
@@ -12,15 +12,15 @@ LIMITS = Limits()
 def stamps(monkeypatch, *pairs):
     """What the file looks like before and after each reading: size and time."""
     left = list(pairs)
-    monkeypatch.setattr(whole, "_make_state", lambda _: left.pop(0))
-    monkeypatch.setattr(whole, "_PAUSE", 0)
+    monkeypatch.setattr(files, "_make_state", lambda _: left.pop(0))
+    monkeypatch.setattr(files, "_PAUSE", 0)
 
 
 def test_a_file_that_changes_once_while_it_is_read_is_read_again(tmp_path, monkeypatch):
     path = tmp_path / "plant.uml"
     path.write_bytes(b"<a/>")
     stamps(monkeypatch, (4, 1), (4, 2), (4, 2), (4, 2))
-    assert whole.read_whole(path, "plant.uml", LIMITS) == b"<a/>"
+    assert files.read_whole(path, "plant.uml", LIMITS) == b"<a/>"
 
 
 def test_a_file_that_keeps_changing_is_reported_and_not_used(tmp_path, monkeypatch):
@@ -28,7 +28,7 @@ def test_a_file_that_keeps_changing_is_reported_and_not_used(tmp_path, monkeypat
     path.write_bytes(b"<a/>")
     stamps(monkeypatch, (4, 1), (4, 2), (4, 3), (4, 4))
     with pytest.raises(SourceError, match="changes while it is read") as raised:
-        whole.read_whole(path, "plant.uml", LIMITS)
+        files.read_whole(path, "plant.uml", LIMITS)
     assert (raised.value.fault, raised.value.exit_code) == (Fault.CHANGING, 2)
 
 
@@ -36,7 +36,7 @@ def test_a_file_that_grows_after_it_was_looked_at_is_read_again(tmp_path, monkey
     path = tmp_path / "plant.uml"
     path.write_bytes(b"<a/>")
     stamps(monkeypatch, (2, 1), (2, 1), (4, 1), (4, 1))
-    assert whole.read_whole(path, "plant.uml", LIMITS) == b"<a/>"
+    assert files.read_whole(path, "plant.uml", LIMITS) == b"<a/>"
 
 
 def test_the_old_content_is_whole_when_the_file_is_replaced_while_open(tmp_path, monkeypatch):
@@ -49,8 +49,8 @@ def test_the_old_content_is_whole_when_the_file_is_replaced_while_open(tmp_path,
         (tmp_path / "new").replace(path)
         return handle
 
-    monkeypatch.setattr(whole, "_without_waiting", opener)
-    assert whole.read_whole(path, "plant.uml", LIMITS) == b"<old/>"
+    monkeypatch.setattr(files, "_open_nonblocking", opener)
+    assert files.read_whole(path, "plant.uml", LIMITS) == b"<old/>"
 
 
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no pipes with names here")
@@ -58,5 +58,5 @@ def test_a_pipe_is_not_waited_for(tmp_path):
     path = tmp_path / "plant.uml"
     os.mkfifo(path)
     with pytest.raises(SourceError, match="is not a regular file") as raised:
-        whole.read_whole(path, "plant.uml", LIMITS)
+        files.read_whole(path, "plant.uml", LIMITS)
     assert raised.value.exit_code == 2

@@ -11,9 +11,9 @@ from lxml import etree
 
 from long_runs import examples
 from sysmlc.diagnostics import Place
-from sysmlc.diagnostics.locate import locate
+from sysmlc.diagnostics.locations import locate
 from sysmlc.sources import Source, SourceError, load
-from sysmlc.sources.xml import parse, parser
+from sysmlc.sources.xml import make_parser, parse
 
 _SAFE = {"huge_tree": True, "resolve_entities": False, "no_network": True}
 
@@ -181,7 +181,7 @@ def test_a_fault_is_counted_in_characters(encoding):
     data = text.encode(encoding)
     source = Source("f", data)
     with pytest.raises(SourceError) as problem:
-        parse(source, parser())
+        parse(source, make_parser())
     line = text.splitlines()[2]
     found = where(data, Place("f", offset=problem.value.offset))
     assert found == [(3, line.index("c>") + 1, "/a")]

@@ -1,4 +1,4 @@
-"""What a back end is: a name and ``emit``. It reads the graph and never changes it."""
+"""The interface of back ends: a name and ``emit``, which reads the graph and never changes it."""
 
 import posixpath
 from collections.abc import Callable, Iterable, Mapping
@@ -21,24 +21,26 @@ class InputFile(Struct, frozen=True):
 
 
 Locate = Callable[[Iterable[Place]], Mapping[Place, Place]]
-"""Finds lines and columns: each place that can be found, with its line and column known."""
+"""Maps each place that can be found to the same place with its line and column."""
 
 
-def _as_they_are(places: Iterable[Place]) -> Mapping[Place, Place]:
+def _locate_nothing(places: Iterable[Place]) -> Mapping[Place, Place]:
+    """Return the places as they are; the default where no source files are at hand."""
     return {place: place for place in places}
 
 
 DIAGRAMS = ("derived", "author", "both")
-"""Which diagrams are wanted: those that are derived from the model, those of its authors."""
+"""Diagrams that a user can select: those derived from the model, those drawn by its authors."""
 DERIVED, AUTHOR, BOTH = DIAGRAMS
 
 
 class EmitOptions(Struct, frozen=True):
-    """What the user asked of the back ends, and what they may ask of the driver."""
+    """The user's options for back ends, and services of the driver that back ends may call."""
 
     templates: Path | None = None
+    """Folder of templates that replace shipped ones."""
     inputs: tuple[InputFile, ...] = ()
-    locate: Locate = _as_they_are
+    locate: Locate = _locate_nothing
     diagrams: str = DERIVED
 
 
@@ -50,7 +52,7 @@ class Backend(Protocol):
     is_default: bool
 
     def emit(self, graph: Graph, output: Output, sink: Sink, options: EmitOptions) -> None:
-        """Add files to ``output``; report what the target cannot express."""
+        """Add files to *output*, and report what the target cannot express."""
 
 
 def find_unit_name(graph: Graph, options: EmitOptions) -> str:

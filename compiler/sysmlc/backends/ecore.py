@@ -1,4 +1,4 @@
-"""Back end ``ecore``: the graph as EMF XMI after ``metamodels/ir.ecore``.
+"""Back end ``ecore``: the graph as EMF XMI, an instance of ``metamodels/ir.ecore``.
 
 The XMI is written with lxml (pyecore costs 25 times the CPU); tests load it with pyecore.
 """
@@ -32,56 +32,60 @@ class EcoreBackend(Struct, frozen=True):
 
     def emit(self, graph: Graph, output: Output, sink: Sink, options: EmitOptions) -> None:
         """Add ``graph.xmi``."""
-        output.add("graph.xmi", to_xmi(graph), backend=self.name)
+        output.add("graph.xmi", print_xmi(graph), backend=self.name)
 
 
 BACKEND = EcoreBackend()
 
 
 def feature_name(edge: Edge) -> str:
-    """Name of the Ecore reference that holds edges of this kind: ``typed-by`` -> ``typedBy``."""
+    """Return the Ecore reference that holds edges of a kind: ``typed-by`` -> ``typedBy``."""
     return re.sub(r"-(\w)", lambda match: match[1].upper(), edge)
 
 
-# -- writing -----------------------------------------------------------------------------------
+def print_xmi(graph: Graph) -> str:
+    """Return the graph as EMF XMI.
 
-
-def to_xmi(graph: Graph) -> str:
-    """The graph as EMF XMI; ids become ``xmi:id``-free attributes that EMF resolves by path."""
-
+    References between elements are EMF paths such as ``//@roots.0/@owns.2``, because an ``xmi:id``
+    may not contain all characters of our ids, which are plain attributes instead.
+    """
     root = etree.Element(etree.QName(_IR, "Graph"), nsmap={"ir": _IR, "xmi": _XMI, "xsi": _XSI})
     root.set(etree.QName(_XMI, "version"), "2.0")
     paths: dict[str, str] = {}
     nodes: list[tuple[Element, Node]] = []
     for number, element in enumerate(graph.roots()):
-        _write(graph, element, root, f"//@roots.{number}", "roots", paths, nodes)
+        _add_tree(graph, element, root, f"//@roots.{number}", paths, nodes)
     for element, node in nodes:
-        _write_edges(graph, element, node, paths)
+        _set_references(graph, element, node, paths)
     etree.indent(root, " ")
     return etree.tostring(root, encoding="unicode") + "\n"
 
 
-def _write(
+def _add_tree(
     graph: Graph,
     top: Element,
-    parent: "Node",
-    path: str,
-    feature: str,
+    root: "Node",
+    top_path: str,
     paths: dict[str, str],
     nodes: list[tuple[Element, "Node"]],
 ) -> None:
-    stack = [(top, parent, path, feature)]
-    while stack:
-        element, above, at, name = stack.pop()
-        node = _node(element, above, name)
-        paths[element.id] = at
+    """Add the nodes of an element and of all that it owns, and fill *paths* and *nodes*.
+
+    A worklist instead of recursion: models may be nested deeper than Python's stack.
+    """
+    worklist = [(top, root, top_path, "roots")]
+    while worklist:
+        element, parent, path, feature = worklist.pop()
+        node = _add_node(element, parent, feature)
+        paths[element.id] = path
         nodes.append((element, node))
         children = list(enumerate(graph.owned(element)))
-        stack.extend((c, node, f"{at}/@owns.{n}", "owns") for n, c in reversed(children))
+        worklist.extend(
+            (child, node, f"{path}/@owns.{number}", "owns") for number, child in reversed(children)
+        )
 
 
-def _node(element: Element, parent: "Node", feature: str) -> "Node":
-
+def _add_node(element: Element, parent: "Node", feature: str) -> "Node":
     node = etree.SubElement(parent, feature)
     node.set(etree.QName(_XSI, "type"), f"ir:{element.kind}")
     node.set("id", _escape_text(element.id))
@@ -94,7 +98,7 @@ def _node(element: Element, parent: "Node", feature: str) -> "Node":
     return node
 
 
-def _write_edges(graph: Graph, element: Element, node: "Node", paths: dict[str, str]) -> None:
+def _set_references(graph: Graph, element: Element, node: "Node", paths: dict[str, str]) -> None:
     for edge in Edge:
         targets = graph.targets(element, edge)
         if targets and edge is not Edge.OWNS:
@@ -102,7 +106,5 @@ def _write_edges(graph: Graph, element: Element, node: "Node", paths: dict[str, 
 
 
 def _escape_text(text: str) -> str:
-    """Return *text* as JSON without its quotes, so that control characters survive in XML
-    attributes.
-    """
+    """Return *text* as JSON without its quotes: XML attributes cannot hold control characters."""
     return json.dumps(text)[1:-1]

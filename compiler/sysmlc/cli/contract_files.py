@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from sysmlc.cli.session import Settings
     from sysmlc.config import Config
     from sysmlc.diagnostics import Sink, Subject
-    from sysmlc.diagnostics.render import Finding
+    from sysmlc.diagnostics.renderers import Finding
     from sysmlc.logic.contract import Composite, Contract
     from sysmlc.sources import Source
     from sysmlc.synthesis.decision import Place
@@ -106,8 +106,8 @@ def _read_specification(file: Path, language: str, config: "Config") -> Contract
     from sysmlc.diagnostics import Sink
     from sysmlc.logic import formats
     from sysmlc.sources import Source, SourceError
-    from sysmlc.sources.limits import DOCUMENT_LIMITS
-    from sysmlc.sources.whole import read_whole
+    from sysmlc.sources.files import read_whole
+    from sysmlc.sources.source import DOCUMENT_LIMITS
 
     if language and not (language in formats.FORMATS and formats.FORMATS[language].is_read):
         readable = ", ".join(name for name, form in formats.FORMATS.items() if form.is_read)
@@ -134,8 +134,8 @@ def _read_part_file(file: Path, formula: bytes) -> str:
     """Return the variables in the ``.part`` file beside a formula that lists none itself."""
     from sysmlc.config import find_project_root
     from sysmlc.sources import Roots
-    from sysmlc.sources.limits import DOCUMENT_LIMITS
-    from sysmlc.sources.whole import read_whole
+    from sysmlc.sources.files import read_whole
+    from sysmlc.sources.source import DOCUMENT_LIMITS
 
     parts = file.with_suffix(".part")
     if file.suffix != ".ltl" or re.search(rb"^\s*\.(in|out)puts\b", formula, re.MULTILINE):
@@ -159,7 +159,7 @@ def _locate_in_text(origin: str) -> "Subject":
 def show_results(read: ContractFile, settings: "Settings", lines: "Iterable[str]") -> None:
     """Print the findings about a file and its contracts, then a line for each contract."""
     from sysmlc.cli import reports
-    from sysmlc.diagnostics.render import make_report
+    from sysmlc.diagnostics.renderers import make_report
 
     findings = reports.localize(read.root, make_report(read.sink, read.sources).findings)
     reports.print_findings([*read.findings, *findings], settings)

@@ -76,7 +76,7 @@ def command(
 def _report_errors(coverage: "UnitCoverage") -> int:
     """Print the errors of reading, and return the exit code."""
     from sysmlc.cli import reports, session
-    from sysmlc.diagnostics.render import make_report
+    from sysmlc.diagnostics.renderers import make_report
     from sysmlc.driver import faults
 
     errors = [errors_found for errors_found in coverage.diagnostics if errors_found.is_error]
@@ -99,17 +99,17 @@ def _print(files: "Sequence[FileReport]", form: str, every: bool) -> None:
     import sys
 
     from sysmlc.cli.reports import has_color
-    from sysmlc.diagnostics.render import coverage
+    from sysmlc.diagnostics.renderers import coverage
 
     if form == "text":
-        text = coverage.text(files, color=has_color(sys.stdout), every=every)
+        text = coverage.render_text(files, color=has_color(sys.stdout), with_all_losses=every)
     else:
         text = coverage.FORMATS[form](files)
     click.echo(text, nl=False, color=True)
 
 
 def _is_below(files: "Sequence[FileReport]", limit: float | None) -> bool:
-    from sysmlc.diagnostics.coverage import count_covered, sum_counts, with_meaning
+    from sysmlc.diagnostics.coverage import count_covered, count_meaningful, sum_counts
 
     total = sum_counts(file.totals for file in files)
-    return limit is not None and 100 * count_covered(total) < limit * with_meaning(total)
+    return limit is not None and 100 * count_covered(total) < limit * count_meaningful(total)

@@ -13,7 +13,7 @@ from msgspec import Struct
 from sysmlc.support.escapes import escape_undecodable
 
 if TYPE_CHECKING:
-    from sysmlc.diagnostics.render import Finding
+    from sysmlc.diagnostics.renderers import Finding
 
 _LANGUAGES = ("sysml", "kerml")
 _WRITABLE = 0o222
@@ -115,7 +115,7 @@ def _list_folder(folder: Path) -> list[Path]:
 def _read(path: Path, language: str | None) -> _Text:
     from sysmlc.cli.session import fail
     from sysmlc.sources import DEFAULT_LIMITS, SourceError
-    from sysmlc.sources.whole import read_whole
+    from sysmlc.sources.files import read_whole
 
     name = escape_undecodable(path.as_posix())
     if name == "-" and sys.stdin is None:
@@ -148,7 +148,7 @@ def _find_language(path: Path, language: str | None) -> str:
 def _format(name: str, path: Path | None, data: bytes, language: str) -> _Text:
     """Return the formatted text, or the findings of the parser."""
     from sysmlc.diagnostics import Sink
-    from sysmlc.diagnostics.render import make_report
+    from sysmlc.diagnostics.renderers import make_report
     from sysmlc.language.formatter import format_text
     from sysmlc.language.text import parse
     from sysmlc.sources import Source

@@ -7,7 +7,7 @@ from typing import TypeVar
 import click
 
 from sysmlc.cli.limits import check_amount, list_missing_limits
-from sysmlc.diagnostics.render.registry import FORMATS
+from sysmlc.diagnostics.renderers import FORMATS
 
 _F = TypeVar("_F", bound=Callable[..., object])
 

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from sysmlc.cli.session import Settings
     from sysmlc.cli.units import Unit
     from sysmlc.config import Config
-    from sysmlc.diagnostics.render import Finding
+    from sysmlc.diagnostics.renderers import Finding
     from sysmlc.driver import Compilation, Outcome, Publication
 
 
@@ -31,7 +31,7 @@ def report_outcomes(
 
     A finding about a library is printed once, although several units use the library.
     """
-    from sysmlc.diagnostics.render import make_report
+    from sysmlc.diagnostics.renderers import make_report
 
     findings = [
         finding for outcome in outcomes for finding in localize(outcome.root, outcome.findings)
@@ -43,7 +43,7 @@ def report_outcomes(
 
 def list_findings(compilation: "Compilation", only_errors: bool = False) -> "list[Finding]":
     """Return the findings of a compilation, with file names as the user knows them."""
-    from sysmlc.diagnostics.render import make_report
+    from sysmlc.diagnostics.renderers import make_report
 
     diagnostics = [d for d in compilation.diagnostics if d.is_error or not only_errors]
     return localize(compilation.root, make_report(diagnostics, compilation.sources).findings)
@@ -72,7 +72,7 @@ def localize_name(root: Path, name: str) -> str:
 
 def print_findings(findings: "Iterable[Finding]", settings: "Settings") -> None:
     """Print findings in the form that the user selected."""
-    from sysmlc.diagnostics.render import XPATH_FORMATS, render, shorten
+    from sysmlc.diagnostics.renderers import XPATH_FORMATS, render, shorten
 
     on_stdout = settings.form in _FORMS_ON_STDOUT
     stream = sys.stdout if on_stdout else sys.stderr
@@ -84,9 +84,9 @@ def print_findings(findings: "Iterable[Finding]", settings: "Settings") -> None:
         report = replace(report, findings=without_xpath)
     text = render(report, settings.form, color=has_color(stream))
     click.echo(text, nl=False, err=not on_stdout, color=True)
-    if report.left:
+    if report.hidden:
         click.echo(
-            f"{len(report.left)} more are not shown; --max-diagnostics 0 shows all", err=True
+            f"{len(report.hidden)} more are not shown; --max-diagnostics 0 shows all", err=True
         )
 
 

@@ -90,7 +90,7 @@ def _study(
     from sysmlc.cli import reports, session
     from sysmlc.cli.reports import write_files
     from sysmlc.diagnostics import Severity, Sink, Subject
-    from sysmlc.diagnostics.render import make_report
+    from sysmlc.diagnostics.renderers import make_report
     from sysmlc.robots.outcome import run_study
     from sysmlc.robots.report import study_files, summarise_outcome
     from sysmlc.robots.study import Study

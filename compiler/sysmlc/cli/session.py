@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from sysmlc.config import Config
     from sysmlc.diagnostics import Rule
     from sysmlc.driver import Compilation, OpenedUnit, Outcome, Request, Target
-    from sysmlc.sources.schema import Schemas
+    from sysmlc.sources.user_schemas import Schemas
     from sysmlc.support.cache import Cache
 
 _AS_WRITTEN = frozenset({"resolve", "kept"})
@@ -85,7 +85,7 @@ def load_config(models: Sequence[Path], settings: Settings) -> "Config":
             raise click.UsageError("--isolated and --config exclude each other")
         return config.Config()
     try:
-        loaded = config.load(settings.config or config.find(_find_start(models)))
+        loaded = config.read_config(settings.config or config.find_config_file(_find_start(models)))
     except config.ConfigError as problem:
         fail(str(problem))
     chosen = [*loaded.rules, *(entry.rule for entry in loaded.suppress)]
@@ -216,7 +216,7 @@ def _load_schemas(settings: Settings) -> "Schemas | None":
     """Load the schemas of ``--schema``; exit with code 2 if they cannot be used."""
     if settings.schema is None:
         return None
-    from sysmlc.sources.schema import SchemaError, load_schemas
+    from sysmlc.sources.user_schemas import SchemaError, load_schemas
 
     try:
         return load_schemas(settings.schema)

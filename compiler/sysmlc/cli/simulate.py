@@ -49,7 +49,7 @@ def command(
     from sysmlc.cli import reports, session
     from sysmlc.cli.reports import write_files
     from sysmlc.diagnostics import Sink
-    from sysmlc.diagnostics.render import make_report
+    from sysmlc.diagnostics.renderers import make_report
     from sysmlc.simulation import run_scenarios
 
     settings = session.Settings(**given)
@@ -74,8 +74,8 @@ def command(
 def _read(scenario: Path) -> "Source":
     from sysmlc.cli.session import fail
     from sysmlc.sources import Source, SourceError
-    from sysmlc.sources.limits import DOCUMENT_LIMITS
-    from sysmlc.sources.whole import read_whole
+    from sysmlc.sources.files import read_whole
+    from sysmlc.sources.source import DOCUMENT_LIMITS
 
     name = escape_undecodable(scenario.as_posix())
     try:

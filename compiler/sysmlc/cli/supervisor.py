@@ -219,7 +219,7 @@ def report_crash(number: int) -> None:
 def _report(rule: "Rule", **facts: str) -> None:
     """Print a diagnostic as text on standard error; standard output may belong to a report."""
     from sysmlc.diagnostics import Sink, Subject
-    from sysmlc.diagnostics.render import make_report, render
+    from sysmlc.diagnostics.renderers import make_report, render
 
     sink = Sink()
     sink.report(rule, Subject(), notes=(), help="", **facts)

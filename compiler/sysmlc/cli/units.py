@@ -252,7 +252,7 @@ def _open_selection(
 def _open_nested(project: Path, settings: "Settings", root: Path) -> Iterator[Unit]:
     """Open the units of a project below a named folder; their names begin with its path."""
     from sysmlc.cli.session import load_config
-    from sysmlc.support.file_names import assign_file_names
+    from sysmlc.support.output import assign_file_names
 
     units = _open_project([project], load_config([project], settings), settings, None)
     path = project.relative_to(root) if project.is_relative_to(root) else Path(project.name)

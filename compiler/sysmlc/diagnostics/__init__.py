@@ -1,4 +1,4 @@
-"""Diagnostics: rules, findings, the sink that collects them, and coverage."""
+"""Diagnostics: rules, the sink that collects diagnostics, and coverage of inputs."""
 
 from sysmlc.diagnostics.coverage import Coverage, FileCoverage, Verdict
 from sysmlc.diagnostics.diagnostic import Diagnostic, Place, Subject

@@ -1,4 +1,4 @@
-"""Coverage: what became of every element of the inputs."""
+"""Coverage: the verdict on every element of the inputs."""
 
 from collections import Counter
 from collections.abc import Iterable, Mapping
@@ -11,30 +11,30 @@ from sysmlc.diagnostics.rule import Rule
 
 
 class Verdict(StrEnum):
-    """What became of one element of an input."""
+    """How the graph represents one element of an input."""
 
     MAPPED = "mapped"
-    """It is in the graph with its meaning."""
+    """The element is in the graph with its meaning."""
     APPROXIMATED = "approximated"
-    """It is in the graph with part of its meaning; a diagnostic says which part is lost."""
+    """The element is in the graph with a part of its meaning; a diagnostic reports the rest."""
     IGNORED_NOTATION = "ignored_notation"
-    """It has no meaning beyond drawing or tool settings."""
+    """The element has no meaning beyond drawing or tool settings."""
     UNSUPPORTED = "unsupported"
-    """It has a meaning that is not in the graph."""
+    """The element has a meaning that is not in the graph."""
     EXTERNAL = "external"
-    """It stands for something in a file that is not part of the compile unit."""
+    """The element is a stub for something in a file that is not part of the compile unit."""
 
 
 Counts = Mapping[str, int]
-"""Number of elements for each verdict (its value)."""
+"""Number of elements by the value of their verdict."""
 
 
 class Loss(Struct, frozen=True):
-    """An element that is not wholly in the graph, with what it contains that shares its verdict.
+    """An element that is not wholly in the graph.
 
-    ``elements`` counts both. ``owner`` is the id in the graph of the nearest element around
-    it, ``name`` its own name as written. ``rule`` is the finding that tells of it; what is
-    only drawn has none.
+    ``elements`` counts the element and its contents with the same verdict. ``owner`` is the id in
+    the graph of the nearest enclosing element, ``name`` the element's own name as written.
+    ``rule`` is the rule of the diagnostic that reports the loss; notation has none.
     """
 
     type: str
@@ -49,28 +49,31 @@ class Loss(Struct, frozen=True):
 
 @dataclass(slots=True)
 class FileCoverage:
-    """Verdicts on the elements of one file; every element is counted exactly once."""
+    """Number of elements of one file by type and verdict; every element is counted once."""
 
     file: str
     losses: list[Loss] = field(default_factory=list)
-    """In document order; empty unless the coverage is detailed."""
+    """Losses in document order; empty unless the coverage is detailed."""
     _counts: Counter[tuple[str, Verdict]] = field(default_factory=Counter)
 
     def count(self, type_name: str, verdict: Verdict, number: int = 1) -> None:
-        """Count ``number`` elements of one source type."""
+        """Add *number* elements of a type of the source language."""
         self._counts[type_name, verdict] += number
 
     @property
     def elements(self) -> int:
-        """Number of elements counted."""
+        """Number of all elements."""
         return self._counts.total()
 
     def totals(self) -> dict[str, int]:
-        """Number of elements for each verdict."""
-        return {v.value: sum(n for (_, w), n in self._counts.items() if v is w) for v in Verdict}
+        """Return the number of elements for each verdict, zeros included."""
+        totals = dict.fromkeys((verdict.value for verdict in Verdict), 0)
+        for (_, verdict), number in self._counts.items():
+            totals[verdict.value] += number
+        return totals
 
     def by_type(self) -> dict[str, dict[str, int]]:
-        """For each source type the number of elements for each verdict that occurs."""
+        """Return the number of elements by type, and below it by verdict, without zeros."""
         table: dict[str, dict[str, int]] = {}
         for (name, verdict), number in sorted(self._counts.items()):
             table.setdefault(name, {})[verdict.value] = number
@@ -80,7 +83,7 @@ class FileCoverage:
 class Coverage:
     """Coverage of all files of one compilation.
 
-    With ``is_detailed`` front ends also list what is not mapped, element by element.
+    If *is_detailed*, front ends also list each element that is not mapped.
     """
 
     def __init__(self, is_detailed: bool = False) -> None:
@@ -88,15 +91,15 @@ class Coverage:
         self._files: dict[str, FileCoverage] = {}
 
     def file(self, name: str) -> FileCoverage:
-        """Coverage of one file, empty when it is asked for first."""
+        """Return the coverage of a file, which is created empty at the first call."""
         return self._files.setdefault(name, FileCoverage(name))
 
     def files(self) -> list[FileCoverage]:
-        """Coverage of each file, sorted by name."""
+        """Return the coverage of all files, sorted by name."""
         return [self._files[name] for name in sorted(self._files)]
 
     def as_json(self) -> dict[str, object]:
-        """The content of ``coverage.json`` (design, section 4)."""
+        """Return the content of ``coverage.json`` (metamodels/sysmlc-coverage.schema.json)."""
         files = self.files()
         total = sum_counts(f.totals() for f in files)
         rows = [
@@ -118,36 +121,34 @@ def sum_counts(counts: Iterable[Counts]) -> dict[str, int]:
     return total
 
 
-def with_meaning(counts: Counts) -> int:
-    """Number of elements that mean something beyond drawing."""
+def count_meaningful(counts: Counts) -> int:
+    """Return the number of elements with a meaning beyond drawing."""
     return sum(counts.values()) - counts.get(Verdict.IGNORED_NOTATION.value, 0)
 
 
 def count_covered(counts: Counts) -> int:
-    """Return the number of elements whose whole meaning is in the graph, external stubs
-    included.
-    """
+    """Return the number of elements whose whole meaning is in the graph, with external stubs."""
     return counts.get(Verdict.MAPPED.value, 0) + counts.get(Verdict.EXTERNAL.value, 0)
 
 
-def covered_tenths(counts: Counts) -> int:
-    """Tenths of a per cent of ``with_meaning`` that are ``covered``, rounded down.
+def compute_covered_permille(counts: Counts) -> int:
+    """Return how many of 1000 meaningful elements are covered; 1000 if none is meaningful.
 
-    1000 means all, so that no loss is rounded away; nothing to cover is covered.
+    The result is rounded down, so that 1000 means that nothing is lost.
     """
-    whole = with_meaning(counts)
-    return 1000 * count_covered(counts) // whole if whole else 1000
+    meaningful = count_meaningful(counts)
+    return 1000 * count_covered(counts) // meaningful if meaningful else 1000
 
 
-def tenths(counts: Counts) -> dict[str, int]:
-    """Tenths of a per cent of all elements for each verdict; they add up to 1000.
+def compute_permille(counts: Counts) -> dict[str, int]:
+    """Return how many of 1000 elements have each verdict; the shares add up to 1000.
 
-    Rounded by largest remainders; of equal ones the first gets the rest.
+    Shares are rounded by largest remainders; of equal remainders the first wins.
     """
-    whole = sum(counts.values())
-    if not whole:
+    total = sum(counts.values())
+    if not total:
         return dict.fromkeys(counts, 0)
-    shares = {name: divmod(1000 * number, whole) for name, number in counts.items()}
-    rest = 1000 - sum(share for share, _ in shares.values())
-    raised = sorted(shares, key=lambda name: -shares[name][1])[:rest]
-    return {name: share + (name in raised) for name, (share, _) in shares.items()}
+    shares = {name: divmod(1000 * number, total) for name, number in counts.items()}
+    missing = 1000 - sum(share for share, _ in shares.values())
+    rounded_up = sorted(shares, key=lambda name: -shares[name][1])[:missing]
+    return {name: share + (name in rounded_up) for name, (share, _) in shares.items()}

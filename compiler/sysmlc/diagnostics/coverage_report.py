@@ -1,20 +1,28 @@
-"""Coverage with lines, columns and names, ready to be shown."""
+"""Coverage by file and by type, with the locations and qualified names of losses."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
 
 from msgspec import Struct
 
-from sysmlc.diagnostics.coverage import Coverage, Loss, Verdict, covered_tenths, sum_counts
+from sysmlc.diagnostics.coverage import (
+    Coverage,
+    FileCoverage,
+    Loss,
+    Verdict,
+    compute_covered_permille,
+    sum_counts,
+)
 from sysmlc.diagnostics.diagnostic import Place
-from sysmlc.diagnostics.locate import Location, locate
+from sysmlc.diagnostics.locations import Location, locate
 from sysmlc.sources import Source
 
 LOSSES = (Verdict.UNSUPPORTED, Verdict.APPROXIMATED, Verdict.EXTERNAL)
-"""What matters of what is not mapped, the worst first."""
+"""Verdicts that are listed as losses, the worst first."""
+_WORST_FIRST = (*LOSSES, Verdict.MAPPED, Verdict.IGNORED_NOTATION)
 
 
 class LostElement(Struct, frozen=True):
-    """One loss, and where it is; ``element`` is a qualified name in the modeller's words."""
+    """A loss with its location; ``element`` is a qualified name in the modeller's words."""
 
     loss: Loss
     file: str
@@ -25,12 +33,12 @@ class LostElement(Struct, frozen=True):
 
     @property
     def where(self) -> str:
-        """``file:line:column`` as far as it is known."""
+        """``file:line:column`` as far as they are known."""
         return ":".join([self.file, *(str(n) for n in (self.line, self.column) if n)])
 
 
 class FileReport(Struct, frozen=True):
-    """Coverage of one file: counts by verdict, counts by type, what is lost."""
+    """Coverage of one file: counts by verdict, counts by type, and losses."""
 
     file: str
     totals: Mapping[str, int]
@@ -46,53 +54,61 @@ class TypeReport(Struct, frozen=True):
     losses: tuple[LostElement, ...]
 
 
-def file_reports(
+def iter_file_reports(
     coverage: Coverage, sources: Iterable[Source], name_of: Callable[[str], str]
 ) -> Iterator[FileReport]:
-    """The files by name; ``name_of`` gives the qualified name of an id of the graph."""
-    by_name = {source.name: source for source in sources}
+    """Yield the reports of the files, sorted by name.
+
+    *name_of* returns the qualified name of an id of the graph.
+    """
+    sources_by_name = {source.name: source for source in sources}
     for file in coverage.files():
-        places = [Place(file.file, loss.ordinal) for loss in file.losses]
-        source = [by_name[file.file]] if file.file in by_name else []
-        found = locate(source, places, with_xpath=True)
-        names = {owner: name_of(owner) for owner in dict.fromkeys(x.owner for x in file.losses)}
-        pairs = zip(file.losses, places, strict=True)
-        lost = tuple(_lost(loss, place, names[loss.owner], found) for loss, place in pairs)
-        yield FileReport(file.file, file.totals(), file.by_type(), lost)
+        source = sources_by_name.get(file.file)
+        losses = tuple(_locate_losses(file, [source] if source else [], name_of))
+        yield FileReport(file.file, file.totals(), file.by_type(), losses)
 
 
-def _lost(loss: Loss, place: Place, owner: str, found: Mapping[Place, Location]) -> LostElement:
-    name = "::".join(part for part in (owner, loss.name) if part) or place.file
-    at = found.get(place)
-    if at is None:
-        return LostElement(loss, place.file, name)
-    return LostElement(loss, place.file, name, at.line, at.column, at.xpath)
+def _locate_losses(
+    file: FileCoverage, sources: Iterable[Source], name_of: Callable[[str], str]
+) -> Iterator[LostElement]:
+    places = [Place(file.file, loss.ordinal) for loss in file.losses]
+    locations = locate(sources, places, with_xpath=True)
+    owners = dict.fromkeys(loss.owner for loss in file.losses)
+    owner_names = {owner: name_of(owner) for owner in owners}
+    for loss, place in zip(file.losses, places, strict=True):
+        names = (owner_names[loss.owner], loss.name)
+        element = "::".join(name for name in names if name) or file.file
+        location = locations.get(place, Location(0, 0, ""))
+        yield LostElement(loss, file.file, element, location.line, location.column, location.xpath)
 
 
-def type_reports(files: Iterable[FileReport]) -> list[TypeReport]:
-    """The types of all files, worst first: by number of elements of each verdict, then by name."""
+def make_type_reports(files: Iterable[FileReport]) -> list[TypeReport]:
+    """Return the reports of the types of all files.
+
+    They are sorted by the numbers of elements with the worst verdict, the second worst and so on,
+    and then by name.
+    """
     files = list(files)
-    lost: dict[str, list[LostElement]] = {}
+    losses: dict[str, list[LostElement]] = {}
     for file in files:
-        for one in file.losses:
-            lost.setdefault(one.loss.type, []).append(one)
+        for lost in file.losses:
+            losses.setdefault(lost.loss.type, []).append(lost)
     names = dict.fromkeys(name for file in files for name in file.by_type)
-    every = [
+    reports = [
         TypeReport(
             name,
             sum_counts(file.by_type[name] for file in files if name in file.by_type),
-            tuple(lost.get(name, ())),
+            tuple(losses.get(name, ())),
         )
         for name in names
     ]
-    return sorted(every, key=lambda one: (*_badness(one.counts), one.name))
+    return sorted(reports, key=_make_type_key)
 
 
-def worst_first(files: Iterable[FileReport]) -> list[FileReport]:
-    """The files that are covered least first; of equal ones by name."""
-    return sorted(files, key=lambda file: (covered_tenths(file.totals), file.file))
+def _make_type_key(report: TypeReport) -> tuple[int | str, ...]:
+    return (*(-report.counts[verdict.value] for verdict in _WORST_FIRST), report.name)
 
 
-def _badness(counts: Mapping[str, int]) -> tuple[int, ...]:
-    order = (*LOSSES, Verdict.MAPPED, Verdict.IGNORED_NOTATION)
-    return tuple(-counts[verdict.value] for verdict in order)
+def sort_by_coverage(files: Iterable[FileReport]) -> list[FileReport]:
+    """Return the reports of files, the least covered first, and then by name."""
+    return sorted(files, key=lambda file: (compute_covered_permille(file.totals), file.file))

@@ -1,4 +1,4 @@
-"""Findings: a rule, the element it is about, and where that element stands."""
+"""Diagnostics: a rule, a message, and the element and the place that they are about."""
 
 from msgspec import Struct
 
@@ -6,12 +6,12 @@ from sysmlc.diagnostics.rule import Rule, Severity
 
 
 class Place(Struct, frozen=True):
-    """Where something stands in an input.
+    """A position in an input, from which line and column are computed when they are shown.
 
-    XML elements are found by ``ordinal`` (number of the start tag in document order, from 0),
-    because parsers' line numbers stop at 65,535; text by ``offset`` (bytes from 0), which is
-    the ordinal too of elements that a text defines (an overlay). Line and
-    column, where they are known already, count characters from 1. -1 and 0 mean unknown.
+    An XML element is found by ``ordinal``, the number of its start tag in document order from 0,
+    because parsers' line numbers stop at 65,535. A position in text is found by ``offset``, in
+    bytes from 0; elements that a text (an overlay) defines have it as their ordinal. Line and
+    column count characters from 1 and may be known already. -1 and 0 mean unknown.
     """
 
     file: str
@@ -22,7 +22,7 @@ class Place(Struct, frozen=True):
 
 
 class Subject(Struct, frozen=True):
-    """What a finding is about: its qualified name, its id in the graph, its place."""
+    """The subject of a diagnostic: qualified name, id in the graph, and place."""
 
     name: str = ""
     id: str = ""
@@ -30,7 +30,7 @@ class Subject(Struct, frozen=True):
 
 
 class Diagnostic(Struct, frozen=True):
-    """One finding, ready to be shown."""
+    """A fault of the model, or information about it, as a sink collects it."""
 
     rule: Rule
     severity: Severity
@@ -41,5 +41,5 @@ class Diagnostic(Struct, frozen=True):
 
     @property
     def is_error(self) -> bool:
-        """Whether it makes the model wrong."""
+        """Whether the severity is error."""
         return self.severity is Severity.ERROR

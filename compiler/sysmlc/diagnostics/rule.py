@@ -1,28 +1,56 @@
-"""Rules: what can be wrong with a model, and how it is explained."""
+"""Rules: the faults that sysmlc reports, and the pages that explain them.
 
+A page is a Markdown file. Its title is the code and the name of the rule, and these sections
+follow::
+
+    # SM301 untyped-port
+    ## Why
+    ## Wrong
+    ## Right
+    ## In Papyrus
+
+An example is one fenced block with its language, or a sentence. The last section is optional.
+"""
+
+import re
 from enum import StrEnum
+from pathlib import Path
 
 from msgspec import Struct
 
-from sysmlc.diagnostics.rule_page import RulePage, parse_page, read_shipped_page
+PAGES = Path(__file__).with_name("rules")
+"""The folder of the pages of sysmlc's own rules, ``<code>.md`` each."""
+_SECTION = re.compile(r"^## (Why|Wrong|Right|In Papyrus)\n", re.MULTILINE)
+_FENCED = re.compile(r"```(\w+)\n(.*)```", re.DOTALL)
 
 
 class Severity(StrEnum):
-    """How much a finding matters."""
+    """How much a diagnostic matters."""
 
     ERROR = "error"
-    """No right answer can be given."""
+    """The model has no correct output."""
     WARNING = "warning"
-    """An answer can be given, but it is probably not what was meant."""
+    """The model has an output, which is probably not what its author meant."""
     INFO = "info"
-    """Worth knowing."""
+    """The author should know, but nothing is wrong."""
+
+
+class RulePage(Struct, frozen=True):
+    """The texts of a page; ``language`` is that of the examples, empty for sentences."""
+
+    title: str = ""
+    why: str = ""
+    wrong: str = ""
+    right: str = ""
+    language: str = ""
+    papyrus: str = ""
 
 
 class Rule(Struct, frozen=True):
-    """One kind of finding.
+    """One kind of fault.
 
-    ``phrase`` and ``help`` are format strings filled by the facts given to ``Sink.report``.
-    ``page`` is the text of the rule's page if the rule is not sysmlc's own (see ``rule_page``).
+    ``phrase`` and ``help`` are format strings for the facts of ``Sink.report``. ``page`` is the
+    Markdown of the rule's page; it is empty for sysmlc's own rules, whose pages are files.
     """
 
     code: str
@@ -33,14 +61,16 @@ class Rule(Struct, frozen=True):
     page: str = ""
 
     def read_page(self) -> RulePage:
-        """Return why the rule exists and its examples; the page is empty if nobody wrote one."""
+        """Return the page of the rule, empty if nobody wrote one."""
         if self.page:
             return parse_page(self.page)
         try:
-            return read_shipped_page(self.code)
+            return parse_page((PAGES / f"{self.code}.md").read_text(encoding="utf-8"))
         except OSError:
             return RulePage()
 
+
+# -- catalogue ---------------------------------------------------------------------------------
 
 _rules: dict[str, Rule] = {}
 _names: set[str] = set()
@@ -49,15 +79,46 @@ _names: set[str] = set()
 def rule(
     code: str, name: str, severity: Severity, phrase: str, help: str = "", page: str = ""
 ) -> Rule:
-    """Make a rule and enter it in the catalogue; codes and names are never used twice."""
-    made = Rule(code, name, severity, phrase, help, page)
+    """Create a rule and add it to the catalogue.
+
+    Raises ValueError if the code or the name is taken.
+    """
     if code in _rules or name in _names:
         raise ValueError(f"rule {code} {name}: the code or the name is taken")
-    _rules[code] = made
+    _rules[code] = Rule(code, name, severity, phrase, help, page)
     _names.add(name)
-    return made
+    return _rules[code]
 
 
 def catalogue() -> dict[str, Rule]:
-    """All rules of the modules imported so far, by code in order."""
+    """Return the rules of the modules imported so far, sorted by code."""
     return dict(sorted(_rules.items()))
+
+
+# -- pages -------------------------------------------------------------------------------------
+
+
+def parse_page(text: str) -> RulePage:
+    """Return the texts of a page; lines of a paragraph are joined, code stays as it is."""
+    head, *parts = _SECTION.split(text)
+    sections = dict(zip(parts[::2], parts[1::2], strict=True))
+    language, wrong = _read_example(sections.get("Wrong", ""))
+    return RulePage(
+        title=head.strip().removeprefix("# "),
+        why=_join_lines(sections.get("Why", "")),
+        wrong=wrong,
+        right=_read_example(sections.get("Right", ""))[1],
+        language=language,
+        papyrus=sections.get("In Papyrus", "").strip(),
+    )
+
+
+def _read_example(section: str) -> tuple[str, str]:
+    """Return language and text of an example; a sentence has no language."""
+    code = _FENCED.fullmatch(section.strip())
+    return (code[1], code[2]) if code else ("", _join_lines(section))
+
+
+def _join_lines(section: str) -> str:
+    paragraphs = re.split(r"\n\s*\n", section.strip())
+    return "\n\n".join(" ".join(paragraph.split()) for paragraph in paragraphs)

@@ -1,34 +1,40 @@
-"""The sink that takes the findings of one compilation."""
+"""The sink that collects the diagnostics of one compilation, and what projects suppress."""
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from fnmatch import fnmatchcase
 
+from msgspec import Struct
 from msgspec.structs import replace
 
 from sysmlc.diagnostics.diagnostic import Diagnostic, Subject
 from sysmlc.diagnostics.rule import Rule, Severity
 
-_LONG = 2_000
-_SHOWN = 200
+_MAX_TEXT = 2_000
+"""Characters of a message or a note; longer facts and notes are cut."""
+_MAX_FACT = 200
 
 
 class Sink:
-    """Collects findings; the same finding about the same element is kept once.
+    """Collects diagnostics; the same message about the same element is stored once.
 
-    ``severities`` maps a rule's code or name to the severity that the project chose, or to
-    None to silence the rule.
+    *severities* maps the code or name of a rule to the severity that the project chose, or to None
+    for a rule that the project switched off.
     """
 
     def __init__(self, severities: Mapping[str, Severity | None] | None = None) -> None:
         self._severities = dict(severities or {})
-        self._settled: dict[str, Mapping[str, Severity | None]] = {}
-        self._found: dict[tuple[str, str, Subject], Diagnostic] = {}
+        self._file_severities: dict[str, Mapping[str, Severity | None]] = {}
+        self._diagnostics: dict[tuple[str, str, Subject], Diagnostic] = {}
 
-    def settle(self, files: Iterable[str], severities: Mapping[str, Severity | None]) -> None:
-        """Say by code how much rules matter in files whose language rules otherwise.
+    def set_file_severities(
+        self, files: Iterable[str], severities: Mapping[str, Severity | None]
+    ) -> None:
+        """Set severities by code for diagnostics in *files*; those of the project take precedence.
 
-        What the language's own checks answer for is silent (None). The project has the last word.
+        A front end calls this method for rules that its language states differently, and with None
+        for rules that its own checks replace.
         """
-        self._settled.update(dict.fromkeys(files, severities))
+        self._file_severities.update(dict.fromkeys(files, severities))
 
     def report(
         self,
@@ -39,49 +45,90 @@ class Sink:
         help: str = "",
         **facts: object,
     ) -> None:
-        """Report ``rule`` about ``subject``; ``facts`` fill the rule's phrase and its help."""
-        severity = self._severity(rule, subject)
+        """Report *rule* about *subject*; *facts* fill the phrase and the help of the rule."""
+        severity = self._find_severity(rule, subject)
         if severity is None:
             return
         message = rule.phrase.format(**facts)
-        if len(message) > _LONG:
-            facts = {name: _shorten(fact) for name, fact in facts.items()}
+        if len(message) > _MAX_TEXT:
+            facts = {
+                name: _shorten(fact, _MAX_FACT) if isinstance(fact, str) else fact
+                for name, fact in facts.items()
+            }
             message = rule.phrase.format(**facts)
         advice = (help or rule.help).format(**facts)
-        told = tuple(f"{note[:_LONG]}..." if len(note) > _LONG else note for note in notes)
-        found = Diagnostic(rule, severity, message, subject, told, advice)
-        self._found.setdefault((rule.code, message, subject), found)
+        short_notes = tuple(_shorten(note, _MAX_TEXT) for note in notes)
+        diagnostic = Diagnostic(rule, severity, message, subject, short_notes, advice)
+        self._diagnostics.setdefault(_make_key(diagnostic), diagnostic)
 
     def subset(self, diagnostics: Iterable[Diagnostic]) -> "Sink":
         """Return a new sink with the same severities that already holds *diagnostics*."""
-        part = Sink(self._severities)
-        part._found = {(d.rule.code, d.message, d.subject): d for d in diagnostics}
-        return part
+        sink = Sink(self._severities)
+        sink._diagnostics = {_make_key(diagnostic): diagnostic for diagnostic in diagnostics}
+        return sink
 
-    def relate(self, found: Diagnostic, id: str) -> None:
-        """Say which element of the graph a finding is about that only knew its place."""
-        key = (found.rule.code, found.message, found.subject)
-        self._found[key] = replace(found, subject=replace(found.subject, id=id))
+    def set_element(self, diagnostic: Diagnostic, id: str) -> None:
+        """Add the id of the graph element to a diagnostic that was reported with a place only."""
+        subject = replace(diagnostic.subject, id=id)
+        self._diagnostics[_make_key(diagnostic)] = replace(diagnostic, subject=subject)
 
-    def _severity(self, rule: Rule, subject: Subject) -> Severity | None:
+    def _find_severity(self, rule: Rule, subject: Subject) -> Severity | None:
         for key in (rule.code, rule.name):
             if key in self._severities:
                 return self._severities[key]
-        if self._settled and subject.place is not None:
-            return self._settled.get(subject.place.file, {}).get(rule.code, rule.severity)
+        if self._file_severities and subject.place is not None:
+            file_severities = self._file_severities.get(subject.place.file, {})
+            return file_severities.get(rule.code, rule.severity)
         return rule.severity
 
     def __iter__(self) -> Iterator[Diagnostic]:
-        return iter(self._found.values())
+        return iter(self._diagnostics.values())
 
     def __len__(self) -> int:
-        return len(self._found)
+        return len(self._diagnostics)
 
     def has_errors(self) -> bool:
-        """Whether any finding makes the model wrong."""
-        return any(found.is_error for found in self)
+        """Whether any diagnostic is an error."""
+        return any(diagnostic.is_error for diagnostic in self)
 
 
-def _shorten(fact: object) -> object:
-    """Return a text that would fill pages by its beginning."""
-    return f"{fact[:_SHOWN]}..." if isinstance(fact, str) and len(fact) > _SHOWN else fact
+def _make_key(diagnostic: Diagnostic) -> tuple[str, str, Subject]:
+    return diagnostic.rule.code, diagnostic.message, diagnostic.subject
+
+
+def _shorten(text: str, limit: int) -> str:
+    return f"{text[:limit]}..." if len(text) > limit else text
+
+
+# -- suppressions ------------------------------------------------------------------------------
+
+
+class Suppression(Struct, frozen=True):
+    """An entry ``[[suppress]]`` of the configuration: diagnostics that the project accepts.
+
+    The entry covers diagnostics of a rule (code or name) about elements whose qualified name
+    matches the pattern ``element``.
+    """
+
+    rule: str
+    element: str
+    reason: str
+
+    def covers(self, diagnostic: Diagnostic) -> bool:
+        """Whether the project accepts the diagnostic."""
+        names = (diagnostic.rule.code, diagnostic.rule.name)
+        return self.rule in names and fnmatchcase(diagnostic.subject.name, self.element)
+
+
+def suppress(
+    diagnostics: Iterable[Diagnostic], suppressions: Sequence[Suppression]
+) -> tuple[list[Diagnostic], list[Suppression]]:
+    """Return the diagnostics that no entry covers, and the entries that cover none."""
+    remaining: list[Diagnostic] = []
+    used: set[Suppression] = set()
+    for diagnostic in diagnostics:
+        covering = [entry for entry in suppressions if entry.covers(diagnostic)]
+        used.update(covering)
+        if not covering:
+            remaining.append(diagnostic)
+    return remaining, [entry for entry in suppressions if entry not in used]

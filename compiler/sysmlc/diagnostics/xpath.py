@@ -1,9 +1,9 @@
-"""XPaths of the elements of an XML file, found in the pass that finds their offsets.
+"""XPaths of the elements of an XML file, computed in the pass that finds their offsets.
 
 A path has the file's own prefixes and the position of each element among its siblings of the
-same name: ``/xmi:XMI/uml:Model[1]/packagedElement[3]``. XPath 1.0 cannot name what stands in a
-default namespace, nor a prefix that means two things in one file; such a step asks for the
-local name and the namespace instead.
+same name: ``/xmi:XMI/uml:Model[1]/packagedElement[3]``. XPath 1.0 can name neither an element in a
+default namespace nor a prefix with two meanings in one file; such a step compares the local name
+and the namespace instead.
 """
 
 from collections.abc import Collection
@@ -12,22 +12,22 @@ from dataclasses import dataclass, field
 from typing import NamedTuple
 
 from sysmlc.sources import Source, SourceError
-from sysmlc.sources.xml import SEPARATOR, Parser, parse, parser
+from sysmlc.sources.xml import SEPARATOR, make_parser, parse
 
 
-class Spot(NamedTuple):
-    """Where an element is: its first byte, and its XPath."""
+class ElementPosition(NamedTuple):
+    """The first byte of an element, and its XPath."""
 
     offset: int
     xpath: str
 
 
 @dataclass(slots=True)
-class Spots:
-    """What was found: elements by their ordinals, and the elements around offsets."""
+class XPaths:
+    """The result of a search."""
 
-    by_ordinal: dict[int, Spot] = field(default_factory=dict)
-    around: dict[int, str] = field(default_factory=dict)
+    by_ordinal: dict[int, ElementPosition] = field(default_factory=dict)
+    by_offset: dict[int, str] = field(default_factory=dict)
     """XPath of the innermost element that is open at an offset; ``/`` outside the root."""
 
 
@@ -36,98 +36,97 @@ def is_xml(data: bytes) -> bool:
     return data[:64].lstrip(b"\xef\xbb\xbf\xff\xfe\0 \t\r\n").startswith(b"<")
 
 
-def find(source: Source, ordinals: Collection[int], offsets: Collection[int]) -> Spots:
-    """The elements with these ordinals, and those around these offsets.
+def find_xpaths(source: Source, ordinals: Collection[int], offsets: Collection[int]) -> XPaths:
+    """Return the XPaths of the elements with these ordinals, and of those around these offsets.
 
-    In a damaged file what stands before the damage is found; nothing in one that is not XML.
+    The result of a damaged file covers the part before the damage. A file that is not XML has no
+    XPaths.
     """
     if not is_xml(source.data):
-        return Spots()
+        return XPaths()
     search = _Search(frozenset(ordinals), sorted(offsets, reverse=True))
     with suppress(SourceError, _DoneError):
-        parse(source, search.parser())
-    search.pass_offsets(len(source.data) + 1)
-    return search.spots
+        search.run(source)
+    search.resolve_offsets(len(source.data) + 1)
+    return search.xpaths
 
 
 class _DoneError(Exception):
-    """Everything that was looked for is found."""
+    """The search has found everything and can stop."""
 
 
-class _Open:
-    """An element that is open: its step, and how many children it has of each name so far."""
+@dataclass(slots=True)
+class _OpenElement:
+    """An open element: its step in the path, and the number of its children by name so far."""
 
-    __slots__ = ("children", "step")
-
-    def __init__(self, step: str) -> None:
-        self.step = step
-        self.children: dict[str, int] = {}
+    step: str
+    children: dict[str, int] = field(default_factory=dict)
 
 
 class _Search:
-    """One pass over a file; ``offsets`` descend, so that the next one is the last."""
+    """One pass over a file; ``offsets`` descend, so that the next offset is the last item."""
 
     def __init__(self, ordinals: frozenset[int], offsets: list[int]) -> None:
-        self.spots = Spots()
+        self.xpaths = XPaths()
         self._ordinals = ordinals
         self._offsets = offsets
-        self._open = [_Open("")]
-        self._seen = 0
+        self._open = [_OpenElement("")]
+        self._ordinal = 0
         self._namespaces: dict[str, str] = {}
-        self._tests: dict[str, tuple[str, str]] = {}
-        self._made: Parser = parser()
+        self._steps: dict[str, tuple[str, str]] = {}
+        self._parser = make_parser()
+        self._parser.namespace_prefixes = True
+        self._parser.StartNamespaceDeclHandler = self._declare_namespace
+        self._parser.StartElementHandler = self._start_element
+        self._parser.EndElementHandler = self._end_element
 
-    def parser(self) -> Parser:
-        """A parser that tells this search what it sees."""
-        made = self._made
-        made.namespace_prefixes = True
-        made.StartNamespaceDeclHandler = self._declare
-        made.StartElementHandler = self._start
-        made.EndElementHandler = self._end
-        return made
+    def run(self, source: Source) -> None:
+        """Search a file; raise ``_DoneError`` as soon as everything is found."""
+        parse(source, self._parser)
 
-    def pass_offsets(self, here: int) -> None:
-        """Note the open element for every offset that lies before ``here``."""
-        while self._offsets and self._offsets[-1] < here:
-            self.spots.around[self._offsets.pop()] = self._path()
+    def resolve_offsets(self, limit: int) -> None:
+        """Set the XPath of every offset below *limit* to the path of the open element."""
+        while self._offsets and self._offsets[-1] < limit:
+            self.xpaths.by_offset[self._offsets.pop()] = self._join_steps()
 
-    def _declare(self, prefix: str | None, uri: str | None) -> None:
+    def _declare_namespace(self, prefix: str | None, uri: str | None) -> None:
         self._namespaces.setdefault(prefix or "", uri or "")
 
-    def _start(self, name: str, _attributes: dict[str, str]) -> None:
-        here = self._made.CurrentByteIndex
-        self.pass_offsets(here)
-        self._enter(name)
-        if self._seen in self._ordinals:
-            self.spots.by_ordinal[self._seen] = Spot(here, self._path())
-        self._seen += 1
-        if len(self.spots.by_ordinal) == len(self._ordinals) and not self._offsets:
+    def _start_element(self, name: str, _attributes: dict[str, str]) -> None:
+        offset = self._parser.CurrentByteIndex
+        self.resolve_offsets(offset)
+        self._open_element(name)
+        if self._ordinal in self._ordinals:
+            position = ElementPosition(offset, self._join_steps())
+            self.xpaths.by_ordinal[self._ordinal] = position
+        self._ordinal += 1
+        if len(self.xpaths.by_ordinal) == len(self._ordinals) and not self._offsets:
             raise _DoneError
 
-    def _enter(self, name: str) -> None:
-        test, key = self._tests.get(name) or self._test(name)
+    def _open_element(self, name: str) -> None:
+        step, key = self._steps.get(name) or self._make_step(name)
         children = self._open[-1].children
         children[key] = number = children.get(key, 0) + 1
-        self._open.append(_Open(f"{test}[{number}]" if len(self._open) > 1 else test))
+        self._open.append(_OpenElement(f"{step}[{number}]" if len(self._open) > 1 else step))
 
-    def _end(self, _name: str) -> None:
-        self.pass_offsets(self._made.CurrentByteIndex)
+    def _end_element(self, _name: str) -> None:
+        self.resolve_offsets(self._parser.CurrentByteIndex)
         self._open.pop()
 
-    def _path(self) -> str:
-        return "/".join(one.step for one in self._open) or "/"
+    def _join_steps(self) -> str:
+        return "/".join(element.step for element in self._open) or "/"
 
-    def _test(self, name: str) -> tuple[str, str]:
-        """The name as a step has it, and the name by which siblings are counted."""
+    def _make_step(self, name: str) -> tuple[str, str]:
+        """Return the step for a name, and the key by which siblings are counted."""
         uri, local, prefix = _split_name(name)
         if not uri:
-            test = local
+            step = local
         elif prefix and self._namespaces.get(prefix) == uri:
-            test = f"{prefix}:{local}"
+            step = f"{prefix}:{local}"
         else:
-            test = f"*[local-name()='{local}' and namespace-uri()={_literal(uri)}]"
-        self._tests[name] = made = (test, f"{uri}{SEPARATOR}{local}")
-        return made
+            step = f"*[local-name()='{local}' and namespace-uri()={_quote(uri)}]"
+        self._steps[name] = step, f"{uri}{SEPARATOR}{local}"
+        return self._steps[name]
 
 
 def _split_name(name: str) -> tuple[str, str, str]:
@@ -138,6 +137,6 @@ def _split_name(name: str) -> tuple[str, str, str]:
     return parts[0], parts[1], parts[2] if len(parts) > 2 else ""
 
 
-def _literal(text: str) -> str:
-    """An XPath string; no URI has both kinds of quotes."""
+def _quote(text: str) -> str:
+    """Return an XPath string; no URI has both kinds of quotes."""
     return f'"{text}"' if "'" in text else f"'{text}'"

@@ -10,7 +10,7 @@ from msgspec import Struct, field
 from sysmlc.backends.base import DERIVED, Backend, EmitOptions, InputFile
 from sysmlc.config import Config
 from sysmlc.diagnostics import Coverage, Diagnostic, Place, Sink, Subject
-from sysmlc.diagnostics.suppress import suppress
+from sysmlc.diagnostics.sink import suppress
 from sysmlc.driver import faults, registry
 from sysmlc.driver.inputs import find_unit_root
 from sysmlc.driver.locations import Locator
@@ -27,7 +27,7 @@ from sysmlc.support.output import Artefact, Output
 from sysmlc.support.suggestions import did_you_mean
 
 if TYPE_CHECKING:
-    from sysmlc.sources.schema import Schemas
+    from sysmlc.sources.user_schemas import Schemas
 
 
 class Observer:

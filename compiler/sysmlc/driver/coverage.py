@@ -8,7 +8,7 @@ from pathlib import Path
 from msgspec import Struct
 
 from sysmlc.diagnostics import Coverage, Diagnostic
-from sysmlc.diagnostics.coverage_report import FileReport, file_reports
+from sysmlc.diagnostics.coverage_report import FileReport, iter_file_reports
 from sysmlc.driver import faults
 from sysmlc.driver.compilation import OpenedUnit, Request, open_unit
 from sysmlc.ir import Graph
@@ -38,7 +38,7 @@ def measure_coverage(request: Request, opened: OpenedUnit | None = None) -> Unit
             faults.report_unreadable(problem, opened.sink)
     return UnitCoverage(
         opened.root,
-        tuple(file_reports(coverage, sources, lambda id: _find_name(graph, id))),
+        tuple(iter_file_reports(coverage, sources, lambda id: _find_name(graph, id))),
         tuple(opened.sink),
         sources,
     )

@@ -5,7 +5,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from msgspec import Struct
 
 from sysmlc.diagnostics import Place
-from sysmlc.diagnostics.locate import locate
+from sysmlc.diagnostics.locations import locate
 from sysmlc.sources import Source
 
 

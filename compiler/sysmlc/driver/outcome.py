@@ -15,13 +15,13 @@ from msgspec import Struct
 from sysmlc import __version__
 from sysmlc.backends.base import InputFile
 from sysmlc.diagnostics import Diagnostic, Place
-from sysmlc.diagnostics.locate import positions
-from sysmlc.diagnostics.render import Finding, make_report
+from sysmlc.diagnostics.locations import find_positions
+from sysmlc.diagnostics.renderers import Finding, make_report
 from sysmlc.driver import faults
 from sysmlc.driver.compilation import Compilation
 from sysmlc.driver.ownership import FORMAT
 from sysmlc.ir import Element
-from sysmlc.support.json_text import encode_json
+from sysmlc.support.output import encode_json
 
 COVERAGE = "coverage.json"
 TRACE = "trace.json"
@@ -54,7 +54,7 @@ def _describe_elements(
     ordinals: dict[str, list[int]] = {}
     for place in places:
         ordinals.setdefault(place.file, []).append(place.ordinal)
-    located = positions(compilation.sources, ordinals)
+    located = find_positions(compilation.sources, ordinals)
     return [
         {
             "id": subject.id,

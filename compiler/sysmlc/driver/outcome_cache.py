@@ -18,15 +18,15 @@ import msgspec
 
 from sysmlc import __version__
 from sysmlc.backends.base import InputFile
-from sysmlc.diagnostics import rule_page
-from sysmlc.diagnostics.render import Finding
+from sysmlc.diagnostics.renderers import Finding
+from sysmlc.diagnostics.rule import PAGES
 from sysmlc.driver import registry
 from sysmlc.driver.compilation import OpenedUnit, Request
 from sysmlc.driver.faults import FAILED
 from sysmlc.driver.outcome import Outcome, OutputFile, Withheld
 from sysmlc.language.library import find_library_path
 from sysmlc.sources import DEFAULT_LIMITS, SourceError
-from sysmlc.sources.whole import read_whole
+from sysmlc.sources.files import read_whole
 from sysmlc.support import resources
 from sysmlc.support.cache import Cache
 
@@ -103,7 +103,7 @@ def _digest_own_files() -> Iterator[str]:
         yield from map(_digest_file, map(str, records))
         return
     # The pages of rules are no part of an outcome; 440 more files would be read in each run.
-    yield from _digest_folder(_PACKAGE, rule_page.FOLDER)
+    yield from _digest_folder(_PACKAGE, PAGES)
     for name in _RESOURCES:
         yield from _digest_folder(resources.path(name))
 

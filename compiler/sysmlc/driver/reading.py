@@ -17,9 +17,9 @@ from sysmlc.driver.inputs import Recognised, collect_files, find_allowed_roots, 
 from sysmlc.frontends.base import AttachmentFrontend, DiagramReader, Frontend
 from sysmlc.ir import Graph
 from sysmlc.overlay import SUFFIX, Refinement, list_files, read_overlay
-from sysmlc.sources import Roots, Source, SourceError, entries, load
-from sysmlc.sources.limits import DEFAULT_LIMITS, DOCUMENT_LIMITS
-from sysmlc.sources.whole import read_whole
+from sysmlc.sources import Roots, Source, SourceError, load, read_entries
+from sysmlc.sources.files import read_whole
+from sysmlc.sources.source import DEFAULT_LIMITS, DOCUMENT_LIMITS
 
 
 class LoadedOverlay(Struct, frozen=True):
@@ -279,7 +279,7 @@ def _load(name: str, root: Path, roots: Roots, sink: Sink) -> Iterator[Source]:
     try:
         source = Source(file, read_whole(root / file, file, DEFAULT_LIMITS))
         yield from (
-            entries(source, lambda entry: _matches(entry, pattern)) if is_archive else [source]
+            read_entries(source, lambda entry: _matches(entry, pattern)) if is_archive else [source]
         )
     except SourceError as problem:
         faults.report_unreadable(problem, sink)

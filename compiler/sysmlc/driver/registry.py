@@ -32,28 +32,26 @@ PASS_GROUP = "sysmlc.passes"
 
 _FRONTENDS = tuple(f"sysmlc.frontends.{name}" for name in ("xmi", "huds", "caex", "sysml", "ir"))
 _BACKENDS = {
-    name: f"sysmlc.backends.{name}"
-    for name in (
-        "contracts",
-        "recipe",
-        "platform",
-        "plantuml",
-        "graph",
-        "ecore",
-        "ir",
-        "reqtable",
-        "uml",
-        "sysml",
-        "aml",
-        "sysmlx",
-        "gr1c",
-        "slugs",
-        "tlsf",
-        "smv",
-        "chase",
-        "spot",
-    )
+    "contracts": "sysmlc.backends.contracts:BACKEND",
+    "recipe": "sysmlc.backends.recipe:BACKEND",
+    "platform": "sysmlc.backends.platform:BACKEND",
+    "plantuml": "sysmlc.backends.plantuml:BACKEND",
+    "graph": "sysmlc.backends.graph:JSON",
+    "ecore": "sysmlc.backends.ecore:BACKEND",
+    "ir": "sysmlc.backends.graph:TEXT",
+    "reqtable": "sysmlc.backends.reqtable:BACKEND",
+    "uml": "sysmlc.backends.uml:BACKEND",
+    "sysml": "sysmlc.backends.sysml:BACKEND",
+    "aml": "sysmlc.backends.aml:BACKEND",
+    "sysmlx": "sysmlc.backends.sysmlx:BACKEND",
+    "gr1c": "sysmlc.backends.contract_formats:GR1C",
+    "slugs": "sysmlc.backends.contract_formats:SLUGS",
+    "tlsf": "sysmlc.backends.contract_formats:TLSF",
+    "smv": "sysmlc.backends.contract_formats:SMV",
+    "chase": "sysmlc.backends.contract_formats:CHASE",
+    "spot": "sysmlc.backends.contract_formats:SPOT",
 }
+"""Module and variable of each shipped back end, by name."""
 _DEFAULT = frozenset({"contracts", "recipe", "platform", "plantuml"})
 """Shipped back ends with ``is_default``. The others are imported only if ``--emit`` names them."""
 _RULE_PACKAGES = (
@@ -227,7 +225,8 @@ def _load(name: str, foreign: dict[str, EntryPoint]) -> Backend:
     _check_names([name], foreign)
     try:
         if name in _BACKENDS:
-            return cast("Backend", import_module(_BACKENDS[name]).BACKEND)
+            module, _, variable = _BACKENDS[name].partition(":")
+            return cast("Backend", getattr(import_module(module), variable))
         return cast("Backend", foreign[name].load())
     except Exception as problem:
         raise BackendError(f"back end '{name}' cannot be loaded: {problem!r}") from problem

@@ -19,7 +19,7 @@ from sysmlc.driver.compilation import OpenedUnit, Request, load_drawings, open_u
 from sysmlc.driver.inputs import Recognised, find_unit_root
 from sysmlc.driver.reading import ReadFile, Reading
 from sysmlc.frontends.base import FileNames, UnitFrontend
-from sysmlc.support.file_names import assign_file_names
+from sysmlc.support.output import assign_file_names
 
 
 @dataclass(eq=False, slots=True)

@@ -8,7 +8,7 @@ from sysmlc.driver.inputs import Recognised
 from sysmlc.sources import Source
 
 if TYPE_CHECKING:
-    from sysmlc.sources.schema import Schema, Schemas, Violation
+    from sysmlc.sources.user_schemas import Schema, Schemas, Violation
 
 _MOST = 200
 """Violations that are reported for one file. The others are only counted."""
@@ -40,7 +40,7 @@ def validate(recognised: Iterable[Recognised], schemas: "Schemas", sink: Sink) -
     for item in recognised:
         source = item.source
         try:
-            schema, violations = schemas.violations(source)
+            schema, violations = schemas.find_violations(source)
         except ValueError:
             continue
         if schema is None:

@@ -258,10 +258,6 @@ class Graph:
         """Return the derived values of a type, in the order in which a pass stored them."""
         return cast("Sequence[_T]", self._derived.get(type_, ()))
 
-    def has_derived(self, module: str) -> bool:
-        """Return whether the graph stores values of a type of this module, without importing it."""
-        return any(type_.__module__ == module for type_, values in self._derived.items() if values)
-
 
 _BARE_EDGES = tuple(edge for edge in Edge if edge is not Edge.OWNS)
 

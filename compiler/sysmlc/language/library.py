@@ -9,9 +9,9 @@ from pathlib import Path
 from sysmlc.diagnostics import Sink
 from sysmlc.language.text import parse
 from sysmlc.language.tree import Document, Node
-from sysmlc.sources import Fault, Source, SourceError, entries, is_archive
-from sysmlc.sources.limits import DEFAULT_LIMITS
-from sysmlc.sources.whole import read_whole
+from sysmlc.sources import Fault, Source, SourceError, is_archive, read_entries
+from sysmlc.sources.files import read_whole
+from sysmlc.sources.source import DEFAULT_LIMITS
 from sysmlc.support import resources
 
 VARIABLE = "SYSML_LIBRARY_PATH"
@@ -209,7 +209,7 @@ def _read_sources(path: Path) -> list[Source]:
         return _read_folder(path)
     source = Source(path.name, read_whole(path, str(path), DEFAULT_LIMITS))
     if is_archive(source.data):
-        return entries(source, _is_model)
+        return read_entries(source, _is_model)
     return [source] if _is_model(path.name) else []
 
 
@@ -222,7 +222,7 @@ def _read_folder(folder: Path) -> list[Source]:
                 path = Path(parent) / file
                 name = path.relative_to(folder).as_posix()
                 source = _read_source(path, name)
-                sources += entries(source, _is_model) if suffix == ".kpar" else [source]
+                sources += read_entries(source, _is_model) if suffix == ".kpar" else [source]
     return sorted(sources, key=lambda source: source.name)
 
 

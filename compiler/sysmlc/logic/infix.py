@@ -23,7 +23,7 @@ from sysmlc.logic.syntax import (
     Token,
     tokenize,
 )
-from sysmlc.support.recursion import allow_recursion
+from sysmlc.support.interpreter import allow_recursion
 
 MAX_DEPTH = 200
 """Most levels of nesting; later steps walk through formulas recursively."""

@@ -5,8 +5,7 @@ from collections.abc import Iterator, Sequence
 from functools import cache
 from typing import TYPE_CHECKING
 
-from sysmlc.diagnostics import Sink, Subject
-from sysmlc.overlay import rules
+from sysmlc.diagnostics import Severity, Sink, Subject, rule
 from sysmlc.overlay.model import Spot, place_of
 from sysmlc.overlay.yaml_tree import Value
 from sysmlc.support import resources
@@ -15,6 +14,37 @@ from sysmlc.support.suggestions import did_you_mean
 if TYPE_CHECKING:
     from jsonschema import Draft202012Validator
     from jsonschema.exceptions import ValidationError
+
+
+SYNTAX = rule(
+    "SM320",
+    "overlay-syntax",
+    Severity.ERROR,
+    "the overlay cannot be read: {problem}",
+    help="an overlay is one YAML document in UTF-8 without tags",
+)
+SHAPE = rule(
+    "SM321",
+    "overlay-shape",
+    Severity.ERROR,
+    "in the overlay {where}: {problem}",
+    help="metamodels/sysmlc-overlay.schema.json has every entry; editors can check it too",
+)
+UNKNOWN_KEY = rule(
+    "SM322",
+    "overlay-unknown-key",
+    Severity.ERROR,
+    "in the overlay {where}: unknown key '{key}'",
+    help="{advice}",
+)
+KEY_TWICE = rule(
+    "SM323",
+    "overlay-key-twice",
+    Severity.ERROR,
+    "in the overlay {where}: the key '{key}' occurs twice",
+    help="merge the two entries, or rename one of them",
+)
+
 
 _LONGEST = 200
 _MOST = 100
@@ -26,7 +56,7 @@ def check_schema(top: Value, file: str, sink: Sink) -> bool:
     repeated = list(_find_repeated_keys(top))
     for where, key, spot in repeated[:_MOST]:
         subject = Subject(place=place_of(file, spot))
-        sink.report(rules.KEY_TWICE, subject, where=where, key=key)
+        sink.report(KEY_TWICE, subject, where=where, key=key)
     errors = sorted(_load_validator().iter_errors(top.as_json()), key=_path_of)
     for error in errors[:_MOST]:
         _report_error(error, top, file, sink)
@@ -68,10 +98,10 @@ def _report_error(error: "ValidationError", top: Value, file: str, sink: Sink) -
             if key not in allowed:
                 subject = Subject(place=place_of(file, value.keys[key]))
                 advice = did_you_mean(key, allowed)
-                sink.report(rules.UNKNOWN_KEY, subject, where=where, key=key, advice=advice)
+                sink.report(UNKNOWN_KEY, subject, where=where, key=key, advice=advice)
         return
     subject = Subject(place=place_of(file, value.spot))
-    sink.report(rules.SHAPE, subject, where=where, problem=_describe_problem(error))
+    sink.report(SHAPE, subject, where=where, problem=_describe_problem(error))
 
 
 def _describe_path(path: Sequence[str | int]) -> str:

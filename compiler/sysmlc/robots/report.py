@@ -11,7 +11,7 @@ from sysmlc.robots.outcome import Outcome, print_steps
 from sysmlc.robots.schedule import START, Schedule
 from sysmlc.robots.study import Study
 from sysmlc.support.escapes import escape_markdown
-from sysmlc.support.file_names import assign_file_names
+from sysmlc.support.output import assign_file_names
 from sysmlc.synthesis.controller_files import controller_files
 from sysmlc.synthesis.controllers.forms import Machine
 

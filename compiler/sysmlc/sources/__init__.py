@@ -1,11 +1,9 @@
-"""Sources: bytes of the inputs, read safely."""
+"""Sources: the bytes of input files and archive entries, read safely."""
 
-from sysmlc.sources.archive import entries, is_archive
-from sysmlc.sources.error import Fault, SourceError
+from sysmlc.sources.archive import is_archive, read_entries
 from sysmlc.sources.files import is_model_entry, load
-from sysmlc.sources.limits import DEFAULT_LIMITS, Limits
 from sysmlc.sources.roots import Roots
-from sysmlc.sources.source import Source
+from sysmlc.sources.source import DEFAULT_LIMITS, Fault, Limits, Source, SourceError
 
 __all__ = [
     "DEFAULT_LIMITS",
@@ -14,8 +12,8 @@ __all__ = [
     "Roots",
     "Source",
     "SourceError",
-    "entries",
     "is_archive",
     "is_model_entry",
     "load",
+    "read_entries",
 ]

@@ -1,23 +1,19 @@
-"""Archives (.mdzip, .kpar, .amlx) read entry by entry, with caps and without touching the disk."""
+"""Archives (.mdzip, .kpar, .amlx): entries are read in memory, within limits of size."""
 
 import io
 import zipfile
 import zlib
-from collections.abc import Callable, Iterator
-from typing import IO, TYPE_CHECKING
-from zipfile import ZIP_DEFLATED, ZIP_STORED
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from typing import IO
+from zipfile import ZIP_DEFLATED, ZIP_STORED, ZipFile, ZipInfo
 
-from sysmlc.sources.error import Fault, SourceError
-from sysmlc.sources.limits import DEFAULT_LIMITS, Limits
-from sysmlc.sources.source import Source
-
-if TYPE_CHECKING:
-    from zipfile import ZipFile, ZipInfo
+from sysmlc.sources.source import DEFAULT_LIMITS, Fault, Limits, Source, SourceError
 
 _MAGIC = (b"PK\x03\x04", b"PK\x05\x06")
 _CHUNK = 1 << 20
 _NO_TABLE = "File is not a zip file"
-"""What zipfile says when the table at the end is missing, however the file starts."""
+"""The message of zipfile for an archive without the table at its end."""
 _CUT_SHORT = "its table of contents is missing, as when a download or a save was cut off"
 
 
@@ -26,103 +22,116 @@ def is_archive(data: bytes) -> bool:
     return data.startswith(_MAGIC)
 
 
-def entries(
+def read_entries(
     archive: Source, wanted: Callable[[str], bool], limits: Limits = DEFAULT_LIMITS
 ) -> list[Source]:
-    """The entries whose names are wanted, by name, as ``archive!entry``.
+    """Return the *wanted* entries, sorted by name, as sources ``archive!entry``.
 
-    Sizes are counted while reading: what the archive says about itself is not believed.
-    Raises SourceError for a damaged archive, names that are absolute, lead upwards or occur
-    twice, other methods than stored and deflate, encryption, and what exceeds the limits.
+    Sizes are counted while reading, because the sizes that an archive declares may be wrong.
+    Raises SourceError for a damaged archive, for a name that is absolute, leads upwards or occurs
+    twice, for an encrypted entry, for a method other than stored and deflate, and for a size above
+    the limits.
     """
+    with _open_archive(archive) as zip_file:
+        return list(_iter_entries(archive, zip_file, wanted, limits))
 
+
+def list_entry_names(archive: Source) -> list[str]:
+    """Return the names of all entries, in the archive's order.
+
+    Raises SourceError for a damaged archive.
+    """
+    with _open_archive(archive) as zip_file:
+        return zip_file.namelist()
+
+
+@contextmanager
+def _open_archive(archive: Source) -> Iterator[ZipFile]:
+    """Open an archive; the errors of zipfile become SourceError."""
     try:
-        with zipfile.ZipFile(io.BytesIO(archive.data)) as opened:
-            return list(_read_all(archive, opened, wanted, limits))
+        with ZipFile(io.BytesIO(archive.data)) as zip_file:
+            yield zip_file
     except (zipfile.BadZipFile, zlib.error, EOFError, NotImplementedError, ValueError) as problem:
         reason = _CUT_SHORT if str(problem) == _NO_TABLE else str(problem)
         raise SourceError(f"damaged archive: {reason}", archive.name) from None
 
 
-def names(archive: Source) -> list[str]:
-    """Names of all entries, as the archive has them. Raises SourceError for a damaged archive."""
-
-    try:
-        with zipfile.ZipFile(io.BytesIO(archive.data)) as opened:
-            return opened.namelist()
-    except (zipfile.BadZipFile, NotImplementedError, ValueError) as problem:
-        reason = _CUT_SHORT if str(problem) == _NO_TABLE else str(problem)
-        raise SourceError(f"damaged archive: {reason}", archive.name) from None
-
-
-def _read_all(
-    archive: Source, opened: "ZipFile", wanted: Callable[[str], bool], limits: Limits
+def _iter_entries(
+    archive: Source, zip_file: ZipFile, wanted: Callable[[str], bool], limits: Limits
 ) -> Iterator[Source]:
-    name, infos = archive.name, opened.infolist()
-    _check_names(name, infos, limits)
-    left = _allowance(len(archive.data), limits)
-    chosen = [info for info in infos if not info.is_dir() and wanted(info.filename)]
-    _check_declared(name, chosen, left, limits)
-    for info in sorted(chosen, key=lambda entry: entry.filename):
-        _check_method(name, info)
-        with opened.open(info) as stream:
-            data = _read(f"{name}!{info.filename}", stream, info, left, limits)
-        left -= len(data)
-        yield Source(f"{name}!{info.filename}", data)
+    entries = zip_file.infolist()
+    _check_names(archive.name, entries, limits)
+    remaining = _compute_total_limit(len(archive.data), limits)
+    selected = [entry for entry in entries if not entry.is_dir() and wanted(entry.filename)]
+    _check_declared_sizes(archive.name, selected, remaining, limits)
+    for entry in sorted(selected, key=lambda entry: entry.filename):
+        _check_method(archive.name, entry)
+        name = f"{archive.name}!{entry.filename}"
+        size_limit = min(remaining, _compute_entry_limit(entry, limits), limits.file_size)
+        with zip_file.open(entry) as stream:
+            data = _read_stream(stream, name, size_limit)
+        remaining -= len(data)
+        yield Source(name, data)
 
 
-def _allowance(packed: int, limits: Limits) -> int:
-    """How many bytes all entries may hold."""
-    return min(limits.total_size, max(packed * limits.total_ratio, limits.free_size))
+def _compute_total_limit(packed_size: int, limits: Limits) -> int:
+    """Return the number of bytes that all entries together may unpack to."""
+    return min(limits.total_size, max(packed_size * limits.total_ratio, limits.free_size))
 
 
-def _check_declared(name: str, infos: list["ZipInfo"], left: int, limits: Limits) -> None:
-    """Refuse what is too large by its own account before anything is unpacked."""
-    for info in infos:
-        if info.file_size > max(info.compress_size * limits.ratio, _CHUNK):
-            raise _too_much(f"{name}!{info.filename}")
-    if sum(info.file_size for info in infos) > left:
-        raise _too_much(name)
+def _compute_entry_limit(entry: ZipInfo, limits: Limits) -> int:
+    """Return the number of bytes that an entry may unpack to."""
+    return max(entry.compress_size * limits.ratio, _CHUNK)
 
 
-def _too_much(name: str) -> SourceError:
+def _check_declared_sizes(
+    name: str, entries: Sequence[ZipInfo], total_limit: int, limits: Limits
+) -> None:
+    """Refuse entries that are too large by their declared size before anything is unpacked."""
+    for entry in entries:
+        if entry.file_size > _compute_entry_limit(entry, limits):
+            raise _make_size_error(f"{name}!{entry.filename}")
+    if sum(entry.file_size for entry in entries) > total_limit:
+        raise _make_size_error(name)
+
+
+def _make_size_error(name: str) -> SourceError:
     return SourceError("unpacks to more than the limits allow", name, fault=Fault.LIMIT)
 
 
-def _check_names(name: str, infos: list["ZipInfo"], limits: Limits) -> None:
-    if len(infos) > limits.entries:
+def _check_names(name: str, entries: Sequence[ZipInfo], limits: Limits) -> None:
+    if len(entries) > limits.entries:
         raise SourceError(f"more than {limits.entries} entries", name, fault=Fault.LIMIT)
-    seen: set[str] = set()
-    for info in infos:
-        if info.orig_filename in seen or info.filename in seen:
-            raise SourceError(f"two entries are named '{info.filename}'", name)
-        seen.add(info.filename)
-        if _leads_out(info.orig_filename) or _leads_out(info.filename):
-            message = f"the name of entry '{info.filename}' leads out of the archive"
+    visited: set[str] = set()
+    for entry in entries:
+        if entry.orig_filename in visited or entry.filename in visited:
+            raise SourceError(f"two entries are named '{entry.filename}'", name)
+        visited.add(entry.filename)
+        if _leads_out(entry.orig_filename) or _leads_out(entry.filename):
+            message = f"the name of entry '{entry.filename}' leads out of the archive"
             raise SourceError(message, name, fault=Fault.REFUSED)
 
 
-def _leads_out(entry: str) -> bool:
-    path = entry.replace("\\", "/")
+def _leads_out(entry_name: str) -> bool:
+    """Whether the name is absolute or leads upwards, on POSIX or on Windows."""
+    path = entry_name.replace("\\", "/")
     return path.startswith("/") or path[1:2] == ":" or ".." in path.split("/") or "\0" in path
 
 
-def _check_method(name: str, info: "ZipInfo") -> None:
-
-    if info.compress_type not in (ZIP_STORED, ZIP_DEFLATED):
-        message = f"entry '{info.filename}' is neither stored nor deflated"
+def _check_method(name: str, entry: ZipInfo) -> None:
+    if entry.compress_type not in (ZIP_STORED, ZIP_DEFLATED):
+        message = f"entry '{entry.filename}' is neither stored nor deflated"
         raise SourceError(message, name, fault=Fault.REFUSED)
-    if info.flag_bits & 0x1:
-        raise SourceError(f"entry '{info.filename}' is encrypted", name, fault=Fault.REFUSED)
+    if entry.flag_bits & 0x1:
+        raise SourceError(f"entry '{entry.filename}' is encrypted", name, fault=Fault.REFUSED)
 
 
-def _read(name: str, stream: IO[bytes], info: "ZipInfo", left: int, limits: Limits) -> bytes:
-    cap = min(left, max(info.compress_size * limits.ratio, _CHUNK), limits.file_size)
-    pieces: list[bytes] = []
+def _read_stream(stream: IO[bytes], name: str, size_limit: int) -> bytes:
+    chunks: list[bytes] = []
     size = 0
-    while piece := stream.read(_CHUNK):
-        size += len(piece)
-        if size > cap:
-            raise _too_much(name)
-        pieces.append(piece)
-    return b"".join(pieces)
+    while chunk := stream.read(_CHUNK):
+        size += len(chunk)
+        if size > size_limit:
+            raise _make_size_error(name)
+        chunks.append(chunk)
+    return b"".join(chunks)

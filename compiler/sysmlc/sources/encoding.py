@@ -1,7 +1,7 @@
-"""Encodings of XML files: which ones expat reads, which are put into UTF-8 first.
+"""Encodings of XML files; sources in an encoding unknown to expat are converted to UTF-8.
 
-What the XML declaration says counts; nothing is guessed. Encodings of several bytes a character
-(Enterprise Architect writes Shift_JIS in Japan) are unknown to expat.
+Only the byte order mark and the XML declaration decide, nothing is guessed. Expat does not know
+encodings with several bytes a character (Enterprise Architect writes Shift_JIS in Japan).
 """
 
 import codecs
@@ -16,85 +16,19 @@ _MARKS = (
     (codecs.BOM_UTF16_LE, "utf-16-le"),
     (codecs.BOM_UTF16_BE, "utf-16-be"),
 )
-"""Byte order marks; that of UTF-32 starts as that of UTF-16 does."""
-_FIRST = ((b"<\0", "utf-16-le"), (b"\0<", "utf-16-be"))
-"""How XML in UTF-16 starts that has no byte order mark."""
+"""Byte order marks. UTF-32 comes first, because its mark starts with the mark of UTF-16."""
+_UTF_16_STARTS = ((b"<\0", "utf-16-le"), (b"\0<", "utf-16-be"))
+"""The start of XML in UTF-16 without a byte order mark."""
 _DECLARATION = re.compile(rb"""<\?xml[^>]*?encoding\s*=\s*["']([A-Za-z0-9._:+-]+)["']""")
-_IN_TEXT = re.compile(r"""(<\?xml[^>]*?encoding\s*=\s*["'])([^"']+)""")
-_OTHER_NAMES = {"windows-31j": "cp932", "x-sjis": "cp932", "x-euc-jp": "euc_jp", "x-gbk": "gbk"}
-_TRANSLATED = frozenset(
+_TEXT_DECLARATION = re.compile(r"""(<\?xml[^>]*?encoding\s*=\s*["'])([^"']+)""")
+_ALIASES = {"windows-31j": "cp932", "x-sjis": "cp932", "x-euc-jp": "euc_jp", "x-gbk": "gbk"}
+"""Names of encodings that Python does not know."""
+_UNKNOWN_TO_EXPAT = frozenset(
     {"big5", "big5hkscs", "cp932", "cp949", "cp950", "euc_jp", "euc_jis_2004", "euc_kr", "gb18030"}
     | {"gb2312", "gbk", "hz", "iso2022_jp", "iso2022_kr", "johab", "shift_jis", "shift_jis_2004"}
     | {"utf_32_be", "utf_32_le"}
 )
-
-
-def find_declared_encoding(data: bytes) -> str:
-    """Return the encoding that the XML declaration names, or an empty text."""
-    declaration = _DECLARATION.match(data[:1024])
-    return declaration[1].decode("ascii") if declaration else ""
-
-
-def codec(data: bytes) -> tuple[int, str]:
-    """Length of the byte order mark, and the Python codec that decodes what follows it.
-
-    The codec is Latin-1, which decodes anything, when the declared one is not known.
-    """
-    for mark, name in _MARKS:
-        if data.startswith(mark):
-            return len(mark), name
-    for first, name in _FIRST:
-        if data.startswith(first):
-            return 0, name
-    return 0, _text_codec(find_declared_encoding(data)) or "latin-1"
-
-
-def in_utf8(source: Source) -> Source:
-    """The source, put into UTF-8 when it is in an encoding that expat does not read.
-
-    Its digest stays that of the file. What is not in the encoding that it declares is left as
-    it is: ``fault`` says why it cannot be read.
-    """
-    mark, name = codec(source.data)
-    if name.replace("-", "_") not in _TRANSLATED:
-        return source
-    try:
-        text = source.data[mark:].decode(name)
-    except UnicodeDecodeError:
-        return source
-    data = _IN_TEXT.sub(r"\1UTF-8", text, count=1).encode("utf-8", "surrogatepass")
-    return Source(source.name, data, source.sha256)
-
-
-def is_known(data: bytes) -> bool:
-    """Whether the encoding that the declaration names, if any, is one of texts."""
-    return bool(_text_codec(find_declared_encoding(data)))
-
-
-def fault(data: bytes) -> tuple[str, int] | None:
-    """Why the bytes cannot be decoded and where, or None when they can."""
-    said = find_declared_encoding(data)
-    if not is_known(data):
-        return f"its encoding '{said}' is unknown", data.find(said.encode())
-    mark, name = codec(data)
-    try:
-        data[mark:].decode(name)
-    except UnicodeDecodeError as problem:
-        return f"it is not encoded in {said or name}: {problem.reason}", mark + problem.start
-    return None
-
-
-def _text_codec(name: str) -> str:
-    """Python's name of a text encoding; empty for one it does not know, UTF-8 for no name."""
-    try:
-        found = codecs.lookup(_OTHER_NAMES.get(name.lower(), name or "utf-8"))
-    except (LookupError, ValueError):
-        return ""
-    is_text = getattr(found, "_is_text_encoding", True)
-    return found.name if is_text and found.name not in _STRANGE else ""
-
-
-_STRANGE = frozenset(
+_NOT_FOR_FILES = frozenset(
     {
         "idna",
         "punycode",
@@ -106,4 +40,71 @@ _STRANGE = frozenset(
         "oem",
     }
 )
-"""Codecs of Python for other things than files, and UTF-7, which hides markup."""
+"""Codecs of Python for other purposes than files, and UTF-7, which can hide markup."""
+
+
+def find_declared_encoding(data: bytes) -> str:
+    """Return the encoding that the XML declaration names, or an empty text."""
+    declaration = _DECLARATION.match(data[:1024])
+    return declaration[1].decode("ascii") if declaration else ""
+
+
+def find_codec(data: bytes) -> tuple[int, str]:
+    """Return the length of the byte order mark, and the Python codec for the rest.
+
+    For an unknown encoding the codec is Latin-1, which can decode any bytes.
+    """
+    for mark, name in _MARKS:
+        if data.startswith(mark):
+            return len(mark), name
+    for start, name in _UTF_16_STARTS:
+        if data.startswith(start):
+            return 0, name
+    return 0, _find_text_codec(find_declared_encoding(data)) or "latin-1"
+
+
+def convert_to_utf8(source: Source) -> Source:
+    """Return the source in UTF-8 if expat does not know its encoding, else the source itself.
+
+    The digest stays that of the file. Bytes that the declared encoding cannot decode are not
+    converted: ``find_encoding_fault`` reports them when the source is parsed.
+    """
+    mark, name = find_codec(source.data)
+    if name.replace("-", "_") not in _UNKNOWN_TO_EXPAT:
+        return source
+    try:
+        text = source.data[mark:].decode(name)
+    except UnicodeDecodeError:
+        return source
+    data = _TEXT_DECLARATION.sub(r"\1UTF-8", text, count=1).encode("utf-8", "surrogatepass")
+    return Source(source.name, data, source.sha256)
+
+
+def has_known_encoding(data: bytes) -> bool:
+    """Whether the declaration names a known encoding of texts, or no encoding."""
+    return bool(_find_text_codec(find_declared_encoding(data)))
+
+
+def find_encoding_fault(data: bytes) -> tuple[str, int] | None:
+    """Return why the bytes cannot be decoded, with the offset; None if they can."""
+    declared = find_declared_encoding(data)
+    if not has_known_encoding(data):
+        return f"its encoding '{declared}' is unknown", data.find(declared.encode())
+    mark, name = find_codec(data)
+    try:
+        data[mark:].decode(name)
+    except UnicodeDecodeError as problem:
+        message = f"it is not encoded in {declared or name}: {problem.reason}"
+        return message, mark + problem.start
+    return None
+
+
+def _find_text_codec(encoding: str) -> str:
+    """Return the Python name of a text encoding, empty for an unknown one; UTF-8 by default."""
+    try:
+        codec = codecs.lookup(_ALIASES.get(encoding.lower(), encoding or "utf-8"))
+    except (LookupError, ValueError):
+        return ""
+    # Codecs such as base64 convert bytes to bytes.
+    is_text = getattr(codec, "_is_text_encoding", True)
+    return codec.name if is_text and codec.name not in _NOT_FOR_FILES else ""

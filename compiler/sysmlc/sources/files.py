@@ -1,62 +1,114 @@
 """Files as sources: one file, or the model entries of one archive."""
 
+import os
 import re
+import stat
+import time
 from collections.abc import Callable
 from pathlib import Path
 
 from sysmlc.sources import package
-from sysmlc.sources.archive import entries, is_archive, names
-from sysmlc.sources.encoding import in_utf8
-from sysmlc.sources.error import SourceError
-from sysmlc.sources.limits import DEFAULT_LIMITS, Limits
-from sysmlc.sources.source import Source
-from sysmlc.sources.whole import read_whole
+from sysmlc.sources.archive import is_archive, list_entry_names, read_entries
+from sysmlc.sources.encoding import convert_to_utf8
+from sysmlc.sources.source import DEFAULT_LIMITS, Fault, Limits, Source, SourceError
+
+_PAUSE = 0.1
+"""Seconds before a file that changed while it was read is read again."""
+
+_State = tuple[int, int]
+"""Size and time of modification of a file."""
+
+
+# -- reading -----------------------------------------------------------------------------------
+
+
+def read_whole(path: Path, name: str, limits: Limits) -> bytes:
+    """Return the content of a regular file that did not change while it was read.
+
+    A file that changed, because a program is saving it, is read a second time. Pipes and devices
+    are refused, because they may never end. Raises SourceError.
+    """
+    for is_last_attempt in (False, True):
+        data, before, after = _read_with_states(path, name, limits)
+        if before == after and len(data) == before[0]:
+            return data
+        if not is_last_attempt:
+            time.sleep(_PAUSE)
+    raise SourceError("changes while it is read", name, fault=Fault.CHANGING)
+
+
+def _read_with_states(path: Path, name: str, limits: Limits) -> tuple[bytes, _State, _State]:
+    """Return the content, and the states of the file before and after reading."""
+    try:
+        with open(path, "rb", opener=_open_nonblocking) as stream:
+            status = os.fstat(stream.fileno())
+            _check_status(status, name, limits)
+            data = stream.read(status.st_size + 1)
+            return data, _make_state(status), _make_state(os.fstat(stream.fileno()))
+    except OSError as problem:
+        message = f"cannot be opened: {problem.strerror or type(problem).__name__}"
+        raise SourceError(message, name, fault=Fault.MISSING) from None
+
+
+def _open_nonblocking(path: str, flags: int) -> int:
+    """Open a file; opening a pipe without a writer would otherwise wait for the writer."""
+    return os.open(path, flags | getattr(os, "O_NONBLOCK", 0))
+
+
+def _check_status(status: os.stat_result, name: str, limits: Limits) -> None:
+    if not stat.S_ISREG(status.st_mode):
+        raise SourceError("is not a regular file", name, fault=Fault.MISSING)
+    if status.st_size > limits.file_size:
+        message = f"larger than {limits.file_size} bytes"
+        raise SourceError(message, name, fault=Fault.LIMIT)
+
+
+def _make_state(status: os.stat_result) -> _State:
+    return status.st_size, status.st_mtime_ns
+
+
+# -- entries of archives -----------------------------------------------------------------------
 
 _MODEL_ENTRY = re.compile(
     r"(^|/)com\.nomagic\.magicdraw\.uml_model(?!____sharepoints).*\.(shared_)?model$"
     r"|\.(uml|xmi|mdxml|aml|caex|sysml|kerml|sysmlx|kermlx)$"
 )
-
-
 _LIBRARY_ENTRY = re.compile(
     r"(^|/)proxy\..*_resource_com\$dnomagic\$dmagicdraw\$duml_umodel\$d(shared_u)?model\$dsnapshot$"
 )
-
-
 _DESCRIPTION_ENTRY = re.compile(r"(^|/)\.(project|meta)\.json$")
-"""What a project archive says about itself and its files (KerML 1.0, 10.3)."""
 
 
 def is_model_entry(name: str) -> bool:
     """Whether an entry of an archive holds model content.
 
-    Of MagicDraw's entries these are the project and its shared parts; diagrams, options and
+    In an archive of MagicDraw these are the project and its shared parts; diagrams, options and
     the snapshots of used projects are not.
     """
     return _MODEL_ENTRY.search(name) is not None
 
 
 def is_library_entry(name: str) -> bool:
-    """Whether an entry of an archive is a snapshot of what its model takes from elsewhere."""
+    """Whether an entry of an archive is MagicDraw's snapshot of a used project."""
     return _LIBRARY_ENTRY.search(name) is not None
 
 
 def is_description_entry(name: str) -> bool:
-    """Whether an entry of an archive describes the project that the archive holds."""
+    """Whether an entry describes the project in the archive and its files (KerML 1.0, 10.3)."""
     return _DESCRIPTION_ENTRY.search(name) is not None
 
 
 def is_wanted_entry(name: str) -> bool:
-    """Whether an entry of an archive is read: a model, or what is needed to read one."""
-    return is_model_entry(name) or _is_beside(name)
+    """Whether an entry of an archive is read: a model, or an entry needed to read a model."""
+    return is_model_entry(name) or _is_auxiliary_entry(name)
 
 
-def _is_beside(name: str) -> bool:
+def _is_auxiliary_entry(name: str) -> bool:
     return is_library_entry(name) or is_description_entry(name)
 
 
 def _is_plain_entry(name: str) -> bool:
-    """XML at the top of an archive that holds nothing else: a packed export."""
+    """Whether an entry is XML at the top of an archive, as in a compressed export."""
     return name.lower().endswith(".xml") and "/" not in name
 
 
@@ -66,16 +118,19 @@ def load(
     wanted: Callable[[str], bool] = is_wanted_entry,
     limits: Limits = DEFAULT_LIMITS,
 ) -> list[Source]:
-    """The file as a source, or the wanted entries when it is an archive (told by content).
+    """Return a file as one source, or the *wanted* entries of an archive.
 
-    ``name`` is what outputs call it. Raises SourceError.
+    An archive is recognised by its content. *name* is the name of the file in outputs. Without
+    wanted entries, plain XML entries are returned. Raises SourceError.
     """
     source = Source(name, read_whole(path, name, limits))
     if not is_archive(source.data):
-        return [in_utf8(source)]
-    if package.is_package(name, listed := names(source)):
-        package.check(name, listed, entries(source, package.is_relationships, limits))
-    found = entries(source, wanted, limits) or entries(source, _is_plain_entry, limits)
-    if all(_is_beside(source.name.partition("!")[2]) for source in found):
+        return [convert_to_utf8(source)]
+    entry_names = list_entry_names(source)
+    if package.is_package(name, entry_names):
+        relationships = read_entries(source, package.is_relationships, limits)
+        package.check_package(name, entry_names, relationships)
+    sources = read_entries(source, wanted, limits) or read_entries(source, _is_plain_entry, limits)
+    if all(_is_auxiliary_entry(source.name.partition("!")[2]) for source in sources):
         raise SourceError("the archive holds no model", name)
-    return [in_utf8(source) for source in found]
+    return [convert_to_utf8(source) for source in sources]

@@ -1,23 +1,22 @@
-"""Packages (ISO/IEC 29500-2, Open Packaging Conventions): what AutomationML packs into .amlx."""
+"""Packages of AutomationML (.amlx), which are Open Packaging Conventions (ISO/IEC 29500-2)."""
 
 import posixpath
 from collections.abc import Sequence
 from typing import NamedTuple
 from urllib.parse import unquote
 
-from sysmlc.sources.error import SourceError
-from sysmlc.sources.source import Source
-from sysmlc.sources.xml import parse, parser
+from sysmlc.sources.source import Source, SourceError
+from sysmlc.sources.xml import make_parser, parse
 
 SUFFIX = ".amlx"
 _ROOT_DOCUMENT = "http://schemas.automationml.org/container/relationship/RootDocument"
 _CONTENT_TYPES = "[Content_Types].xml"
-_OF_PACKAGE = "_rels/.rels"
+_PACKAGE_RELATIONSHIPS = "_rels/.rels"
 _RELATIONSHIP = "http://schemas.openxmlformats.org/package/2006/relationships}Relationship"
 
 
 class Relationship(NamedTuple):
-    """What a package says about one part: where that is said, its type and its target."""
+    """A relationship of a package to one of its parts: location, type and target."""
 
     file: str
     offset: int
@@ -31,24 +30,26 @@ def is_relationships(entry: str) -> bool:
 
 
 def is_package(name: str, entries: Sequence[str]) -> bool:
-    """Whether an archive is a package of AutomationML: by its name or by what is in it."""
+    """Whether an archive is a package of AutomationML, by its name or by its entries."""
     holds_aml = any(entry.lower().endswith((".aml", ".caex")) for entry in entries)
-    return name.lower().endswith(SUFFIX) or (_OF_PACKAGE in entries and holds_aml)
+    return name.lower().endswith(SUFFIX) or (_PACKAGE_RELATIONSHIPS in entries and holds_aml)
 
 
-def check(archive: str, entries: Sequence[str], relationships: Sequence[Source]) -> None:
-    """Check that one root document is named, and that parts and relationships fit.
+def check_package(archive: str, entries: Sequence[str], files: Sequence[Source]) -> None:
+    """Check that a package has one root document, and that relationships and parts agree.
 
-    Raises SourceError, located in the file of relationships where one is at fault.
+    *files* are the entries that hold relationships. Raises SourceError, located in one of these
+    files if a relationship is wrong.
     """
-    found = [one for source in relationships for one in _read(source)]
-    _check_root(archive, [one for one in found if one.type == _ROOT_DOCUMENT])
+    relationships = [relationship for file in files for relationship in _read_file(file)]
+    _check_root(archive, [r for r in relationships if r.type == _ROOT_DOCUMENT])
     parts = {entry for entry in entries if not entry.endswith("/")}
-    for one in found:
-        if one.target not in parts:
-            raise SourceError(f"it has no part '{one.target}'", one.file, one.offset)
-    known = {one.target for one in found} | {_CONTENT_TYPES}
-    for entry in sorted(parts - known):
+    for relationship in relationships:
+        if relationship.target not in parts:
+            message = f"it has no part '{relationship.target}'"
+            raise SourceError(message, relationship.file, relationship.offset)
+    targets = {relationship.target for relationship in relationships}
+    for entry in sorted(parts - targets - {_CONTENT_TYPES}):
         if not is_relationships(entry):
             message = f"no relationship of the package leads to its part '{entry}'"
             raise SourceError(message, f"{archive}!{entry}", 0)
@@ -56,27 +57,29 @@ def check(archive: str, entries: Sequence[str], relationships: Sequence[Source])
 
 def _check_root(archive: str, roots: Sequence[Relationship]) -> None:
     if not roots:
-        raise SourceError("no relationship names its root document", f"{archive}!{_OF_PACKAGE}", 0)
+        file = f"{archive}!{_PACKAGE_RELATIONSHIPS}"
+        raise SourceError("no relationship names its root document", file, 0)
     if len(roots) > 1:
-        names = " and ".join(f"'{one.target}'" for one in roots)
+        names = " and ".join(f"'{root.target}'" for root in roots)
         message = f"it has {len(roots)} root documents, {names}"
         raise SourceError(message, roots[1].file, roots[1].offset)
 
 
-def _read(source: Source) -> list[Relationship]:
-    """The relationships in a file of them; targets are entries of the archive."""
-    found: list[Relationship] = []
-    made = parser()
+def _read_file(source: Source) -> list[Relationship]:
+    """Return the relationships in a file; their targets are entries of the archive."""
+    relationships: list[Relationship] = []
+    parser = make_parser()
+    # Targets are relative to the folder that contains the folder _rels.
     folder = posixpath.dirname(posixpath.dirname(source.name.partition("!")[2]))
 
     def start(tag: str, values: dict[str, str]) -> None:
         if tag == _RELATIONSHIP and values.get("TargetMode") != "External":
             target = unquote(values.get("Target", "").partition("#")[0])
-            place = target.lstrip("/") if target.startswith("/") else f"{folder}/{target}"
-            path = posixpath.normpath(place.lstrip("/"))
+            path = target if target.startswith("/") else f"{folder}/{target}"
+            entry = posixpath.normpath(path.lstrip("/"))
             kind = values.get("Type", "")
-            found.append(Relationship(source.name, made.CurrentByteIndex, kind, path))
+            relationships.append(Relationship(source.name, parser.CurrentByteIndex, kind, entry))
 
-    made.StartElementHandler = start
-    parse(source, made)
-    return found
+    parser.StartElementHandler = start
+    parse(source, parser)
+    return relationships

@@ -1,4 +1,4 @@
-"""Which files a reference in a model may reach."""
+"""Confinement: folders that references in a model may lead into."""
 
 import os
 import re
@@ -8,39 +8,42 @@ from urllib.parse import unquote
 
 from msgspec import Struct
 
-_LONGEST = 4096
-"""No file system has longer paths; looking for one takes a call for each of its parts."""
+_MAX_PATH = 4096
+"""File systems have no longer paths, and resolving one takes a system call for each part."""
 _WORKSPACE = re.compile(r"platform:/resource/([^/]+)/(.+)")
 _SCHEME = re.compile(r"[A-Za-z][A-Za-z0-9+.-]+:")
 
 
 class Roots(Struct, frozen=True):
-    """Folders that references may lead into; nothing outside them is ever opened."""
+    """Folders that references may lead into; files outside them are never opened."""
 
     folders: tuple[Path, ...]
 
     def resolve(self, base: Path, href: str) -> Path | None:
-        """The file that ``href`` in the file ``base`` names, if it is there and allowed.
+        """Return the file that *href* in the file *base* names, if it exists and is allowed.
 
-        Anything with a scheme (http, pathmap) is never followed, but for Eclipse's
-        ``platform:/resource/Project/file``: the project is a folder above the file ``base``, or
-        beside one. Symbolic links count as where they lead. A path that no file system can
-        hold leads nowhere, which ``os.path.isfile`` answers and ``Path.is_file`` raises.
+        A reference with a scheme (http, pathmap) is never followed, except Eclipse's
+        ``platform:/resource/Project/file``: the project is a folder above *base*, or beside one
+        of these folders. Symbolic links are resolved before they are checked.
         """
         path = unquote(href.partition("#")[0])
-        if not path or len(path) > _LONGEST or "\0" in path:
+        if not path or len(path) > _MAX_PATH or "\0" in path:
             return None
-        targets = (Path(os.path.realpath(place)) for place in _places(base, path))
-        allowed = (target for target in targets if self.allows(target))
-        return next((one for one in allowed if os.path.isfile(one)), None)  # noqa: PTH113
+        for candidate in _iter_candidates(base, path):
+            target = os.path.realpath(candidate)
+            # Path.is_file raises an error for a path that no file system can hold.
+            if self.allows(Path(target)) and os.path.isfile(target):  # noqa: PTH113
+                return Path(target)
+        return None
 
     def allows(self, path: Path) -> bool:
-        """Whether the real place of the path is inside one of the folders."""
+        """Whether *path*, its symbolic links resolved, is inside one of the folders."""
         real = Path(os.path.realpath(path))
         return any(real.is_relative_to(os.path.realpath(folder)) for folder in self.folders)
 
 
-def _places(base: Path, path: str) -> Iterator[Path]:
+def _iter_candidates(base: Path, path: str) -> Iterator[Path]:
+    """Yield the files that a reference may mean, the most likely first."""
     workspace = _WORKSPACE.fullmatch(path)
     if workspace is None:
         if not _SCHEME.match(path):

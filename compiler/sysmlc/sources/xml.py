@@ -1,79 +1,81 @@
-"""XML read without DOCTYPE, entities, network or XInclude, from whole buffers.
+"""Safe XML parsing with expat: no DOCTYPE, entities, network or XInclude.
 
-Expat is given the whole buffer: fed in pieces it is quadratic in long attributes, and it would
-let a document with entities pass, so every DOCTYPE is refused before anything is declared.
+Expat parses the whole buffer at once, because in chunks its time is quadratic in the length of
+attributes. Every DOCTYPE is refused, so that a document cannot declare entities.
 """
 
 from typing import NoReturn
 from xml.parsers import expat
 
-from sysmlc.sources.encoding import fault, find_declared_encoding, is_known
-from sysmlc.sources.error import Fault, SourceError
-from sysmlc.sources.limits import DEFAULT_LIMITS, Limits
-from sysmlc.sources.source import Source
+from sysmlc.sources.encoding import (
+    find_declared_encoding,
+    find_encoding_fault,
+    has_known_encoding,
+)
+from sysmlc.sources.source import DEFAULT_LIMITS, Fault, Limits, Source, SourceError
 
 SEPARATOR = "}"
-"""Between namespace and local name in the names that handlers are given."""
+"""Stands between namespace and local name in the names that handlers receive."""
 
 _BUFFER = 1 << 20
-"""Bytes of text that come in one piece: long texts are not put together from thousands."""
+"""Bytes of text that a handler receives at once; the default would cut texts into thousands."""
 
 _INVALID_TOKEN = expat.errors.codes[expat.errors.XML_ERROR_INVALID_TOKEN]
 
 Parser = expat.XMLParserType
-"""An expat parser; ``CurrentByteIndex`` is the place in the source's bytes."""
+"""An expat parser; ``CurrentByteIndex`` is the position in the bytes of the source."""
 
 
-def parser() -> Parser:
-    """An expat parser that knows namespaces and refuses every DOCTYPE.
+def make_parser() -> Parser:
+    """Return an expat parser that resolves namespaces and refuses every DOCTYPE.
 
-    Names are ``namespace}local``, attributes come as dicts, text comes in one piece.
+    Handlers receive names as ``namespace}local``, attributes as a dictionary, and text at once.
     """
-    made = expat.ParserCreate(namespace_separator=SEPARATOR)
-    made.buffer_size = _BUFFER
-    made.buffer_text = True
-    made.StartDoctypeDeclHandler = _refuse_doctype
-    return made
+    return _configure(expat.ParserCreate(namespace_separator=SEPARATOR))
 
 
-def plain_parser(names: dict[str, str] | None = None) -> Parser:
-    """An expat parser that takes names as they are written: for XML with unbound prefixes.
+def make_plain_parser(names: dict[str, str] | None = None) -> Parser:
+    """Return an expat parser that does not resolve namespaces, for XML with unbound prefixes.
 
-    ``names`` says what handlers are given for a name; what it lacks is given as written.
+    Handlers receive the value of a name in *names*, and other names as they are written.
     """
-    made = expat.ParserCreate(intern={} if names is None else names)
-    made.buffer_size = _BUFFER
-    made.buffer_text = True
-    made.StartDoctypeDeclHandler = _refuse_doctype
-    return made
+    return _configure(expat.ParserCreate(intern={} if names is None else names))
 
 
-def parse(source: Source, made: Parser) -> None:
-    """Run ``made`` over the whole source.
+def _configure(parser: Parser) -> Parser:
+    parser.buffer_size = _BUFFER
+    parser.buffer_text = True
+    parser.StartDoctypeDeclHandler = _refuse_doctype
+    return parser
 
-    Raises SourceError, located, for what is not well-formed, has a DOCTYPE or an encoding
+
+def parse(source: Source, parser: Parser) -> None:
+    """Run *parser* over the whole source.
+
+    Raises SourceError, located, for XML that is not well-formed, has a DOCTYPE, or has an encoding
     that cannot be read.
     """
     try:
-        if not is_known(source.data):
+        if not has_known_encoding(source.data):
             raise LookupError("unknown")
-        made.Parse(source.data, True)
+        parser.Parse(source.data, True)
     except expat.ExpatError as problem:
-        message, offset = _explain(problem, source, max(made.ErrorByteIndex, 0))
+        message, offset = _explain(problem, source, max(parser.ErrorByteIndex, 0))
         raise SourceError(message, source.name, offset) from None
     except _DoctypeError:
         message = "it has a DOCTYPE, which is refused because entities can hide anything"
-        raise SourceError(message, source.name, made.CurrentByteIndex, Fault.REFUSED) from None
+        raise SourceError(message, source.name, parser.CurrentByteIndex, Fault.REFUSED) from None
     except (ValueError, LookupError) as problem:
-        unknown = f"its encoding '{find_declared_encoding(source.data)}' cannot be read: {problem}"
-        message, offset = fault(source.data) or (unknown, 0)
+        encoding = find_declared_encoding(source.data)
+        unreadable = f"its encoding '{encoding}' cannot be read: {problem}"
+        message, offset = find_encoding_fault(source.data) or (unreadable, 0)
         raise SourceError(message, source.name, offset) from None
 
 
-def too_deep(source: Source, made: Parser, limits: Limits = DEFAULT_LIMITS) -> NoReturn:
+def refuse_depth(source: Source, parser: Parser, limits: Limits = DEFAULT_LIMITS) -> NoReturn:
     """Raise the SourceError of a document that is nested more deeply than ``limits.depth``."""
     message = f"nested more than {limits.depth} deep"
-    raise SourceError(message, source.name, made.CurrentByteIndex, Fault.LIMIT)
+    raise SourceError(message, source.name, parser.CurrentByteIndex, Fault.LIMIT)
 
 
 class _DoctypeError(Exception):
@@ -85,11 +87,12 @@ def _refuse_doctype(*_declaration: object) -> NoReturn:
 
 
 def _explain(problem: expat.ExpatError, source: Source, offset: int) -> tuple[str, int]:
-    """Return what is wrong and where; invalid bytes are an encoding fault, not one of the
-    markup.
+    """Return a message and the offset of the fault.
+
+    Expat calls a byte that the encoding cannot decode an invalid token, like wrong markup.
     """
     if problem.code == _INVALID_TOKEN and source.data[offset : offset + 1] >= b"\x80":
-        encoding_fault = fault(source.data)
+        encoding_fault = find_encoding_fault(source.data)
         if encoding_fault:
             return encoding_fault
     reason = expat.ErrorString(problem.code) or "unknown fault"

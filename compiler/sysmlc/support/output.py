@@ -1,14 +1,17 @@
-"""The output of one compilation: artefacts with their trace, and valid paths for them."""
+"""Output files of a compilation: artefacts with their trace, valid names and paths, JSON text."""
 
+import hashlib
+import json
 import stat
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from pathlib import Path, PureWindowsPath
+from urllib.parse import quote
 
 from msgspec import Struct
 
 
 class Artefact(Struct, frozen=True):
-    """One file that a back end makes.
+    """One file that a back end writes.
 
     ``path`` is relative to the output folder, with ``/``; ``trace`` names the elements (ids)
     that the content comes from: an error about one of them withholds the file.
@@ -21,7 +24,7 @@ class Artefact(Struct, frozen=True):
 
 
 class OutputPathError(ValueError):
-    """A path leads out of the output folder, or into a repository of git."""
+    """A path leads out of the output folder, or into a git repository."""
 
 
 def check_output_path(path: str) -> None:
@@ -45,16 +48,17 @@ def find_obstacle(folder: Path, path: str) -> Path | None:
     """
     check_output_path(path)
     *parents, name = path.split("/")
-    place = folder
+    current = folder
     for parent in parents:
-        place /= parent
-        mode = _read_mode(place)
+        current /= parent
+        mode = _read_mode(current)
         if mode is None:
             return None
         if not stat.S_ISDIR(mode):
-            return place
-    mode = _read_mode(place / name)
-    return None if mode is None or stat.S_ISREG(mode) else place / name
+            return current
+    target = current / name
+    mode = _read_mode(target)
+    return None if mode is None or stat.S_ISREG(mode) else target
 
 
 def _read_mode(path: Path) -> int | None:
@@ -66,22 +70,83 @@ def _read_mode(path: Path) -> int | None:
 
 
 class Output:
-    """What the back ends of one compilation have made so far."""
+    """The files that the back ends of one compilation have added so far."""
 
     def __init__(self) -> None:
         self._artefacts: dict[str, Artefact] = {}
-        self._last: tuple[Iterable[str], tuple[str, ...]] = ((), ())
+        self._last_trace: tuple[Iterable[str], tuple[str, ...]] = ((), ())
 
     def add(self, path: str, text: str, trace: Iterable[str] = (), backend: str = "") -> None:
-        """Add a file. Raises ValueError when the path is taken or leaves the folder."""
+        """Add a file. Raises ValueError if the path is taken or leads out of the folder."""
         check_output_path(path)
         if path in self._artefacts:
             raise ValueError(f"output path {path!r} is written twice")
-        if self._last[0] is not trace or not isinstance(trace, tuple):
-            # Several files of one element often have one trace, and it can be long.
-            self._last = (trace, tuple(dict.fromkeys(trace)))
-        self._artefacts[path] = Artefact(path, text, self._last[1], backend)
+        if self._last_trace[0] is not trace or not isinstance(trace, tuple):
+            # Files of one component share their trace, which can have thousands of ids.
+            self._last_trace = (trace, tuple(dict.fromkeys(trace)))
+        self._artefacts[path] = Artefact(path, text, self._last_trace[1], backend)
 
     def artefacts(self) -> list[Artefact]:
-        """All files, sorted by path."""
+        """Return all files, sorted by path."""
         return [self._artefacts[path] for path in sorted(self._artefacts)]
+
+
+# -- names of files ----------------------------------------------------------------------------
+
+_MAX_BYTES = 120
+"""Bytes of a name: file systems allow 255, and back ends add suffixes."""
+_RESERVED_ON_WINDOWS = frozenset(
+    ["con", "prn", "aux", "nul", *(f"{p}{n}" for p in ("com", "lpt") for n in range(10))]
+)
+
+
+def assign_file_names(qualified_names: Iterable[str]) -> dict[str, str]:
+    """Return a file name without suffix, valid on every file system, for each qualified name.
+
+    ``::`` becomes ``.``; other special characters are percent-encoded; a name has at most 120
+    bytes. Names that differ only in case all get ``~`` and six hexadecimal digits of the digest of
+    their qualified name.
+    """
+    encoded_names = {name: _encode(name) for name in qualified_names}
+    counts: dict[str, int] = {}
+    for encoded in encoded_names.values():
+        counts[encoded.lower()] = counts.get(encoded.lower(), 0) + 1
+    return {
+        name: encoded if counts[encoded.lower()] == 1 else _append_digest(encoded, name)
+        for name, encoded in encoded_names.items()
+    }
+
+
+def _encode(name: str) -> str:
+    encoded = quote(name.replace("::", "."), safe="-_.").replace("~", "%7E").strip(".") or "_"
+    # Windows reserves these names with any suffix.
+    if encoded.split(".")[0].lower() in _RESERVED_ON_WINDOWS:
+        encoded = f"_{encoded}"
+    return encoded if len(encoded) <= _MAX_BYTES else _append_digest(encoded, name)
+
+
+def _append_digest(encoded: str, name: str) -> str:
+    digest = hashlib.sha256(name.encode("utf-8")).hexdigest()[:6]
+    return f"{encoded[: _MAX_BYTES - 7]}~{digest}"
+
+
+# -- JSON --------------------------------------------------------------------------------------
+
+
+def encode_json(content: object, indent: int = 1) -> str:
+    """Return *content* as the text of a JSON file: indented, with a line feed at the end.
+
+    Characters beyond ASCII stay as they are, because all files are UTF-8.
+    """
+    return json.dumps(content, ensure_ascii=False, indent=indent) + "\n"
+
+
+def encode_row(content: object) -> str:
+    """Return *content* as JSON on one line, for lists that are too long to be indented."""
+    return json.dumps(content, ensure_ascii=False)
+
+
+def append_members(head: Mapping[str, object], members: Iterable[str]) -> str:
+    """Return a JSON file with the members of *head* and then *members*, which are JSON already."""
+    start = encode_json(head, 2).removesuffix("\n}\n")
+    return ",\n".join((start, *members)) + "\n}\n"

@@ -19,8 +19,7 @@ from sysmlc.logic.evaluate import Evaluation, compile_evaluation
 from sysmlc.logic.formats.contract_json import encode_domain
 from sysmlc.logic.formula import Apply, Const, Formula, Literal, Op, Var
 from sysmlc.logic.printing import print_formula
-from sysmlc.support.file_names import assign_file_names
-from sysmlc.support.json_text import append_members, encode_row
+from sysmlc.support.output import append_members, assign_file_names, encode_row
 from sysmlc.support.plantuml_text import escape_line
 from sysmlc.synthesis import rules
 from sysmlc.synthesis.bdd.limits import LimitError

@@ -9,7 +9,7 @@ from sysmlc.logic import formula as f
 from sysmlc.logic.contract import Class, Conjunct, Contract, Owner
 from sysmlc.logic.formula import Literal
 from sysmlc.logic.printing import print_formula, print_literal
-from sysmlc.support.file_names import assign_file_names
+from sysmlc.support.output import assign_file_names
 from sysmlc.support.plantuml_text import escape_line, format_label
 from sysmlc.synthesis.algebra.fair_systems import Trace
 from sysmlc.synthesis.algebra.refinement import Failure

@@ -5,7 +5,7 @@ import spot
 
 from machine_samples import arrow, machine
 from sysmlc.backends.base import EmitOptions
-from sysmlc.backends.forms import NOT_EXPRESSIBLE
+from sysmlc.backends.contract_formats import NOT_EXPRESSIBLE
 from sysmlc.diagnostics import Sink
 from sysmlc.driver.registry import load_backends
 from sysmlc.ir.text import parse_text

@@ -7,9 +7,10 @@ from pathlib import Path
 import pytest
 
 from sysmlc.backends.base import EmitOptions
-from sysmlc.backends.reqtable import BACKEND, rules
+from sysmlc.backends.reqtable import BACKEND
+from sysmlc.backends.reqtable.backend import BAD_TEMPLATE, format_markdown_cell
+from sysmlc.backends.reqtable.open_requirements import UNSATISFIED, UNVERIFIED
 from sysmlc.backends.reqtable.table import Cell
-from sysmlc.backends.reqtable.text import markdown_cell
 from sysmlc.diagnostics import Sink
 from sysmlc.driver import Request, compile_model, select_backends
 from sysmlc.ir.text import parse_text
@@ -155,7 +156,7 @@ def test_no_cell_is_a_formula(start):
     ],
 )
 def test_markdown_shows_the_text_as_it_is(text, shown):
-    assert markdown_cell(Cell((text,))) == shown
+    assert format_markdown_cell(Cell((text,))) == shown
 
 
 def test_markdown_has_no_column_without_values():
@@ -188,7 +189,7 @@ def test_the_same_name_twice_gives_two_files():
 # -- rules -------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("rule", [rules.UNSATISFIED, rules.UNVERIFIED], ids=lambda r: r.name)
+@pytest.mark.parametrize("rule", [UNSATISFIED, UNVERIFIED], ids=lambda r: r.name)
 def test_open_requirements_are_reported(rule):
     assert rule in [found.rule for found in emitted(rule.read_page().wrong)[1]]
     assert [found.rule for found in emitted(rule.read_page().right)[1]] == []
@@ -226,15 +227,11 @@ def test_derivations_in_a_circle_do_not_hang():
 
 
 def test_a_faulty_template_is_reported_and_the_csv_is_written(tmp_path):
-    (tmp_path / "requirements.md.j2").write_text(
-        rules.BAD_TEMPLATE.read_page().wrong, encoding="utf-8"
-    )
+    (tmp_path / "requirements.md.j2").write_text(BAD_TEMPLATE.read_page().wrong, encoding="utf-8")
     files, found = emitted(PLANT_MODEL, tmp_path)
-    assert [one.rule for one in found if one.is_error] == [rules.BAD_TEMPLATE]
+    assert [one.rule for one in found if one.is_error] == [BAD_TEMPLATE]
     assert list(files) == ["requirements/Plant.requirements.csv"]
-    (tmp_path / "requirements.md.j2").write_text(
-        rules.BAD_TEMPLATE.read_page().right, encoding="utf-8"
-    )
+    (tmp_path / "requirements.md.j2").write_text(BAD_TEMPLATE.read_page().right, encoding="utf-8")
     assert emitted(PLANT_MODEL, tmp_path)[0]["requirements/Plant.requirements.md"] == "Plant\n"
 
 

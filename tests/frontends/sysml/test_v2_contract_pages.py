@@ -3,7 +3,7 @@
 import pytest
 from reading_v2 import read
 
-from sysmlc.backends.contracts.explain import explain
+from sysmlc.backends.contracts.page import print_page
 from sysmlc.logic.contract import Contract
 from sysmlc.passes import pipeline
 
@@ -27,7 +27,7 @@ def pages():
     reading = read(LINE)
     pipeline.run(reading.graph, reading.sink)
     graph = reading.graph
-    return {contract.component: explain(graph, contract) for contract in graph.derived(Contract)}
+    return {contract.component: print_page(graph, contract) for contract in graph.derived(Contract)}
 
 
 def test_a_page_begins_with_the_documentation_in_the_library(pages):
@@ -59,7 +59,7 @@ def test_markup_of_tools_is_not_copied():
     reading = read(LINE.replace("Two turns.", "<p>Two turns</p>"))
     pipeline.run(reading.graph, reading.sink)
     (page,) = (
-        explain(reading.graph, contract)
+        print_page(reading.graph, contract)
         for contract in reading.graph.derived(Contract)
         if contract.component.endswith("screw")
     )

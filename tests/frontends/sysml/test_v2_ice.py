@@ -4,7 +4,7 @@ import json
 
 import pytest
 
-from sysmlc.config import load
+from sysmlc.config import read_config
 from sysmlc.diagnostics import Sink
 from sysmlc.driver import Request, compile_model, select_backends
 from sysmlc.logic.contract import Contract
@@ -32,7 +32,7 @@ def compile_laboratory(corpus, folder, levels, *backends):
     file.write_text(levels)
     laboratory = corpus / "sysml2" / "ice-lab"
     chosen = tuple(select_backends(backends))
-    return compile_model(Request((laboratory,), config=load(file), backends=chosen))
+    return compile_model(Request((laboratory,), config=read_config(file), backends=chosen))
 
 
 @pytest.fixture(scope="module")

@@ -8,7 +8,7 @@ import ice_source as source
 import jsonschema
 import pytest
 
-from sysmlc.config import load
+from sysmlc.config import read_config
 from sysmlc.driver import Request, compile_model, select_backends
 
 ROOT = Path(__file__).parents[3]
@@ -34,7 +34,7 @@ def laboratory(folder, tmp_path_factory):
     file = tmp_path_factory.mktemp("ice") / "sysmlc.toml"
     file.write_text(LEVELS)
     backends = tuple(select_backends(("recipe",)))
-    return compile_model(Request((folder,), config=load(file), backends=backends))
+    return compile_model(Request((folder,), config=read_config(file), backends=backends))
 
 
 @pytest.fixture(scope="module")

@@ -42,7 +42,7 @@ def test_the_project_has_the_last_word():
 
 def test_other_files_are_judged_as_before():
     sink, rule = Sink(), catalogue()["SM214"]
-    sink.settle(["model.sysml"], SEVERITIES)
+    sink.set_file_severities(["model.sysml"], SEVERITIES)
     sink.report(rule, Subject("a", place=Place("model.sysml")), requirement="a")
     sink.report(rule, Subject("b", place=Place("model.uml")), requirement="b")
     sink.report(rule, Subject("c"), requirement="c")

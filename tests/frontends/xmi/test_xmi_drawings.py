@@ -8,7 +8,7 @@ import pytest
 
 from dialects.mutate import mutate
 from sysmlc.backends.plantuml import BACKEND
-from sysmlc.diagnostics.render import make_report
+from sysmlc.diagnostics.renderers import make_report
 from sysmlc.driver import Request, compile_model
 from sysmlc.ir import Edge, Kind
 

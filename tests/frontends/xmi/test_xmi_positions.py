@@ -2,7 +2,7 @@
 
 import pytest
 
-from sysmlc.diagnostics.render import make_report
+from sysmlc.diagnostics.renderers import make_report
 from sysmlc.driver import Request, compile_model
 
 HEAD = (

@@ -3,7 +3,7 @@
 import pytest
 from reading_xmi import MAGICDRAW, PAPYRUS, Read, papyrus, read, source
 
-from sysmlc.diagnostics.locate import locate
+from sysmlc.diagnostics.locations import locate
 from sysmlc.frontends.xmi import FRONTEND
 from sysmlc.sources import Fault, Source, SourceError
 

@@ -6,8 +6,7 @@ from pathlib import Path
 from sysmlc.backends.base import EmitOptions
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Element, Graph, Kind
-from sysmlc.support.file_names import assign_file_names
-from sysmlc.support.output import Output
+from sysmlc.support.output import Output, assign_file_names
 
 NO_PORTS = rule(
     "SM949",

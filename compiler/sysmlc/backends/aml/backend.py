@@ -12,8 +12,7 @@ from sysmlc.backends.aml.rules import ILLEGAL_CHARACTERS, Losses
 from sysmlc.backends.base import EmitOptions, find_unit_name
 from sysmlc.diagnostics import Sink, Subject
 from sysmlc.ir import Edge, Element, Graph, Kind
-from sysmlc.support.file_names import assign_file_names
-from sysmlc.support.output import Output
+from sysmlc.support.output import Output, assign_file_names
 
 FOLDER = "aml"
 

@@ -8,7 +8,7 @@ from typing import Any
 from lxml import etree
 
 from sysmlc.ir import AttrValue
-from sysmlc.sources.caex import NAMESPACE, ORDER
+from sysmlc.sources.caex_vocabulary import NAMESPACE, ORDER
 
 _ILLEGAL = re.compile("[^\t\n\r\u0020-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 """Characters outside the production Char (XML 1.0, 2.2)."""

@@ -1,19 +1,17 @@
-"""Three files a contract: JSON for tools, SPIN for checkers, Markdown for people."""
+"""Three files for each contract: JSON for tools, SPIN for checkers, Markdown for people."""
 
 from msgspec import Struct
 
 from sysmlc.backends.base import EmitOptions
-from sysmlc.backends.contracts.explain import explain
-from sysmlc.backends.contracts.trace import trace as trace_of
+from sysmlc.backends.contracts.page import print_page
 from sysmlc.backends.templates import TemplateError, Templates
 from sysmlc.diagnostics import Severity, Sink, Subject, rule
-from sysmlc.ir import Graph
+from sysmlc.ir import Edge, Graph, Kind
 from sysmlc.logic.contract import Contract
 from sysmlc.logic.formats.contract_json import print_contract
 from sysmlc.logic.formats.lowering import rename_ambiguous_literals
 from sysmlc.logic.formats.spin import TooLargeError, print_spin
-from sysmlc.support.file_names import assign_file_names
-from sysmlc.support.output import Output
+from sysmlc.support.output import Output, assign_file_names
 
 TOO_LARGE = rule(
     "SM520",
@@ -33,61 +31,70 @@ BAD_TEMPLATE = rule(
 
 
 class ContractsBackend(Struct, frozen=True):
-    """Writes the contracts that the pass ``contracts`` found."""
+    """Writes the contracts that the pass ``contracts`` derived."""
 
     name: str = "contracts"
     summary: str = "assume/guarantee contracts as JSON, SPIN formula and explanation"
     is_default: bool = True
 
     def emit(self, graph: Graph, output: Output, sink: Sink, options: EmitOptions) -> None:
-        """Add three files a contract; their trace names every element that they tell of."""
+        """Add three files for each contract, with the same trace."""
         contracts = graph.derived(Contract)
         names = assign_file_names(contract.component for contract in contracts)
         with Templates(self.name, options.templates) as templates:
             for contract in contracts:
                 path = f"contracts/{names[contract.component]}"
-                _add(graph, rename_ambiguous_literals(contract), output, path, sink, templates)
+                writer = _Writer(graph, output, sink, templates, path)
+                writer.write_contract(rename_ambiguous_literals(contract))
 
 
-def _add(
-    graph: Graph,
-    contract: Contract,
-    output: Output,
-    path: str,
-    sink: Sink,
-    templates: Templates,
-) -> None:
-    trace = tuple(trace_of(graph, contract))
-    output.add(f"{path}.contract.json", print_contract(contract), trace, "contracts")
-    _add_spin(graph, contract, output, f"{path}.spin.ltl", trace, sink)
-    _add_page(graph, contract, output, f"{path}.md", trace, sink, templates)
+class _Writer(Struct, frozen=True):
+    """Adds the files of one contract."""
+
+    graph: Graph
+    output: Output
+    sink: Sink
+    templates: Templates
+    path: str
+    """Path of the files without suffix."""
+
+    def write_contract(self, contract: Contract) -> None:
+        trace = tuple(list_traced_elements(self.graph, contract))
+        self._add(".contract.json", print_contract(contract), trace)
+        self._add_spin(contract, trace)
+        self._add_page(contract, trace)
+
+    def _add(self, suffix: str, content: str, trace: tuple[str, ...]) -> None:
+        self.output.add(f"{self.path}{suffix}", content, trace, "contracts")
+
+    def _add_spin(self, contract: Contract, trace: tuple[str, ...]) -> None:
+        try:
+            self._add(".spin.ltl", print_spin(contract), trace)
+        except TooLargeError:
+            subject = self.graph.subject(self.graph[contract.origin])
+            file = f"{self.path}.spin.ltl"
+            self.sink.report(TOO_LARGE, subject, component=contract.component, file=file)
+
+    def _add_page(self, contract: Contract, trace: tuple[str, ...]) -> None:
+        try:
+            self._add(".md", print_page(self.graph, contract, self.templates), trace)
+        except TemplateError as fault:
+            self.sink.report(BAD_TEMPLATE, Subject("contract.md.j2"), fault=fault)
 
 
-def _add_spin(
-    graph: Graph,
-    contract: Contract,
-    output: Output,
-    path: str,
-    trace: tuple[str, ...],
-    sink: Sink,
-) -> None:
-    try:
-        output.add(path, print_spin(contract), trace, "contracts")
-    except TooLargeError:
-        subject = graph.subject(graph[contract.origin])
-        sink.report(TOO_LARGE, subject, component=contract.component, file=path)
+def list_traced_elements(graph: Graph, contract: Contract) -> list[str]:
+    """Return the ids of the elements that a contract comes from.
 
-
-def _add_page(
-    graph: Graph,
-    contract: Contract,
-    output: Output,
-    path: str,
-    trace: tuple[str, ...],
-    sink: Sink,
-    templates: Templates,
-) -> None:
-    try:
-        output.add(path, explain(graph, contract, templates), trace, "contracts")
-    except TemplateError as fault:
-        sink.report(BAD_TEMPLATE, Subject("contract.md.j2"), fault=fault)
+    These are the behaviour with all its parts, the constraints on its owner, and the origins of
+    variables and conjuncts. An error in any of them may make the contract incomplete.
+    """
+    behaviour = graph[contract.origin]
+    ids = [element.id for element in graph.subtree(behaviour)]
+    owner = graph.owner(behaviour)
+    if owner is not None:
+        candidates = [*graph.owned(owner), *graph.sources(owner, Edge.REFERENCES)]
+        ids += [element.id for element in candidates if element.kind is Kind.CONSTRAINT]
+    origins = dict.fromkeys(variable.origin for variable in contract.variables)
+    conjuncts = contract.assumptions + contract.guarantees
+    origins |= dict.fromkeys(conjunct.origin for conjunct in conjuncts)
+    return [*ids, *(id for id in origins if id in graph)]

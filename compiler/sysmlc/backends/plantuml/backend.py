@@ -24,10 +24,9 @@ from sysmlc.backends.plantuml.views import Diagram
 from sysmlc.backends.templates import TemplateError, Templates
 from sysmlc.diagnostics import Severity, Sink, Subject, rule
 from sysmlc.ir import Graph
-from sysmlc.support.file_names import assign_file_names
-from sysmlc.support.output import Output
+from sysmlc.support.interpreter import allow_recursion
+from sysmlc.support.output import Output, assign_file_names
 from sysmlc.support.plantuml_text import format_comment
-from sysmlc.support.recursion import allow_recursion
 
 BAD_TEMPLATE = rule(
     "SM700",

@@ -6,13 +6,11 @@ from typing import Protocol
 from msgspec import Struct
 
 from sysmlc.backends.base import EmitOptions
-from sysmlc.backends.recipe.document import document
+from sysmlc.backends.recipe.document import describe_model
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Graph
 from sysmlc.recipe.model import Model
-from sysmlc.support.file_names import assign_file_names
-from sysmlc.support.json_text import encode_json
-from sysmlc.support.output import Output
+from sysmlc.support.output import Output, assign_file_names, encode_json
 
 EMPTY_RECIPE = rule(
     "SM621",
@@ -24,17 +22,14 @@ EMPTY_RECIPE = rule(
 
 
 class RecipeBackend(Struct, frozen=True):
-    """Writes the models that the pass ``recipe`` found (metamodels/sysmlc-recipe.schema.json)."""
+    """Writes the models that the pass ``recipe`` derived (metamodels/sysmlc-recipe.schema.json)."""
 
     name: str = "recipe"
     summary: str = "three-level recipe models as JSON, one file a recipe"
     is_default: bool = True
 
     def emit(self, graph: Graph, output: Output, sink: Sink, options: EmitOptions) -> None:
-        """Add one file a recipe; its trace names every element that it tells of."""
-        if not graph.has_derived("sysmlc.recipe.model"):
-            return
-
+        """Add one file for each recipe; its trace contains the elements of all its parts."""
         models = graph.derived(Model)
         names = assign_file_names(model.recipe.id for model in models)
         for model in models:
@@ -42,19 +37,21 @@ class RecipeBackend(Struct, frozen=True):
                 subject = graph.subject(graph[model.recipe.element])
                 sink.report(EMPTY_RECIPE, subject, recipe=model.recipe.id)
                 continue
-            text = encode_json(document(model, options.inputs), 2)
+            text = encode_json(describe_model(model, options.inputs), 2)
             path = f"recipes/{names[model.recipe.id]}.json"
-            output.add(path, text, _trace(model), self.name)
+            output.add(path, text, _iter_traced_elements(model), self.name)
 
 
 class _Traced(Protocol):
+    """A part of a recipe model with the id of its element, empty if it has none."""
+
     @property
     def element(self) -> str: ...
 
 
-def _trace(model: "Model") -> Iterator[str]:
+def _iter_traced_elements(model: Model) -> Iterator[str]:
     graphs = (*model.service_graphs, *model.function_graphs)
-    parts: tuple[Iterable[_Traced], ...] = (
+    groups: tuple[Iterable[_Traced], ...] = (
         (model.recipe, *model.recipe.tasks),
         model.machines,
         model.materials,
@@ -64,4 +61,4 @@ def _trace(model: "Model") -> Iterator[str]:
         (node for graph in graphs for node in graph.nodes),
         (edge for graph in graphs for edge in graph.edges),
     )
-    return (one.element for part in parts for one in part if one.element)
+    return (part.element for group in groups for part in group if part.element)

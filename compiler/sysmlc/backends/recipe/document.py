@@ -1,10 +1,16 @@
-"""The JSON form of a recipe model: what is absent is left out, everything is sorted."""
+"""The JSON form of a recipe model: absent members are omitted, lists keep the model's order."""
 
 from collections.abc import Callable, Iterable, Mapping
 from typing import TypeVar
 
 from sysmlc.backends.base import InputFile
-from sysmlc.backends.recipe.graphs import expression, flow_graph, parameters, trace, value_type
+from sysmlc.backends.recipe.flow_graphs import (
+    describe_expression,
+    describe_flow_graph,
+    describe_parameters,
+    describe_trace,
+    describe_type,
+)
 from sysmlc.recipe.check_tasks import is_complete
 from sysmlc.recipe.model import (
     Derived,
@@ -28,145 +34,152 @@ Json = dict[str, object]
 _T = TypeVar("_T")
 
 
-def document(model: Model, inputs: Iterable[InputFile]) -> Json:
+def describe_model(model: Model, inputs: Iterable[InputFile]) -> Json:
     """Return the recipe with everything that it refers to (``sysmlc-recipe/1``)."""
     return {
         "format": "sysmlc-recipe/1",
-        "source": _each(_source, sorted(inputs, key=lambda file: file.path)),
-        "machines": _each(_machine, model.machines),
-        "materials": _each(_material, model.materials),
-        "recipes": [_recipe(model.recipe)],
-        "services": _each(_service, model.services),
-        "functions": _each(_function, model.functions),
-        "serviceGraphs": _each(flow_graph, model.service_graphs),
-        "functionGraphs": _each(flow_graph, model.function_graphs),
+        "source": _describe_each(_describe_input, sorted(inputs, key=lambda file: file.path)),
+        "machines": _describe_each(_describe_machine, model.machines),
+        "materials": _describe_each(_describe_material, model.materials),
+        "recipes": [_describe_recipe(model.recipe)],
+        "services": _describe_each(_describe_service, model.services),
+        "functions": _describe_each(_describe_function, model.functions),
+        "serviceGraphs": _describe_each(describe_flow_graph, model.service_graphs),
+        "functionGraphs": _describe_each(describe_flow_graph, model.function_graphs),
     }
 
 
-def _source(file: InputFile) -> Json:
+def _describe_each(describe: Callable[[_T], Json], values: Iterable[_T]) -> list[Json]:
+    return [describe(value) for value in values]
+
+
+def _drop_absent(members: Mapping[str, object]) -> Json:
+    """Return the members without None, false, empty texts, empty lists and empty objects."""
+    return {
+        key: value
+        for key, value in members.items()
+        if value is not None and value is not False and value not in ("", [], {})
+    }
+
+
+def _describe_input(file: InputFile) -> Json:
     return {"file": file.path, "sha256": file.sha256, "language": file.language}
 
 
-def _each(write: Callable[[_T], Json], values: Iterable[_T]) -> list[Json]:
-    return [write(value) for value in values]
-
-
-def _without_absent(values: Mapping[str, object]) -> Json:
-    """Leave out None, false, empty texts and empty lists."""
-    return {
-        key: v
-        for key, v in values.items()
-        if v is not None and v is not False and v not in ("", [], {})
-    }
-
-
-def _range(value: Range | None) -> Json | None:
+def _describe_range(value: Range | None) -> Json | None:
     return None if value is None else {"min": value.min, "max": value.max}
 
 
-def _recipe(recipe: Recipe) -> Json:
-    found = _without_absent(
-        {
-            "id": recipe.id,
-            "inputs": parameters(recipe.inputs),
-            "outputs": parameters(recipe.outputs),
-            "variables": parameters(recipe.variables),
-            "version": recipe.version,
-            "product": recipe.product,
-            "defaultPriority": recipe.priority,
-            "noWait": recipe.no_wait,
-        }
-    )
+# -- level 1: recipes and tasks ----------------------------------------------------------------
+
+
+def _describe_recipe(recipe: Recipe) -> Json:
+    head = {
+        "id": recipe.id,
+        "inputs": describe_parameters(recipe.inputs),
+        "outputs": describe_parameters(recipe.outputs),
+        "variables": describe_parameters(recipe.variables),
+        "version": recipe.version,
+        "product": recipe.product,
+        "defaultPriority": recipe.priority,
+        "noWait": recipe.no_wait,
+    }
+    performances = _describe_each(_describe_performance, recipe.performances)
     return {
-        **found,
-        "tasks": _each(_task, recipe.tasks),
+        **_drop_absent(head),
+        "tasks": _describe_each(_describe_task, recipe.tasks),
         "precedence": [list(pair) for pair in recipe.precedence],
-        **_without_absent({"performedBy": _each(_performance, recipe.performances)}),
-        **trace(recipe.element),
+        **_drop_absent({"performedBy": performances}),
+        **describe_trace(recipe.element),
     }
 
 
-def _performance(performance: Performance) -> Json:
-    given = {"arguments": dict(performance.arguments), "steps": dict(performance.steps)}
+def _describe_performance(performance: Performance) -> Json:
+    members = {"arguments": dict(performance.arguments), "steps": dict(performance.steps)}
     return {
         "block": performance.block,
-        **_without_absent(given),
-        **trace(performance.element),
+        **_drop_absent(members),
+        **describe_trace(performance.element),
     }
 
 
-def _task(task: Task) -> Json:
-    found = {
+def _describe_task(task: Task) -> Json:
+    members = {
         "id": task.id,
         "name": task.name,
         "maxDuration": task.max_duration,
-        "materials": _each(_use, task.materials),
+        "materials": _describe_each(_describe_use, task.materials),
         "implementation": task.implementation,
-        "pre": expression(task.pre),
-        "post": expression(task.post),
-        "bind": {name: expression(value) for name, value in task.bind},
+        "pre": describe_expression(task.pre),
+        "post": describe_expression(task.post),
+        "bind": {name: describe_expression(value) for name, value in task.bind},
         "assign": dict(task.assign),
         "interruptible": task.interruptible,
         "noWait": task.no_wait,
         "derived": None if task.derived is None else _describe_derived_data(task.derived),
     }
-    equipment = {"equipment": _each(_mode, task.equipment)}
-    return {**_without_absent(found), **equipment, **trace(task.element)}
+    # The schema requires this member, even if it is empty.
+    modes = {"equipment": _describe_each(_describe_mode, task.equipment)}
+    return {**_drop_absent(members), **modes, **describe_trace(task.element)}
 
 
 def _describe_derived_data(derived: Derived) -> Json:
     sub_tasks: list[Json] = [
         {
-            "node": one.node,
-            "alternatives": _each(_mode, one.alternatives),
-            **_without_absent({"after": list(one.after)}),
+            "node": sub_task.node,
+            "alternatives": _describe_each(_describe_mode, sub_task.alternatives),
+            **_drop_absent({"after": list(sub_task.after)}),
         }
-        for one in derived.sub_tasks
+        for sub_task in derived.sub_tasks
     ]
     groups = [
-        {"nodes": list(one.nodes), "because": list(one.because)} for one in derived.same_machine
+        {"nodes": list(group.nodes), "because": list(group.because)}
+        for group in derived.same_machine
     ]
-    time = _range(derived.duration)
-    return _without_absent({"subTasks": sub_tasks, "sameMachine": groups, "duration": time})
+    duration = _describe_range(derived.duration)
+    return _drop_absent({"subTasks": sub_tasks, "sameMachine": groups, "duration": duration})
 
 
-def _mode(mode: Mode) -> Json:
-    found = _without_absent(
-        {
-            "machines": list(mode.machines),
-            "duration": mode.duration,
-            "power": _range(mode.power),
-            "tools": list(mode.tools),
-        }
-    )
-    return found if mode.available is None else {**found, "available": mode.available}
+def _describe_mode(mode: Mode) -> Json:
+    members = {
+        "machines": list(mode.machines),
+        "duration": mode.duration,
+        "power": _describe_range(mode.power),
+        "tools": list(mode.tools),
+    }
+    # A mode that is not available says so: false is not omitted.
+    available = {} if mode.available is None else {"available": mode.available}
+    return {**_drop_absent(members), **available}
 
 
-def _use(use: MaterialUse) -> Json:
+def _describe_use(use: MaterialUse) -> Json:
     return {"material": use.material, "quantity": use.quantity, "use": use.use}
 
 
-def _machine(machine: Machine) -> Json:
-    found = {
+# -- machines and materials --------------------------------------------------------------------
+
+
+def _describe_machine(machine: Machine) -> Json:
+    members = {
         "id": machine.id,
         "class": machine.machine_class,
         "amlId": machine.aml_id,
         "endpoint": machine.endpoint,
         "plantElement": machine.plant_element,
-        "variables": _each(_machine_variable, machine.variables),
+        "variables": _describe_each(_describe_machine_variable, machine.variables),
     }
-    return {**_without_absent(found), **trace(machine.element)}
+    return {**_drop_absent(members), **describe_trace(machine.element)}
 
 
-def _machine_variable(variable: MachineVariable) -> Json:
-    type_ = {} if variable.type is None else {"type": value_type(variable.type)}
+def _describe_machine_variable(variable: MachineVariable) -> Json:
+    type_ = {} if variable.type is None else {"type": describe_type(variable.type)}
     value = {} if variable.value is None else {"value": variable.value}
-    rest = _without_absent({"node": variable.node, "elements": list(variable.elements)})
-    return {"name": variable.name, **type_, **value, **rest}
+    members = _drop_absent({"node": variable.node, "elements": list(variable.elements)})
+    return {"name": variable.name, **type_, **value, **members}
 
 
-def _material(material: Material) -> Json:
-    found = {
+def _describe_material(material: Material) -> Json:
+    members = {
         "id": material.id,
         "available": material.available,
         "unit": material.unit,
@@ -175,66 +188,70 @@ def _material(material: Material) -> Json:
         "noWait": material.no_wait,
         "properties": dict(material.properties),
     }
-    return {**_without_absent(found), **trace(material.element)}
+    return {**_drop_absent(members), **describe_trace(material.element)}
 
 
-def _service(service: Service) -> Json:
-    found = {
+# -- levels 2 and 3: services and functions ----------------------------------------------------
+
+
+def _describe_service(service: Service) -> Json:
+    members = {
         "id": service.id,
         "kind": service.kind,
-        "inputs": parameters(service.inputs),
-        "outputs": parameters(service.outputs),
-        "constants": parameters(service.constants),
-        "materials": _each(_use, service.materials),
+        "inputs": describe_parameters(service.inputs),
+        "outputs": describe_parameters(service.outputs),
+        "constants": describe_parameters(service.constants),
+        "materials": _describe_each(_describe_use, service.materials),
         "duration": service.duration,
         "implementation": service.implementation,
-        "pre": expression(service.pre),
-        "post": expression(service.post),
+        "pre": describe_expression(service.pre),
+        "post": describe_expression(service.post),
         "interruptible": service.interruptible,
-        "opcua": _opcua(service.opcua),
+        "opcua": _describe_opcua(service.opcua),
     }
-    offered: Json = {}
+    providers: Json = {}
     if service.kind == "machine" or service.providers:
-        offered["providers"] = _each(_provider, service.providers)
-    return {**_without_absent(found), **offered, **trace(service.element)}
+        providers["providers"] = _describe_each(_describe_provider, service.providers)
+    return {**_drop_absent(members), **providers, **describe_trace(service.element)}
 
 
-def _provider(provider: Provider) -> Json:
-    return _without_absent(
+def _describe_provider(provider: Provider) -> Json:
+    return _drop_absent(
         {
             "machine": provider.machine,
             "duration": provider.duration,
-            "power": _range(provider.power),
+            "power": _describe_range(provider.power),
             "tools": list(provider.tools),
-            "opcua": _opcua(provider.opcua),
+            "opcua": _describe_opcua(provider.opcua),
         }
     )
 
 
-def _opcua(call: OpcUa | None) -> Json | None:
+def _describe_opcua(call: OpcUa | None) -> Json | None:
+    """Return an OPC UA call; None if it lacks a member that an executor needs."""
     if call is None or not is_complete(call):
         return None
-    return _without_absent(
+    return _drop_absent(
         {
             "kind": call.kind,
             "endpoint": call.endpoint,
             "object": call.object,
             "method": call.method,
             "namespaceUri": call.namespace_uri,
-            "doneWhen": expression(call.done_when),
+            "doneWhen": describe_expression(call.done_when),
             "timeout": call.timeout,
         }
     )
 
 
-def _function(function: Function) -> Json:
-    found = {
+def _describe_function(function: Function) -> Json:
+    members = {
         "id": function.id,
-        "inputs": parameters(function.inputs),
-        "outputs": parameters(function.outputs),
-        "duration": _range(function.duration),
-        "resources": [{"id": one.id, "mode": one.mode} for one in function.resources],
+        "inputs": describe_parameters(function.inputs),
+        "outputs": describe_parameters(function.outputs),
+        "duration": _describe_range(function.duration),
+        "resources": [{"id": r.id, "mode": r.mode} for r in function.resources],
         "interruptible": function.interruptible,
-        "opcua": _opcua(function.opcua),
+        "opcua": _describe_opcua(function.opcua),
     }
-    return {**_without_absent(found), **trace(function.element)}
+    return {**_drop_absent(members), **describe_trace(function.element)}

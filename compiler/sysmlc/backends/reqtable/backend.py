@@ -1,27 +1,36 @@
-"""Two files for each root of the model that holds requirements, and what they leave open."""
+"""Two files for each root of the model with requirements: a CSV and a Markdown table."""
 
+import csv
+import io
 from collections.abc import Iterator
 
 from msgspec import Struct
 
 from sysmlc.backends.base import EmitOptions
-from sysmlc.backends.reqtable.rules import BAD_TEMPLATE
-from sysmlc.backends.reqtable.table import Table, tables
-from sysmlc.backends.reqtable.text import csv_text, markdown_cell
-from sysmlc.backends.reqtable.unmet import report_open
+from sysmlc.backends.reqtable.open_requirements import report_open_requirements
+from sysmlc.backends.reqtable.table import Cell, Table, make_tables
 from sysmlc.backends.templates import TemplateError, Templates
-from sysmlc.diagnostics import Sink, Subject
+from sysmlc.diagnostics import Severity, Sink, Subject, rule
 from sysmlc.ir import Graph
 from sysmlc.support.escapes import escape_markdown
-from sysmlc.support.file_names import assign_file_names
-from sysmlc.support.output import Output
+from sysmlc.support.output import Output, assign_file_names
+
+BAD_TEMPLATE = rule(
+    "SM717",
+    "bad-requirement-template",
+    Severity.ERROR,
+    "the template requirements.md.j2 cannot be used: {fault}",
+    help="compare it with templates/reqtable of sysmlc",
+)
 
 _TEMPLATE = "requirements.md.j2"
-_ALWAYS = ("id", "name")
+_MANDATORY_COLUMNS = ("id", "name")
+_FORMULA = ("=", "+", "-", "@", "\t", "\r", "＝", "＋", "－", "＠")
+"""Start of a cell that a spreadsheet evaluates as a formula (OWASP, CSV injection)."""
 
 
 class ReqTableBackend(Struct, frozen=True):
-    """Requirement tables for people (Markdown) and for other tools (CSV)."""
+    """Writes requirement tables for people (Markdown) and for other tools (CSV)."""
 
     name: str = "reqtable"
     summary: str = "requirement tables as CSV and Markdown"
@@ -29,46 +38,77 @@ class ReqTableBackend(Struct, frozen=True):
 
     def emit(self, graph: Graph, output: Output, sink: Sink, options: EmitOptions) -> None:
         """Add ``requirements/<root>.requirements.csv`` and ``.md``; report open requirements."""
-        found = {_free(table.name, number): table for number, table in _number_tables(graph)}
-        names = assign_file_names(found)
+        tables = dict(_iter_named_tables(graph))
+        file_names = assign_file_names(tables)
         with Templates(self.name, options.templates) as templates:
-            for key, table in found.items():
-                path = f"requirements/{names[key]}.requirements"
-                output.add(f"{path}.csv", csv_text(table), table.trace(), self.name)
-                text = _markdown(table, sink, templates)
+            for name, table in tables.items():
+                path = f"requirements/{file_names[name]}.requirements"
+                output.add(f"{path}.csv", format_csv(table), table.trace(), self.name)
+                try:
+                    text = templates.render(_TEMPLATE, page=_make_page(table))
+                except TemplateError as fault:
+                    sink.report(BAD_TEMPLATE, Subject(_TEMPLATE), fault=fault)
+                    continue
                 if text:
                     output.add(f"{path}.md", text, table.trace(), self.name)
-        report_open(graph, [row.element for table in found.values() for row in table.rows], sink)
-
-
-def _number_tables(graph: Graph) -> Iterator[tuple[int, Table]]:
-    counts: dict[str, int] = {}
-    for table in tables(graph):
-        counts[table.name] = counts.get(table.name, 0) + 1
-        yield counts[table.name], table
-
-
-def _free(name: str, number: int) -> str:
-    return name if number == 1 else f"{name}-{number}"
-
-
-def _markdown(table: Table, sink: Sink, templates: Templates) -> str:
-    # A column in which nothing stands only makes a page wide; a CSV file keeps its columns.
-    shown = [at for at, name in enumerate(table.columns) if name in _ALWAYS or _is_used(table, at)]
-    page = {
-        "title": escape_markdown(table.name),
-        "columns": [escape_markdown(table.columns[at]) for at in shown],
-        "rows": [[markdown_cell(row.cells[at]) for at in shown] for row in table.rows],
-    }
-    try:
-        return templates.render(_TEMPLATE, page=page)
-    except TemplateError as fault:
-        sink.report(BAD_TEMPLATE, Subject(_TEMPLATE), fault=fault)
-        return ""
-
-
-def _is_used(table: Table, at: int) -> bool:
-    return any(row.cells[at].values for row in table.rows)
+        requirements = [row.element for table in tables.values() for row in table.rows]
+        report_open_requirements(graph, requirements, sink)
 
 
 BACKEND = ReqTableBackend()
+
+
+def _iter_named_tables(graph: Graph) -> Iterator[tuple[str, Table]]:
+    """Yield the tables with their names; the second table of a name gets the suffix ``-2``."""
+    counts: dict[str, int] = {}
+    for table in make_tables(graph):
+        counts[table.name] = number = counts.get(table.name, 0) + 1
+        yield table.name if number == 1 else f"{table.name}-{number}", table
+
+
+# -- CSV ---------------------------------------------------------------------------------------
+
+
+def format_csv(table: Table) -> str:
+    """Return the table with a header row (RFC 4180).
+
+    Rows end with CR LF; line ends inside a cell are LF.
+    """
+    stream = io.StringIO(newline="")
+    writer = csv.writer(stream, lineterminator="\r\n")
+    writer.writerow(table.columns)
+    for row in table.rows:
+        writer.writerow(_format_csv_cell(cell) for cell in row.cells)
+    return stream.getvalue()
+
+
+def _format_csv_cell(cell: Cell) -> str:
+    """Return the values on lines of their own; a quote keeps a spreadsheet from evaluating."""
+    text = "\n".join("\n".join(value.splitlines()) for value in cell.values)
+    return f"'{text}" if text.startswith(_FORMULA) or text.lstrip().startswith(_FORMULA) else text
+
+
+# -- Markdown ----------------------------------------------------------------------------------
+
+
+def _make_page(table: Table) -> dict[str, object]:
+    """Return the values of the template."""
+    # An empty column only makes a page wide; a CSV file keeps its columns.
+    columns = [
+        (index, name)
+        for index, name in enumerate(table.columns)
+        if name in _MANDATORY_COLUMNS or any(row.cells[index].values for row in table.rows)
+    ]
+    return {
+        "title": escape_markdown(table.name),
+        "columns": [escape_markdown(name) for _, name in columns],
+        "rows": [
+            [format_markdown_cell(row.cells[index]) for index, _ in columns] for row in table.rows
+        ],
+    }
+
+
+def format_markdown_cell(cell: Cell) -> str:
+    """Return the values on lines of their own, with all markup escaped."""
+    lines = (line for value in cell.values for line in value.splitlines())
+    return "<br>".join(escape_markdown(line) for line in lines if line.strip())

@@ -1,4 +1,4 @@
-"""What a requirement table says, cell by cell, as plain text."""
+"""The content of requirement tables, cell by cell, as plain text."""
 
 import re
 from collections.abc import Iterator
@@ -21,7 +21,7 @@ COLUMNS = (
     "traced to",
     "copy of",
 )
-"""Columns of every table; those of custom tags follow."""
+"""Columns of every table; columns of custom tags follow."""
 
 _PLAIN = frozenset(["Requirement", "AbstractRequirement", "extendedRequirement", "NamedElement"])
 _STANDARD = frozenset(
@@ -37,12 +37,12 @@ _STANDARD = frozenset(
         "verifiedby",
     ]
 )
-"""Tags of SysML's own, in lower case; relations say what the derived ones among them repeat."""
+"""Tags of SysML in lower case; the derived ones repeat relations, which have columns."""
 _NUMBER = re.compile(r"(\d+)")
 
 
 class Cell(Struct, frozen=True):
-    """Values of one cell, in order; a text is one value with its line ends."""
+    """The values of one cell, in order; a text of several lines is one value."""
 
     values: tuple[str, ...] = ()
 
@@ -63,104 +63,109 @@ class Table(Struct, frozen=True):
     rows: tuple[Row, ...]
 
     def trace(self) -> tuple[str, ...]:
-        """Ids of the requirements."""
+        """Return the ids of the requirements."""
         return tuple(row.element.id for row in self.rows)
 
 
 def is_listed(element: Element) -> bool:
-    """Whether tables list it: a requirement of a file of the unit."""
+    """Whether tables list the element: a requirement of a file of the unit."""
     return is_requirement(element) and not element.attrs.get("external")
 
 
-def tables(graph: Graph) -> list[Table]:
-    """One table for each root with requirements, in the order of the roots."""
-    found = []
+def make_tables(graph: Graph) -> list[Table]:
+    """Return one table for each root with requirements, in the order of the roots."""
+    tables = []
     for root in graph.roots():
-        held = [one for one in graph.subtree(root) if is_listed(one)]
-        if held:
-            found.append(_table(graph, root, held))
-    return found
+        requirements = [element for element in graph.subtree(root) if is_listed(element)]
+        if requirements:
+            tables.append(_make_table(graph, root, requirements))
+    return tables
 
 
-def _table(graph: Graph, root: Element, held: list[Element]) -> Table:
-    ordered = sorted(held, key=lambda one: (_natural(_id(one)), graph.qualified_name(one), one.id))
-    tags = sorted({name for one in held for name in _tags(graph, one)}, key=_make_sort_key)
-    rows = tuple(Row(one, tuple(_cells(graph, one, tags))) for one in ordered)
+def _make_table(graph: Graph, root: Element, requirements: list[Element]) -> Table:
+    ordered = sorted(
+        requirements, key=lambda r: (_make_id_key(_id(r)), graph.qualified_name(r), r.id)
+    )
+    names = {name for requirement in requirements for name in _read_tags(graph, requirement)}
+    tags = sorted(names, key=lambda name: (name.lower(), name))
+    rows = tuple(
+        Row(requirement, tuple(_iter_cells(graph, requirement, tags))) for requirement in ordered
+    )
     return Table(graph.qualified_name(root), root.id, (*COLUMNS, *tags), rows)
-
-
-def _make_sort_key(name: str) -> tuple[str, str]:
-    return name.lower(), name
 
 
 def _id(requirement: Element) -> str:
     return str(requirement.attrs.get("req_id", "")).strip()
 
 
-def _natural(id: str) -> tuple[bool, tuple[tuple[bool, int, str], ...]]:
-    """Order in which R2 goes before R10; requirements without an id go last."""
+def _make_id_key(id: str) -> tuple[bool, tuple[tuple[bool, int, str], ...]]:
+    """Return a sort key with R2 before R10; requirements without an id come last."""
     parts = (part for part in _NUMBER.split(id) if part)
     ranked = ((not part.isascii() or not part.isdigit(), part) for part in parts)
-    return not id, tuple((word, 0 if word else int(part), part) for word, part in ranked)
+    return not id, tuple((is_word, 0 if is_word else int(part), part) for is_word, part in ranked)
 
 
-def _cells(graph: Graph, requirement: Element, tags: list[str]) -> Iterator[Cell]:
-    yield _cell(_id(requirement))
-    yield _cell(requirement.name)
-    yield Cell(tuple(kinds(graph, requirement)))
-    yield _cell(text_of(graph, requirement))
+def _iter_cells(graph: Graph, requirement: Element, tags: list[str]) -> Iterator[Cell]:
+    """Yield the cells of a requirement in the order of ``COLUMNS``, then those of *tags*."""
+    yield _make_cell(_id(requirement))
+    yield _make_cell(requirement.name)
+    yield Cell(tuple(_iter_kinds(graph, requirement)))
+    yield _make_cell(_find_text(graph, requirement))
     owner = graph.owner(requirement)
-    yield _cell(graph.qualified_name(owner) if owner is not None else "")
-    yield _cell(*_list_names(graph, graph.targets(requirement, Edge.DERIVES)))
+    yield _make_cell(graph.qualified_name(owner) if owner is not None else "")
+    yield _make_cell(*_list_names(graph, graph.targets(requirement, Edge.DERIVES)))
     for edge in (Edge.SATISFIES, Edge.VERIFIES, Edge.REFINES):
-        yield _cell(*_list_names(graph, graph.sources(requirement, edge)))
-    masters = _masters(graph, requirement)
-    traced = [one for one in graph.targets(requirement, Edge.TRACES) if one not in masters]
-    yield _cell(*_list_names(graph, traced))
-    yield _cell(*_list_names(graph, masters))
-    given = _tags(graph, requirement)
-    yield from (_cell(*given.get(name, ())) for name in tags)
+        yield _make_cell(*_list_names(graph, graph.sources(requirement, edge)))
+    masters = _list_masters(graph, requirement)
+    # A copy is a trace too (SysML 1.6 clause 16.3.2), and has a column of its own.
+    traced = [target for target in graph.targets(requirement, Edge.TRACES) if target not in masters]
+    yield _make_cell(*_list_names(graph, traced))
+    yield _make_cell(*_list_names(graph, masters))
+    tagged_values = _read_tags(graph, requirement)
+    yield from (_make_cell(*tagged_values.get(name, ())) for name in tags)
 
 
-def _cell(*values: str) -> Cell:
+def _make_cell(*values: str) -> Cell:
     return Cell(tuple(value for value in values if value))
 
 
-def kinds(graph: Graph, requirement: Element) -> Iterator[str]:
-    """Stereotypes that make it a requirement of some kind, with the SysML kind behind a custom one.
+def _iter_kinds(graph: Graph, requirement: Element) -> Iterator[str]:
+    """Yield the stereotypes that say more than ``Requirement``.
 
-    ``SafetyRequirement (performanceRequirement)``; a plain requirement gives none.
+    A custom stereotype is followed by those of SysML that it specialises:
+    ``SafetyRequirement (performanceRequirement)``.
     """
     for application in applications(graph, requirement):
         names = lineage(application)
         if not {"Requirement", "AbstractRequirement"}.isdisjoint(names):
-            telling = [name for name in names if name not in _PLAIN]
-            if telling:
-                general = f" ({', '.join(telling[1:])})" if telling[1:] else ""
-                yield telling[0] + general
+            special = [name for name in names if name not in _PLAIN]
+            if special:
+                general = f" ({', '.join(special[1:])})" if special[1:] else ""
+                yield special[0] + general
 
 
-def text_of(graph: Graph, requirement: Element) -> str:
-    """The text of a requirement; a copy without one has its master's (SysML 1.6 clause 16.3.2)."""
-    for one in (requirement, *_masters(graph, requirement)):
-        text = str(one.attrs.get("text", "")).strip()
+def _find_text(graph: Graph, requirement: Element) -> str:
+    """Return the text of a requirement; a copy has its master's text (SysML 1.6 clause 16.3.2)."""
+    for candidate in (requirement, *_list_masters(graph, requirement)):
+        text = str(candidate.attrs.get("text", "")).strip()
         if text:
             return text
     return ""
 
 
-def _masters(graph: Graph, requirement: Element) -> list[Element]:
-    copies = [one for one in graph.sources(requirement, Edge.CLIENT) if one.role == "copy"]
-    found = (master for copy in copies for master in graph.targets(copy, Edge.SUPPLIER))
-    return list(dict.fromkeys(found))
+def _list_masters(graph: Graph, requirement: Element) -> list[Element]:
+    """Return the requirements of which this one is a copy, each once."""
+    copies = [edge for edge in graph.sources(requirement, Edge.CLIENT) if edge.role == "copy"]
+    masters = (master for copy in copies for master in graph.targets(copy, Edge.SUPPLIER))
+    return list(dict.fromkeys(masters))
 
 
 def _list_names(graph: Graph, elements: list[Element]) -> list[str]:
     """Return requirements by id and name, other elements by qualified name."""
-    return [_name(graph, element) for element in elements]
+    return [_name_element(graph, element) for element in elements]
 
 
-def _name(graph: Graph, element: Element) -> str:
+def _name_element(graph: Graph, element: Element) -> str:
     if is_listed(element) and _id(element):
         return f"{_id(element)} {element.name}".strip()
     return graph.qualified_name(element)
@@ -169,23 +174,24 @@ def _name(graph: Graph, element: Element) -> str:
 # -- tags --------------------------------------------------------------------------------------
 
 
-def _tags(graph: Graph, requirement: Element) -> dict[str, tuple[str, ...]]:
-    """Custom tagged values by name; ids of elements are shown as their names."""
-    found: dict[str, tuple[str, ...]] = {}
+def _read_tags(graph: Graph, requirement: Element) -> dict[str, tuple[str, ...]]:
+    """Return the values of custom tags by name; ids of elements become their names."""
+    tags: dict[str, tuple[str, ...]] = {}
     for application in applications(graph, requirement):
         for key, value in application.attrs.items():
             name = key.removeprefix("tag.")
             if key.startswith("tag.") and name.lower() not in _STANDARD:
-                found.setdefault(name, tuple(_texts(graph, value)))
-    return found
+                tags.setdefault(name, tuple(_iter_texts(graph, value)))
+    return tags
 
 
-def _texts(graph: Graph, value: AttrValue) -> Iterator[str]:
+def _iter_texts(graph: Graph, value: AttrValue) -> Iterator[str]:
+    """Yield the values of a tag as texts, those of a nested list one after the other."""
     if isinstance(value, tuple):
-        for one in value:
-            yield from _texts(graph, one)
+        for item in value:
+            yield from _iter_texts(graph, item)
     elif isinstance(value, bool):
         yield "true" if value else "false"
     elif value is not None:
-        known = graph.get(value) if isinstance(value, str) else None
-        yield _name(graph, known) if known is not None else str(value).strip()
+        element = graph.get(value) if isinstance(value, str) else None
+        yield _name_element(graph, element) if element is not None else str(value).strip()

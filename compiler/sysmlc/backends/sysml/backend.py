@@ -9,8 +9,7 @@ from sysmlc.backends.sysml.document import print_document
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Graph
 from sysmlc.support import resources
-from sysmlc.support.file_names import assign_file_names
-from sysmlc.support.output import Output
+from sysmlc.support.output import Output, assign_file_names
 
 LIBRARY = "SysMLC.sysml"
 """The library of metadata definitions to which the text refers."""

@@ -26,7 +26,7 @@ from sysmlc.backends.sysml.rules import Losses
 from sysmlc.backends.sysml.writer import WriteMember, Writer
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Graph, Kind
-from sysmlc.support.recursion import allow_recursion
+from sysmlc.support.interpreter import allow_recursion
 
 
 def print_document(graph: Graph, sink: Sink) -> tuple[str, bool]:

@@ -3,12 +3,24 @@
 from pathlib import Path
 from typing import NamedTuple
 
-from sysmlc.backends.templates.error import UnusableFolderError
 from sysmlc.sources import SourceError
-from sysmlc.sources.limits import Limits
+from sysmlc.sources.files import read_whole
 from sysmlc.sources.roots import Roots
-from sysmlc.sources.whole import read_whole
+from sysmlc.sources.source import Limits
 from sysmlc.support import resources
+
+
+class TemplateError(Exception):
+    """A template cannot be used; the message starts with its file and line where known."""
+
+
+class TemplateLimitError(TemplateError):
+    """A template exceeded a limit, and the process that rendered it ended."""
+
+
+class UnusableFolderError(TemplateError):
+    """A folder holds a template that cannot be read safely."""
+
 
 MAX_BYTES = 256 * 1024
 """Size limit of one template; the largest shipped one has 1.5 KiB."""

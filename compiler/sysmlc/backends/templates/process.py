@@ -12,8 +12,7 @@ from subprocess import DEVNULL, PIPE, Popen
 
 from msgspec.structs import asdict
 
-from sysmlc.backends.templates.error import TemplateError, TemplateLimitError
-from sysmlc.backends.templates.files import TemplateText
+from sysmlc.backends.templates.files import TemplateError, TemplateLimitError, TemplateText
 
 MAX_SECONDS = 5
 """Time limit of one text; the largest shipped template takes some milliseconds."""

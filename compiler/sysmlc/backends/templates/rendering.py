@@ -5,8 +5,13 @@ from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Self
 
-from sysmlc.backends.templates.error import TemplateError, TemplateLimitError, UnusableFolderError
-from sysmlc.backends.templates.files import read_custom, read_shipped
+from sysmlc.backends.templates.files import (
+    TemplateError,
+    TemplateLimitError,
+    UnusableFolderError,
+    read_custom,
+    read_shipped,
+)
 from sysmlc.backends.templates.process import RenderingProcess
 from sysmlc.backends.templates.sandbox import make_environment, render
 

@@ -6,8 +6,7 @@ from traceback import walk_tb
 from jinja2 import FunctionLoader, StrictUndefined, TemplateNotFound, TemplateSyntaxError
 from jinja2.sandbox import ImmutableSandboxedEnvironment
 
-from sysmlc.backends.templates.error import TemplateError
-from sysmlc.backends.templates.files import TemplateText
+from sysmlc.backends.templates.files import TemplateError, TemplateText
 
 _GLOBALS = ("range", "dict", "namespace")
 """Functions that a template can call. Jinja's others are random or only ornamental."""

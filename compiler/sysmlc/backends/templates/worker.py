@@ -12,8 +12,7 @@ from contextlib import suppress
 from pathlib import Path
 from types import SimpleNamespace
 
-from sysmlc.backends.templates.error import TemplateError
-from sysmlc.backends.templates.files import TemplateText
+from sysmlc.backends.templates.files import TemplateError, TemplateText
 from sysmlc.backends.templates.sandbox import make_environment, render
 
 _MAX_DEPTH = 10_000

@@ -27,8 +27,7 @@ from sysmlc.backends.uml.rules import (
 from sysmlc.backends.uml.stereotypes import StereotypeWriter, write_profiles
 from sysmlc.diagnostics import Sink, Subject
 from sysmlc.ir import Edge, Element, Graph, Kind
-from sysmlc.support.file_names import assign_file_names
-from sysmlc.support.output import Output
+from sysmlc.support.output import Output, assign_file_names
 
 _NAMESPACES = {
     "xmi": "http://www.omg.org/spec/XMI/20131001",

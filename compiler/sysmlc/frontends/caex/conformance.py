@@ -13,8 +13,8 @@ from sysmlc.frontends.caex.context import Context, qualified_name
 from sysmlc.frontends.caex.document import Document, Node
 from sysmlc.frontends.caex.vocabulary import CLASS_TAGS, LIBRARIES
 from sysmlc.sources import Source
-from sysmlc.sources.caex import ATTRIBUTES, ORDER, TEXTS
-from sysmlc.sources.xml import SEPARATOR, parse, parser
+from sysmlc.sources.caex_vocabulary import ATTRIBUTES, ORDER, TEXTS
+from sysmlc.sources.xml import SEPARATOR, make_parser, parse
 from sysmlc.support.suggestions import did_you_mean
 
 UNKNOWN_ATTRIBUTE = rule(
@@ -151,7 +151,7 @@ def _has_stray_text_of_rows(document: Document) -> bool:
 
 def _find_stray_texts(source: Source) -> list[tuple[str, int, str]]:
     """Return the texts in elements that hold none: tag, position of the element, text."""
-    expat = parser()
+    expat = make_parser()
     texts: list[tuple[str, int, str]] = []
     open_elements = [("", -1)]
     unchecked_depth, ordinal = 0, -1

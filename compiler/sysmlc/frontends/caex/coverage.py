@@ -7,7 +7,7 @@ from operator import not_
 
 from sysmlc.diagnostics import Coverage, Place, Subject, Verdict
 from sysmlc.diagnostics.coverage import FileCoverage
-from sysmlc.diagnostics.locate import Location, locate
+from sysmlc.diagnostics.locations import Location, locate
 from sysmlc.frontends.caex import conformance, rules
 from sysmlc.frontends.caex.context import Context, qualified_name
 from sysmlc.frontends.caex.data_types import report_values

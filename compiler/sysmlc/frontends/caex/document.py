@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from sysmlc.diagnostics import Place, Verdict
 from sysmlc.frontends.caex.vocabulary import FOLDED_TAGS, TAG_CODES, TEXTLESS_TAGS
 from sysmlc.sources import DEFAULT_LIMITS, Source, SourceError
-from sysmlc.sources.xml import SEPARATOR, parse, parser, too_deep
+from sysmlc.sources.xml import SEPARATOR, make_parser, parse, refuse_depth
 
 
 class Node:
@@ -248,7 +248,7 @@ class _ColumnReader:
     def __init__(self, source: Source, is_built_in: bool) -> None:
         self.document = Document(source.name, is_built_in)
         self._source = source
-        self._parser = parser()
+        self._parser = make_parser()
         self._stray_texts: set[str] = set()
 
     def run(self) -> None:
@@ -306,7 +306,7 @@ class _ColumnReader:
             document.ordinals.append(ordinal)
             ends.append(0)
             if len(open_rows) > DEFAULT_LIMITS.depth:
-                too_deep(self._source, expat)
+                refuse_depth(self._source, expat)
 
         def end_element(_tag: str) -> None:
             ends[open_rows.pop()] = following

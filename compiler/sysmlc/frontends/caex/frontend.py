@@ -12,7 +12,7 @@ from sysmlc.diagnostics import Coverage, Place, Sink
 from sysmlc.frontends.base import FileNames
 from sysmlc.ir import Graph
 from sysmlc.sources import Source
-from sysmlc.sources.encoding import codec
+from sysmlc.sources.encoding import find_codec
 
 _HEAD = 1 << 14
 """Bytes that are searched for the root element."""
@@ -58,7 +58,7 @@ class CaexFrontend:
         """
         if "!" in source.name:
             return []
-        mark, encoding = codec(source.data)
+        mark, encoding = find_codec(source.data)
         text = source.data[mark:].decode(encoding, "replace")
         matches = (_PATH.search(tag) for tag in _EXTERNAL_REFERENCE.findall(text))
         return list(dict.fromkeys(unescape(match[1] or match[2]) for match in matches if match))
@@ -87,7 +87,7 @@ def _iter_external_documents(source: Source) -> Iterator[tuple[str, Place]]:
     """Yield the local files that references to external data name, with their locations."""
     if b"refURI" not in source.data:
         return
-    mark, encoding = codec(source.data)
+    mark, encoding = find_codec(source.data)
     text = source.data[mark:].decode(encoding, "replace")
     for match in _REF_URI.finditer(text):
         value = _VALUE.search(match[1])

@@ -16,7 +16,7 @@ from sysmlc.frontends.caex.types import Type
 from sysmlc.frontends.caex.vocabulary import Family
 from sysmlc.ir import Graph
 from sysmlc.sources import Fault, Source, SourceError
-from sysmlc.support.garbage_collection import pause_garbage_collection
+from sysmlc.support.interpreter import pause_garbage_collection
 
 
 def read(sources: Sequence[Source], graph: Graph, sink: Sink, coverage: Coverage) -> None:

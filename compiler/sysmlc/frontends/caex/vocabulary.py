@@ -3,7 +3,7 @@
 from enum import StrEnum
 from typing import NamedTuple
 
-from sysmlc.sources.caex import ORDER
+from sysmlc.sources.caex_vocabulary import ORDER
 
 
 class Family(StrEnum):

@@ -2,8 +2,7 @@
 
 from collections.abc import Callable, Iterator, Sequence
 
-from sysmlc.diagnostics import Coverage, Place, Rule, Sink, Subject, Verdict
-from sysmlc.frontends.huds import rules
+from sysmlc.diagnostics import Coverage, Place, Rule, Severity, Sink, Subject, Verdict, rule
 from sysmlc.frontends.huds import vocabulary as v
 from sysmlc.frontends.huds.records import Record, read_records
 from sysmlc.frontends.huds.relations import add_relations
@@ -11,7 +10,44 @@ from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.ir.element import derived_id
 from sysmlc.sources import DEFAULT_LIMITS, Fault, Source, SourceError
 
-_LOSS_RULES = (rules.UNSUPPORTED, rules.OWNERLESS, rules.REPEATED, rules.LOOSE_END)
+MALFORMED = rule(
+    "SM185",
+    "malformed-mtip-file",
+    Severity.ERROR,
+    "'{file}' cannot be read: {problem}",
+    help="export the model again",
+)
+UNSUPPORTED = rule(
+    "SM181",
+    "unsupported-mtip-type",
+    Severity.WARNING,
+    "{count} elements of type '{type}' not read",
+    help="save the model as .mdzip or .xml in Cameo: these are read more completely",
+)
+OWNERLESS = rule(
+    "SM182",
+    "mtip-owner-not-read",
+    Severity.WARNING,
+    "{count} elements of type '{type}' not read, because their owners are not",
+    help="save the model as .mdzip or .xml in Cameo: these are read more completely",
+)
+LOOSE_END = rule(
+    "SM184",
+    "mtip-end-not-read",
+    Severity.WARNING,
+    "{count} elements of type '{type}' lead from or to nodes that are not read",
+    help="save the model as .mdzip or .xml in Cameo: these are read more completely",
+)
+REPEATED = rule(
+    "SM183",
+    "repeated-mtip-id",
+    Severity.ERROR,
+    "the id '{id}' is used by two elements of '{file}'",
+    help="export the model again",
+)
+
+
+_LOSS_RULES = (UNSUPPORTED, OWNERLESS, REPEATED, LOOSE_END)
 
 
 def lower_files(sources: Sequence[Source], graph: Graph, sink: Sink, coverage: Coverage) -> None:
@@ -23,7 +59,7 @@ def lower_files(sources: Sequence[Source], graph: Graph, sink: Sink, coverage: C
             if problem.fault is Fault.LIMIT:
                 raise
             subject = Subject(source.name, place=Place(source.name, offset=problem.offset))
-            sink.report(rules.MALFORMED, subject, file=source.name, problem=problem.message)
+            sink.report(MALFORMED, subject, file=source.name, problem=problem.message)
         else:
             lowering = FileLowering(source.name, records, graph)
             lowering.lower()
@@ -46,9 +82,9 @@ class FileLowering:
         """Records that are not wholly read, by code of the rule and type or id."""
         for record in records:
             if not record.id:
-                self._mark_unsupported(record, rules.UNSUPPORTED, record.local_type)
+                self._mark_unsupported(record, UNSUPPORTED, record.local_type)
             elif self.by_id.setdefault(record.id, record) is not record:
-                self._mark_unsupported(record, rules.REPEATED, record.id)
+                self._mark_unsupported(record, REPEATED, record.id)
 
     def lower(self) -> None:
         """Add all elements, then the relations and stereotypes of each record."""
@@ -146,7 +182,7 @@ class FileLowering:
         elif record.local_type in v.FOLDED:
             self.verdicts[record.ordinal] = Verdict.MAPPED
         else:
-            self._mark_unsupported(record, rules.UNSUPPORTED, record.local_type)
+            self._mark_unsupported(record, UNSUPPORTED, record.local_type)
 
     def _mark_ownerless(self, record: Record) -> None:
         """Mark a record whose owner is not read; the content of tool settings is no loss."""
@@ -154,7 +190,7 @@ class FileLowering:
         if owner and self.verdicts.get(owner.ordinal) is Verdict.IGNORED_NOTATION:
             self.verdicts[record.ordinal] = Verdict.IGNORED_NOTATION
         else:
-            self._mark_unsupported(record, rules.OWNERLESS, record.local_type)
+            self._mark_unsupported(record, OWNERLESS, record.local_type)
 
     def _mark_unsupported(self, record: Record, rule: Rule, subject: str) -> None:
         self.verdicts[record.ordinal] = Verdict.UNSUPPORTED
@@ -166,7 +202,7 @@ class FileLowering:
         edges = unresolved if isinstance(unresolved, tuple) else ()
         flow.attrs["unresolved"] = (*edges, edge.value)
         self.verdicts[record.ordinal] = Verdict.APPROXIMATED
-        key = rules.LOOSE_END.code, record.local_type
+        key = LOOSE_END.code, record.local_type
         self._losses.setdefault(key, []).append(record)
 
     def report_losses(self, sink: Sink) -> None:

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 from sysmlc.sources import DEFAULT_LIMITS, Source
-from sysmlc.sources.xml import Parser, parse, parser, too_deep
+from sysmlc.sources.xml import Parser, make_parser, parse, refuse_depth
 
 _READ_PARTS = frozenset({"value", "stereotypeName", "profileName", "taggedValueName"})
 """Parts of an attribute that are read; the others repeat types and ids of the exporting tool."""
@@ -73,7 +73,7 @@ class Record(NamedTuple):
 
 def read_records(source: Source) -> list[Record]:
     """Return the records of a file, in document order. Raises SourceError."""
-    xml_parser = parser()
+    xml_parser = make_parser()
     reader = _RecordReader(source, xml_parser)
     xml_parser.StartElementHandler = reader.start
     xml_parser.EndElementHandler = reader.end
@@ -109,7 +109,7 @@ class _RecordReader:
             if self._section == "attributes":
                 self._keys.append(values.get("key", ""))
             if depth > DEFAULT_LIMITS.depth:
-                too_deep(self._source, self._parser)
+                refuse_depth(self._source, self._parser)
         elif depth == 4:
             self._relation = tag
             if self._section == "attributes":

@@ -10,7 +10,7 @@ from sysmlc.frontends.base import FileNames
 from sysmlc.frontends.sysml.detection import score_source
 from sysmlc.ir import Graph
 from sysmlc.sources import Source
-from sysmlc.support.garbage_collection import pause_garbage_collection
+from sysmlc.support.interpreter import pause_garbage_collection
 
 
 class SysmlFrontend(Struct, frozen=True):

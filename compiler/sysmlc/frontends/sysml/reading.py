@@ -17,7 +17,7 @@ from sysmlc.language.names import Model, resolve_all
 from sysmlc.language.text import parse
 from sysmlc.language.tree import Document, Node, Reference
 from sysmlc.sources import DEFAULT_LIMITS, Source, SourceError
-from sysmlc.sources.whole import read_whole
+from sysmlc.sources.files import read_whole
 from sysmlc.support import resources
 
 _ARCHIVE_SUFFIX = ".kpar"

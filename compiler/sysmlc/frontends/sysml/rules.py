@@ -57,4 +57,4 @@ SEVERITIES: dict[str, Severity | None] = {
 
 def apply_severities(documents: Sequence[Document], sink: Sink) -> None:
     """Give the shared rules the severities of SysML v2 in these documents."""
-    sink.settle((document.path for document in documents), SEVERITIES)
+    sink.set_file_severities((document.path for document in documents), SEVERITIES)

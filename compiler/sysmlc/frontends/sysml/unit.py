@@ -18,7 +18,7 @@ from sysmlc.ir import Element, Graph, Kind
 from sysmlc.ir.query.activities import pin_subkind
 from sysmlc.language.library import SHIPPED
 from sysmlc.language.tree import Document, Node
-from sysmlc.support.recursion import allow_recursion
+from sysmlc.support.interpreter import allow_recursion
 
 if TYPE_CHECKING:
     from sysmlc.language.names import Model
@@ -191,7 +191,7 @@ def _relate_errors(lowering: Lowering) -> None:
         character = document.character_at(place.offset)
         element = _find_element_at(lowering, document.document.root, character)
         if element is not None:
-            lowering.sink.relate(diagnostic, element.id)
+            lowering.sink.set_element(diagnostic, element.id)
 
 
 def _find_element_at(lowering: Lowering, root: Node, offset: int) -> Element | None:

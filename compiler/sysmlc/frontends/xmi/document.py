@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 from sysmlc.frontends.xmi import namespaces
 from sysmlc.sources import DEFAULT_LIMITS, Source
-from sysmlc.sources.xml import parse, parser, too_deep
+from sysmlc.sources.xml import make_parser, parse, refuse_depth
 
 
 class WrittenReference(NamedTuple):
@@ -169,7 +169,7 @@ class _ColumnReader:
         self.document = Document(source.name)
         self.namespaces: dict[str, None] = {}
         self._source = source
-        self._parser = parser()
+        self._parser = make_parser()
         self._open_rows = [-1]
         self._breaks: list[tuple[int, int]] = []
         """After a skipped element: the next row, and how many elements were skipped so far."""
@@ -204,7 +204,7 @@ class _ColumnReader:
             ends.append(row)
             open_rows.append(row)
             if len(open_rows) > DEFAULT_LIMITS.depth:
-                too_deep(self._source, self._parser)
+                refuse_depth(self._source, self._parser)
             if tag in _SKIPPED:
                 self._skip_content(tag)
 
@@ -233,7 +233,7 @@ class _ColumnReader:
             depth += 1
             skipped += 1
             if depth > DEFAULT_LIMITS.depth:
-                too_deep(self._source, self._parser)
+                refuse_depth(self._source, self._parser)
 
         def end_skipped(_tag: str) -> None:
             nonlocal depth

@@ -15,7 +15,7 @@ from sysmlc.frontends.xmi.snapshots.entries import is_snapshot
 from sysmlc.ir import Graph
 from sysmlc.ir.drawing import Drawing
 from sysmlc.sources import Source, SourceError
-from sysmlc.sources.xml import parse, parser
+from sysmlc.sources.xml import make_parser, parse
 
 # Links and names are searched in the bytes: the unit decides which files are parsed at all.
 _HREF = re.compile(rb"""href\s*=\s*(?:"([^"#]+)|'([^'#]+))""")
@@ -124,7 +124,7 @@ def score_source(source: Source) -> float:
     if not _may_be_xml(source.data):
         return 0.0
     declared: list[str] = []
-    xml_parser = parser()
+    xml_parser = make_parser()
 
     def start(tag: str, _attributes: dict[str, str]) -> None:
         raise _RootReadError(_score_root(tag, declared))

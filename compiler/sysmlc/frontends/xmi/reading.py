@@ -22,7 +22,7 @@ from sysmlc.frontends.xmi.unit import Unit
 from sysmlc.frontends.xmi.value_features import set_multiplicities
 from sysmlc.ir import Graph
 from sysmlc.sources import Fault, Source, SourceError
-from sysmlc.support.garbage_collection import pause_garbage_collection
+from sysmlc.support.interpreter import pause_garbage_collection
 
 
 def read(sources: Sequence[Source], graph: Graph, sink: Sink, coverage: Coverage) -> None:

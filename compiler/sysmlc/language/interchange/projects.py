@@ -12,7 +12,7 @@ from msgspec import Struct, field
 
 from sysmlc.diagnostics import Place, Rule, Sink, Subject
 from sysmlc.language.interchange import rules
-from sysmlc.sources import DEFAULT_LIMITS, Fault, Limits, Source, SourceError, entries
+from sysmlc.sources import DEFAULT_LIMITS, Fault, Limits, Source, SourceError, read_entries
 
 _ALGORITHMS = {
     "SHA1": "sha1",
@@ -84,7 +84,7 @@ def open_archive(archive: Source, sink: Sink, limits: Limits = DEFAULT_LIMITS) -
     Raises SourceError for an archive that exceeds the limits.
     """
     try:
-        sources = entries(archive, is_project_file, limits)
+        sources = read_entries(archive, is_project_file, limits)
     except SourceError as problem:
         if problem.fault is Fault.LIMIT:
             raise

@@ -14,7 +14,7 @@ from sysmlc.language.interchange.frames import Frame
 from sysmlc.language.interchange.metamodel import has_feature, is_concrete
 from sysmlc.language.tree import Node
 from sysmlc.sources import Fault, Limits, Source, SourceError
-from sysmlc.sources.xml import SEPARATOR, parse, parser, too_deep
+from sysmlc.sources.xml import SEPARATOR, make_parser, parse, refuse_depth
 
 _LIMITS = Limits(depth=20_000)
 """A list of n elements is 6 n deep (KerML 1.0, 8.2.5.8.2); the reader does not recurse."""
@@ -61,7 +61,7 @@ class _Reader:
         self._names: dict[str, str] = {}
 
     def run(self) -> None:
-        xml_parser = parser()
+        xml_parser = make_parser()
         xml_parser.StartElementHandler = self._start
         xml_parser.EndElementHandler = self._end
         xml_parser.CharacterDataHandler = self._text.append
@@ -84,7 +84,7 @@ class _Reader:
             self._skipped += 1
             return
         if len(self._tags) >= _LIMITS.depth:
-            too_deep(self._source, self._parser, _LIMITS)
+            refuse_depth(self._source, self._parser, _LIMITS)
         self._text.clear()
         space, _, local = tag.rpartition(SEPARATOR)
         values = self._canonical_attributes(attributes)

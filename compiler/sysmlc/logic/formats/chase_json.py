@@ -31,7 +31,7 @@ from sysmlc.logic.formats.writing import (
 )
 from sysmlc.logic.infix import parse_formula
 from sysmlc.logic.syntax import FormulaError
-from sysmlc.support.json_text import encode_json
+from sysmlc.support.output import encode_json
 
 __all__ = ["lower", "read", "write"]
 _OWNERS = {"inputs": Owner.ENVIRONMENT, "outputs": Owner.SYSTEM}

@@ -25,7 +25,7 @@ from sysmlc.logic.formats.lowering import rename_ambiguous_literals
 from sysmlc.logic.infix import FormulaReader, parse_formula
 from sysmlc.logic.printing import print_formula
 from sysmlc.logic.syntax import FormulaError
-from sysmlc.support.json_text import encode_json
+from sysmlc.support.output import encode_json
 
 FORMAT = "sysmlc-contract/1"
 _OWNERS = {str(owner): owner for owner in Owner}

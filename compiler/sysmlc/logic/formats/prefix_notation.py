@@ -13,7 +13,7 @@ from sysmlc.logic.contract import BooleanDomain, Domain
 from sysmlc.logic.formula import Apply, Const, Formula, Op, Var
 from sysmlc.logic.infix import MAX_DEPTH
 from sysmlc.logic.simplify import rebuild
-from sysmlc.support.recursion import allow_recursion
+from sysmlc.support.interpreter import allow_recursion
 
 _CHAINS = {"&": f.both, "|": f.either}
 _MAX_INDEX_DIGITS = 6

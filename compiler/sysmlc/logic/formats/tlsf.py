@@ -39,7 +39,7 @@ from sysmlc.logic.formula import Formula, Op, Var
 from sysmlc.logic.infix import MAX_DEPTH
 from sysmlc.logic.syntax import Cursor, Syntax, Token, tokenize
 from sysmlc.support.escapes import escape_invisible
-from sysmlc.support.recursion import allow_recursion
+from sysmlc.support.interpreter import allow_recursion
 
 _SIGNS = ("!", "&&", "||", "->", "<->", "==", "!=", "<", "<=", ">", ">=", "+", "-", "*", "/", "%")
 # The tables of operators are empty: `tlsf_expressions` parses expressions, with other precedences.

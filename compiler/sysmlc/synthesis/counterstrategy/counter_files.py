@@ -12,7 +12,7 @@ from sysmlc.logic.contract import (
 )
 from sysmlc.logic.formula import Literal
 from sysmlc.logic.printing import print_literal
-from sysmlc.support.file_names import assign_file_names
+from sysmlc.support.output import assign_file_names
 from sysmlc.support.plantuml_text import format_label
 from sysmlc.synthesis.counterstrategy.counter_machine import (
     CounterStrategy,

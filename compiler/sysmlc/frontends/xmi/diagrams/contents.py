@@ -5,7 +5,7 @@ from collections.abc import Iterable, Mapping
 from sysmlc.frontends.xmi.vocabulary import FOLDED_REFERENCES
 from sysmlc.ir import Edge
 from sysmlc.sources import Source
-from sysmlc.sources.xml import parse, plain_parser
+from sysmlc.sources.xml import make_plain_parser, parse
 
 Relation = tuple[Edge, str, str]
 """An edge with the ids or hrefs of its ends."""
@@ -99,7 +99,7 @@ class RelationReader:
 def read_relations(model: Source) -> dict[str, Relation]:
     """Return the relations of a model file by their ids. Raises SourceError."""
     reader = RelationReader()
-    xml_parser = plain_parser()
+    xml_parser = make_plain_parser()
     xml_parser.StartElementHandler = reader.start
     xml_parser.EndElementHandler = reader.end
     parse(model, xml_parser)

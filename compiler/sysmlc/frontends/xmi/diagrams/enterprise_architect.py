@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from sysmlc.frontends.xmi.diagrams import contents
 from sysmlc.ir.drawing import Drawing
 from sysmlc.sources import Source
-from sysmlc.sources.xml import parse, plain_parser
+from sysmlc.sources.xml import make_plain_parser, parse
 
 _DIAGRAM_PATH = ["Extension", "diagrams", "diagram"]
 _PROFILE_TYPE = re.compile(r"MDGDgm=[\w.]+::(\w+)")
@@ -19,7 +19,7 @@ def read_diagrams(model: Source) -> Iterator[Drawing]:
     if b"<diagrams" not in model.data:
         return
     reader = _DiagramReader()
-    xml_parser = plain_parser()
+    xml_parser = make_plain_parser()
     xml_parser.StartElementHandler = reader.start
     xml_parser.EndElementHandler = reader.end
     parse(model, xml_parser)

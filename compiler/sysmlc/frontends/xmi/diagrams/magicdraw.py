@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from sysmlc.frontends.xmi.diagrams import contents
 from sysmlc.ir.drawing import Drawing
 from sysmlc.sources import Source
-from sysmlc.sources.xml import parse, plain_parser
+from sysmlc.sources.xml import make_plain_parser, parse
 
 ENTRY_PREFIX = "BINARY-"
 """Start of the names of entries with shapes."""
@@ -53,7 +53,7 @@ class ShapeReader:
 def read_shapes(entry: Source) -> ShapeReader:
     """Return the shapes in an entry of an archive, none if it is not XML. Raises SourceError."""
     reader = ShapeReader()
-    xml_parser = plain_parser()
+    xml_parser = make_plain_parser()
     xml_parser.StartElementHandler = reader.start
     xml_parser.EndElementHandler = reader.end
     if entry.data.lstrip().startswith(b"<"):
@@ -69,7 +69,7 @@ def read_diagrams(model: Source, read_entry: Callable[[str], ShapeReader]) -> It
     if b"ownedDiagram" not in model.data:
         return
     reader = _ModelReader()
-    xml_parser = plain_parser()
+    xml_parser = make_plain_parser()
     xml_parser.StartElementHandler = reader.start
     xml_parser.EndElementHandler = reader.end
     xml_parser.CharacterDataHandler = reader.add_text

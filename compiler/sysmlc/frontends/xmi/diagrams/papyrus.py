@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from sysmlc.frontends.xmi.diagrams import contents
 from sysmlc.ir.drawing import Drawing
 from sysmlc.sources import Source
-from sysmlc.sources.xml import parse, plain_parser
+from sysmlc.sources.xml import make_plain_parser, parse
 
 SUFFIX = ".notation"
 _DIAGRAM = "Diagram"
@@ -19,7 +19,7 @@ def read_diagrams(notation: Source, model: Source) -> Iterator[Drawing]:
     """Yield the diagrams in the notation file of a model. Raises SourceError."""
     relations = contents.read_relations(model)
     reader = _NotationReader()
-    xml_parser = plain_parser()
+    xml_parser = make_plain_parser()
     xml_parser.StartElementHandler = reader.start
     xml_parser.EndElementHandler = reader.end
     parse(notation, xml_parser)

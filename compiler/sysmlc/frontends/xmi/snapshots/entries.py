@@ -11,7 +11,7 @@ from collections.abc import Iterable, Iterator
 
 from sysmlc.frontends.xmi.metaclasses import DEFAULT_TYPES
 from sysmlc.sources import DEFAULT_LIMITS, Fault, Source, SourceError
-from sysmlc.sources.xml import parse, parser, too_deep
+from sysmlc.sources.xml import make_parser, parse, refuse_depth
 
 _HEAD = 4096
 _NAMESPACE = re.compile(rb"""["']https?://www\.nomagic\.com/magicdraw/UML/""")
@@ -152,7 +152,7 @@ def _read_entries(source: Source) -> tuple[list[Entry], Counter[str], frozenset[
     Owned elements come before their owners. The names are all that the parser has met and that are
     no tags. Raises SourceError.
     """
-    xml_parser = parser()
+    xml_parser = make_parser()
     name, limit = source.name, DEFAULT_LIMITS.depth
     entries: list[Entry] = []
     features: list[str] = []
@@ -174,7 +174,7 @@ def _read_entries(source: Source) -> tuple[list[Entry], Counter[str], frozenset[
         features.append(feature)
         types.append(values.get(_TYPE))
         if len(stack) > limit:
-            too_deep(source, xml_parser)
+            refuse_depth(source, xml_parser)
 
     def end(_tag: str) -> None:
         entry = stack.pop()

@@ -18,7 +18,7 @@ from sysmlc.frontends.xmi.uml_features import FEATURES
 from sysmlc.frontends.xmi.unit import Unit
 from sysmlc.frontends.xmi.unknown_names import TOOL_ATTRIBUTES, suggest
 from sysmlc.sources import Source, SourceError
-from sysmlc.sources.xml import SEPARATOR, parse, parser
+from sysmlc.sources.xml import SEPARATOR, make_parser, parse
 
 _HREF = re.compile(rb"""href\s*=\s*(?:"([^"#]*)#([^"]+)"|'([^'#]*)#([^']+)')""")
 _PROJECT = re.compile(r"(PROJECT\$h.+?)_resource_")
@@ -264,7 +264,7 @@ def _find_holders(source: Source, names: frozenset[str]) -> dict[str, dict[str, 
         for name in names.intersection(values):
             holders.setdefault(name, {}).setdefault(ids[-1], ordinal)
 
-    xml_parser = parser()
+    xml_parser = make_parser()
     xml_parser.StartElementHandler = start
     xml_parser.EndElementHandler = lambda _: ids.pop()
     try:

@@ -1,13 +1,13 @@
-"""The words of CAEX as its two schemas have them (IEC 62424): order of elements, attributes.
+"""The vocabulary of CAEX (IEC 62424): names, attributes and order of elements.
 
-Who reads AutomationML and who writes it agree by this table; both schemas agree with it as far
-as they go. CAEX 2.15 has no AttributeTypeLib, SourceDocumentInformation, SourceObjectInformation
-and InterfaceIDMapping, CAEX 3.0 no InterfaceNameMapping; the former has a MappingObject below an
-InternalElement, the latter below a RoleRequirements.
+The reader and the writer of AutomationML share these tables, which agree with the schemas of both
+versions. CAEX 2.15 has no AttributeTypeLib, SourceDocumentInformation, SourceObjectInformation and
+InterfaceIDMapping, CAEX 3.0 no InterfaceNameMapping. A MappingObject is below an InternalElement in
+CAEX 2.15, and below a RoleRequirements in CAEX 3.0.
 """
 
 NAMESPACE = "http://www.dke.de/CAEX"
-"""Of CAEX 3.0; elements of CAEX 2.15 have none."""
+"""The namespace of CAEX 3.0; elements of CAEX 2.15 have none."""
 
 _OBJECT = frozenset({"ChangeMode"})
 _NAMED = _OBJECT | {"Name", "ID"}
@@ -74,13 +74,13 @@ ATTRIBUTES: dict[str, frozenset[str] | None] = {
     "RoleClass": _CLASS,
     "SystemUnitClass": _CLASS,
 }
-"""Attributes that each element may have, None where anything may stand (``xs:anyType``).
+"""Attributes of each element; None for an element of ``xs:anyType``, which may have any.
 
-The elements are in an order that no other one contradicts anywhere in the schemas.
+The order of the elements agrees with every sequence of the schemas.
 """
 
 ORDER = {tag: rank for rank, tag in enumerate(ATTRIBUTES)}
-"""The rank of each element among those beside it."""
+"""The rank of each element among its siblings."""
 
 TEXTS = frozenset(
     {
@@ -95,7 +95,7 @@ TEXTS = frozenset(
         "SourceObjectInformation",
         "SuperiorStandardVersion",
         "Requirements",
-        *(tag for tag, known in ATTRIBUTES.items() if known is None),
+        *(tag for tag, attributes in ATTRIBUTES.items() if attributes is None),
     }
 )
 """Elements that hold text."""

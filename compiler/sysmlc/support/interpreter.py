@@ -1,8 +1,12 @@
-"""Reading without the cyclic garbage collector."""
+"""Settings of the Python interpreter while a large or deeply nested model is processed."""
 
 import gc
+import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
+
+_CALLS_PER_LEVEL = 20
+"""An upper bound for the calls that a function makes for one level of nesting."""
 
 
 @contextmanager
@@ -20,3 +24,14 @@ def pause_garbage_collection() -> Iterator[None]:
         if was_enabled:
             gc.freeze()
             gc.enable()
+
+
+@contextmanager
+def allow_recursion(depth: int) -> Iterator[None]:
+    """Raise the recursion limit so that functions can recurse over *depth* levels."""
+    limit = sys.getrecursionlimit()
+    sys.setrecursionlimit(limit + _CALLS_PER_LEVEL * depth)
+    try:
+        yield
+    finally:
+        sys.setrecursionlimit(limit)

@@ -1,0 +1,225 @@
+"""The page of a contract: variables, assumptions and guarantees, each with its element.
+
+All text of the model is escaped here, so that templates need not do it.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator
+from functools import cache
+
+from msgspec import Struct
+
+from sysmlc.backends.templates import Templates
+from sysmlc.ir import Edge, Element, Graph, Kind
+from sysmlc.logic.contract import Class, Conjunct, Contract, Variable
+from sysmlc.logic.domains import describe
+from sysmlc.logic.printing import print_formula
+from sysmlc.support.escapes import escape_code, escape_markdown
+
+_SHIPPED = Templates("contracts", None)
+_TITLES = {
+    Class.INIT: "At the start",
+    Class.SAFETY: "In every step",
+    Class.LIVENESS: "Again and again",
+    Class.OTHER: "In temporal logic",
+}
+_PREFIXES = {
+    "at_": "a token is on the flow",
+    "run_": "the action is running",
+    "done_": "the environment says that it is done",
+    "receive_": "the signal comes",
+    "send_": "the signal is sent",
+    "do_": "the behaviour of the state is being done",
+    "ticks_": "steps that the state has been active",
+    "taken_": "which of several possible transitions was taken",
+    "last_": "what the region was when it was last active",
+    "was_": "what the condition was in the step before",
+}
+"""Meanings of variables that stand for a part of a diagram, by the start of their names."""
+_UNSET = re.compile(r"!\w+$")
+"""The formula of a Boolean that is false."""
+_MANY_UNSET = 3
+_FLOWS = (Kind.CONTROL_FLOW, Kind.OBJECT_FLOW)
+_MARKUP = re.compile(r"[<>`|\[\]]")
+"""Characters of a comment that Markdown would not show as they are written."""
+
+
+class Row(Struct, frozen=True):
+    """A variable or conjunct in the table of the template; the texts are Markdown.
+
+    ``formula`` is the content of a code span between single backticks.
+    """
+
+    formula: str
+    text: str
+    element: str
+    place: str
+
+
+class Section(Struct, frozen=True):
+    """Conjuncts of one class; many Booleans that are initially false are listed in ``unset``."""
+
+    title: str
+    rows: tuple[Row, ...]
+    unset: tuple[Row, ...] = ()
+
+
+class Page(Struct, frozen=True):
+    """The values of the template ``contract.md.j2``."""
+
+    component: str
+    element: str
+    place: str
+    inputs: tuple[Row, ...]
+    outputs: tuple[Row, ...]
+    assumptions: tuple[Section, ...]
+    guarantees: tuple[Section, ...]
+    words: str = ""
+    """Meanings of variables whose names have a common prefix."""
+    about: str = ""
+    """The author's comment on the component."""
+
+
+def print_page(graph: Graph, contract: Contract, templates: Templates = _SHIPPED) -> str:
+    """Return the page of a contract. Raises TemplateError."""
+    return templates.render("contract.md.j2", page=_PageBuilder(graph).build_page(contract))
+
+
+class _PageBuilder:
+    """Builds the page of one contract; the texts of elements are computed once."""
+
+    def __init__(self, graph: Graph) -> None:
+        self._graph = graph
+        self._labels: dict[str, tuple[str, str]] = {}
+
+    def build_page(self, contract: Contract) -> Page:
+        variables = contract.variables
+        element, place = self._label_element(contract.origin)
+        return Page(
+            escape_markdown(contract.component),
+            element,
+            place,
+            tuple(self._build_variable(v) for v in variables if v.owner == "env"),
+            tuple(self._build_variable(v) for v in variables if v.owner == "sys"),
+            self._build_sections(contract.assumptions),
+            self._build_sections(contract.guarantees),
+            "; ".join(_explain_prefixes(contract)),
+            escape_markdown(_find_author_comment(self._graph, contract)),
+        )
+
+    def _label_element(self, id: str) -> tuple[str, str]:
+        """Return an element in words, and the file that contains it."""
+        if id not in self._labels:
+            element = self._graph.get(id)
+            source = element.source if element is not None else ""
+            name = _describe_element(self._graph, element) if element is not None else ""
+            self._labels[id] = escape_markdown(name), escape_code(source or "")
+        return self._labels[id]
+
+    def _build_variable(self, variable: Variable) -> Row:
+        name = escape_code(variable.name, in_table=True)
+        domain = escape_markdown(describe(variable.domain))
+        return Row(name, domain, *self._label_element(variable.origin))
+
+    def _build_sections(self, conjuncts: Iterable[Conjunct]) -> tuple[Section, ...]:
+        rows: dict[Class, list[Row]] = {class_: [] for class_ in Class}
+        for conjunct in conjuncts:
+            rows[conjunct.class_].append(self._build_conjunct(conjunct))
+        return tuple(_build_section(class_, rows[class_]) for class_ in Class if rows[class_])
+
+    def _build_conjunct(self, conjunct: Conjunct) -> Row:
+        """Build the row of a conjunct.
+
+        A conjunct of a constraint that its author named starts with this name in quotes; the row
+        shows the name as a sentence instead, with the requirement or owner of the constraint.
+        """
+        formula = escape_code(print_formula(conjunct.formula))
+        element, place = self._label_element(conjunct.origin)
+        constraint = self._graph.get(conjunct.origin)
+        if (
+            constraint is None
+            or constraint.kind is not Kind.CONSTRAINT
+            or not constraint.name
+            or conjunct.text.partition("' ")[0] != f"'{constraint.name}"
+        ):
+            return Row(formula, escape_markdown(conjunct.text), element, place)
+        text = f"{constraint.name[:1].upper()}{constraint.name[1:]}."
+        owner = self._graph.owner(constraint)
+        context = conjunct.viewpoint or ("" if owner is None else owner.name)
+        kind = "requirement" if conjunct.viewpoint else "constraint of"
+        return Row(formula, escape_markdown(text), escape_markdown(f"{kind} '{context}'"), place)
+
+
+def _build_section(class_: Class, rows: list[Row]) -> Section:
+    unset = [row for row in rows if _UNSET.match(row.formula)] if class_ is Class.INIT else []
+    if len(unset) < _MANY_UNSET:
+        return Section(_TITLES[class_], tuple(rows))
+    shown = tuple(row for row in rows if not _UNSET.match(row.formula))
+    names = tuple(Row(row.formula[1:], row.text, row.element, row.place) for row in unset)
+    return Section(_TITLES[class_], shown, names)
+
+
+def _explain_prefixes(contract: Contract) -> Iterator[str]:
+    """Yield the meanings of variables that stand for a part of a diagram, not for a feature."""
+    prefixes = {v.name[: v.name.find("_") + 1] for v in contract.variables}
+    for prefix, meaning in _PREFIXES.items():
+        if prefix in prefixes:
+            yield f"`{prefix}...`: {meaning}"
+
+
+# -- comments of the author ----------------------------------------------------------------------
+
+
+def _find_author_comment(graph: Graph, contract: Contract) -> str:
+    """Return the first paragraph of a comment on the component or on its only generalization."""
+    for element in _list_documented_elements(graph, graph[contract.origin]):
+        annotations = graph.sources(element, Edge.REFERENCES)
+        comments = (comment for comment in annotations if comment.kind is Kind.COMMENT)
+        text = next((str(comment.attrs.get("body", "")) for comment in comments), "")
+        paragraph = " ".join(text.strip().partition("\n\n")[0].split())
+        if paragraph and not _MARKUP.search(paragraph):
+            return paragraph
+    return ""
+
+
+def _list_documented_elements(graph: Graph, origin: Element) -> list[Element]:
+    """Return the component, then the operation's method or the generalizations, nearest first.
+
+    An element with several generalizations ends the list: none of them describes it alone.
+    """
+    elements = [origin]
+    for element in elements:
+        edge = Edge.METHOD if element.kind is Kind.OPERATION else Edge.SPECIALIZES
+        targets = graph.targets(element, edge)
+        if len(targets) == 1 and targets[0] not in elements:
+            elements.append(targets[0])
+    return elements
+
+
+# -- elements in words -------------------------------------------------------------------------
+
+
+def _describe_element(graph: Graph, element: Element) -> str:
+    """Return ``transition 'Idle' to 'Busy'`` or ``property 'bay' of 'Gate'``, for example."""
+    kind = _split_words(element.kind)
+    if element.kind is Kind.TRANSITION or (element.kind in _FLOWS and not element.name):
+        ends = (graph.target(element, edge) for edge in (Edge.FLOW_SOURCE, Edge.FLOW_TARGET))
+        return f"{kind} {' to '.join(_name_end(graph, end) for end in ends if end is not None)}"
+    owner = next((ancestor for ancestor in graph.ancestors(element) if ancestor.name), None)
+    suffix = "" if owner is None or owner.kind is Kind.PACKAGE else f" of '{owner.name}'"
+    return f"{kind} '{element.name}'{suffix}" if element.name else f"{kind}{suffix}"
+
+
+@cache
+def _split_words(kind: str) -> str:
+    """Return a kind in lower case: ``FinalState`` -> ``final state``."""
+    return re.sub(r"(?<!^)(?=[A-Z])", " ", kind).lower()
+
+
+def _name_end(graph: Graph, end: Element) -> str:
+    """Return the name of the end of a flow; a pin is named by its action."""
+    owner = graph.owner(end) if end.kind is Kind.PIN else None
+    vertex = owner or end
+    return f"'{vertex.name}'" if vertex.name else vertex.subkind or "its end"

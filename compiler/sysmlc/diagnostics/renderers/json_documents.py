@@ -1,0 +1,125 @@
+"""Findings as JSON documents for programs: our own format ``json``, and SARIF 2.1.0."""
+
+import hashlib
+import json
+from urllib.parse import quote
+
+from sysmlc import __version__
+from sysmlc.diagnostics.renderers.report import Finding, Report
+from sysmlc.diagnostics.rule import Rule, Severity
+
+SARIF_SCHEMA = "https://json.schemastore.org/sarif-2.1.0.json"
+_SARIF_LEVELS = {Severity.ERROR: "error", Severity.WARNING: "warning", Severity.INFO: "note"}
+
+
+def render_json(report: Report) -> str:
+    """Return ``sysmlc-diagnostics/2`` (metamodels/sysmlc-diagnostics.schema.json)."""
+    return _encode(
+        {
+            "format": "sysmlc-diagnostics/2",
+            "diagnostics": [_describe_finding(finding) for finding in report.findings],
+            "summary": report.summary(),
+        }
+    )
+
+
+def _encode(content: object) -> str:
+    return json.dumps(content, ensure_ascii=False, indent=1) + "\n"
+
+
+def _describe_finding(finding: Finding) -> dict[str, object]:
+    diagnostic = finding.diagnostic
+    return {
+        "file": finding.file or None,
+        "line": finding.line or None,
+        "column": finding.column or None,
+        "xpath": finding.xpath or None,
+        "severity": diagnostic.severity.value,
+        "code": diagnostic.rule.code,
+        "name": diagnostic.rule.name,
+        "message": diagnostic.message,
+        "element": diagnostic.subject.name or None,
+        "notes": list(diagnostic.notes),
+        "help": diagnostic.help or None,
+    }
+
+
+# -- SARIF -------------------------------------------------------------------------------------
+
+
+def render_sarif(report: Report) -> str:
+    """Return a SARIF log with one run, which code scanning services read."""
+    rules_by_code = {f.diagnostic.rule.code: f.diagnostic.rule for f in report.findings}
+    rules = [rules_by_code[code] for code in sorted(rules_by_code)]
+    rule_index = {rule.code: index for index, rule in enumerate(rules)}
+    run = {
+        "tool": {"driver": _describe_tool(rules)},
+        "columnKind": "unicodeCodePoints",
+        "results": [_describe_result(finding, rule_index) for finding in report.findings],
+    }
+    return _encode({"$schema": SARIF_SCHEMA, "version": "2.1.0", "runs": [run]})
+
+
+def _describe_tool(rules: list[Rule]) -> dict[str, object]:
+    return {
+        "name": "sysmlc",
+        "semanticVersion": __version__,
+        "rules": [
+            {
+                "id": rule.code,
+                "name": rule.name,
+                "shortDescription": {"text": rule.name.replace("-", " ")},
+                "fullDescription": {"text": rule.read_page().why},
+                "defaultConfiguration": {"level": _SARIF_LEVELS[rule.severity]},
+            }
+            for rule in rules
+        ],
+    }
+
+
+def _describe_result(finding: Finding, rule_index: dict[str, int]) -> dict[str, object]:
+    diagnostic = finding.diagnostic
+    code = diagnostic.rule.code
+    texts = (diagnostic.message, *diagnostic.notes, diagnostic.help)
+    result: dict[str, object] = {
+        "ruleId": code,
+        "ruleIndex": rule_index[code],
+        "level": _SARIF_LEVELS[diagnostic.severity],
+        "message": {"text": "\n".join(text for text in texts if text)},
+        "partialFingerprints": {"sysmlc/v1": _compute_fingerprint(finding)},
+    }
+    location = _describe_location(finding)
+    return {**result, "locations": [location]} if location else result
+
+
+def _compute_fingerprint(finding: Finding) -> str:
+    """Return a digest of rule, element and message.
+
+    The line is not part of it: a service would drop or double an alert when lines move.
+    """
+    diagnostic = finding.diagnostic
+    element = diagnostic.subject.id or diagnostic.subject.name
+    parts = (diagnostic.rule.code, element, diagnostic.message)
+    return hashlib.sha256("\x1f".join(parts).encode("utf-8")).hexdigest()[:32]
+
+
+def _describe_location(finding: Finding) -> dict[str, object]:
+    location: dict[str, object] = {}
+    if finding.file:
+        # A relative address of the archive; SARIF has none for an entry of an archive.
+        artifact = {"artifactLocation": {"uri": quote(finding.file.partition("!")[0])}}
+        location["physicalLocation"] = artifact | _describe_region(finding)
+    if finding.diagnostic.subject.name:
+        location["logicalLocations"] = [
+            {"fullyQualifiedName": finding.diagnostic.subject.name, "kind": "element"}
+        ]
+    if finding.xpath:
+        location["properties"] = {"xpath": finding.xpath}
+    return location
+
+
+def _describe_region(finding: Finding) -> dict[str, object]:
+    if not finding.line or "!" in finding.file:
+        return {}
+    column = {"startColumn": finding.column} if finding.column else {}
+    return {"region": {"startLine": finding.line, **column}}

@@ -1,0 +1,99 @@
+"""Diagnostics with everything that a renderer shows: file, line, column, excerpt, counts."""
+
+from collections import Counter
+from collections.abc import Callable, Iterable, Mapping
+
+from msgspec import Struct
+
+from sysmlc.diagnostics.diagnostic import Diagnostic, Place
+from sysmlc.diagnostics.locations import Location, locate
+from sysmlc.diagnostics.rule import Severity
+from sysmlc.sources import Source
+
+
+class Finding(Struct, frozen=True):
+    """A diagnostic with its location; line and column count characters from 1, 0 is unknown."""
+
+    diagnostic: Diagnostic
+    file: str = ""
+    line: int = 0
+    column: int = 0
+    excerpt: str = ""
+    """The line of the input, without its line end; of a long line the part around the column."""
+    xpath: str = ""
+    """XPath of the element, or of the innermost element that is open at the location."""
+    shift: int = 0
+    """Number of characters of the line before the excerpt."""
+
+    @property
+    def where(self) -> str:
+        """``file:line:column`` as far as they are known."""
+        known = [self.file, *(str(n) for n in (self.line, self.column) if n)]
+        return ":".join(known) if self.file else ""
+
+
+class Report(Struct, frozen=True):
+    """The findings of one compilation, in order."""
+
+    findings: tuple[Finding, ...]
+    hidden: tuple[Finding, ...] = ()
+    """Findings that are counted but not shown."""
+
+    def summary(self) -> dict[str, int]:
+        """Return the number of findings of each severity, and of files with findings."""
+        findings = (*self.findings, *self.hidden)
+        counts = Counter(finding.diagnostic.severity for finding in findings)
+        files = {finding.file for finding in findings if finding.file}
+        numbers = {f"{severity.value}s": counts[severity] for severity in Severity}
+        return {**numbers, "files": len(files)}
+
+
+def shorten(findings: Iterable[Finding], limit: int) -> Report:
+    """Return a report that shows the *limit* most severe findings, in order; 0 shows all."""
+    all_findings = list(findings)
+    order = list(Severity)
+    ranked = sorted(
+        range(len(all_findings)),
+        key=lambda index: order.index(all_findings[index].diagnostic.severity),
+    )
+    shown = set(ranked[:limit] if limit else ranked)
+    return Report(
+        tuple(finding for index, finding in enumerate(all_findings) if index in shown),
+        tuple(finding for index, finding in enumerate(all_findings) if index not in shown),
+    )
+
+
+def make_report(
+    diagnostics: Iterable[Diagnostic],
+    sources: Iterable[Source],
+    shown_name: Callable[[str], str] = str,
+) -> Report:
+    """Return the diagnostics with lines, columns, excerpts and XPaths.
+
+    *shown_name* converts the name of a file in the unit to the name for the reader, which is
+    usually relative to the working folder.
+    """
+    diagnostics = list(diagnostics)
+    places = [d.subject.place for d in diagnostics if d.subject.place]
+    locations = locate(sources, places, with_xpath=True)
+    return Report(tuple(_make_finding(d, locations, shown_name) for d in diagnostics))
+
+
+def _make_finding(
+    diagnostic: Diagnostic, locations: Mapping[Place, Location], shown_name: Callable[[str], str]
+) -> Finding:
+    place = diagnostic.subject.place
+    if place is None:
+        return Finding(diagnostic)
+    file, location = shown_name(place.file), locations.get(place)
+    if location is None:
+        return Finding(diagnostic, file, place.line, place.column)
+    return Finding(
+        diagnostic,
+        file,
+        location.line,
+        location.column,
+        location.text,
+        location.xpath,
+        location.shift,
+    )

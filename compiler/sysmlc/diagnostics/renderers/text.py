@@ -1,0 +1,103 @@
+"""Findings as text for people: headline, excerpt with a caret, notes, help, and a summary."""
+
+import unicodedata
+from collections.abc import Callable, Iterator
+
+from sysmlc.diagnostics.renderers.report import Finding, Report
+from sysmlc.diagnostics.rule import Severity
+from sysmlc.support.escapes import escape_invisible
+
+_COLORS = {Severity.ERROR: "31", Severity.WARNING: "33", Severity.INFO: "36"}
+_NOUNS = {Severity.ERROR: "error", Severity.WARNING: "warning", Severity.INFO: "info"}
+_MAX_WIDTH = 100
+"""Characters of an excerpt; files of one line are common in XMI."""
+_CONTEXT = 40
+"""Characters of a longer line that are shown before the location."""
+
+_Paint = Callable[[str, str], str]
+"""Returns a text in the colour of an ANSI code."""
+
+
+def render_text(report: Report, *, color: bool = False) -> str:
+    """Return one block for each finding, and the summary; nothing if there is no finding.
+
+    The XPath of a finding is shown if it has one; callers drop XPaths for short output.
+    """
+    paint = paint_text if color else _paint_nothing
+    blocks = ["\n".join(_format_block(finding, paint)) for finding in report.findings]
+    return "\n\n".join([*blocks, format_summary(report)]) + "\n" if blocks else ""
+
+
+def format_summary(report: Report) -> str:
+    """Return the line ``2 errors, 1 warning in 1 file``."""
+    counts = report.summary()
+    parts = [
+        _format_count(counts[f"{s.value}s"], _NOUNS[s]) for s in Severity if counts[f"{s.value}s"]
+    ]
+    files = f" in {_format_count(counts['files'], 'file')}" if counts["files"] else ""
+    return f"{', '.join(parts)}{files}" if parts else "no findings"
+
+
+def paint_text(text: str, code: str) -> str:
+    """Return *text* in the colour of an ANSI code; an empty text stays empty."""
+    return f"\x1b[{code}m{text}\x1b[0m" if text else text
+
+
+def _paint_nothing(text: str, code: str) -> str:
+    return text
+
+
+def _format_count(number: int, noun: str) -> str:
+    return f"{number} {noun}" if number == 1 else f"{number} {noun}s"
+
+
+def _format_block(finding: Finding, paint: _Paint) -> Iterator[str]:
+    """Yield the lines of a finding."""
+    diagnostic = finding.diagnostic
+    severity, color = diagnostic.severity, _COLORS[diagnostic.severity]
+    head = paint(f"{severity.value}[{diagnostic.rule.code} {diagnostic.rule.name}]", f"1;{color}")
+    yield f"{head}: {paint(escape_invisible(diagnostic.message), '1')}"
+    element = f"({diagnostic.subject.name})" if diagnostic.subject.name else ""
+    if finding.where or element:
+        location = " ".join(escape_invisible(text) for text in (finding.where, element) if text)
+        yield f"  {paint('-->', '34')} {location}"
+    yield from _format_excerpt(finding, paint, color)
+    if finding.xpath:
+        yield f"  xpath: {escape_invisible(finding.xpath)}"
+    for note in diagnostic.notes:
+        yield f"  note: {escape_invisible(note)}"
+    if diagnostic.help:
+        yield f"  help: {escape_invisible(diagnostic.help)}"
+
+
+def _format_excerpt(finding: Finding, paint: _Paint, color: str) -> Iterator[str]:
+    """Yield the line of the input with a caret below the column."""
+    if not finding.excerpt.strip():
+        return
+    line, index = _cut_line(finding.excerpt, max(finding.column - 1 - finding.shift, 0))
+    gutter = " " * len(str(finding.line))
+    yield f" {gutter} |"
+    yield f" {finding.line} | {escape_invisible(line)}"
+    if finding.column:
+        indent = " " * _measure_columns(escape_invisible(line[:index]))
+        yield f" {gutter} | {indent}{paint('^', f'1;{color}')}"
+
+
+def _cut_line(line: str, index: int) -> tuple[str, int]:
+    """Return the part of a long line around the character *index*, and its index in the part."""
+    line = line.replace("\t", " ")
+    if len(line) <= _MAX_WIDTH:
+        return line, index
+    start = max(index - _CONTEXT, 0)
+    part = line[start : start + _MAX_WIDTH]
+    prefix, suffix = "..." if start else "", "..." if start + _MAX_WIDTH < len(line) else ""
+    return f"{prefix}{part}{suffix}", index - start + len(prefix)
+
+
+def _measure_columns(text: str) -> int:
+    """Return the number of terminal columns: two for a wide character, none for an accent."""
+    if text.isascii():
+        return len(text)
+    wide = sum(unicodedata.east_asian_width(char) in "WF" for char in text)
+    marks = sum(unicodedata.combining(char) > 0 for char in text)
+    return len(text) + wide - marks
