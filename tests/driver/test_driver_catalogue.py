@@ -4,7 +4,7 @@ import re
 
 import pytest
 
-from sysmlc.diagnostics.rule import FOLDER
+from sysmlc.diagnostics.rule import PAGES
 from sysmlc.driver import load_full_catalogue
 
 RULES = [rule for rule in load_full_catalogue().values() if not rule.name.startswith("test-")]
@@ -29,10 +29,10 @@ def test_a_rule_is_explained(rule):
 
 
 def test_every_page_belongs_to_a_rule():
-    assert {path.name for path in FOLDER.iterdir()} == {f"{rule.code}.md" for rule in RULES}
+    assert {path.name for path in PAGES.iterdir()} == {f"{rule.code}.md" for rule in RULES}
 
 
-@pytest.mark.parametrize("path", sorted(FOLDER.glob("*.md")), ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", sorted(PAGES.glob("*.md")), ids=lambda path: path.stem)
 def test_a_page_has_known_sections_in_order(path):
     text = path.read_text(encoding="utf-8")
     prose = re.sub(r"^```.*?^```$", "", text, flags=re.MULTILINE | re.DOTALL)
