@@ -3,7 +3,7 @@ PYTHON ?= python3
 MODEL ?= examples/lego-recipe/lego-recipe.uml
 PIP = -m pip --disable-pip-version-check --quiet install
 
-.PHONY: help demo test test-long check format bench clean
+.PHONY: help demo test types quick-tests test-long check format bench clean
 
 help: ## this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / {printf "make %-9s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
@@ -23,7 +23,12 @@ test: .venv/.ready ## style, types and all tests but the long ones
 	@.ci/system-packages
 	.venv/bin/ruff check
 	.venv/bin/ruff format --check
+	@$(MAKE) --no-print-directory --jobs 2 types quick-tests
+
+types:
 	.venv/bin/mypy
+
+quick-tests:
 	.venv/bin/pytest -n 2 -m "not long"
 
 test-long: .venv/.ready ## the long tests: random models, crashes, whole corpus

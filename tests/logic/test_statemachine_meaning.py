@@ -8,6 +8,7 @@ those that may follow, else violated. No mutation is exempt.
 
 from itertools import pairwise
 
+import pytest
 from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 from machines import machines, rich_machines
@@ -81,6 +82,7 @@ _quiet = settings(
 )
 
 
+@pytest.mark.long
 @given(st.one_of(machines(), rich_machines()), st.data())
 @_quiet
 def test_formulas_allow_exactly_the_steps_of_the_interpreter(model, data):

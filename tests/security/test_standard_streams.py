@@ -6,6 +6,8 @@ from pathlib import Path
 
 import pytest
 
+from long_runs import quick_first
+
 WRONG = 'Class a "A"\n  -> specializes a\n'
 CLEAN = 'Class a "A"\n'
 
@@ -40,7 +42,9 @@ def test_a_closed_or_full_stream_is_exit_code_2(run, redirection):
     assert "ignored" not in ended.stderr
 
 
-@pytest.mark.parametrize("redirection", ["", ">/dev/null", "2>/dev/null", "<&-", "| cat"])
+@pytest.mark.parametrize(
+    "redirection", quick_first(["<&-", "| cat", "", ">/dev/null", "2>/dev/null"], 2)
+)
 def test_other_redirections_leave_the_exit_code(run, redirection):
     assert run(f"sysmlc check wrong.ir {redirection}").returncode == 1
     assert run(f"sysmlc check clean.ir {redirection}").returncode == 0

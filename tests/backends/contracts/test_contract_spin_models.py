@@ -224,7 +224,9 @@ def _variable(proposition):
     return re.split(r"==|\.|'", proposition)[0]
 
 
-@pytest.mark.parametrize("model", sorted(EXAMPLES.glob("*/*.uml")), ids=lambda path: path.stem)
+@pytest.mark.parametrize(
+    "model", quick_first(sorted(EXAMPLES.glob("*/*.uml")), 2), ids=lambda path: path.stem
+)
 def test_conjuncts_of_the_shipped_examples_are_equivalent(model):
     assert_model_is_equivalent(model)
 
