@@ -55,7 +55,7 @@ class Backend(Protocol):
         """Add files to *output*, and report what the target cannot express."""
 
 
-def find_unit_name(graph: Graph, options: EmitOptions) -> str:
+def name_compile_unit(graph: Graph, options: EmitOptions) -> str:
     """Return the name of the first input without its suffix, else the name of the first root."""
     if options.inputs:
         # The path of an input in an archive is ``archive!entry``.

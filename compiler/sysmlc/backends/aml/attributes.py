@@ -110,7 +110,7 @@ def _write_type_reference(
     if path:
         node.attributes["RefAttributeType"] = path
     elif typing.declared is not None:
-        context.losses.note_untyped(feature, str(feature.kind), typing.declared)
+        context.losses.record_untyped(feature, str(feature.kind), typing.declared)
 
 
 def _find_types(context: Context, feature: Element) -> Typing:
@@ -217,7 +217,7 @@ def _write_literals(context: Context, type_: Element, node: Node, literals: list
     for literal in literals:
         scale.add_text("RequiredValue", literal.name)
         context.written.add(literal.id)
-    context.losses.note_approximation(
+    context.losses.record_approximation(
         type_, "an enumeration", "an attribute type with nominal values"
     )
 
@@ -250,7 +250,7 @@ def _make_scale(context: Context, constraint: Element, name: str) -> Node:
         if scale is not None:
             return scale
     elif language:
-        context.losses.note_approximation(
+        context.losses.record_approximation(
             constraint, f"a constraint in {language}", "text of unknown type"
         )
     node = Node("UnknownType")

@@ -9,7 +9,7 @@ from sysmlc.backends.aml.context import Context, File, ObjectIds
 from sysmlc.backends.aml.header import write_header, write_source_document
 from sysmlc.backends.aml.node import Node, print_document
 from sysmlc.backends.aml.rules import ILLEGAL_CHARACTERS, Losses
-from sysmlc.backends.base import EmitOptions, find_unit_name
+from sysmlc.backends.base import EmitOptions, name_compile_unit
 from sysmlc.diagnostics import Sink, Subject
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.support.output import Output, assign_file_names
@@ -26,7 +26,7 @@ class AmlBackend(Struct, frozen=True):
 
     def emit(self, graph: Graph, output: Output, sink: Sink, options: EmitOptions) -> None:
         """Add a file for each AutomationML file of the unit, or one file for another model."""
-        for path, text in write_files(graph, find_unit_name(graph, options), sink).items():
+        for path, text in write_files(graph, name_compile_unit(graph, options), sink).items():
             output.add(path, text, (), self.name)
 
 

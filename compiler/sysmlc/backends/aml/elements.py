@@ -224,7 +224,7 @@ def _write_class_reference(context: Context, unit: SystemUnit) -> None:
     if path:
         unit.node.attributes[_REFERENCE] = path
     elif declared is not None and not is_inline(declared):
-        context.losses.note_untyped(unit.elements[0], "part", declared)
+        context.losses.record_untyped(unit.elements[0], "part", declared)
 
 
 def _is_mirror(context: Context, unit: SystemUnit) -> bool:

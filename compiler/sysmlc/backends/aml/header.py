@@ -75,7 +75,7 @@ def add_description(context: Context, comment: Element, node: Node) -> None:
         node.add_text("Description", body)
     else:
         description.text = f"{description.text}\n\n{body}"
-        context.losses.note_approximation(comment, "a further comment", "part of the Description")
+        context.losses.record_approximation(comment, "a further comment", "part of the Description")
 
 
 def _write_comments(context: Context, element: Element, node: Node) -> None:
@@ -144,11 +144,11 @@ def _normalise_date(context: Context, element: Element, node: Node) -> None:
     date = f"{match[1]}T{match[2] or '00:00:00'}{match[3] or ''}" if match else _DEFAULT_DATE
     if date != text:
         node.attributes[_WRITING_DATE] = date
-        context.losses.note_approximation(element, f"the date '{text}'", f"'{date}'")
+        context.losses.record_approximation(element, f"the date '{text}'", f"'{date}'")
 
 
 def _note_addition(context: Context, element: Element, what: str, value: str) -> None:
-    context.losses.note(ADDED, element, element=element.name, what=what, value=value)
+    context.losses.record(ADDED, element, element=element.name, what=what, value=value)
 
 
 def write_source_document(context: Context, document: Element | None, root: Node) -> None:

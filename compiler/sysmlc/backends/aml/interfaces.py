@@ -90,7 +90,7 @@ def _find_class_path(context: Context, port: Element, file: File) -> str:
             path = context.make_class_path(declared, file)
             if path:
                 return path
-        context.losses.note_untyped(port, str(port.kind), declared)
+        context.losses.record_untyped(port, str(port.kind), declared)
     return ""
 
 

@@ -61,7 +61,7 @@ def _place_class(context: Context, element: Element, kind: ClassKind) -> None:
     """Add a class to the class that owns it, or to a library if the owner is of another kind."""
     owner = context.classes.get(element.owner or "")
     if owner is not None and owner.kind is not kind:
-        context.losses.note(MOVED, element, kind=str(element.kind), owner=str(owner.kind))
+        context.losses.record(MOVED, element, kind=str(element.kind), owner=str(owner.kind))
         owner = None
     if owner is not None:
         parent, names, file = owner.node, owner.names, owner.file
@@ -92,7 +92,7 @@ def _choose_name(context: Context, element: Element, parent: Node | None) -> str
             number += 1
             name = f"{element.name} ({number})"
     if number > 1:
-        context.losses.note_approximation(
+        context.losses.record_approximation(
             element, "a second class of one name", "one with a number"
         )
     return name
@@ -120,7 +120,7 @@ def _find_or_add_library(
         context.register(package, library)
         write_header(context, package, library)
         if package.owner is not None:
-            context.losses.note_approximation(
+            context.losses.record_approximation(
                 package, "a package in a package", "a library with its whole name"
             )
     return library, (name,), file

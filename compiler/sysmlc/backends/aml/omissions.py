@@ -63,7 +63,7 @@ def note_omissions(context: Context) -> None:
         if element.id in context.written:
             _note_attributes(context, element)
         elif not _needs_no_object(context, element):
-            context.losses.note(UNSUPPORTED_KIND, element, kind=_describe_kind(element))
+            context.losses.record(UNSUPPORTED_KIND, element, kind=_describe_kind(element))
     for edge in Edge:
         if edge not in _COVERED_EDGES:
             _note_edges(context, edge)
@@ -108,7 +108,7 @@ def _note_attributes(context: Context, element: Element) -> None:
             continue
         if not _is_attribute_expressed(context, element, name):
             kind = _describe_kind(element)
-            context.losses.note(UNSUPPORTED_ATTRIBUTE, element, attribute=name, kind=kind)
+            context.losses.record(UNSUPPORTED_ATTRIBUTE, element, attribute=name, kind=kind)
 
 
 def _is_attribute_expressed(context: Context, element: Element, name: str) -> bool:
@@ -133,7 +133,7 @@ def _note_edges(context: Context, edge: Edge) -> None:
             continue
         if not _is_edge_implied(context, edge, graph[source], graph[target]):
             kind, target_kind = _describe_kind(graph[source]), _describe_kind(graph[target])
-            context.losses.note(
+            context.losses.record(
                 UNSUPPORTED_EDGE, graph[source], edge=edge.value, kind=kind, target=target_kind
             )
 

@@ -1,9 +1,8 @@
 """Rules for what CAEX cannot express, and the counter of such losses."""
 
-from dataclasses import dataclass, field
-
-from sysmlc.diagnostics import Rule, Severity, Sink, rule
-from sysmlc.ir import Element, Graph
+from sysmlc.backends.losses import LossCounter
+from sysmlc.diagnostics import Severity, rule
+from sysmlc.ir import Element
 
 UNSUPPORTED_KIND = rule(
     "SM740",
@@ -52,35 +51,15 @@ ADDED = rule(
     "'{element}' has no {what}, which the schema of CAEX 3.0 requires: '{value}' is written",
 )
 
-_Key = tuple[str, tuple[tuple[str, str], ...]]
-"""Code of the rule, and the sorted facts of its message."""
 
+class Losses(LossCounter):
+    """Counts what CAEX does not express."""
 
-@dataclass(slots=True)
-class Losses:
-    """Counts losses by rule and facts; each combination becomes one diagnostic."""
-
-    graph: Graph
-    _counts: dict[_Key, tuple[Rule, Element, int]] = field(default_factory=dict)
-    """The rule, the first element and the number of losses."""
-
-    def note(self, loss: Rule, element: Element, /, **facts: str) -> None:
-        """Count one more element with this loss."""
-        key = (loss.code, tuple(sorted(facts.items())))
-        _, first, count = self._counts.get(key, (loss, element, 0))
-        self._counts[key] = (loss, first, count + 1)
-
-    def note_approximation(self, element: Element, original: str, replacement: str) -> None:
+    def record_approximation(self, element: Element, original: str, replacement: str) -> None:
         """Count an element that is saved in another form."""
-        self.note(APPROXIMATED, element, said=original, written=replacement)
+        self.record(APPROXIMATED, element, said=original, written=replacement)
 
-    def note_untyped(self, feature: Element, kind: str, type_: Element) -> None:
+    def record_untyped(self, feature: Element, kind: str, type_: Element) -> None:
         """Count a feature whose type CAEX cannot reference."""
         facts = {"edge": "typed-by", "kind": kind, "target": str(type_.kind)}
-        self.note(UNSUPPORTED_EDGE, feature, **facts)
-
-    def report(self, sink: Sink) -> None:
-        """Report each loss at the first element that has it."""
-        for (_, pairs), (loss, first, count) in self._counts.items():
-            facts: dict[str, object] = {"count": count, **dict(pairs)}
-            sink.report(loss, self.graph.subject(first), notes=(), help="", **facts)
+        self.record(UNSUPPORTED_EDGE, feature, **facts)

@@ -2,8 +2,9 @@
 
 from dataclasses import dataclass, field
 
-from sysmlc.diagnostics import Rule, Severity, Sink, rule
-from sysmlc.ir import Element, Graph
+from sysmlc.backends.losses import LossCounter
+from sysmlc.diagnostics import Rule, Severity, rule
+from sysmlc.ir import Element
 
 UNSAID_KIND = rule(
     "SM730",
@@ -55,31 +56,14 @@ NAME_LEFT_OUT = rule(
 )
 
 
-@dataclass(slots=True)
-class Losses:
-    """Losses of one text, counted by rule and facts.
+@dataclass
+class Losses(LossCounter):
+    """Counts what SysML v2 text does not express."""
 
-    A model may lose the same kind of information in thousands of elements: a diagnostic states
-    the number and the first element.
-    """
-
-    graph: Graph
-    _counts: dict[tuple[str, tuple[tuple[str, str], ...]], tuple[Rule, Element, int]] = field(
-        default_factory=dict
-    )
-    """Rule, first element and number of elements by code and facts."""
     by_element: dict[str, list[tuple[str, dict[str, str]]]] = field(default_factory=dict)
     """Code and facts of each loss by the id of the element."""
 
-    def record(self, loss: Rule, element: Element, **facts: str) -> None:
+    def record(self, loss: Rule, element: Element, /, **facts: str) -> None:
         """Count a loss of *element*; *facts* fill the placeholders of the message."""
         self.by_element.setdefault(element.id, []).append((loss.code, facts))
-        key = (loss.code, tuple(sorted(facts.items())))
-        _, first, count = self._counts.get(key, (loss, element, 0))
-        self._counts[key] = (loss, first, count + 1)
-
-    def report(self, sink: Sink) -> None:
-        """Report one diagnostic for each combination of rule and facts."""
-        for (_, facts), (loss, first, count) in self._counts.items():
-            values: dict[str, object] = {"count": count, **dict(facts)}
-            sink.report(loss, self.graph.subject(first), notes=(), help="", **values)
+        super().record(loss, element, **facts)

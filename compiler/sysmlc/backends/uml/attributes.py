@@ -91,7 +91,7 @@ def _write_feature(context: Context, element: Element, key: str, value: AttrValu
     feature = find_attribute_feature(key)
     if not feature:
         name = "tagged values without stereotype" if key.startswith("tag.") else key
-        context.losses.note_attribute(element, name)
+        context.losses.record_attribute(element, name)
     elif not _write_references(context, element, key, feature, value):
         node = context.find_node(element)
         if isinstance(value, tuple):
@@ -245,7 +245,7 @@ def _write_direction(context: Context, element: Element, key: str, value: AttrVa
         if value != "in":
             context.find_node(element).attributes["direction"] = format_value(value)
     elif element.role != "flow property" and not _is_direction_implied(context, element):
-        context.losses.note_attribute(element, key)
+        context.losses.record_attribute(element, key)
 
 
 def _is_direction_implied(context: Context, port: Element) -> bool:

@@ -2,7 +2,7 @@
 
 from msgspec import Struct
 
-from sysmlc.backends.base import EmitOptions, find_unit_name
+from sysmlc.backends.base import EmitOptions, name_compile_unit
 from sysmlc.backends.uml.attributes import write_attributes
 from sysmlc.backends.uml.containment import find_containing_feature
 from sysmlc.backends.uml.context import Context, make_part_id
@@ -64,7 +64,7 @@ class UmlBackend(Struct, frozen=True):
 
     def emit(self, graph: Graph, output: Output, sink: Sink, options: EmitOptions) -> None:
         """Add ``uml/<unit>.uml``; report what UML cannot express."""
-        unit = find_unit_name(graph, options)
+        unit = name_compile_unit(graph, options)
         path = f"uml/{assign_file_names([unit])[unit]}.uml"
         output.add(path, write_document(graph, sink), (), self.name)
 
@@ -109,7 +109,7 @@ def _note_respelt_ids(context: Context) -> None:
     respelt = {id for id, new_id in context.ids.items() if id != new_id}
     for element in context.graph if respelt else ():
         if any(element.attrs.get(key) in respelt for key in _VALUES):
-            context.losses.note(RESPELT_ID, element)
+            context.losses.record(RESPELT_ID, element)
 
 
 # -- nodes -------------------------------------------------------------------------------------
@@ -141,7 +141,7 @@ def _has_node(context: Context, element: Element) -> bool:
         return False
     if element.kind in UNSUPPORTED_KINDS:
         for member in context.graph.subtree(element):
-            context.losses.note(UNSUPPORTED_KIND, member, kind=str(member.kind))
+            context.losses.record(UNSUPPORTED_KIND, member, kind=str(member.kind))
         return False
     return True
 
@@ -159,10 +159,10 @@ def _add_node(context: Context, element: Element) -> None:
     _write_name(context, element, node)
     context.nodes[element.id] = node
     if element.kind in RECLASSIFIED_KINDS:
-        context.losses.note_approximation(element, f"kind {element.kind}", metaclass)
+        context.losses.record_approximation(element, f"kind {element.kind}", metaclass)
     elif not is_complete:
         original = f"{element.kind} ({element.subkind})"
-        context.losses.note_approximation(element, original, metaclass)
+        context.losses.record_approximation(element, original, metaclass)
 
 
 def _write_name(context: Context, element: Element, node: Node) -> None:
@@ -173,7 +173,7 @@ def _write_name(context: Context, element: Element, node: Node) -> None:
         return
     feature = context.graph.target(element, Edge.INSTANCE_OF)
     if feature is None or feature.name != element.name:
-        context.losses.note_attribute(element, "name")
+        context.losses.record_attribute(element, "name")
     elif context.losses.round_trip is not None:
         # A slot is named after its feature, so that the name is no loss.
         context.losses.round_trip.store_attribute(element, "name")
@@ -212,7 +212,7 @@ def _find_instance_class(context: Context, connector: Element) -> Node | None:
 def _note_move(context: Context, element: Element) -> None:
     owner = context.graph.owner(element)
     owner_kind = str(owner.kind) if owner is not None else "file"
-    context.losses.note(MOVED, element, owner=owner_kind, kind=str(element.kind))
+    context.losses.record(MOVED, element, owner=owner_kind, kind=str(element.kind))
 
 
 # -- content -----------------------------------------------------------------------------------

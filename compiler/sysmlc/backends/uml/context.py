@@ -86,7 +86,7 @@ class Context:
         if facts is not None and edge in _EDGES:
             facts.store_edge(edge, holder, target)
         kinds = {"kind": str(holder.kind), "target": str(target.kind)}
-        self.losses.note(UNSUPPORTED_EDGE, holder, edge=edge, **kinds)
+        self.losses.record(UNSUPPORTED_EDGE, holder, edge=edge, **kinds)
 
 
 # -- ids ---------------------------------------------------------------------------------------

@@ -96,7 +96,7 @@ def _add_dependency(context: Context, element: Element, edge: Edge, target: Elem
     if context.losses.round_trip is not None:
         context.losses.round_trip.added.append(dependency.id)
         context.losses.round_trip.store_edge(edge.value, element, target)
-    context.losses.note_approximation(element, f"'{edge}' from {element.kind}", metaclass)
+    context.losses.record_approximation(element, f"'{edge}' from {element.kind}", metaclass)
 
 
 # -- parts of the source -----------------------------------------------------------------------

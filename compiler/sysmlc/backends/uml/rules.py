@@ -7,6 +7,7 @@ pass ``kept`` restores it when the saved model is read.
 import json
 from dataclasses import dataclass, field
 
+from sysmlc.backends.losses import LossCounter
 from sysmlc.backends.uml.hrefs import make_href
 from sysmlc.diagnostics import Rule, Severity, Sink, rule
 from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind
@@ -172,35 +173,27 @@ class RoundTripFacts:
 
 # -- losses ------------------------------------------------------------------------------------
 
-_Key = tuple[str, tuple[tuple[str, str], ...]]
-"""Code of the rule, and the sorted facts of its message."""
 
+@dataclass
+class Losses(LossCounter):
+    """Counts what UML does not express."""
 
-@dataclass(slots=True)
-class Losses:
-    """Counts losses by rule and facts; each combination becomes one diagnostic."""
-
-    graph: Graph
     round_trip: RoundTripFacts | None = None
     """The facts that a plant stores for the way back; None for other models."""
-    _counts: dict[_Key, tuple[Rule, Element, int]] = field(default_factory=dict)
-    """The rule, the first element and the number of losses."""
 
-    def note(self, loss: Rule, element: Element, **facts: str) -> None:
-        """Count one more element with this loss."""
+    def record(self, loss: Rule, element: Element, /, **facts: str) -> None:
+        """Count a loss of *element*, and store what a plant needs to restore it."""
         if self.round_trip is not None:
             self._store(self.round_trip, loss, element, facts)
-        key = (loss.code, tuple(sorted(facts.items())))
-        _, first, count = self._counts.get(key, (loss, element, 0))
-        self._counts[key] = (loss, first, count + 1)
+        super().record(loss, element, **facts)
 
-    def note_approximation(self, element: Element, original: str, replacement: str) -> None:
+    def record_approximation(self, element: Element, original: str, replacement: str) -> None:
         """Count an element that is saved in another form."""
-        self.note(APPROXIMATED, element, said=original, written=replacement)
+        self.record(APPROXIMATED, element, said=original, written=replacement)
 
-    def note_attribute(self, element: Element, name: str) -> None:
+    def record_attribute(self, element: Element, name: str) -> None:
         """Count an attribute that UML cannot express."""
-        self.note(UNSUPPORTED_ATTRIBUTE, element, attribute=name, kind=str(element.kind))
+        self.record(UNSUPPORTED_ATTRIBUTE, element, attribute=name, kind=str(element.kind))
 
     def _store(
         self, round_trip: RoundTripFacts, loss: Rule, element: Element, facts: dict[str, str]
@@ -214,24 +207,20 @@ class Losses:
         elif loss is APPROXIMATED:
             round_trip.store_attribute(element, "subkind")
 
-    def report(self, sink: Sink) -> None:
-        """Report each loss at the first element that has it."""
-        if self.round_trip is not None:
-            self._report_stored_facts(sink)
-        for (_, pairs), (loss, first, count) in self._counts.items():
-            if self.round_trip is None or loss not in _UNSUPPORTED:
-                facts: dict[str, object] = {"count": count, **dict(pairs)}
-                sink.report(loss, self.graph.subject(first), notes=(), help="", **facts)
+    def list_losses(self) -> list[tuple[Rule, Element, dict[str, object]]]:
+        """Return the losses; what a plant stores for the way back is not lost."""
+        losses = super().list_losses()
+        if self.round_trip is None:
+            return losses
+        return [loss for loss in losses if loss[0] not in _UNSUPPORTED]
 
-    def _report_stored_facts(self, sink: Sink) -> None:
-        """Report all facts in the comment by one diagnostic; its notes list them."""
-        notes, subject, total = [], None, 0
-        for (_, pairs), (loss, first, count) in self._counts.items():
-            if loss in _UNSUPPORTED:
-                facts: dict[str, object] = {"count": count, **dict(pairs)}
-                phrase = loss.phrase.format(**facts)
-                notes.append(phrase.replace(" omitted from the saved model", ""))
-                subject = self.graph.subject(first) if subject is None else subject
-                total += count
-        if subject is not None:
-            sink.report(STORED_FACTS, subject, notes=tuple(notes), count=total)
+    def report(self, sink: Sink) -> None:
+        """Report the facts stored for the way back by one diagnostic, then the losses."""
+        stored = super().list_losses() if self.round_trip is not None else []
+        stored = [loss for loss in stored if loss[0] in _UNSUPPORTED]
+        if stored:
+            phrases = [loss.phrase.format(**facts) for loss, _, facts in stored]
+            notes = tuple(text.replace(" omitted from the saved model", "") for text in phrases)
+            total = sum(int(str(facts["count"])) for _, _, facts in stored)
+            sink.report(STORED_FACTS, self.graph.subject(stored[0][1]), notes=notes, count=total)
+        super().report(sink)

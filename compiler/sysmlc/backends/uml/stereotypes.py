@@ -82,7 +82,7 @@ class StereotypeWriter:
         bases = list(self._iter_bases(application))
         if not bases:
             losses = self._context.losses
-            losses.note(UNSUPPORTED_KIND, application, kind="Application without base")
+            losses.record(UNSUPPORTED_KIND, application, kind="Application without base")
             return
         name = str(application.attrs.get("stereotype", "")) or application.name
         namespace = str(application.attrs.get("namespace", "")) or _UNKNOWN_PROFILE
