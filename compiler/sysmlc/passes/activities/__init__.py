@@ -1,8 +1,8 @@
 """Pass ``activities``: derive the token graph of every activity, or report why there is none.
 
 The pass assumes resolved names and roles. It guarantees that each stored token graph is 1-safe and
-that every node and flow that is left out has been reported. The graph itself stays unchanged. An
-activity of a library is played by each operation whose method it is.
+that every omitted node or flow has been reported. The model graph itself stays unchanged. An
+activity of a library gets one token graph for each operation whose method it is.
 """
 
 from collections.abc import Iterator
@@ -56,7 +56,7 @@ class Activities(Struct, frozen=True):
     after: ClassVar[tuple[str, ...]] = ("classify", "flows")
 
     def run(self, graph: Graph, sink: Sink) -> None:
-        """Store a TokenGraph for each activity that can be played."""
+        """Store a TokenGraph for each activity that has a valid one."""
         graph.store(TokenGraph, self._derive_all(graph, sink))
 
     def _derive_all(self, graph: Graph, sink: Sink) -> Iterator[TokenGraph]:
@@ -91,6 +91,7 @@ class Activities(Struct, frozen=True):
         if not drawing.nodes:
             sink.report(rules.EMPTY, graph.subject(activity), activity=activity.name)
             raise activity_drawing.CannotPlayError
+        # The order matters: the stores need the nodes, and the checks of guards need the stores.
         scope = Scope(graph, activity, sink)
         inputs = Inputs(graph, scope, sink)
         tokens = activity_tokens.build(graph, drawing, inputs, context.raising, sink)
@@ -142,8 +143,8 @@ def _list_played_actions(
 def _list_usages(graph: Graph, activity: Element) -> list[Element]:
     """Return the activity, or the operations that perform it if it belongs to a library.
 
-    An abstract activity that operations perform counts as one of a library, because nothing else
-    performs it.
+    An abstract activity with such operations is treated like an activity of a library, because
+    nothing else performs it.
     """
     is_elsewhere, is_abstract = _is_drawn_elsewhere(activity), activity.attrs.get("abstract")
     if not (is_elsewhere or is_abstract):
@@ -167,15 +168,15 @@ _STEPS = (Kind.ACTION, Kind.CONTROL, Kind.STRUCTURED)
 
 
 def has_steps(graph: Graph, activity: Element) -> bool:
-    """Whether the activity itself has nodes."""
+    """Whether the activity has nodes of its own, not only inherited ones."""
     return any(element.kind in _STEPS for element in graph.owned(activity))
 
 
 def find_drawn(graph: Graph, usage: Element) -> Element:
-    """Return the activity whose nodes a usage performs.
+    """Return the activity whose nodes the activity or operation *usage* performs.
 
-    For an operation this is its method, for an activity without nodes the nearest general one with
-    nodes. Without such an activity the usage itself is returned.
+    For an operation this is its method. For an activity without nodes this is the nearest general
+    activity with nodes. If there is no such activity, the result is *usage*.
     """
     method = graph.target(usage, Edge.METHOD) if usage.kind is Kind.OPERATION else usage
     if method is None or has_steps(graph, method):

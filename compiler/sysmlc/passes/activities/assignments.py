@@ -1,7 +1,7 @@
-"""Assignments of an activity: which features they set, and assignments that are reported.
+"""Assignments of an activity: the features that they set, and reports of faulty assignments.
 
-A feature that an activity assigns but its contract does not track is reported with the reason
-(SM544).
+A feature that an activity assigns, but that its contract does not track, is reported with the
+reason (SM544).
 """
 
 from collections.abc import Iterable, Iterator
@@ -24,7 +24,7 @@ from sysmlc.support.suggestions import did_you_mean
 
 
 class ResolvedAssignment(Struct, frozen=True):
-    """An assignment of an action. ``feature`` is None if the name means nothing in the activity."""
+    """An assignment of an action. ``feature`` is None if the activity does not know the name."""
 
     assignment: FeatureWrite
     feature: Feature | None
@@ -33,7 +33,7 @@ class ResolvedAssignment(Struct, frozen=True):
 def read_assignments(
     graph: Graph, actions: Iterable[Element], scope: Scope, writers: WriterIndex
 ) -> list[list[ResolvedAssignment]]:
-    """Return the assignments of each action that has any, in the order of execution."""
+    """Return one list for each action with assignments, in the order of their execution."""
     assignments = (iter_writes(graph, action) for action in actions)
     resolved = (
         [
@@ -46,7 +46,10 @@ def read_assignments(
 
 
 def _resolve_target(assignment: FeatureWrite, scope: Scope, writers: WriterIndex) -> Feature | None:
-    """Return the feature that the activity knows under the assigned name, or under its own name."""
+    """Return the feature that an assignment sets, or None if the activity does not know it.
+
+    The activity may know the feature under another name, such as ``busy`` for ``robot.busy``.
+    """
     feature = scope.find_feature(assignment.name)
     if feature is None:
         target = writers.resolve_target(assignment.action, assignment.name)
@@ -64,7 +67,7 @@ def report_unassignable(
     scope: Scope,
     sink: Sink,
 ) -> None:
-    """Report assignments that break the rules of state machines for assignments.
+    """Report assignments that are invalid, by the same rules as in state machines.
 
     These are assignments to constants (SM415), of values of another type (SM413), and of values
     that are always out of range (SM414).
@@ -90,6 +93,7 @@ def _owner_name(graph: Graph, activity: Element, feature: Feature) -> str:
 
 
 def _find_fault(value: Expression, feature: Feature, scope: Scope) -> ElaborationError | None:
+    # The compiler chose an assumed range, so that a value outside it is no fault of the author.
     if feature.domain is None or feature.is_assumed:
         return None
     try:
@@ -128,7 +132,7 @@ def report_unknown_targets(
     writers: WriterIndex,
     sink: Sink,
 ) -> None:
-    """Report names that the activity does not know (SM545) or another object owns (SM544)."""
+    """Report assigned names that are unknown (SM545) or belong to another object (SM544)."""
     # A write action refers to its target by id, so that the name cannot be wrong.
     unresolved = (
         resolved.assignment for row in written for resolved in row if resolved.feature is None
@@ -141,7 +145,7 @@ def report_unknown_targets(
             if activity in graph.ancestors(target):
                 continue
             label = find_label(graph, assignment.action)
-            unfollowed = UntrackedFeature(target, ELSEWHERE, (f"action '{label}'",))
+            unfollowed = UntrackedFeature(target, OTHER_OBJECT, (f"action '{label}'",))
             report_untracked(graph, activity, [unfollowed], sink)
         elif assignment.name.partition(".")[0] not in (
             known_names := set(_list_known_names(graph, activity))
@@ -157,7 +161,7 @@ def report_unknown_targets(
 
 
 def _list_known_names(graph: Graph, activity: Element) -> Iterator[str]:
-    """Yield the names of elements in the activity and of features of the classifiers around it."""
+    """Yield the names of the elements in the activity and of the features of its owners."""
     scopes = (activity, *graph.ancestors(activity))
     owners = [element for element in scopes if element.kind in query.CLASSIFIERS]
     features = (name for owner in owners for name in find_named_values(graph, owner))
@@ -167,7 +171,7 @@ def _list_known_names(graph: Graph, activity: Element) -> Iterator[str]:
 
 # -- untracked features ------------------------------------------------------------------------
 
-WRITTEN = rule(
+UNTRACKED = rule(
     "SM544",
     "guard-reads-what-is-written",
     Severity.INFO,
@@ -184,40 +188,42 @@ class Refusal(Struct, frozen=True):
     advice: str
 
 
-ENDLESS = Refusal("it has not finitely many values", "give it a type that has")
-WIDE = Refusal("it has no range", "give it a range (constraint 0 <= {name} <= 9)")
-DECIDED = Refusal("others decide it too", "assign to a feature that is neither given nor constant")
-ELSEWHERE = Refusal("it belongs to another object", "let the object itself do it (an operation)")
-UNKNOWN = Refusal(
+NO_FINITE_DOMAIN = Refusal("it has not finitely many values", "give it a type that has")
+NO_RANGE = Refusal("it has no range", "give it a range (constraint 0 <= {name} <= 9)")
+GIVEN_OR_CONSTANT = Refusal(
+    "others decide it too", "assign to a feature that is neither given nor constant"
+)
+OTHER_OBJECT = Refusal("it belongs to another object", "let the object itself do it (an operation)")
+UNKNOWN_VALUE = Refusal(
     "its new value is unknown", "write the value as an expression over known properties"
 )
 
 
 def refuse_shared(writer: str) -> Refusal:
-    """Return the refusal of a feature that another behaviour writes."""
+    """Return the refusal of a feature that the behaviour *writer* assigns, too."""
     return Refusal(f"'{writer}' assigns it too", "let only one behaviour assign it")
 
 
 class UntrackedFeature(Struct, frozen=True):
-    """An assigned feature, the reason why it is not tracked, and the assigning actions."""
+    """An assigned feature that is not tracked, the reason, and the labels of assigning actions."""
 
     feature: Element
-    why: Refusal
+    refusal: Refusal
     writers: tuple[str, ...]
 
 
 def report_untracked(
     graph: Graph, activity: Element, untracked: Iterable[UntrackedFeature], sink: Sink
 ) -> None:
-    """Report each feature whose values are left to the environment although actions assign it."""
+    """Report each feature that the contract treats as an input although actions assign it."""
     for feature in untracked:
         sink.report(
-            WRITTEN,
+            UNTRACKED,
             graph.subject(feature.feature),
             activity=activity.name,
             name=feature.feature.name,
             writers=" and ".join(feature.writers),
             verb="assigns" if len(feature.writers) == 1 else "assign",
-            reason=feature.why.reason,
-            advice=feature.why.advice.format(name=feature.feature.name),
+            reason=feature.refusal.reason,
+            advice=feature.refusal.advice.format(name=feature.feature.name),
         )

@@ -21,12 +21,12 @@ from sysmlc.passes.activities import rules
 from sysmlc.passes.activities import safety as activity_search
 from sysmlc.passes.activities.drawing import CannotPlayError
 
-_MOST_VALUATIONS = 20_000
-"""Guards over more valuations than this are taken as neither exclusive nor exhaustive."""
+_MAX_VALUATIONS = 20_000
+"""Limit of enumeration: above it, guards count as neither exclusive nor exhaustive."""
 
 
 def check_tokens(graph: Graph, tokens: TokenGraph, limit: int, sink: Sink) -> TokenGraph:
-    """Return the token graph with the results of the checks, and report its faults.
+    """Check a token graph, report its faults and return it with the results of the checks.
 
     Raises CannotPlayError if the graph cannot start or is not shown to be 1-safe.
     """
@@ -69,7 +69,7 @@ class _Checker:
         self.tokens = replace(self.tokens, nodes=nodes)
 
     def _check_choice(self, node: TokenNode) -> TokenNode:
-        """Return the node, marked with whether its guards are exclusive and exhaustive."""
+        """Return the node with ``exclusive`` and ``exhaustive`` set; report missing branches."""
         branches = self.tokens.outgoing(node) if node.firing is Firing.CHOICE else []
         if not branches:
             return node
@@ -89,13 +89,13 @@ class _Checker:
         return replace(node, exclusive=not overlap, exhaustive=is_exhaustive)
 
     def _list_open_branches(self, guarded: list[TokenEdge]) -> list[list[TokenEdge]] | None:
-        """Return the open branches for each valuation of the inputs; None if too many."""
+        """Return the open branches of each valuation of the variables; None above the limit."""
         conditions = [(edge, _guard_condition(edge)) for edge in guarded]
         names = {v.name for _, c in conditions for v in variables(c)}
         opens = [(edge, evaluate.compile_evaluation(c)) for edge, c in conditions]
         declared = (*self.tokens.inputs, *(store.variable for store in self.tokens.stores))
         read = {v.name: v.domain for v in declared if v.name in names}
-        if domains.count(read) > _MOST_VALUATIONS:
+        if domains.count(read) > _MAX_VALUATIONS:
             return None
         return [
             [edge for edge, is_open in opens if is_open(valuation, None)]
@@ -104,6 +104,7 @@ class _Checker:
 
     def _report_missing_branch(self, node: TokenNode, guarded: list[TokenEdge]) -> None:
         origin = self.graph[node.origin]
+        # The origin is a flow if its guard is outside a decision, which SM468 has reported.
         if origin.kind in (Kind.CONTROL_FLOW, Kind.OBJECT_FLOW):
             return
         guards = ", ".join(edge.guard.text for edge in guarded if edge.guard)
@@ -117,10 +118,14 @@ class _Checker:
     # -- reachability --------------------------------------------------------------------------
 
     def check_reachability(self) -> set[str]:
-        """Return the reachable ids. Of unreachable nodes, report those without such a source."""
+        """Return the ids of reachable nodes, and report unreachable ones.
+
+        Of unreachable nodes that follow each other, only the first is reported.
+        """
         reachable = self._find_reachable(e.target for e in self.tokens.edges if self._is_start(e))
         unreachable = [n for n in self.tokens.nodes if n.id not in reachable and self._is_drawn(n)]
         covered: set[str] = set()
+        # Nodes without an unreachable source come first, because they cover their successors.
         for node in sorted(unreachable, key=lambda n: self._has_unreachable_source(n, reachable)):
             if node.id not in covered:
                 subject = self.graph.subject(self.graph[node.origin])
@@ -154,7 +159,7 @@ class _Checker:
         return reachable
 
     def _find_listeners(self, id: str) -> list[str]:
-        """Return the nodes that listen once a token is at a node of their interruptible region."""
+        """Return the nodes that listen when a token is at the node, in its interruptible region."""
         regions = {region.id for region in self.tokens.interruptibles if id in region.nodes}
         if not regions:
             return []
@@ -163,8 +168,9 @@ class _Checker:
     # -- tokens --------------------------------------------------------------------------------
 
     def check_safety(self, limit: int, reachable: set[str]) -> TokenGraph:
-        """Return the token graph with the result of the search. Raises CannotPlayError unless it is
-        1-safe.
+        """Return the token graph with the result of the search for a second token.
+
+        Raises CannotPlayError if the graph is not shown to be 1-safe.
         """
         result = activity_search.search(self.tokens, limit)
         self._require_safe(result, limit)
@@ -173,7 +179,7 @@ class _Checker:
             self.sink.report(rules.NEVER_FIRES, subject, node=node.label)
         if not result.finishes:
             subject = self.graph.subject(self.activity)
-            self.sink.report(rules.ENDLESS, subject, activity=self.activity.name)
+            self.sink.report(rules.NEVER_FINISHES, subject, activity=self.activity.name)
         return activity_search.apply_result(self.tokens, result)
 
     def _require_safe(self, result: activity_search.SafetyResult, limit: int) -> None:
@@ -196,7 +202,7 @@ class _Checker:
         return node.label, node.origin
 
     def _find_stuck(self, dead: frozenset[str], reachable: set[str]) -> Iterator[TokenNode]:
-        """Yield the dead nodes of which tokens reach some edges, but never all."""
+        """Yield the dead nodes that tokens reach on some incoming edges, but never on all."""
         for id in sorted(dead & reachable, key=[n.id for n in self.tokens.nodes].index):
             node = self.tokens.node(id)
             sources = [edge.source for edge in self.tokens.incoming(node)]
@@ -213,6 +219,7 @@ def _guard_condition(edge: TokenEdge) -> Formula:
 def _find_overlap(
     open_sets: list[list[TokenEdge]] | None, guarded: list[TokenEdge]
 ) -> list[TokenEdge]:
+    # Above the limit of enumeration, any two guards may be open together.
     if open_sets is None:
         return guarded if len(guarded) > 1 else []
     return max(open_sets, key=len, default=[]) if any(len(s) > 1 for s in open_sets) else []

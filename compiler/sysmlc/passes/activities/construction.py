@@ -1,9 +1,9 @@
-"""Construction of the token graph of a drawing: drawn nodes and flows, and what UML implies.
+"""Construction of the token graph of a drawing: drawn nodes and flows, and those that UML implies.
 
-Implied are: the start of actions without incoming flows (an accept action listens again after each
+UML implies the start of actions without incoming flows (an accept action listens again after each
 event), the fork after an action, the join before it, the merge at a pin that several flows reach,
-the choice at an object node that several flows leave, and the order of a sequence node. The shapes
-of the drawn nodes are checked.
+the choice at an object node that several flows leave, and the order of a sequence node. The module
+also reports control nodes with flows that UML does not allow.
 """
 
 from collections.abc import Iterator
@@ -45,7 +45,7 @@ from sysmlc.passes.activities.regions import (
 def build(
     graph: Graph, drawing: Drawing, inputs: Inputs, raising: Raising, sink: Sink
 ) -> TokenGraph:
-    """Return the token graph of a drawing. Reports shapes that UML asks to be drawn otherwise."""
+    """Return the token graph of a drawing. Reports nodes with flows that UML does not allow."""
     draft = Draft(graph, drawing, inputs, raising, sink)
     # Before the nodes: pins of chained nodes are not reported as open.
     chain_handler_bodies(draft)
@@ -67,24 +67,28 @@ def build(
 
 
 def _check_events(draft: Draft) -> None:
-    for event, takers in draft.takers.items():
-        if len(takers) > 1:
-            names = " and ".join(draft.drawing.labels[node.id] for node in takers)
-            subject = draft.graph.subject(takers[0])
+    for event, accept_actions in draft.accept_actions.items():
+        if len(accept_actions) > 1:
+            names = " and ".join(draft.drawing.labels[node.id] for node in accept_actions)
+            subject = draft.graph.subject(accept_actions[0])
             draft.sink.report(rules.SHARED_EVENT, subject, nodes=names, event=event)
 
 
 def _find_listening_actions(draft: Draft, regions: Regions) -> None:
-    """Let accept actions without flows listen when a token enters their interruptible region."""
+    """Record the accept actions that listen once a token enters their interruptible region.
+
+    These are the actions without incoming flows, if the region is not entered at the start.
+    """
     for region, members in regions:
         idle_actions = [e for e in members if e.subkind in ACCEPTS and not draft.incoming[e.id]]
         for node in idle_actions if is_entered_later(draft.graph, members) else ():
-            draft.listening[node.id] = region.id
+            draft.listening_regions[node.id] = region.id
 
 
 def _finish(draft: Draft, regions: Regions) -> TokenGraph:
     activity = draft.drawing.activity
     rounds = list(_list_rounds(draft))
+    # A new round of a loop removes the tokens that the last round left, like an interruption.
     round_of_edge = {edge: round.id for edges, round in rounds for edge in edges}
     edges = (
         replace(edge, interrupts=round_of_edge[edge.id]) if edge.id in round_of_edge else edge
@@ -112,7 +116,7 @@ def _describe_regions(draft: Draft, regions: Regions) -> Iterator[Interruptible]
 
 
 def _list_members(draft: Draft, elements: list[Element]) -> tuple[str, ...]:
-    """Return the nodes of the region and the nodes added for them and their pins."""
+    """Return the ids of token nodes that stand for the elements, and of those added for them."""
     owners = {element.id for element in elements}
     return tuple(
         node.id
@@ -123,7 +127,7 @@ def _list_members(draft: Draft, elements: list[Element]) -> tuple[str, ...]:
 
 def _list_exception_regions(draft: Draft) -> Iterator[Interruptible]:
     """Yield for each exception the nodes that lose their tokens when it ends a structured node."""
-    for id, catcher in draft.ended.items():
+    for id, catcher in draft.ended_nodes.items():
         members = (
             node.id
             for node in draft.nodes.values()
@@ -134,7 +138,7 @@ def _list_exception_regions(draft: Draft) -> Iterator[Interruptible]:
 
 def _list_rounds(draft: Draft) -> Iterator[tuple[list[str], Interruptible]]:
     """Yield for each loop the nodes that lose their remaining tokens when a new round begins."""
-    for id, back_edges in draft.rounds.items():
+    for id, back_edges in draft.back_edges.items():
         edges = [e for e in draft.edges if e.region == id and draft.graph[e.origin].kind in FLOWS]
         members = dict.fromkeys(end for edge in edges for end in (edge.source, edge.target))
         if members:
@@ -144,7 +148,7 @@ def _list_rounds(draft: Draft) -> Iterator[tuple[list[str], Interruptible]]:
 
 # -- nodes -------------------------------------------------------------------------------------
 
-_CONTROLS = {
+_CONTROL_KINDS = {
     "initial": NodeKind.INITIAL,
     "final": NodeKind.ACTIVITY_FINAL,
     "flow-final": NodeKind.FLOW_FINAL,
@@ -153,27 +157,27 @@ _CONTROLS = {
     "fork": NodeKind.FORK,
     "join": NodeKind.JOIN,
 }
-_SILENT_WORDS = (
+_SILENT_SUBKINDS = (
     "value read read-self read-extent read-link read-link-object-end read-variable "
     "read-is-classified-object test-identity unmarshall reduce"
 )
-_PULSE_WORDS = (
+_PULSE_SUBKINDS = (
     "send broadcast send-object reply raise start start-object-behavior start-classifier-behavior "
     "write clear remove create destroy reclassify create-link destroy-link create-link-object "
     "clear-association add-structural-feature-value add-variable-value remove-variable-value "
     "clear-variable assign"
 )
-_SILENT = frozenset(_SILENT_WORDS.split(" "))
-_PULSES = frozenset(_PULSE_WORDS.split(" "))
-_SHORT = {"initial": "start", "final": "end"}
-_OUTPUTS = {"send": "send", "broadcast": "send", "send-object": "send", "reply": "reply"}
+_SILENT_ACTIONS = frozenset(_SILENT_SUBKINDS.split(" "))
+_PULSE_ACTIONS = frozenset(_PULSE_SUBKINDS.split(" "))
+_DEFAULT_NAMES = {"initial": "start", "final": "end"}
+_OUTPUT_PREFIXES = {"send": "send", "broadcast": "send", "send-object": "send", "reply": "reply"}
 
 
 def add_node(draft: Draft, node: Element) -> None:
     """Add the token node of a drawn node, and the variables that it needs."""
     label = draft.drawing.labels[node.id]
     kind = _classify_node(draft, node)
-    short = identifier(node.name or _SHORT.get(node.subkind, label))
+    short = identifier(node.name or _DEFAULT_NAMES.get(node.subkind, label))
     draft.put_node(TokenNode(node.id, kind, label, node.id, draft.drawing.region[node.id]), short)
     if kind is NodeKind.ACTION:
         draft.put_node(_add_action_variables(draft, node, draft.nodes[node.id]), short)
@@ -202,7 +206,9 @@ def _classify_node(draft: Draft, node: Element) -> NodeKind:
 
 
 def _classify_control(draft: Draft, node: Element) -> NodeKind:
-    kind = _CONTROLS.get(node.subkind, NodeKind.MERGE)
+    kind = _CONTROL_KINDS.get(node.subkind, NodeKind.MERGE)
+    # A fork has one incoming flow. With several it is taken as a join and a fork, and a join also
+    # offers a token to all its outgoing flows.
     if kind is NodeKind.FORK and len(draft.incoming[node.id]) > 1:
         return NodeKind.JOIN
     return kind
@@ -210,19 +216,19 @@ def _classify_control(draft: Draft, node: Element) -> NodeKind:
 
 def _add_action_variables(draft: Draft, node: Element, token_node: TokenNode) -> TokenNode:
     """Return the token node of an action with the variables of its start and end."""
-    if node.subkind in _SILENT:
+    if node.subkind in _SILENT_ACTIONS:
         return replace(token_node, duration=Duration.SILENT)
-    short = draft.short[node.id]
-    prefix = _OUTPUTS.get(node.subkind, "run")
+    short = draft.short_names[node.id]
+    prefix = _OUTPUT_PREFIXES.get(node.subkind, "run")
     called_name = _find_called_name(draft, node) if prefix != "run" else ""
     run = draft.inputs.names.new(f"{prefix}_{identifier(called_name) if called_name else short}")
-    if node.subkind in _PULSES or node.attrs.get("synchronous") is False:
+    if node.subkind in _PULSE_ACTIONS or node.attrs.get("synchronous") is False:
         # The caller does not wait for the end of an asynchronous call (UML 2.5.1, 16.3.3).
         return replace(token_node, duration=Duration.PULSE, run=run)
     if node.subkind in ACCEPTS:
         end_condition, names = read_events(draft.inputs, node)
         for name in names:
-            draft.takers.setdefault(name, []).append(node)
+            draft.accept_actions.setdefault(name, []).append(node)
         return replace(token_node, run=run, done=end_condition)
     return replace(token_node, run=run, done=draft.inputs.declare_pulse(f"done_{short}", node))
 
@@ -234,6 +240,7 @@ def _find_called_name(draft: Draft, node: Element) -> str:
 
 def _check_pins(draft: Draft, node: Element) -> None:
     connected = {flow.target_pin.id for flow in draft.incoming[node.id] if flow.target_pin}
+    # The exception fills the input pin of a handler body, without a drawn flow.
     if node.id in draft.chained:
         return
     for pin in draft.graph.owned(node):
@@ -246,7 +253,7 @@ def _check_pins(draft: Draft, node: Element) -> None:
 
 
 def _check_shape(draft: Draft, node: Element) -> None:
-    """Report a control node with two jobs, such as a merge with several outgoing flows."""
+    """Report a control node that stands for two, such as a merge with several outgoing flows."""
     if node.kind is not Kind.CONTROL:
         return
     incoming, outgoing = len(draft.primary_flows(node)), len(draft.outgoing[node.id])
@@ -259,7 +266,9 @@ def _check_shape(draft: Draft, node: Element) -> None:
     is_combined, drawn, meaning = shapes.get(node.subkind, (False, "", ""))
     if is_combined:
         subject, label = draft.graph.subject(node), draft.drawing.labels[node.id]
-        draft.sink.report(rules.TWO_IN_ONE, subject, node=label, drawn=drawn, meaning=meaning)
+        draft.sink.report(
+            rules.COMBINED_CONTROL_NODE, subject, node=label, drawn=drawn, meaning=meaning
+        )
 
 
 def _check_ends(draft: Draft, node: Element, kind: NodeKind) -> None:
@@ -272,4 +281,4 @@ def _check_ends(draft: Draft, node: Element, kind: NodeKind) -> None:
         flows = "outgoing flows"
     if flows:
         subject, label = draft.graph.subject(node), draft.drawing.labels[node.id]
-        draft.sink.report(rules.ODD_END, subject, node=label, flows=flows)
+        draft.sink.report(rules.MISPLACED_FLOW, subject, node=label, flows=flows)

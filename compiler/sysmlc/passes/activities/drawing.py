@@ -1,7 +1,7 @@
 """The drawing of an activity: nodes with their regions, and flows with both ends.
 
-A structured node is a region of its own. The tests, bodies and set-ups of loops and conditionals
-become structured nodes too (``Part``), so that each of them starts and ends as a whole.
+A structured node is a region of its own. Each test, body and set-up of a loop or conditional
+becomes a structured node too (``Part``), so that it starts and ends as a whole.
 """
 
 from collections.abc import Iterator
@@ -63,7 +63,7 @@ class Drawing:
 
     activity: Element
     inside: list[Element]
-    """The activity and all that is in it."""
+    """The activity and its content, nested content included."""
     nodes: list[Element] = field(default_factory=list)
     flows: list[Flow] = field(default_factory=list)
     region: dict[str, str] = field(default_factory=dict)
@@ -72,11 +72,11 @@ class Drawing:
     handlers: dict[str, list[Handler]] = field(default_factory=dict)
 
     def incoming(self, node: Element) -> list[Flow]:
-        """Return the flows that reach the node or one of its pins from outside."""
+        """Return the flows to the node or its pins, without flows from inside the node."""
         return [flow for flow in self.flows if flow.target is node and not flow.leaves]
 
     def outgoing(self, node: Element) -> list[Flow]:
-        """Return the flows that leave the node or one of its pins to the outside."""
+        """Return the flows from the node or its pins, without flows to nodes inside the node."""
         return [flow for flow in self.flows if flow.source is node and not flow.enters]
 
     def enclosing_regions(self, region: str) -> Iterator[str]:
@@ -96,17 +96,22 @@ class Drawing:
 
 
 def read_drawing(graph: Graph, activity: Element, sink: Sink) -> Drawing:
-    """Return the drawing of an activity. Reports why and raises CannotPlayError."""
+    """Return the drawing of an activity.
+
+    Raises CannotPlayError if the activity can have no token graph; the reason has been reported.
+    """
     drawing = Drawing(activity, list(graph.subtree(activity)))
-    # Groups and borders are no regions: their nodes belong to the region around them.
+    # Groups and expansion nodes are no regions: nodes in them belong to the region around them.
     groups = find_groups(graph, drawing.inside)
-    borders = find_expansion_nodes(graph, drawing.inside)
-    _collect_nodes(graph, drawing, activity, ACTIVITY_REGION, frozenset([*groups, *borders]))
+    expansion_nodes = find_expansion_nodes(graph, drawing.inside)
+    _collect_nodes(
+        graph, drawing, activity, ACTIVITY_REGION, frozenset([*groups, *expansion_nodes])
+    )
     _name_nodes(drawing)
     for group in filter(lambda node: is_entered_again(graph, node), groups.values()):
         label = f"structured node '{group.name}'" if group.name else "a structured node"
         sink.report(rules.GROUPING, graph.subject(group), node=label)
-    reader = _Reader(graph, drawing, sink, borders)
+    reader = _Reader(graph, drawing, sink, expansion_nodes)
     reader.check_nodes()
     reader.read_flows()
     if reader.has_failed:
@@ -153,17 +158,17 @@ def _describe_kind(node: Element) -> str:
 
 
 class _Reader:
-    """Finds the ends of flows, and reports elements that have no meaning in a token graph."""
+    """Finds the ends of flows, and reports elements that a token graph cannot express."""
 
     def __init__(
-        self, graph: Graph, drawing: Drawing, sink: Sink, borders: dict[str, Element]
+        self, graph: Graph, drawing: Drawing, sink: Sink, expansion_nodes: dict[str, Element]
     ) -> None:
         self.graph = graph
         self.drawing = drawing
         self.sink = sink
-        self.borders = borders
+        self.expansion_nodes = expansion_nodes
         self.has_failed = False
-        self.known = {node.id for node in drawing.nodes}
+        self.node_ids = {node.id for node in drawing.nodes}
 
     def check_nodes(self) -> None:
         for node in self.drawing.nodes:
@@ -172,7 +177,7 @@ class _Reader:
             if node.subkind == "expansion" and node.attrs.get("mode") != "iterative":
                 mode = str(node.attrs.get("mode") or "parallel")
                 subject = self.graph.subject(node)
-                self.sink.report(rules.AT_ONCE, subject, node=label, mode=mode)
+                self.sink.report(rules.PARALLEL_EXPANSION, subject, node=label, mode=mode)
             if _is_special_join(node):
                 text = str(node.attrs["join_spec"])
                 self.sink.report(rules.JOIN_SPEC, self._fail(node), node=label, text=text)
@@ -181,7 +186,7 @@ class _Reader:
     def _read_handlers(self, node: Element, label: str) -> None:
         if "handlers" not in node.attrs:
             return
-        handlers = [h for h in handlers_of(self.graph, node) if h.body.id in self.known]
+        handlers = [h for h in handlers_of(self.graph, node) if h.body.id in self.node_ids]
         if handlers:
             self.drawing.handlers[node.id] = handlers
         if len(handlers) < count_handlers(node):
@@ -198,7 +203,9 @@ class _Reader:
             if self.drawing.region[member.id] == node.id and member.kind in works
         ]
         if unlisted or not inside:
-            self.sink.report(rules.LOOSE_NODES, self._fail(node), node=label, kind=node.subkind)
+            self.sink.report(
+                rules.UNLISTED_ACTIONS, self._fail(node), node=label, kind=node.subkind
+            )
 
     def read_flows(self) -> None:
         for element in self._list_flow_elements():
@@ -229,11 +236,12 @@ class _Reader:
         return self._assign_region(Flow(element, source[0], target[0], source[1], target[1]))
 
     def _find_end(self, element: Element, edge: Edge) -> tuple[Element, Element | None] | None:
-        """Return the node at an end and its pin, or None if the end was reported."""
+        """Return the node at an end of a flow and its pin, or None if the end is missing."""
         attached = self.graph.target(element, edge)
         node = attached
-        while node is not None and node.id not in self.known:
-            node = self.borders.get(node.id) or self.graph.owner(node)
+        while node is not None and node.id not in self.node_ids:
+            node = self.expansion_nodes.get(node.id) or self.graph.owner(node)
+        # The pass `resolve` has reported an end that leads to a missing element.
         unresolved = element.attrs.get("unresolved")
         if node is None and isinstance(unresolved, tuple) and edge.value in unresolved:
             self.has_failed = True
@@ -241,7 +249,7 @@ class _Reader:
         if node is None:
             end = "source" if edge is Edge.FLOW_SOURCE else "target"
             self.sink.report(
-                rules.LOOSE_FLOW, self._fail(element), flow=self._label_flow(element), end=end
+                rules.MISSING_FLOW_END, self._fail(element), flow=self._label_flow(element), end=end
             )
             return None
         return node, None if attached is node else attached
@@ -264,14 +272,14 @@ class _Reader:
         )
 
     def _find_part(self, regions: list[str], node: Element) -> str:
-        """Return the part of the structured node among the regions, or the node itself."""
+        """Return the region among *regions* that is a part of the node, or else the node itself."""
         parts = {part.id for part in self.drawing.parts.get(node.id, ())}
         return next((region for region in regions if region in parts), node.id)
 
     def _assign_region_of_own_pins(self, flow: Flow) -> Flow:
         """Assign the region of a flow between pins of one node.
 
-        From an input pin to an output pin of a structured node, the value passes through the node.
+        A flow from an input pin to an output pin of a structured node is inside the node.
         """
         pins = (flow.source_pin, flow.target_pin)
         if flow.source.kind is Kind.STRUCTURED and None not in pins and _passes_through(*pins):
@@ -287,7 +295,7 @@ class _Reader:
 
     def _label_end(self, element: Element, edge: Edge) -> str:
         node = self.graph.target(element, edge)
-        while node is not None and node.id not in self.known:
+        while node is not None and node.id not in self.node_ids:
             node = self.graph.owner(node)
         return "" if node is None else self.drawing.labels[node.id]
 
@@ -298,7 +306,7 @@ class _Reader:
 
 
 def flow_label(element: Element, source: str, target: str) -> str:
-    """Return the name of a flow in messages."""
+    """Return the text that names a flow in messages."""
     ends = f" from {source}" * bool(source) + f" to {target}" * bool(target)
     return f"the flow{ends}" if ends else f"flow '{element.name}'"
 

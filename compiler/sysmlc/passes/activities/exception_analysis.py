@@ -14,9 +14,9 @@ _BODIES = ("opaque", "function")
 class Raising(Struct, frozen=True):
     """Ids of the behaviours and operations that may end with an exception.
 
-    ``drawn`` are those with a raise action on some path of calls; ``possible`` also holds those
-    about which nothing is known: operations without method and behaviours of other files. A text
-    body raises nothing.
+    ``drawn`` holds those from which some path of calls leads to a raise action. ``possible`` also
+    holds those whose behaviour is unknown, and their callers: operations without a method, and
+    behaviours of other files. A behaviour with a text body is assumed to raise nothing.
     """
 
     drawn: frozenset[str]
@@ -24,7 +24,7 @@ class Raising(Struct, frozen=True):
 
 
 def find_raising(graph: Graph) -> Raising:
-    """Propagate raise actions from callee to caller, up to the handler that catches them."""
+    """Propagate exceptions from callees to callers, but not through calls with a handler."""
     actions = [
         action for action in graph.of_kind(Kind.ACTION) if action.subkind in (*CALLS, "raise")
     ]
@@ -100,8 +100,9 @@ def _walk_callers(first: Iterable[str], callers: dict[str, list[str]]) -> Iterat
 
 
 def may_raise(graph: Graph, action: Element, raising: frozenset[str], unknown: bool) -> bool:
-    """Whether the action calls a behaviour in *raising*; *unknown* is the answer if it calls
-    nothing.
+    """Whether the action calls a behaviour in *raising*.
+
+    *unknown* is the result for an action whose callee the model does not name.
     """
     called = _called_by(graph, action)
     return any(behaviour.id in raising for behaviour in called) if called else unknown

@@ -15,13 +15,13 @@ from sysmlc.passes.activities.regions import Handler
 
 
 def chain_handler_bodies(draft: Draft) -> None:
-    """Mark the bodies of handlers as chained, so that they do not start by themselves."""
+    """Mark the bodies of handlers as chained: only an exception starts them."""
     for handlers in draft.drawing.handlers.values():
         draft.chained.update(handler.body.id for handler in handlers)
 
 
 def add_exceptions(draft: Draft) -> None:
-    """Add the edges from raising actions to handlers, and from handlers to what follows."""
+    """Add the edges from raising actions to handlers, and from handlers to the next nodes."""
     for id in draft.drawing.handlers:
         _add_handlers(draft, draft.graph[id])
     for node in draft.drawing.nodes:
@@ -32,12 +32,19 @@ def add_exceptions(draft: Draft) -> None:
     for id in draft.drawing.handlers:
         node = draft.graph[id]
         outcome = derived_id(node.id, "outcome")
-        if node.subkind != "raise" and outcome in draft.nodes and node.id not in draft.failing:
+        if (
+            node.subkind != "raise"
+            and outcome in draft.nodes
+            and node.id not in draft.failing_calls
+        ):
             draft.add_edge(node.id, outcome, node, draft.nodes[outcome].region)
 
 
 def _add_handlers(draft: Draft, node: Element) -> None:
-    """Add the handlers of a protected node; the type of the exception selects one."""
+    """Add the edges to the handlers of a protected node and from them to its outcome.
+
+    If there are several handlers, a decision selects one by the type of the exception.
+    """
     label, region = draft.drawing.labels[node.id], draft.drawing.region[node.id]
     caught = draft.ensure_node(node, "caught", NodeKind.MERGE, f"the exception of {label}", region)
     handlers = _drop_covered_handlers(draft.drawing.handlers[node.id])
@@ -56,7 +63,7 @@ def _add_handlers(draft: Draft, node: Element) -> None:
 
 
 def _drop_covered_handlers(handlers: list[Handler]) -> list[Handler]:
-    """Return the handlers without those whose types an earlier handler catches."""
+    """Return the handlers without those that catch the same types as an earlier handler."""
     by_types: dict[tuple[str, ...], Handler] = {}
     for handler in handlers:
         by_types.setdefault(handler.types, handler)
@@ -69,9 +76,14 @@ def _choose_handler(draft: Draft, node: Element, caught: str, handlers: list[Han
     choice = draft.ensure_node(node, "type", NodeKind.DECISION, label, region)
     draft.add_edge(caught, choice.id, node, region)
     names = [_name_types(draft, handler) for handler in handlers]
-    answer = draft.inputs.declare_answer(f"exception_{draft.short[node.id]}", names, node)
+    decision_input = draft.inputs.declare_decision_input(
+        f"exception_{draft.short_names[node.id]}", names, node
+    )
     for handler, name in zip(handlers, names, strict=True):
-        region_of_both, guard = draft.drawing.common_region(node, handler.body), answer.equals(name)
+        region_of_both, guard = (
+            draft.drawing.common_region(node, handler.body),
+            decision_input.equals(name),
+        )
         draft.add_edge(choice.id, handler.body.id, node, region_of_both, guard=Guard(name, guard))
     uncaught = _ensure_uncaught_final(draft)
     draft.add_edge(choice.id, uncaught, node, ACTIVITY_REGION, guard=Guard("else", None))
@@ -83,11 +95,11 @@ def _name_types(draft: Draft, handler: Handler) -> str:
     return " or ".join(names) or draft.drawing.labels[handler.body.id]
 
 
-# -- what raises -------------------------------------------------------------------------------
+# -- raising actions ---------------------------------------------------------------------------
 
 
 def _find_catcher(draft: Draft, node: Element) -> Element | None:
-    """Return the innermost protected node that the node is or is in."""
+    """Return the innermost node with handlers that is the node or contains it, or None."""
     for id in (node.id, *draft.drawing.enclosing_regions(draft.drawing.region[node.id])):
         if id in draft.drawing.handlers:
             return draft.graph[id]
@@ -101,14 +113,17 @@ def _add_raise(draft: Draft, node: Element) -> None:
 
 
 def _add_unreachable_end(draft: Draft, node: Element) -> str:
-    """Return the node that the flows after a raise action leave; no token reaches it."""
+    """Return the source of the drawn flows after a raise action. No token ever reaches it."""
     label = f"the end of {draft.drawing.labels[node.id]}"
     region = draft.drawing.region[node.id]
     return draft.ensure_node(node, "end", NodeKind.MERGE, label, region).id
 
 
 def _add_throw(draft: Draft, node: Element, source: str, guard: Guard | None) -> None:
-    """Lead the exception to the handlers. A structured node that catches it is ended."""
+    """Add the edge from *source* to the handlers that catch the exception.
+
+    A structured node with these handlers loses its tokens. Without a handler, the activity ends.
+    """
     catcher = _find_catcher(draft, node)
     if catcher is None:
         draft.add_edge(source, _ensure_uncaught_final(draft), node, ACTIVITY_REGION, guard=guard)
@@ -117,14 +132,15 @@ def _add_throw(draft: Draft, node: Element, source: str, guard: Guard | None) ->
         return
     caught = draft.nodes[derived_id(catcher.id, "caught")]
     interrupts = ""
+    # An action that catches its own exception holds no other tokens that it could lose.
     if catcher is not node:
         interrupts = derived_id(catcher.id, "exception")
-        draft.ended[interrupts] = catcher
+        draft.ended_nodes[interrupts] = catcher
     draft.add_edge(source, caught.id, node, caught.region, guard=guard, interrupts=interrupts)
 
 
 def _ensure_uncaught_final(draft: Draft) -> str:
-    """Return the final node in which uncaught exceptions end the activity."""
+    """Return the final node to which uncaught exceptions lead."""
     activity = draft.drawing.activity
     label = "an exception without handler"
     return draft.ensure_node(
@@ -133,10 +149,9 @@ def _ensure_uncaught_final(draft: Draft) -> str:
 
 
 def _may_raise(draft: Draft, node: Element) -> bool:
-    """Whether the end of the action may be an exception.
+    """Whether the action may end with an exception.
 
-    Without a protected node around it, only calls of behaviours that are drawn with a raise action
-    count.
+    Outside protected nodes, this is only assumed of calls that lead to a raise action.
     """
     if node.subkind not in CALLS:
         return False
@@ -147,20 +162,22 @@ def _may_raise(draft: Draft, node: Element) -> bool:
 
 
 def _add_failure(draft: Draft, node: Element) -> None:
-    """Let the environment decide whether a call ends by itself or with an exception."""
+    """Add a decision after a call: an input states whether the call ends with an exception."""
     label, region = draft.drawing.labels[node.id], draft.drawing.region[node.id]
     choice = draft.ensure_node(node, "failure", NodeKind.DECISION, f"the end of {label}", region)
     draft.add_edge(node.id, choice.id, node, region)
-    answer = draft.inputs.declare_answer(f"raised_{draft.short[node.id]}", ["true"], node)
-    guard = Guard("an exception is raised", answer.equals("true"))
+    decision_input = draft.inputs.declare_decision_input(
+        f"raised_{draft.short_names[node.id]}", ["true"], node
+    )
+    guard = Guard("an exception is raised", decision_input.equals("true"))
     _add_throw(draft, node, choice.id, guard)
-    draft.failing.add(node.id)
+    draft.failing_calls.add(node.id)
     normal_end = draft.exits.get(node.id) or _ensure_normal_end(draft, node)
     draft.add_edge(choice.id, normal_end, node, region, guard=Guard("else", None))
 
 
 def _ensure_normal_end(draft: Draft, node: Element) -> str:
-    """Return the node that the flows of a call leave when it has ended by itself."""
+    """Return the node that a call reaches if it ends without an exception."""
     label, region = (
         f"the normal end of {draft.drawing.labels[node.id]}",
         draft.drawing.region[node.id],

@@ -1,4 +1,4 @@
-"""Token edges of flows: where they start and end, and the guards of decisions that they leave."""
+"""Token edges of drawn flows: their source and target nodes, their regions and their guards."""
 
 from sysmlc.ir import Edge, Element, Kind
 from sysmlc.ir.element import derived_id
@@ -8,7 +8,7 @@ from sysmlc.passes.activities import rules
 from sysmlc.passes.activities.draft import Draft, lower_bound
 from sysmlc.passes.activities.drawing import Flow, flow_label
 from sysmlc.passes.activities.implied_control import ROUND
-from sysmlc.passes.activities.inputs import Answer
+from sysmlc.passes.activities.inputs import DecisionInput
 
 
 def add_flow(draft: Draft, flow: Flow) -> None:
@@ -39,7 +39,7 @@ def _add_edge(
 
 
 def _find_region(draft: Draft, flow: Flow, target: str) -> str:
-    """Return the region of the flow, or the one around it with the merge at its target."""
+    """Return the region of the flow, or an outer region if the merge at its target is there."""
     target_region = draft.nodes[target].region
     if target_region == flow.region:
         return target_region
@@ -58,6 +58,7 @@ def _find_interrupted_region(draft: Draft, flow: Flow) -> str:
     region = draft.graph.get(id) if isinstance(id, str) else None
     if region is None or region.subkind != "interruptible":
         return ""
+    # The flow may name a region of another activity, which it cannot interrupt.
     is_here = any(above is draft.drawing.activity for above in draft.graph.ancestors(region))
     if not is_here or not _is_inside(draft, flow.target, region):
         return region.id if is_here else ""
@@ -77,7 +78,7 @@ def _is_inside(draft: Draft, node: Element, region: Element) -> bool:
 
 
 def _find_entry(draft: Draft, flow: Flow) -> str:
-    """Return the token node at which the flow ends."""
+    """Return the id of the token node at which the edge of the flow ends."""
     node = flow.target
     if flow.leaves:
         role = draft.qualify_role("result", node, flow.region)
@@ -93,7 +94,7 @@ def _find_entry(draft: Draft, flow: Flow) -> str:
 
 
 def _needs_all(pin: Element, flows: int) -> bool:
-    """Whether the pin requires as many values as it has flows (UML 2.5.1, 16.2.3)."""
+    """Whether the pin requires as many values as flows lead to it (UML 2.5.1, 16.2.3)."""
     return lower_bound(pin) == flows
 
 
@@ -113,8 +114,8 @@ def _ensure_entry_merge(draft: Draft, flow: Flow, origin: Element, flows: list[F
 def _find_merge_region(draft: Draft, owner: Element, flows: list[Flow]) -> str:
     """Return the region of the merge before a node.
 
-    It is the region of the node. If all flows come from outside, it is the innermost region that
-    holds them all: the region of the node would wait for the merge inside it.
+    The merge is in the region of the node. If all flows come from outside, it is in the innermost
+    region that holds all flows, because the region of the node would wait for a merge inside it.
     """
     regions = list(draft.drawing.enclosing_regions(draft.drawing.region[owner.id]))
     flow_regions = {flow.region for flow in flows}
@@ -126,7 +127,7 @@ def _find_merge_region(draft: Draft, owner: Element, flows: list[Flow]) -> str:
 
 
 def _find_exit(draft: Draft, flow: Flow) -> tuple[str, bool, str | None]:
-    """Return the source node, whether it starts with a token, and its decision, if any."""
+    """Return the source node, whether the edge is marked at the start, and the decision or None."""
     node = flow.source
     if flow.enters:
         return _find_inner_exit(draft, flow)
@@ -145,7 +146,7 @@ def _find_exit(draft: Draft, flow: Flow) -> tuple[str, bool, str | None]:
 
 
 def _find_inner_exit(draft: Draft, flow: Flow) -> tuple[str, bool, str | None]:
-    """Return the start of the region, or the start of each round of a loop."""
+    """Return the exit of a flow that enters a region: the start of the region or of each round."""
     node = flow.source
     rounds = derived_id(node.id, ROUND)
     if flow.region == node.id and rounds in draft.nodes:
@@ -168,13 +169,13 @@ def _ensure_exit_choice(
 
 
 def _has_no_guard(draft: Draft, flow: Flow) -> bool:
-    """Whether the flow has no guard, or the literal true that tools write by themselves."""
+    """Whether the flow has no guard, or the literal ``true`` that tools write by default."""
     text = _guard_text(flow)
     return not text or (text == "true" and flow.element.attrs.get("guard_literal") is True)
 
 
 def _add_waiting_guard(draft: Draft, flow: Flow, source: str, marked: bool) -> str:
-    """Add a decision with one branch, for a guard on a flow that leaves no decision."""
+    """Add a decision with one branch, for a guard on a flow that does not leave a decision."""
     source_label = draft.nodes[source].label
     label = f"the guard after {source_label}"
     region = draft.nodes[source].region
@@ -200,19 +201,20 @@ def _read_guard(draft: Draft, flow: Flow, decision: str) -> Guard | None:
 
 
 def _read_literal_guard(draft: Draft, flow: Flow, decision: str, text: str) -> Guard | None:
-    answer = _find_answer(draft, flow.source, decision)
-    if answer is None:
+    decision_input = _find_decision_input(draft, flow.source, decision)
+    if decision_input is None:
         return None if text == "true" else Guard(text, f.FALSE)
-    return Guard(text, answer.equals(text))
+    return Guard(text, decision_input.equals(text))
 
 
-def _find_answer(draft: Draft, node: Element, decision: str) -> Answer | None:
-    """Return the input that a decision compares with literals, or None.
+def _find_decision_input(draft: Draft, node: Element, decision: str) -> DecisionInput | None:
+    """Return the input that a decision compares with its literal guards, or None.
 
-    It stands for the decision input, or for the object that the decision passes on.
+    The input stands for the decision input of UML, or else for the object that the decision passes
+    on.
     """
-    if decision in draft.answers:
-        return draft.answers[decision]
+    if decision in draft.decision_inputs:
+        return draft.decision_inputs[decision]
     if node.subkind != "decision":
         return None
     has_input = bool(node.attrs.get("decision_input") or node.attrs.get("decision_input_flow"))
@@ -221,23 +223,25 @@ def _find_answer(draft: Draft, node: Element, decision: str) -> Answer | None:
     literals = [
         _guard_text(g) for g in draft.outgoing[node.id] if g.element.attrs.get("guard_literal")
     ]
-    answer = draft.inputs.declare_answer(f"input_{draft.short[node.id]}", literals, node)
-    draft.answers[decision] = answer
-    return answer
+    decision_input = draft.inputs.declare_decision_input(
+        f"input_{draft.short_names[node.id]}", literals, node
+    )
+    draft.decision_inputs[decision] = decision_input
+    return decision_input
 
 
 def add_default_branch(draft: Draft, node: Element) -> None:
-    """Let a token end at a decision that has no branch for its value, as in fUML.
+    """Add a branch that removes a token whose value equals none of the literal guards, as in fUML.
 
-    The value of a token never changes: by UML it would wait there for ever.
+    By UML the token would wait at the decision forever, because its value never changes.
     """
-    answer = draft.answers.get(node.id)
-    if answer is None:
+    decision_input = draft.decision_inputs.get(node.id)
+    if decision_input is None:
         return
     flows = draft.outgoing[node.id]
     texts = list(dict.fromkeys(_guard_text(flow) for flow in flows))
     is_literal = all(flow.element.attrs.get("guard_literal") is True for flow in flows)
-    if not is_literal or answer.is_covered(texts):
+    if not is_literal or decision_input.is_covered(texts):
         return
     label, region = draft.drawing.labels[node.id], draft.drawing.region[node.id]
     rest = draft.ensure_node(node, "rest", NodeKind.SINK, "no branch", region)

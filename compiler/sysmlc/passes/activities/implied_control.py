@@ -28,7 +28,7 @@ def expand_structured_node(draft: Draft, node: Element) -> None:
     parts = draft.drawing.parts.get(node.id, [])
     for part in parts:
         label = f"the {part.word} of {draft.drawing.labels[node.id]}"
-        short = f"{identifier(part.word)}_{draft.short[node.id]}"
+        short = f"{identifier(part.word)}_{draft.short_names[node.id]}"
         run = draft.inputs.names.new(f"run_{short}")
         token_node = TokenNode(part.id, NodeKind.STRUCTURED, label, node.id, node.id, run=run)
         draft.put_node(token_node, short)
@@ -47,13 +47,15 @@ def _add_control_node(draft: Draft, node: Element, role: str, kind: NodeKind) ->
 
 
 def _declare_guard(draft: Draft, node: Element, role: str, text: str) -> Guard:
-    """Return the guard that a new input of the environment is true."""
-    name = identifier(f"{role}_{draft.short[node.id]}")
-    return Guard(text, draft.inputs.declare_answer(f"input_{name}", ["true"], node).equals("true"))
+    """Declare a Boolean input and return the guard that it is true."""
+    name = identifier(f"{role}_{draft.short_names[node.id]}")
+    return Guard(
+        text, draft.inputs.declare_decision_input(f"input_{name}", ["true"], node).equals("true")
+    )
 
 
 def _add_decision(draft: Draft, node: Element, part: Part | None, role: str) -> tuple[str, Guard]:
-    """Add the decision after a test. Return it with the guard that the test is true."""
+    """Add the decision after a test. Return its id and the guard of the branch for true."""
     text = f"{role} is true"
     decision = _add_control_node(draft, node, f"decision after {role}", NodeKind.DECISION)
     value = _find_constant(draft, node, part, role)
@@ -63,7 +65,7 @@ def _add_decision(draft: Draft, node: Element, part: Part | None, role: str) -> 
 
 
 def _find_constant(draft: Draft, node: Element, part: Part | None, role: str) -> bool | None:
-    """Return the value of a test that is a literal (``else``, ``while (true)``), or None."""
+    """Return the value of a test that is a literal, as of ``while (true)`` or ``else``, or None."""
     decider = draft.graph.get(_find_decider(node, role))
     if decider is not None:
         return _read_literal(draft.graph.owner(decider))
@@ -76,7 +78,7 @@ def _find_constant(draft: Draft, node: Element, part: Part | None, role: str) ->
 
 
 def _find_decider(node: Element, role: str) -> str:
-    """Return the id of the pin whose value decides a test, as far as the model names one."""
+    """Return the id of the pin whose value decides a test, or "" if the model names none."""
     if node.subkind == "loop":
         return str(node.attrs.get("decider") or "")
     outputs = node.attrs.get("clause_outputs")
@@ -116,14 +118,14 @@ def _connect_loop(draft: Draft, node: Element, parts: dict[str, Part]) -> None:
     after_decision = body if is_tested_first else []
     draft.add_path(node, merge, *loop_variables, *before_decision, decision)
     back_edges = draft.add_path(node, decision, *after_decision, merge, guard=guard)
-    draft.rounds[node.id] = [back_edges[-1].id]
-    # Without this test a loop `while (true)` would have an exit that is never taken.
+    draft.back_edges[node.id] = [back_edges[-1].id]
+    # Without this condition a loop `while (true)` would have an exit that is never taken.
     if guard.condition != f.TRUE:
         draft.add_path(node, decision, end, guard=Guard("else", None))
 
 
 def _connect_expansion(draft: Draft, node: Element, part: Part) -> None:
-    """Connect one round for each element, or one round for all elements at once."""
+    """Connect an expansion region: a loop over the elements, or one step if it is not iterative."""
     begin = _add_control_node(draft, node, "begin", NodeKind.INITIAL)
     end = _add_control_node(draft, node, "end", NodeKind.SINK)
     if node.attrs.get("mode") != "iterative":
@@ -149,13 +151,14 @@ def _connect_clauses(draft: Draft, node: Element, parts: dict[str, Part]) -> Non
         draft.add_path(node, source, *steps, decision, marked=marked, guard=guard_of_next)
         draft.add_path(node, decision, *([body.id] if body else []), end, guard=guard)
         source, marked, guard_of_next = decision, False, Guard("else", None)
+        # A clause whose test is the literal true is the else clause: no other can follow it.
         if guard.condition == f.TRUE:
             return
     draft.add_path(node, source, end, guard=guard_of_next)
 
 
 def chain_sequence_node(draft: Draft, node: Element) -> None:
-    """Connect the nodes of a sequence node in their order."""
+    """Connect the nodes of a sequence node in the order in which they are listed."""
     if node.subkind != "sequence":
         return
     steps = [
@@ -171,9 +174,9 @@ def chain_sequence_node(draft: Draft, node: Element) -> None:
 
 
 def add_implied_start(draft: Draft, node: Element) -> None:
-    """Let a node start with its region unless a flow from inside the region starts it.
+    """Start a node with its region, unless a flow from inside the region starts it.
 
-    It still waits for tokens from outside the region and from data stores (fUML 1.5, 8.10.2).
+    The node still waits for tokens from outside the region and from data stores (fUML 1.5, 8.10.2).
     """
     token_node, incoming = draft.nodes[node.id], draft.edges_into(node.id)
     is_executable = token_node.kind in (NodeKind.ACTION, NodeKind.STRUCTURED)
@@ -183,7 +186,7 @@ def add_implied_start(draft: Draft, node: Element) -> None:
         return
     # An accept action without incoming flows listens again after each event (UML 2.5.1, 16.10.3).
     if node.subkind in ACCEPTS and not incoming:
-        region = draft.listening.get(node.id, "")
+        region = draft.listening_regions.get(node.id, "")
         draft.add_edge(node.id, node.id, node, token_node.region, marked=not region, listens=region)
         return
     start = draft.ensure_node(node, "start", NodeKind.INITIAL, "the start", token_node.region)

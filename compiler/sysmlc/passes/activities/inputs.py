@@ -37,9 +37,9 @@ _CLASSIFIERS = (Kind.CLASS, Kind.COMPONENT, Kind.DATA_TYPE, Kind.INTERFACE, Kind
 
 
 class UnreadableError(ValueError):
-    """The text is no condition over known properties; the message gives the reason.
+    """The text is not a condition over known properties; the message gives the reason.
 
-    ``unknown`` is the unknown name, if the rest of the text could be read.
+    ``unknown`` is the first unknown name, or "" if the text has another fault.
     """
 
     def __init__(self, message: str, unknown: str = "") -> None:
@@ -48,7 +48,7 @@ class UnreadableError(ValueError):
 
 
 class Scope:
-    """The names that an activity knows: its own properties and those of its context."""
+    """Symbol table of an activity: its own properties and those of the classifier around it."""
 
     def __init__(self, graph: Graph, activity: Element, sink: Sink) -> None:
         above = (a for a in graph.ancestors(activity) if a.kind in _CLASSIFIERS)
@@ -56,10 +56,10 @@ class Scope:
         self._outer = context_of(graph, next(above, None))
         self._inner = context_of(graph, activity)
         self._variables = {**self._outer.variables, **self._inner.variables}
-        self._extra: dict[str, Formula] = {}
+        self._declared: dict[str, Formula] = {}
 
     def names(self) -> list[str]:
-        """Return the names of variables, which no other variable may have."""
+        """Return the names of the variables, which new variables must not reuse."""
         return list(self._variables.values())
 
     def find_element(self, name: str) -> Element | None:
@@ -76,12 +76,16 @@ class Scope:
 
     def belongs_to_another_object(self, variable: str) -> bool:
         """Whether the variable stands for a feature of a part or of a referenced object."""
-        return all("." in name for name, known in self._variables.items() if known == variable)
+        return all(
+            "." in name for name, candidate in self._variables.items() if candidate == variable
+        )
 
     def domain_of(self, variable: str) -> Domain:
         """Return the domain of a variable; Boolean if the variable stands for no property."""
         features = (
-            self._feature(name) for name, known in self._variables.items() if known == variable
+            self._feature(name)
+            for name, candidate in self._variables.items()
+            if candidate == variable
         )
         domains = (
             feature.domain
@@ -91,7 +95,10 @@ class Scope:
         return next(domains, BooleanDomain())
 
     def declare_input(self, name: str) -> Variable | None:
-        """Return the variable of a property as an input. Reports an assumed range."""
+        """Return an input variable for the property with this variable name, or None.
+
+        Reports a range that the compiler assumes.
+        """
         return self._make_input(name)
 
     def evaluate(self, expression: Expression, domain: Domain) -> GuardedValue:
@@ -105,8 +112,8 @@ class Scope:
         return result
 
     def declare(self, name: str, formula: Formula) -> None:
-        """Let a name stand for a Boolean input from now on."""
-        self._extra[name] = formula
+        """Declare that a name stands for the formula of a Boolean input."""
+        self._declared[name] = formula
 
     def read(self, text: str) -> tuple[Formula, list[Variable]]:
         """Return a condition and its variables. Raises UnreadableError."""
@@ -123,16 +130,17 @@ class Scope:
         ]
 
     def is_condition(self, text: str, unknown: str) -> bool:
-        """Whether the text could be read if *unknown* were a Boolean."""
-        trial = {**self._extra, unknown: var(unknown)}
+        """Whether the text is a condition if the name *unknown* is a Boolean."""
+        trial = {**self._declared, unknown: var(unknown)}
         try:
             elaborate_condition(parse_expression(text), lambda name: self._find_symbol(name, trial))
         except ElaborationError as error:
+            # Another unknown name is replaced in the next round of `Inputs.read_condition`.
             return error.fault is Fault.UNKNOWN and error.name != unknown
         return True
 
     def _find_symbol(self, name: str, extra: dict[str, Formula] | None = None) -> Symbol | None:
-        declared = self._extra if extra is None else extra
+        declared = self._declared if extra is None else extra
         if name in declared:
             return Symbol(declared[name], BooleanDomain())
         feature = self._feature(name)
@@ -172,7 +180,7 @@ def _feature_value(feature: Feature) -> Formula:
 # -- inputs ------------------------------------------------------------------------------------
 
 OTHER = "other"
-"""The value of a decision's input that none of its guards names."""
+"""The value of a decision's input that stands for all values without a guard."""
 
 
 class Inputs:
@@ -188,19 +196,23 @@ class Inputs:
         self._by_text: dict[str, str] = {}
 
     def declare_pulse(self, prefix: str, origin: Element) -> Formula:
-        """Declare an event that nothing else waits for."""
+        """Declare an event and return its formula: an input that holds in single steps."""
         name = self._declare(prefix, BooleanDomain(), origin)
         self.pulses.append(name)
         return f.var(name)
 
     def share_event(self, wanted: str, origin: Element) -> Formula:
-        """Return an event that several actions may wait for, declared at the first request."""
+        """Return the formula of an event that several actions may await; declare a new event."""
         if wanted not in self.variables:
             return self.declare_pulse(wanted, origin)
         return f.var(wanted)
 
     def read_condition(self, text: str, origin: Element, what: str) -> Formula:
-        """Return the formula of a text. A part that cannot be read becomes a Boolean input."""
+        """Return the formula of a text. Unknown names in it become Boolean inputs.
+
+        A text that is not a condition becomes a Boolean input as a whole.
+        """
+        # The loop ends because each round declares one more name of the text.
         while True:
             try:
                 formula, variables = self._scope.read(text)
@@ -225,17 +237,19 @@ class Inputs:
         )
         return f.var(name)
 
-    def declare_answer(self, prefix: str, literals: Iterable[str], origin: Element) -> "Answer":
+    def declare_decision_input(
+        self, prefix: str, literals: Iterable[str], origin: Element
+    ) -> "DecisionInput":
         """Declare the input that a decision compares with the literals on its branches.
 
         A literal can be any text, such as ``0``. Formulas refer to it by an identifier.
         """
         texts = list(dict.fromkeys(literals))
         if set(texts) <= {"true", "false"}:
-            return Answer(f.var(self._declare(prefix, BooleanDomain(), origin)), None)
+            return DecisionInput(f.var(self._declare(prefix, BooleanDomain(), origin)), None)
         other, *values = make_unique([OTHER, *texts], "value")
         variable = f.var(self._declare(prefix, EnumerationDomain((*values, other)), origin))
-        return Answer(variable, dict(zip(texts, values, strict=True)))
+        return DecisionInput(variable, dict(zip(texts, values, strict=True)))
 
     def _declare(self, prefix: str, domain: Domain, origin: Element) -> str:
         name = self.names.new(prefix)
@@ -243,8 +257,11 @@ class Inputs:
         return name
 
 
-class Answer:
-    """The input of a decision. It is Boolean if its values have no names."""
+class DecisionInput:
+    """The input that a decision compares with its literal guards.
+
+    *value_names* maps literals to values of the enumeration; it is None for a Boolean input.
+    """
 
     def __init__(self, variable: Formula, value_names: Mapping[str, str] | None) -> None:
         self._variable = variable
@@ -257,7 +274,7 @@ class Answer:
         return f.eq(self._variable, f.const(self._value_names[literal]))
 
     def is_covered(self, literals: list[str]) -> bool:
-        """Whether the input always equals one of the literals."""
+        """Whether the input equals one of the literals in every step."""
         return self._value_names is None and {"true", "false"} <= set(literals)
 
 

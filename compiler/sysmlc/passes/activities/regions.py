@@ -1,8 +1,9 @@
 """Regions of activities: parts of loops and conditionals, groups, interruptible and expansion
 regions.
 
-UML lists only the executable nodes of a part. A fork, decision or buffer between them belongs to
-the part that its tokens come from, or, if they come from outside, to the part they go to.
+UML lists only the executable nodes of a part. A fork, decision or buffer between them is assigned
+to the part from which its tokens come. If they come from outside all parts, it is assigned to the
+part to which they go.
 """
 
 from collections.abc import Callable, Iterator
@@ -24,7 +25,10 @@ NODES = (
 
 
 class Part(Struct, frozen=True):
-    """A part of the structured node ``owner``; ``nodes`` are the ids of its direct members."""
+    """A test, body or set-up of the structured node ``owner``, or the body of an expansion region.
+
+    ``word`` names the part inside its owner. ``nodes`` are the ids of its direct members.
+    """
 
     id: str
     owner: Element
@@ -33,7 +37,7 @@ class Part(Struct, frozen=True):
 
 
 def parts_of(graph: Graph, node: Element) -> list[Part]:
-    """Return the parts of a structured node in the order in which they run first."""
+    """Return the parts of a structured node, in the order in which they first run."""
     members = [(word, tuple(query.ids_in(ids))) for word, ids in _list_members(graph, node)]
     parts = [Part(derived_id(node.id, word), node, word, ids) for word, ids in members if ids]
     return _assign_unlisted(graph, node, parts) if parts else []
@@ -67,6 +71,8 @@ def _assign_unlisted(graph: Graph, node: Element, parts: list[Part]) -> list[Par
     ]
     # Sources first: a buffer belongs to the part that fills it.
     for neighbours in (_sources, _targets):
+        # any() stops at the first node that was assigned; the others are then tried again, because
+        # they may be its neighbours.
         while any(_assign_to_part(graph, node, member, home, neighbours) for member in unlisted):
             unlisted = [member for member in unlisted if member.id not in home]
     members = {part.id: [id for id, place in home.items() if place == part.id] for part in parts}
@@ -96,7 +102,7 @@ def _assign_to_part(
 
 
 def _find_member(graph: Graph, owner: Element, element: Element) -> Element | None:
-    """Return the direct member of the owner that the element is, or is in."""
+    """Return the direct member of *owner* that is the element or contains it."""
     member: Element | None = element
     while member is not None and member.owner != owner.id:
         member = graph.owner(member)
@@ -132,7 +138,7 @@ class Handler(Struct, frozen=True):
 
 
 def handlers_of(graph: Graph, node: Element) -> list[Handler]:
-    """Return the handlers of a protected node, in order, that have a body in the graph."""
+    """Return the handlers of a protected node whose body is in the graph, in order."""
     value = node.attrs.get("handlers")
     handlers = []
     for bodies, _, types in _list_handler_parts(value):
@@ -143,7 +149,7 @@ def handlers_of(graph: Graph, node: Element) -> list[Handler]:
 
 
 def count_handlers(node: Element) -> int:
-    """Count the handlers of a node, with a body or without."""
+    """Count the handlers of a node, including those without a body."""
     value = node.attrs.get("handlers")
     return len(value) if isinstance(value, tuple) else int(value is not None)
 
@@ -156,7 +162,7 @@ def _list_handler_parts(value: object) -> Iterator[tuple[object, object, object]
 
 
 def find_expansion_nodes(graph: Graph, elements: list[Element]) -> dict[str, Element]:
-    """Map the id of each expansion node to the expansion region on whose border it is."""
+    """Map the id of each expansion node to its expansion region."""
     regions_by_node: dict[str, Element] = {}
     for element in elements:
         if element.subkind != "expansion":
@@ -178,10 +184,11 @@ def find_expansion_nodes(graph: Graph, elements: list[Element]) -> dict[str, Ele
 
 
 def find_groups(graph: Graph, elements: list[Element]) -> dict[str, Element]:
-    """Return the plain structured nodes that no flow starts or ends at, but whose border flows
-    cross.
+    """Return the structured nodes, by id, that only group nodes.
 
-    They start with the region around them and nothing follows them, so that only their nodes count.
+    No flow starts or ends at such a node, but flows lead from its content to other nodes or back.
+    It starts with the region around it and nothing follows it, so that its nodes can be treated as
+    nodes of that region.
     """
     structured = [node for node in elements if node.kind is Kind.STRUCTURED]
     if not structured:
@@ -230,7 +237,7 @@ def is_entered_again(graph: Graph, group: Element) -> bool:
 
 
 def _find_successors(graph: Graph, element: Element) -> Iterator[Element]:
-    """Yield the targets of the flows that leave a node, whichever pin they reach and leave."""
+    """Yield the targets of the flows that leave a node or one of its pins."""
     owner = graph.owner(element) if element.kind is Kind.PIN else element
     pins = [] if owner is None else [e for e in graph.owned(owner) if e.kind is Kind.PIN]
     for end in (element, *pins, *([owner] if owner is not None else ())):
@@ -257,7 +264,7 @@ def find_interruptible_regions(
 
 
 def is_entered_later(graph: Graph, members: list[Element]) -> bool:
-    """Whether a token enters an interruptible region later than its activity starts, or again."""
+    """Whether a flow leads into an interruptible region from a node that is no initial node."""
     pins = (pin for member in members for pin in graph.owned(member) if pin.kind is Kind.PIN)
     inside = dict.fromkeys(member.id for member in (*members, *pins))
     sources = (

@@ -79,7 +79,7 @@ WEIGHT = rule(
     "{flow} has the weight {weight}; the activity gets no contract",
     help="model the repetition as a loop",
 )
-LOOSE_FLOW = rule(
+MISSING_FLOW_END = rule(
     "SM460",
     "activity-flow-without-end",
     Severity.ERROR,
@@ -93,14 +93,14 @@ OPEN_PIN = rule(
     "nothing flows into pin '{pin}' of {node}; it is taken as always filled",
     help="connect the pin, or delete it",
 )
-TWO_IN_ONE = rule(
+COMBINED_CONTROL_NODE = rule(
     "SM465",
     "control-node-with-two-jobs",
     Severity.INFO,
     "{node} is drawn with {drawn}; it is taken as {meaning}",
     help="draw two control nodes",
 )
-ENDLESS = rule(
+NEVER_FINISHES = rule(
     "SM466",
     "activity-never-finishes",
     Severity.INFO,
@@ -143,14 +143,14 @@ GROUPING = rule(
     "{node} has no flows of its own, but flows lead into it again; it is taken as a mere group",
     help="lead the flows to the structured node itself, or use a partition to group actions",
 )
-ODD_END = rule(
+MISPLACED_FLOW = rule(
     "SM472",
     "flow-into-initial-or-from-final-node",
     Severity.WARNING,
     "{node} has {flows}, which no token passes",
     help="lead the flow to a merge node after the initial node, or delete it",
 )
-LOOSE_NODES = rule(
+UNLISTED_ACTIONS = rule(
     "SM473",
     "action-outside-test-and-body",
     Severity.WARNING,
@@ -179,7 +179,7 @@ OTHER_VALUES = rule(
     "{node} has branches for the values {guards} only; a token with another value ends there",
     help="give one of the branches the guard else if the others matter",
 )
-AT_ONCE = rule(
+PARALLEL_EXPANSION = rule(
     "SM477",
     "elements-taken-at-once",
     Severity.INFO,

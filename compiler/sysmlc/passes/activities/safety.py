@@ -1,8 +1,8 @@
 """Search of a token graph for a second token on a flow, and reduction of large token graphs.
 
-Most activities are 1-safe in whatever order their nodes move, which is found fast (``net_safety``).
-The others are played in all ways (``reachability``): a step moves everything at once, so that a
-flow may be empty again before the next token arrives.
+Most activities are 1-safe in any order of moves, which ``net_safety`` proves fast. For the others,
+``reachability`` explores all synchronous steps. They may be 1-safe only because all nodes move in
+the same step, so that a flow is empty again before its next token arrives.
 """
 
 from collections.abc import Callable
@@ -23,14 +23,20 @@ from sysmlc.logic.activities.token_graph import (
 )
 from sysmlc.logic.names import Names
 
-_NAMED_FROM = 50
-"""Conditions whose size times uses reaches this number get a name, else formulas explode."""
-_REMEMBERED = 256
+_MIN_NAMED_SIZE = 50
+"""A condition gets a name if its size times its uses reaches this number, else formulas explode."""
+_CACHE_SIZE = 256
 """Size of the caches: a process that compiles again reuses the results of unedited activities."""
 
 
 class SafetyResult(Struct, frozen=True):
-    """Result of the search. ``unsafe`` is the id of an edge or node with two tokens, or empty."""
+    """Result of the search for a second token.
+
+    ``unsafe`` is the id of an edge or node with two tokens, or empty. ``is_complete`` is false if
+    the limit was reached. ``dead`` are the ids of nodes that never move, ``queues`` of actions that
+    may receive tokens while they run, and ``rests`` of regions that can be complete without a token
+    at a final node. ``finishes`` is false if no run can end.
+    """
 
     unsafe: str = ""
     is_complete: bool = True
@@ -40,9 +46,11 @@ class SafetyResult(Struct, frozen=True):
     finishes: bool = True
 
 
-@lru_cache(_REMEMBERED)
+@lru_cache(_CACHE_SIZE)
 def search(tokens: TokenGraph, limit: int) -> SafetyResult:
-    """Look for a second token in at most *limit* states."""
+    """Search for a second token in at most *limit* states."""
+    # The search of single regions is cheap, but it may report a second token that no synchronous
+    # step creates, and it cannot follow tokens across borders (docs/decisions/0013).
     unordered = None if _is_coupled(tokens) else _search_regions(tokens, limit)
     if unordered is not None and unordered.is_complete and not unordered.unsafe:
         return unordered
@@ -58,21 +66,21 @@ def apply_result(tokens: TokenGraph, result: SafetyResult) -> TokenGraph:
     return replace(tokens, nodes=tuple(nodes), rests=result.rests, finishes=result.finishes)
 
 
-@lru_cache(_REMEMBERED)
+@lru_cache(_CACHE_SIZE)
 def collapse_if_safe(tokens: TokenGraph, limit: int) -> TokenGraph:
-    """Return the reduced graph, unless the removed nodes are needed for 1-safety."""
+    """Return the reduced graph, or *tokens* if the reduced graph is not shown to be 1-safe."""
     reduced = collapse(tokens)
     result = search(reduced, limit)
     return tokens if result.unsafe or not result.is_complete else apply_result(reduced, result)
 
 
 def name_conditions(tokens: TokenGraph, names: Names) -> TokenGraph:
-    """Return the graph with names for the conditions that many formulas would repeat."""
+    """Return the graph with variables for long conditions that many formulas would repeat."""
     conditions = (
         (region, names.new(_name_idle_condition(tokens, region)))
         for region in tokens.regions()
         if tokens.can_rest(region)
-        and _count_places(tokens, region) * _count_uses(tokens, region) >= _NAMED_FROM
+        and _count_places(tokens, region) * _count_uses(tokens, region) >= _MIN_NAMED_SIZE
     )
     return replace(tokens, quiets=tuple(conditions))
 
@@ -89,14 +97,14 @@ def _count_places(tokens: TokenGraph, region: str) -> int:
 
 
 def _count_uses(tokens: TokenGraph, region: str) -> int:
-    """Count the edges and running nodes of the region and of the regions inside it."""
+    """Count the edges and executable nodes of the region and of the regions inside it."""
     _, workers = tokens.inside(region)
     nested = (node.id for node in workers if node.kind is NodeKind.STRUCTURED)
     return _count_places(tokens, region) + sum(_count_uses(tokens, inner) for inner in nested)
 
 
 def _is_coupled(tokens: TokenGraph) -> bool:
-    """Whether regions depend on one another, so that they cannot be searched one by one."""
+    """Whether regions depend on each other, so that they cannot be searched separately."""
     return any(
         edge.keeps
         or edge.interrupts
@@ -132,17 +140,18 @@ def _search_steps(tokens: TokenGraph, limit: int) -> SafetyResult:
     )
 
 
-_ALL_OUT = (Firing.ALL, Firing.WORK)
-_ANY_IN = (Firing.ANY, Firing.END)
+_SYNCHRONISING = (Firing.ALL, Firing.WORK)
+_MERGING = (Firing.ANY, Firing.END)
 
 
 def collapse(graph: TokenGraph) -> TokenGraph:
     """Return the graph without nodes that only pass tokens on.
 
-    Actions, decisions with guards, structured nodes and the order of all of them stay. Removed are
-    nodes with one edge in and one out, forks after and joins before nodes that fork and join by
-    themselves, and merges before merges and final nodes. A remaining edge lists in ``origins`` the
-    flows and nodes that it stands for. Tokens arrive earlier, but never in another order.
+    The result preserves actions, decisions with guards and structured nodes, and their order.
+    Removed are nodes with one incoming and one outgoing edge, forks after and joins before nodes
+    that fork and join by themselves, and merges before merges and final nodes. The ``origins`` of a
+    remaining edge are the flows and nodes that it replaces. Tokens arrive earlier, but never in
+    another order.
     """
     rules: tuple[Callable[[TokenGraph, TokenNode], TokenGraph | None], ...] = (
         _remove_pass_through,
@@ -150,6 +159,7 @@ def collapse(graph: TokenGraph) -> TokenGraph:
         _remove_join,
         _remove_merge,
     )
+    # A removal may make a neighbour removable, so that the rules are applied up to a fixpoint.
     has_changed = True
     while has_changed:
         has_changed = False
@@ -161,7 +171,7 @@ def collapse(graph: TokenGraph) -> TokenGraph:
 
 
 def _is_removable(graph: TokenGraph, node: TokenNode) -> bool:
-    """Whether the node only moves tokens inside its region, and no interruption depends on them."""
+    """Whether the node only passes tokens on inside its region, and nothing interrupts them."""
     edges = [*graph.incoming(node), *graph.outgoing(node)]
     is_interruptible = any(node.id in region.nodes for region in graph.interruptibles)
     is_inside = all(
@@ -193,7 +203,7 @@ def _remove_fork(graph: TokenGraph, node: TokenNode) -> TokenGraph | None:
     if node.firing is not Firing.ALL or len(incoming) != 1 or not outgoing:
         return None
     before = incoming[0]
-    if graph.node(before.source).firing not in _ALL_OUT or before.marked:
+    if graph.node(before.source).firing not in _SYNCHRONISING or before.marked:
         return None
     edges = {after.id: _combine(before, node, after, identity=after) for after in outgoing}
     return _remove_node(graph, node, edges, before)
@@ -204,7 +214,7 @@ def _remove_join(graph: TokenGraph, node: TokenNode) -> TokenGraph | None:
     if node.firing is not Firing.ALL or len(outgoing) != 1 or not incoming:
         return None
     after = outgoing[0]
-    if graph.node(after.target).firing not in _ALL_OUT or after.marked:
+    if graph.node(after.target).firing not in _SYNCHRONISING or after.marked:
         return None
     edges = {before.id: _combine(before, node, after) for before in incoming}
     return _remove_node(graph, node, edges, after)
@@ -215,7 +225,7 @@ def _remove_merge(graph: TokenGraph, node: TokenNode) -> TokenGraph | None:
     if node.firing is not Firing.ANY or len(outgoing) != 1 or not incoming:
         return None
     after = outgoing[0]
-    if graph.node(after.target).firing not in _ANY_IN or after.marked or after.target == node.id:
+    if graph.node(after.target).firing not in _MERGING or after.marked or after.target == node.id:
         return None
     edges = {before.id: _combine(before, node, after) for before in incoming}
     return _remove_node(graph, node, edges, after)
@@ -224,7 +234,7 @@ def _remove_merge(graph: TokenGraph, node: TokenNode) -> TokenGraph | None:
 def _combine(
     before: TokenEdge, node: TokenNode, after: TokenEdge, identity: TokenEdge | None = None
 ) -> TokenEdge:
-    """Return one edge for two consecutive ones; it has the id of *identity*, else of *before*."""
+    """Return one edge that replaces two; it has the id of *identity*, or else of *before*."""
     base = identity or before
     return replace(
         base,
@@ -245,7 +255,10 @@ def _combine_labels(before: TokenEdge, after: TokenEdge) -> str:
 def _remove_node(
     graph: TokenGraph, node: TokenNode, replacements: dict[str, TokenEdge], removed: TokenEdge
 ) -> TokenGraph | None:
-    """Return the graph without the node, or None if a loop would lose an edge."""
+    """Return the graph without the node and the edge *removed*, with the replaced edges.
+
+    The result is None if the node is on a loop that would lose an edge.
+    """
     if removed.id in replacements or any(
         edge.source == edge.target == node.id for edge in replacements.values()
     ):

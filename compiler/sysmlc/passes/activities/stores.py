@@ -19,11 +19,11 @@ from sysmlc.logic.formula import Formula
 from sysmlc.logic.machines.symbolic_path import split_by_range
 from sysmlc.logic.simplify import is_satisfiable, remove_redundant, substitute
 from sysmlc.passes.activities.assignments import (
-    DECIDED,
-    ELSEWHERE,
-    ENDLESS,
-    UNKNOWN,
-    WIDE,
+    GIVEN_OR_CONSTANT,
+    NO_FINITE_DOMAIN,
+    NO_RANGE,
+    OTHER_OBJECT,
+    UNKNOWN_VALUE,
     Refusal,
     ResolvedAssignment,
     UntrackedFeature,
@@ -32,9 +32,11 @@ from sysmlc.passes.activities.assignments import (
 from sysmlc.passes.activities.inputs import Scope
 
 _Cases = tuple[tuple[Formula, Formula], ...]
-_Way = tuple[Formula, Formula, bool]
-_MOST_CASES = 64
-"""Most cases of what an action leaves in a variable: assignments in a row multiply them."""
+"""Pairs of a condition and the value under it; exactly one condition holds."""
+_Outcome = tuple[Formula, Formula, bool]
+"""A condition, the value under it, and whether the value is a bound that replaces a larger one."""
+_MAX_CASES = 64
+"""Limit of the cases of a variable after an action: consecutive assignments multiply them."""
 
 
 def track_stores(
@@ -58,7 +60,7 @@ def track_stores(
 
 
 class _StoreTracker:
-    """The features that the actions of one activity assign, by the names of their variables."""
+    """Collects the assignments of one activity. The tables have names of variables as keys."""
 
     def __init__(
         self,
@@ -74,14 +76,14 @@ class _StoreTracker:
         self.features: dict[str, Feature] = {}
         self.assigned: dict[str, list[FeatureWrite]] = {}
         self.writes: dict[str, list[Write]] = {}
-        self.refused: dict[str, Refusal] = {}
-        self.outside: set[str] = set()
-        """Actions that assign what no value of a range is."""
-        self.others: dict[str, Element | None] = {}
-        self.read: set[str] = set()
+        self.refusals: dict[str, Refusal] = {}
+        self.out_of_range_actions: set[str] = set()
+        """Ids of actions that assign a value that is always out of range."""
+        self.other_writers: dict[str, Element | None] = {}
+        self.read_variables: set[str] = set()
 
     def add_assignments(self, statements: list[ResolvedAssignment]) -> None:
-        """Record the assignments of an action, and the value that each variable has after it."""
+        """Record the assignments of one action and compute the values of variables after them."""
         cases_of: dict[str, _Cases] = {}
         stops: dict[str, list[Formula]] = {}
         for assignment, feature in (
@@ -101,21 +103,27 @@ class _StoreTracker:
             else:
                 cases_of.pop(name, None)
                 reason = f"'{assignment.text}' is unknown, or has too many cases"
-                refusal = replace(UNKNOWN, reason=reason) if assignment.text else UNKNOWN
-                self.refused.setdefault(name, refusal)
+                refusal = (
+                    replace(UNKNOWN_VALUE, reason=reason) if assignment.text else UNKNOWN_VALUE
+                )
+                self.refusals.setdefault(name, refusal)
         first_assignment = statements[0].assignment
         node = first_assignment.action.id
-        text = first_assignment.text if len(statements) == 1 and node not in self.outside else ""
+        text = (
+            first_assignment.text
+            if len(statements) == 1 and node not in self.out_of_range_actions
+            else ""
+        )
         for name, cases in cases_of.items():
             self.writes.setdefault(name, []).append(Write(node, text, cases, tuple(stops[name])))
 
     def _evaluate_cases(
         self, assignment: FeatureWrite, feature: Feature, cases_of: dict[str, _Cases]
-    ) -> list[_Way]:
+    ) -> list[_Outcome]:
         """Return the values that an assignment gives, each with its condition.
 
-        The flag of a case says that the value is a bound that saturates a larger or smaller one.
-        The list is empty if the value is unknown.
+        The flag of an outcome is true if the value is a bound that saturates a larger or smaller
+        value. The list is empty if the value is unknown or has too many cases.
         """
         if assignment.value is None or feature.domain is None:
             return []
@@ -124,40 +132,40 @@ class _StoreTracker:
         except ElaborationError:
             return []
         if _is_outside(feature.domain, result.domain):
-            self.outside.add(assignment.action.id)
+            self.out_of_range_actions.add(assignment.action.id)
         substituted = (
-            way
+            outcome
             for guarded_case in result.cases
-            for way in _substitute_cases(guarded_case.condition, guarded_case.value, cases_of)
+            for outcome in _substitute_cases(guarded_case.condition, guarded_case.value, cases_of)
         )
-        outcomes: list[_Way] = []
+        outcomes: list[_Outcome] = []
         for case, value in substituted:
             for when, assigned, is_bound in _saturate(case, value, feature.domain, result.domain):
                 possible = self._simplify_condition(when)
                 outcomes += [(possible, assigned, is_bound)] if possible != f.FALSE else []
-            if len(outcomes) > _MOST_CASES:
+            if len(outcomes) > _MAX_CASES:
                 return []
         return outcomes
 
     def _simplify_condition(self, when: Formula) -> Formula:
-        """Return the condition in few words; false if no values satisfy it."""
+        """Return the condition without redundant parts; false if it cannot be satisfied."""
         domains = {
             variable.name: self.scope.domain_of(variable.name) for variable in f.variables(when)
         }
         return remove_redundant(when, domains) if is_satisfiable(when, domains) else f.FALSE
 
-    # -- which of them are followed ------------------------------------------------------------
+    # -- selection of tracked variables --------------------------------------------------------
 
     def build_graph(self) -> TokenGraph:
         """Return the token graph with a store for each tracked variable."""
         tracked = self._select_tracked()
         stores = tuple(self._make_store(name) for name in self.writes if name in tracked)
         stored = {variable.variable.name for variable in stores}
-        self.read = self._read_by_tokens() | self._read_by_values(stored)
+        self.read_variables = self._read_by_tokens() | self._read_by_values(stored)
         inputs_by_name = {variable.name: variable for variable in self.tokens.inputs}
         new_inputs = (
             self.scope.declare_input(name)
-            for name in sorted(self.read - inputs_by_name.keys() - stored)
+            for name in sorted(self.read_variables - inputs_by_name.keys() - stored)
         )
         inputs = (
             *inputs_by_name.values(),
@@ -167,8 +175,9 @@ class _StoreTracker:
         return replace(self.tokens, inputs=inputs, stores=stores)
 
     def _select_tracked(self) -> set[str]:
-        """Return the variables to track: other behaviours, guards or tracked values read them."""
+        """Return the variables to track: visible ones, and those that guards or values read."""
         wanted = {name for name in self.writes if self._is_visible(name)} | self._read_by_tokens()
+        # Fixpoint: the values of a tracked variable may read further variables.
         while True:
             tracked = {
                 name for name in self.writes if name in wanted and not self._find_refusal(name)
@@ -198,7 +207,7 @@ class _StoreTracker:
         return owner is not None and owner.kind in query.BEHAVIORS
 
     def _is_shared(self, name: str) -> bool:
-        """Whether only another writer in the block prevents that the variable is tracked."""
+        """Whether the variable could be tracked if no other behaviour assigned it."""
         feature = self.features[name]
         is_able = feature.domain is not None and not feature.is_assumed
         return (
@@ -207,23 +216,25 @@ class _StoreTracker:
 
     def _find_other_writer(self, feature: Feature) -> Element | None:
         name = feature.variable
-        if name not in self.others:
-            self.others[name] = self.writers.find_other_writer(feature.element, self.activity)
-        return self.others[name]
+        if name not in self.other_writers:
+            self.other_writers[name] = self.writers.find_other_writer(
+                feature.element, self.activity
+            )
+        return self.other_writers[name]
 
     def _find_refusal(self, name: str) -> Refusal | None:
         """Return the reason why the contract cannot track the variable, or None."""
         feature = self.features[name]
         if feature.domain is None:
-            return ENDLESS
+            return NO_FINITE_DOMAIN
         if feature.is_assumed:
-            return WIDE
+            return NO_RANGE
         if feature.direction in ("in", "inout") or feature.is_constant:
-            return DECIDED
+            return GIVEN_OR_CONSTANT
         if self.scope.belongs_to_another_object(name):
-            return ELSEWHERE
-        if name in self.refused:
-            return self.refused[name]
+            return OTHER_OBJECT
+        if name in self.refusals:
+            return self.refusals[name]
         writer = None if self._is_local(feature) else self._find_other_writer(feature)
         return None if writer is None else refuse_shared(find_label(self.graph, writer))
 
@@ -235,10 +246,10 @@ class _StoreTracker:
         return Store(variable, tuple(self.writes[name]), feature.default, local)
 
     def list_untracked(self) -> list[UntrackedFeature]:
-        """Return the assigned variables that are used and not tracked, with the reason."""
+        """Return the assigned variables to report because they are not tracked."""
         untracked = []
         for name, writes in self.assigned.items():
-            refusal = self._find_refusal(name) if self._is_missed(name) else None
+            refusal = self._find_refusal(name) if self._needs_report(name) else None
             if refusal is not None:
                 labels = dict.fromkeys(
                     self.nodes[assignment.action.id].label for assignment in writes
@@ -248,18 +259,17 @@ class _StoreTracker:
                 )
         return untracked
 
-    def _is_missed(self, name: str) -> bool:
-        """Whether the reader of the contract would miss the variable.
-
-        A variable that only calls assign belongs to the environment anyway.
-        """
+    def _needs_report(self, name: str) -> bool:
+        """Whether an untracked variable is reported: guards, values or other objects read it."""
+        # An output bound to a feature assigns an unknown value, so that the feature is an input
+        # anyway if all its assignments are of this kind (docs/decisions/0036).
         if all(assignment.is_bound for assignment in self.assigned[name]) and not self._is_shared(
             name
         ):
             return False
         # Assignments to constants are reported by SM415.
         is_seen = self._is_visible(name) and not self.features[name].is_constant
-        return name in self.read or is_seen or self.scope.belongs_to_another_object(name)
+        return name in self.read_variables or is_seen or self.scope.belongs_to_another_object(name)
 
 
 def _is_outside(domain: Domain, spread: Domain) -> bool:
@@ -268,7 +278,7 @@ def _is_outside(domain: Domain, spread: Domain) -> bool:
     return spread.low > domain.high or spread.high < domain.low
 
 
-def _saturate(case: Formula, value: Formula, domain: Domain, spread: Domain) -> Iterator[_Way]:
+def _saturate(case: Formula, value: Formula, domain: Domain, spread: Domain) -> Iterator[_Outcome]:
     if isinstance(domain, IntegerDomain) and isinstance(spread, IntegerDomain):
         # Values that are always outside are reported by SM414.
         is_outside = _is_outside(domain, spread)
@@ -281,8 +291,9 @@ def _saturate(case: Formula, value: Formula, domain: Domain, spread: Domain) -> 
 def _substitute_cases(
     condition: Formula, value: Formula, cases_of: dict[str, _Cases]
 ) -> Iterator[tuple[Formula, Formula]]:
-    """Yield a value after earlier assignments of the same action, in terms of the values before
-    them.
+    """Yield a condition and a value in terms of the values before the action.
+
+    *cases_of* has the values that earlier assignments of the same action give to variables.
     """
     names = [
         name
