@@ -26,7 +26,7 @@ class Platform(Struct, frozen=True):
     after: ClassVar[tuple[str, ...]] = ("recipe",)
 
     def run(self, graph: Graph, sink: Sink) -> None:
-        """Store the platform of the unit, and report what does not fit."""
+        """Store the platform of the unit; report missing bindings and offers."""
         models = [recipe for recipe in graph.derived(Model) if recipe.machines or recipe.services]
         context = Context(graph, models, sink)
         if models and context.has_plant():
@@ -39,7 +39,7 @@ def _describe_platform(
     context: Context, bindings: Sequence[Binding], offers: Sequence[Offer]
 ) -> mapping.Platform:
     ids = sorted({*(entry.plant for entry in bindings), *(entry.plant for entry in offers)})
-    used = [context.found[id] for id in ids]
+    used = [context.bound_elements[id] for id in ids]
     return mapping.Platform(
         used=tuple(
             sorted((_describe_used(context, entry) for entry in used), key=lambda entry: entry.name)
@@ -63,12 +63,16 @@ def _type_name(context: Context, element: PlantElement) -> str:
 
 
 def _list_unused(context: Context, used: Iterable[PlantElement]) -> list[Unused]:
-    """Return the topmost unused elements that neither contain nor lie in a used element."""
+    """Return the topmost plant elements that contain no used element and lie in none.
+
+    Each has the number of elements inside it.
+    """
     plant = context.plant
     used_ids = {element.id for element in used}
     containing = used_ids | {up.id for element in used for up in plant.iter_owners(element)}
     sizes: dict[str, int] = {}
     top_of: dict[str, str | None] = {}
+    # The elements are in document order, so that a container comes before its content.
     for element in plant.elements.values():
         container = next(plant.iter_owners(element), None)
         if element.id in containing:

@@ -1,7 +1,4 @@
-"""Binding of machines of recipes to elements of the plant, by statements of the model.
-
-The context has the recipes, the plant and the graph of one unit.
-"""
+"""Binding of machines of recipes to elements of the plant, by statements of the model."""
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
@@ -19,8 +16,10 @@ _OVERLAY = ".overlay.yaml"
 
 
 class Statement(NamedTuple):
-    """A statement of where something is: the target, its kind (``tag``, ``allocation``,
-    ``overlay``), its source.
+    """A statement of the model that binds a machine or service to an element.
+
+    ``target`` is the element, ``how`` the kind of the statement (``tag``, ``allocation`` or
+    ``overlay``), and ``by`` the element that makes the statement.
     """
 
     target: Element
@@ -29,7 +28,7 @@ class Statement(NamedTuple):
 
 
 def list_allocations(graph: Graph, element: Element) -> Iterator[Statement]:
-    """Yield everything that an element is allocated to (SysML 1.6 clause 15.3.1.1)."""
+    """Yield the elements to which an element is allocated (SysML 1.6 clause 15.3.1.1)."""
     allocated: set[str] = set()
     for dependency in graph.sources(element, Edge.CLIENT):
         if dependency.role == "allocate":
@@ -45,8 +44,8 @@ def list_allocations(graph: Graph, element: Element) -> Iterator[Statement]:
 def list_machine_statements(graph: Graph, machine: Machine) -> Iterator[Statement]:
     """Yield the statements about a machine: its tag ``plantElement``, and allocations.
 
-    Statements about the block of a machine that is a part or an instance hold if there are none
-    about the machine itself.
+    Without statements about the machine itself, statements about its block hold (for a part or an
+    instance).
     """
     element = graph[machine.element]
     statements = [*_list_tagged(graph, element), *list_allocations(graph, element)]
@@ -69,19 +68,19 @@ def is_structure(element: Element) -> bool:
     return element.kind in (Kind.CLASS, Kind.COMPONENT, Kind.PROPERTY, Kind.INSTANCE)
 
 
-_TELLING = 5_000
-"""Names that are compared for a suggestion; comparing more takes seconds."""
+_MAX_COMPARED = 5_000
+"""Limit of plant elements for suggestions; comparing more names takes seconds."""
 
 
 @dataclass
 class Context:
-    """One unit: its graph, its recipes, its plant, and the plant elements found so far."""
+    """The graph, the recipes and the plant of one unit, and the plant elements bound so far."""
 
     graph: Graph
     models: Sequence[Model]
     sink: Sink
-    found: dict[str, PlantElement] = field(default_factory=dict)
-    """Elements of the plant that something was bound to, by id."""
+    bound_elements: dict[str, PlantElement] = field(default_factory=dict)
+    """Plant elements of bindings and offers, by id."""
 
     @cached_property
     def plant(self) -> Plant:
@@ -96,26 +95,26 @@ class Context:
 
     @cached_property
     def services(self) -> dict[str, Service]:
-        """The services of all recipes by id, sorted; a service of several recipes is one."""
+        """The services of all recipes by id, sorted; services with equal ids are the same."""
         by_id = {service.id: service for model in self.models for service in model.services}
         return {id: by_id[id] for id in sorted(by_id) if by_id[id].element in self.graph}
 
     def list_machine_uses(self) -> Iterator[tuple[str, tuple[str, ...], str]]:
-        """Yield the machines, the recipes that use each, and its element."""
+        """Yield for each machine its id, the recipes that use it, and its element."""
         uses = _collect_uses(
             (machine.id, model.recipe.id) for model in self.models for machine in model.machines
         )
         return ((id, uses[id], machine.element) for id, machine in self.machines.items())
 
     def list_service_uses(self) -> Iterator[tuple[str, tuple[str, ...], str]]:
-        """Yield the services, the recipes that use each, and its element."""
+        """Yield for each service its id, the recipes that use it, and its element."""
         uses = _collect_uses(
             (service.id, model.recipe.id) for model in self.models for service in model.services
         )
         return ((id, uses[id], service.element) for id, service in self.services.items())
 
     def has_plant(self) -> bool:
-        """Whether a plant is described, or a machine is stated to be an element outside recipes."""
+        """Whether the unit has a plant in AutomationML, or binds a machine to another structure."""
         return bool(self.plant) or any(
             is_structure(statement.target) and not self.is_machine(statement.target)
             for machine in self.machines.values()
@@ -134,8 +133,8 @@ class Context:
         by_level = (element.id for element in self.graph if element.attrs.get("level") == "machine")
         return frozenset({*by_level, *(machine.element for machine in self.machines.values())})
 
-    def list_meant(self, element: Element) -> list[PlantElement]:
-        """Return the plant elements that an element of the graph stands for."""
+    def find_plant_elements(self, element: Element) -> list[PlantElement]:
+        """Return the plant elements that an element of the graph represents."""
         if self.plant:
             return self.plant.find_represented(element)
         if not is_structure(element) or self.is_machine(element):
@@ -145,8 +144,8 @@ class Context:
         return [PlantElement(element.id, element, None, None, block, element.owner or "")]
 
     def suggest_similar(self, name: str) -> str:
-        """Return a clause that suggests plant elements with a similar name, or ""."""
-        if not self.plant or len(self.plant.elements) > _TELLING:
+        """Return a question that suggests plant elements with a similar name, or ""."""
+        if not self.plant or len(self.plant.elements) > _MAX_COMPARED:
             return ""
         names: dict[str, list[PlantElement]] = {}
         for element in self.plant.elements.values():
@@ -171,11 +170,14 @@ def _collect_uses(pairs: Iterable[tuple[str, str]]) -> dict[str, tuple[str, ...]
 
 # -- binding -----------------------------------------------------------------------------------
 
-_SHOWN = 4
+_MAX_LISTED = 4
 
 
 def bind_machines(context: Context) -> list[Binding]:
-    """Return the plant element of each machine. An equal name is only suggested (design, 5)."""
+    """Return the bindings of machines to plant elements, and report machines without one.
+
+    Equal names do not bind a machine; they are only suggested (design, section 5).
+    """
     bindings: list[Binding] = []
     for machine in context.machines.values():
         bindings += _bind_machine(context, machine)
@@ -185,18 +187,22 @@ def bind_machines(context: Context) -> list[Binding]:
 
 def _bind_machine(context: Context, machine: Machine) -> list[Binding]:
     statements = list(_list_statements(context, machine))
+    # Reversed, so that the most direct of several statements about one element remains.
     by_id = {element.id: (element, how, source) for element, how, source in reversed(statements)}
     if len(by_id) > 1:
         _report_several(context, machine, [by_id[id][0] for id in sorted(by_id)])
         return []
-    context.found.update((id, element) for id, (element, _, _) in by_id.items())
+    context.bound_elements.update((id, element) for id, (element, _, _) in by_id.items())
     if not by_id and not _report_reasons(context, machine):
         _report_missing(context, machine)
     return [Binding(machine.id, id, how, source) for id, (_, how, source) in by_id.items()]
 
 
 def _list_statements(context: Context, machine: Machine) -> Iterator[tuple[PlantElement, str, str]]:
-    """Yield the elements that are stated to be the machine, the most direct statement first."""
+    """Yield each plant element bound to the machine, the kind of statement and its source.
+
+    The most direct statement comes first.
+    """
     graph = context.graph
     element = graph[machine.element]
     if context.plant and is_of_plant(graph, element):
@@ -208,17 +214,17 @@ def _list_statements(context: Context, machine: Machine) -> Iterator[tuple[Plant
         yield by_id, "id", element.id
     for target, how, source in list_machine_statements(graph, machine):
         if not context.is_machine(target):
-            yield from ((part, how, source.id) for part in context.list_meant(target))
+            yield from ((part, how, source.id) for part in context.find_plant_elements(target))
 
 
 def _report_reasons(context: Context, machine: Machine) -> bool:
-    """Report stated reasons why a machine has no element. Return whether there are any."""
+    """Report statements that name no plant element. Return whether there are any."""
     has_reported = False
     if machine.aml_id and context.plant:
         _report_unknown_id(context, machine)
         has_reported = True
     for target, _, source in list_machine_statements(context.graph, machine):
-        if not context.is_machine(target) and not context.list_meant(target):
+        if not context.is_machine(target) and not context.find_plant_elements(target):
             element = context.graph[machine.element]
             _report_misplaced(context, machine.id, element, target, source)
             has_reported = True
@@ -230,7 +236,7 @@ def report_misplaced_services(context: Context) -> None:
     for service in context.services.values():
         element = context.graph[service.element]
         for target, _, source in list_allocations(context.graph, element):
-            is_known = context.is_machine(target) or context.list_meant(target)
+            is_known = context.is_machine(target) or context.find_plant_elements(target)
             if not is_known and not _is_operation(context, target.id):
                 _report_misplaced(context, service.id, element, target, source)
 
@@ -254,8 +260,8 @@ def _report_misplaced(
 
 
 def _report_several(context: Context, machine: Machine, elements: list[PlantElement]) -> None:
-    names = [f"'{_name_of(context, element)}'" for element in elements[:_SHOWN]]
-    more = f" and {len(elements) - _SHOWN} more" if len(elements) > _SHOWN else ""
+    names = [f"'{_name_of(context, element)}'" for element in elements[:_MAX_LISTED]]
+    more = f" and {len(elements) - _MAX_LISTED} more" if len(elements) > _MAX_LISTED else ""
     context.sink.report(
         rules.SEVERAL_ELEMENTS,
         context.graph.subject(context.graph[machine.element]),
@@ -299,7 +305,7 @@ def _report_shared(context: Context, bindings: list[Binding]) -> None:
                 rules.SHARED,
                 context.graph.subject(first),
                 machines=", ".join(f"'{machine}'" for machine in machines),
-                element=_name_of(context, context.found[plant]),
+                element=_name_of(context, context.bound_elements[plant]),
             )
 
 

@@ -12,14 +12,14 @@ from sysmlc.support.suggestions import did_you_mean
 
 
 class _Site(NamedTuple):
-    """A place where a service may run: a machine or "", and its element of the plant."""
+    """A plant element that may offer a service, and the machine that is bound to it or ""."""
 
     machine: str
     element: PlantElement
 
 
 class _OfferingOperation(NamedTuple):
-    """An operation that offers a service, the kind of evidence, and the id of its source."""
+    """An operation that offers a service, the kind of statement, and the id of its source."""
 
     operation: Element
     how: str
@@ -27,8 +27,10 @@ class _OfferingOperation(NamedTuple):
 
 
 def find_offers(context: Context, bindings: list[Binding]) -> list[Offer]:
-    """Return every offer of a service of a recipe by an element of the plant."""
-    element_of_machine = {binding.machine: context.found[binding.plant] for binding in bindings}
+    """Return which plant elements offer which services of the recipes."""
+    element_of_machine = {
+        binding.machine: context.bound_elements[binding.plant] for binding in bindings
+    }
     offers: list[Offer] = []
     for service in context.services.values():
         offers += _find_offers_of(context, service, element_of_machine)
@@ -42,8 +44,8 @@ def _find_offers_of(
     sites = list(_list_sites(context, service, element_of_machine))
     stated = list(_list_stated_operations(context, service))
     offers: list[Offer] = []
-    mismatches: list[_Differing] = []
-    results: dict[str, _Answer] = {}
+    mismatches: list[_Mismatch] = []
+    results: dict[str, _Match] = {}
     for site in sites:
         block = site.element.block
         if block is None:
@@ -52,7 +54,7 @@ def _find_offers_of(
             results[block.id] = _find_operation(context, service, block, stated)
         match, mismatch = results[block.id]
         if match is not None:
-            context.found[site.element.id] = site.element
+            context.bound_elements[site.element.id] = site.element
             id = site.element.id
             offers.append(
                 Offer(service.id, site.machine, id, match.operation.id, match.how, match.by)
@@ -67,7 +69,10 @@ def _find_offers_of(
 def _list_sites(
     context: Context, service: Service, element_of_machine: dict[str, PlantElement]
 ) -> Iterator[_Site]:
-    """Yield the elements of the service's machines and of its allocations; else the whole plant."""
+    """Yield the plant elements that may offer a service.
+
+    These are the elements of its machines and allocations. Without both, they are all elements.
+    """
     machines = [provider.machine for provider in service.providers]
     sites = [
         _Site(machine, element_of_machine[machine])
@@ -77,14 +82,14 @@ def _list_sites(
     element = context.graph[service.element]
     for target, _, _ in list_allocations(context.graph, element):
         if not context.is_machine(target) and target.kind is not Kind.OPERATION:
-            sites += [_Site("", part) for part in context.list_meant(target)]
+            sites += [_Site("", part) for part in context.find_plant_elements(target)]
     if not machines and not sites:
         sites = [_Site("", part) for part in context.plant.elements.values()]
     yield from {(site.machine, site.element.id): site for site in sites}.values()
 
 
 def _list_stated_operations(context: Context, service: Service) -> Iterator[_OfferingOperation]:
-    """Yield the operations that the model itself assigns to the service, the most direct first."""
+    """Yield the operations that the model assigns to the service, the most direct first."""
     graph = context.graph
     element = graph[service.element]
     if element.kind is Kind.OPERATION:
@@ -96,14 +101,18 @@ def _list_stated_operations(context: Context, service: Service) -> Iterator[_Off
         yield _OfferingOperation(operation, "method", operation.id)
 
 
-_Differing = tuple[_Site, Element, str]
-_Answer = tuple[_OfferingOperation | None, tuple[Element, str] | None]
+_Mismatch = tuple[_Site, Element, str]
+_Match = tuple[_OfferingOperation | None, tuple[Element, str] | None]
 
 
 def _find_operation(
     context: Context, service: Service, block: Element, stated: list[_OfferingOperation]
-) -> _Answer:
-    """Return the operation of a block that offers the service, or why none does."""
+) -> _Match:
+    """Return the operation of a block that offers the service, or a mismatch.
+
+    Without a stated operation, the name and the parameters decide. A mismatch is an operation of
+    the same name with other parameters, and a clause about the difference.
+    """
     family = context.plant.class_ids(block)
     for candidate in stated:
         if candidate.operation.owner in family:
@@ -134,7 +143,7 @@ def _report_mismatches(
     service: Service,
     sites: list[_Site],
     offers: list[Offer],
-    mismatches: list[_Differing],
+    mismatches: list[_Mismatch],
 ) -> None:
     subject = context.graph.subject(context.graph[service.element])
     reported: set[str] = set()
@@ -188,7 +197,7 @@ def _report_foreign_operations(
     stated: list[_OfferingOperation],
     offers: list[Offer],
 ) -> None:
-    """Report operations that the author chose for the service but that none of its elements has."""
+    """Report operations that are allocated to the service but belong to none of its elements."""
     offering_ids = {offer.operation for offer in offers}
     for candidate in stated:
         is_chosen = candidate.how in ("allocation", "overlay")
@@ -212,8 +221,9 @@ def describe_difference(
 ) -> str:
     """Return the difference of the signatures as a clause; empty if they fit.
 
-    Parameters fit by name, direction and type. Machines are no data, and a parameter with lower
-    bound 0 may be absent. A ``return`` is an ``out``; the only output of both may have any name.
+    Parameters are compared by name, direction and type. The operation may omit parameters for
+    machines and parameters with the lower bound 0. ``return`` equals ``out``, and if both have only
+    one output, its name is ignored.
     """
     required, offered = _index_parameters(graph, service), _index_parameters(graph, operation)
     parts = [
@@ -233,6 +243,7 @@ def describe_difference(
 
 
 def _index_parameters(graph: Graph, owner: Element) -> dict[str, Element]:
+    """Return the parameters by name; a single output has the key ""."""
     parameters = query.parameters(graph, owner)
     outputs = [parameter for parameter in parameters if query.direction_of(parameter) in _OUTPUTS]
     return {"" if [parameter] == outputs else parameter.name: parameter for parameter in parameters}

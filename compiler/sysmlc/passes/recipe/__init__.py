@@ -55,7 +55,7 @@ class Recipe(Struct, frozen=True):
 def find_recipes(context: Context) -> Iterator[Element]:
     """Yield the activities at the level recipe, and those without a level that call tasks.
 
-    An activity without steps that only serves as the general of recipes is none.
+    An activity without steps that other recipes specialise is not a recipe itself.
     """
     calling = {
         _owning_activity(context, node)
@@ -76,7 +76,7 @@ def _is_only_general(context: Context, activity: Element) -> bool:
 
 
 def _owning_activity(context: Context, node: Element) -> str | None:
-    """Return the id of the activity that has the node as a step, also through inlined nodes."""
+    """Return the id of the activity to whose graph the node belongs."""
     owner = context.graph.owner(node)
     while owner is not None and is_inlined(context.graph, owner):
         owner = context.graph.owner(owner)

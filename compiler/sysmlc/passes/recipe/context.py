@@ -1,6 +1,7 @@
 """The context of the recipe pass: graph, recipe levels, ids, and memoised results.
 
-The content of for-each regions and of blocks belongs to the graph of the activity around them.
+For-each regions and blocks are inlined: their content belongs to the graph of the activity around
+them.
 """
 
 from collections.abc import Iterator, Mapping
@@ -32,7 +33,7 @@ NODES = frozenset(
 
 
 class Call(Struct, frozen=True):
-    """A node that calls a service, machine function or helper; both are given by their ids."""
+    """The call of a service, machine function or helper: the ids of the node and of the callee."""
 
     kind: str
     node: str
@@ -42,8 +43,9 @@ class Call(Struct, frozen=True):
 class Refinement(Struct, frozen=True):
     """The content of an activity that refines a task or a service.
 
-    ``remarks`` pairs the ids of nodes whose content is left out with an empty text, and the ids of
-    definitions whose level follows from the position of their call with that level.
+    ``remarks`` are pairs of an element id and a text, which the pass reports: the id of a node
+    whose content the recipe omits, with an empty text, or the id of a called definition without a
+    stated level, with the level that the position of the call gives it.
     """
 
     graph: FlowGraph
@@ -60,17 +62,17 @@ class Context(Struct, frozen=True):
     graph: Graph
     levels: Mapping[str, str] = field(default_factory=dict)
     stated: Mapping[str, str] = field(default_factory=dict)
-    """Levels by id that elements have themselves, derived levels included."""
+    """Levels by id that elements do not take over from others, derived levels included."""
     candidates: frozenset[str] = frozenset()
     """Ids of elements that may have a level; most elements of a model have none."""
     derived: Mapping[str, str] = field(default_factory=dict)
-    """Levels by id that follow from others; stated levels override them."""
+    """Levels by id that ``derived_levels`` concludes; stated levels override them."""
     stereotyped: frozenset[str] = frozenset()
     """Ids of elements to which a stereotype is applied."""
     _segments: dict[str, str] = field(default_factory=dict)
     _names: dict[str, str] = field(default_factory=dict)
     _levels: dict[str, str] = field(default_factory=dict)
-    _of_level: dict[str, list[Element]] = field(default_factory=dict)
+    _elements_by_level: dict[str, list[Element]] = field(default_factory=dict)
     _literals: list[dict[str, str]] = field(default_factory=list)
     _contents: dict[str, list[Element]] = field(default_factory=dict)
     _nodes: dict[str, list[Element]] = field(default_factory=dict)
@@ -104,9 +106,7 @@ class Context(Struct, frozen=True):
         return self.stated.get(element.id, "")
 
     def level(self, element: Element | None) -> str:
-        """Return the level of an element: its own, or that of its type, of what it calls or
-        specialises.
-        """
+        """Return the level of an element: its own, or that of its general, callee or type."""
         if element is None or element.id not in self.candidates:
             return ""
         level = self._levels.get(element.id)
@@ -117,7 +117,7 @@ class Context(Struct, frozen=True):
         return level
 
     def with_derived(self, derived: Mapping[str, str]) -> "Context":
-        """Return a context with derived levels (by id) and without memos that depend on them."""
+        """Return a context with derived levels by id, without memoised results that they change."""
         changed = find_followers(self.graph, derived)
         unaffected = {id: level for id, level in self._levels.items() if id not in changed}
         return replace(
@@ -126,7 +126,7 @@ class Context(Struct, frozen=True):
             candidates=self.candidates | changed,
             derived=derived,
             _levels=unaffected,
-            _of_level={},
+            _elements_by_level={},
             types={},
             parameters={},
             kinds={},
@@ -135,10 +135,10 @@ class Context(Struct, frozen=True):
 
     def elements_of_level(self, level: str) -> list[Element]:
         """Return all elements of a level, in the order of the graph."""
-        if self.candidates and not self._of_level:
+        if self.candidates and not self._elements_by_level:
             for element in (element for element in self.graph if element.id in self.candidates):
-                self._of_level.setdefault(self.level(element), []).append(element)
-        return self._of_level.get(level, [])
+                self._elements_by_level.setdefault(self.level(element), []).append(element)
+        return self._elements_by_level.get(level, [])
 
     def find_literal(self, name: str) -> Element | None:
         """Return the literal ``Enumeration::literal``, or None if several have this name."""
@@ -169,14 +169,14 @@ class Context(Struct, frozen=True):
     # -- contents ------------------------------------------------------------------------------
 
     def contents(self, activity: Element) -> list[Element]:
-        """Return the owned elements of an activity, with the content of inlined nodes."""
+        """Return the elements that an activity owns, and the content of inlined nodes."""
         elements = self._contents.get(activity.id)
         if elements is None:
             elements = self._contents[activity.id] = list(list_contents(self.graph, activity))
         return elements
 
     def nodes(self, activity: Element) -> list[Element]:
-        """Return the nodes of the activity, also those in for-each regions and blocks."""
+        """Return the nodes of the activity, including those in for-each regions and blocks."""
         nodes = self._nodes.get(activity.id)
         if nodes is None:
             elements = self.contents(activity)
@@ -188,7 +188,7 @@ class Context(Struct, frozen=True):
     # -- stereotypes and tagged values ---------------------------------------------------------
 
     def find_application(self, element: Element, stereotype: str) -> Element | None:
-        """Return the application of a stereotype of the shipped profile or a special one."""
+        """Return the application of *stereotype*, or of a stereotype that specialises it."""
         if not self.may_have_stereotype(element):
             return None
         applications = query.applications(self.graph, element)
@@ -213,7 +213,10 @@ class Context(Struct, frozen=True):
     # -- ids -----------------------------------------------------------------------------------
 
     def name(self, element: Element) -> str:
-        """Return the qualified name; unnamed parts show their kind, namesakes get ``#2``."""
+        """Return the qualified name, the id of recipe elements.
+
+        An unnamed element is called by its kind, and the second element of a name gets ``#2``.
+        """
         name = self._names.get(element.id)
         if name is None:
             owner, segment = self.graph.owner(element), self._segment(element)
@@ -222,11 +225,11 @@ class Context(Struct, frozen=True):
         return name
 
     def label(self, element: Element) -> str:
-        """Return the own name; an unnamed element shows its kind and its number."""
+        """Return the name of the element without its owners, or its kind and number if unnamed."""
         return element.name or self._segment(element)
 
     def reference(self, value: str) -> str:
-        """Return the id for the JSON of an element that a tagged value refers to, else its text."""
+        """Return the recipe id of the element that a tagged value refers to, or else the value."""
         element = self.graph.get(value)
         return value if element is None else self.name(element)
 
@@ -239,9 +242,9 @@ class Context(Struct, frozen=True):
 
 
 def _index_literals(graph: Graph) -> dict[str, str]:
-    """Return ids of enumeration literals by the last two parts of their names.
+    """Return ids of enumeration literals by the last two parts of their qualified names.
 
-    The id is empty if two literals share these parts.
+    The id is empty if two literals have the same parts.
     """
     ids: dict[str, str] = {}
     for literal in graph.of_kind(Kind.ENUMERATION_LITERAL):
@@ -263,7 +266,7 @@ def _number_siblings(siblings: list[Element]) -> Iterator[tuple[str, str]]:
 
 
 def segment_word(element: Element) -> str:
-    """Return the word for an element in qualified names: its name, else its subkind or kind."""
+    """Return the part of a qualified name for an element: its name, or else its subkind or kind."""
     return element.name or element.subkind or element.kind.lower()
 
 
@@ -280,7 +283,7 @@ def is_for_each(node: Element) -> bool:
 
 
 def is_block(graph: Graph, node: Element) -> bool:
-    """Whether a node only groups steps: a structured activity node that repeats nothing."""
+    """Whether a node only groups steps: a structured node with one entry and without forks."""
     if node.kind is not Kind.STRUCTURED or node.subkind not in ("", "structured"):
         return False
     steps = list_steps(graph, node)
@@ -289,7 +292,7 @@ def is_block(graph: Graph, node: Element) -> bool:
 
 
 def is_inlined(graph: Graph, node: Element) -> bool:
-    """Whether the steps inside are steps of the graph around them."""
+    """Whether the content of the node belongs to the graph of the activity around it."""
     return node.kind is Kind.STRUCTURED and (is_for_each(node) or is_block(graph, node))
 
 
@@ -307,7 +310,7 @@ def list_steps(graph: Graph, region: Element) -> list[Element]:
 
 
 def find_entries(graph: Graph, region: Element) -> list[Element]:
-    """Return the first nodes of the content: initial nodes, else nodes without predecessor."""
+    """Return the first nodes in a region: initial nodes, or else nodes without predecessor."""
     steps = list_steps(graph, region)
     targets = {target for _, target in _list_successions(graph, region)}
     starts = [step for step in steps if step.subkind == "initial"]
@@ -315,14 +318,14 @@ def find_entries(graph: Graph, region: Element) -> list[Element]:
 
 
 def find_exits(graph: Graph, region: Element) -> list[Element]:
-    """Return the last nodes of the content: final nodes, and nodes without successor."""
+    """Return the last nodes in a region: final nodes, and nodes without successor."""
     sources = {source for source, _ in _list_successions(graph, region)}
     steps = list_steps(graph, region)
     return [step for step in steps if step.subkind in _ENDS or step.id not in sources]
 
 
 def _list_successions(graph: Graph, region: Element) -> Iterator[tuple[str, str]]:
-    """Yield the pairs of consecutive nodes of the content."""
+    """Yield the pairs of consecutive nodes in a region."""
     for flow in graph.owned(region):
         if flow.kind in (Kind.CONTROL_FLOW, Kind.OBJECT_FLOW):
             source, target = query.flow_source(graph, flow), query.flow_target(graph, flow)

@@ -1,4 +1,4 @@
-"""Data of an activity: the variables that its guards, pins and parameters stand for."""
+"""Data flow of an activity: the variables that pins assign and that expressions read."""
 
 import re
 from collections import Counter
@@ -25,8 +25,9 @@ from sysmlc.recipe.model import Parameter
 class Data(Struct, frozen=True):
     """The variables of one activity.
 
-    An output pin sets the variable of its own name: an attribute or parameter of the activity, or a
-    variable that the pin declares. Two undeclared pins of one name become ``action.pin``.
+    An output pin assigns the variable of its own name. This is an attribute or parameter of the
+    activity (``declared``), or else a variable that the pin declares. If several pins declare the
+    same name (``shared``), their variables are called ``action.pin``.
     """
 
     context: Context
@@ -34,14 +35,14 @@ class Data(Struct, frozen=True):
     declared: frozenset[str]
     shared: frozenset[str]
     dotted: frozenset[str] = frozenset()
-    """Names ``action.pin`` by which the activity's expressions speak of output pins."""
+    """Names ``action.pin`` in expressions of the activity; they may refer to output pins."""
     outputs: tuple[Element, ...] = ()
-    """Output pins of its actions."""
+    """Output pins of the actions of the activity."""
     _renamed: dict[str, str] = field(default_factory=dict)
 
     @classmethod
     def build(cls, context: Context, activity: Element) -> "Data":
-        """Return the data of an activity."""
+        """Return the variables of an activity; see the class."""
         elements = context.contents(activity)
         kinds = (Kind.PARAMETER, Kind.PROPERTY)
         names = {context.label(element) for element in elements if element.kind in kinds}
@@ -51,10 +52,10 @@ class Data(Struct, frozen=True):
         dotted = _find_dotted_names(context, activity)
         return cls(context, activity, frozenset(names), frozenset(shared - names), dotted, outputs)
 
-    # -- what an action reads and writes -------------------------------------------------------
+    # -- reads and writes of actions -----------------------------------------------------------
 
     def bind_inputs(self, node: Element) -> tuple[tuple[str, Expression], ...]:
-        """Return the input pins of an action with the expressions that fill them, by name."""
+        """Return the names of input pins with the expressions of their values, sorted."""
         values = {
             self.context.label(pin): self._find_value(pin) for pin in self._list_pins(node, "in")
         }
@@ -63,7 +64,7 @@ class Data(Struct, frozen=True):
         )
 
     def assign_outputs(self, node: Element) -> tuple[tuple[str, str], ...]:
-        """Return the output pins of an action with the variables that they set, by name."""
+        """Return the names of output pins with the variables that they assign, sorted."""
         return tuple(sorted(self._list_outputs(node)))
 
     def _list_outputs(self, node: Element) -> Iterator[tuple[str, str]]:
@@ -71,7 +72,7 @@ class Data(Struct, frozen=True):
             yield self.context.label(pin), self.variable_of(pin)
 
     def read(self, text: str) -> Expression:
-        """Return an expression of the activity over the variables that output pins set."""
+        """Return the expression of a text; names of output pins become their variables."""
         expression = resolve_literals(self.context, self.activity, read_expression(text))
         if not self.dotted:
             return expression
@@ -80,7 +81,7 @@ class Data(Struct, frozen=True):
         return _rename_variables(expression, self._renamed)
 
     def _map_dotted_names(self) -> Iterator[tuple[str, str]]:
-        """Yield the names ``action.pin`` of output pins, with the variables that the pins set."""
+        """Yield the names ``action.pin`` of output pins, with the variables that they assign."""
         for pin in self.outputs:
             owner = self.context.graph.owner(pin)
             if owner is not None:
@@ -88,7 +89,7 @@ class Data(Struct, frozen=True):
                 yield label, self.variable_of(pin)
 
     def variable_of(self, pin: Element) -> str:
-        """Return the variable that an output pin sets."""
+        """Return the variable that an output pin assigns."""
         for flow in query.outgoing(self.context.graph, pin):
             target = query.flow_target(self.context.graph, flow)
             if target is not None and target.kind is Kind.ACTIVITY_PARAMETER:
@@ -99,15 +100,16 @@ class Data(Struct, frozen=True):
         return full if name in self.shared or full in self.dotted else name
 
     def max_size(self, collection: Expression) -> int | None:
-        """Return the largest number of elements of a collection, if its multiplicity states it."""
+        """Return the largest size of a collection by its multiplicity, or None if unlimited."""
         name = variable_name(collection)
         feature = None if name is None else find_feature(self.context, self.activity, name)
         limits = None if feature is None else query.bounds(feature.attrs.get("multiplicity"))
         return None if limits is None else limits[1]
 
     def source_of(self, flow: Element) -> Expression | None:
-        """Return the value that an object flow carries: the variable of the pin or parameter it
-        starts at.
+        """Return the value that an object flow transports, or None.
+
+        The value is the variable of the output pin or parameter at which the chain of flows starts.
         """
         graph, seen = self.context.graph, {flow.id}
         stack = [flow]
@@ -127,18 +129,18 @@ class Data(Struct, frozen=True):
         return None
 
     def _is_passed_on(self, pin: Element) -> bool:
-        """Whether a pin of a block only passes its value on."""
+        """Whether the pin belongs to an inlined node, and so only passes its value on."""
         owner = self.context.graph.owner(pin)
         return owner is not None and is_inlined(self.context.graph, owner)
 
     # -- declarations --------------------------------------------------------------------------
 
     def list_parameters(self, *directions: str) -> tuple[Parameter, ...]:
-        """Return the parameters of some directions, without materials and optional machines."""
+        """Return the parameters of these directions, without materials and optional machines."""
         return list_data_parameters(self.context, self.activity, *directions)
 
     def list_variables(self) -> tuple[Parameter, ...]:
-        """Return the attributes of the activity and the variables of output pins, by name."""
+        """Return the variables for attributes and output pins of the activity, sorted by name."""
         elements = self.context.contents(self.activity)
         attributes = [
             element
@@ -149,6 +151,7 @@ class Data(Struct, frozen=True):
             self.context.label(element): build_parameter(self.context, element)
             for element in attributes
         }
+        # Optional machines and materials are no parameters, but expressions read their features.
         heads = {name.partition(".")[0] for name in self.dotted}
         for element in query.parameters(self.context.graph, self.activity, "in"):
             if element.name in heads and not is_input(self.context, element):
@@ -180,6 +183,7 @@ class Data(Struct, frozen=True):
             carried = self.source_of(flow)
             if carried is not None:
                 return carried
+        # A pin without value and flow reads the variable that an output pin of its name assigns.
         name = self.context.label(pin)
         return make_variable(name) if name in self.declared else None
 
@@ -200,7 +204,7 @@ def _rename_variables(expression: Expression, names: Mapping[str, str]) -> Expre
 
 
 def _find_dotted_names(context: Context, activity: Element) -> frozenset[str]:
-    """Return the dotted names in the values, guards and texts of an activity."""
+    """Return the names of the form ``a.b`` in values, guards and bodies of an activity."""
     texts: list[object] = []
     for node in context.contents(activity):
         if node.kind is Kind.COMMENT:
@@ -217,7 +221,7 @@ _DOTTED = re.compile(r"[^\W\d]\w*\.[^\W\d]\w*")
 def list_data_parameters(
     context: Context, element: Element, *directions: str
 ) -> tuple[Parameter, ...]:
-    """Return the parameters that hold values or a required machine, in order."""
+    """Return the parameters of these directions that hold values or required machines."""
     elements = query.parameters(context.graph, element, *directions)
     return tuple(
         build_parameter(context, declared) for declared in elements if is_input(context, declared)

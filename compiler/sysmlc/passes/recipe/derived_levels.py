@@ -1,6 +1,7 @@
-"""Recipe levels that follow from others: machines, OPC UA bindings, pauses.
+"""Recipe levels that follow from facts of the model: machines, OPC UA bindings and pauses.
 
-A level is derived only if neither the model nor the options state it anywhere.
+A level is derived only if neither the model nor the options give it to any element, so that models
+that state their levels do not change (docs/decisions/0029).
 """
 
 import re
@@ -21,17 +22,18 @@ DERIVED = rule(
     help="to choose another level, set it in [recipe.levels] or apply a stereotype",
 )
 
+# The form of node ids in OPC 10000-6, clause 5.3.1.10: a namespace, then a typed identifier.
 _NODE_ID = re.compile(
     r"(?:nsu?=[^;]+;)?"
     r"(?:i=\d+|s=.+|b=[A-Za-z0-9+/=]+|g=[0-9A-Fa-f]{8}(?:-[0-9A-Fa-f]{4}){3}-[0-9A-Fa-f]{12})",
     re.DOTALL,
 )
-_DURATIONS = ("duration", "time")
+_DURATION_QUANTITIES = ("duration", "time")
 _CLASSES = (Kind.CLASS, Kind.COMPONENT)
 
 
 class DerivedLevel(Struct, frozen=True):
-    """An element whose level follows from the rest of the model."""
+    """An element, its derived level, and the reason as a clause for the report."""
 
     element: Element
     level: str
@@ -39,7 +41,7 @@ class DerivedLevel(Struct, frozen=True):
 
 
 def add_derived_levels(context: Context) -> tuple[Context, list[DerivedLevel]]:
-    """Return the context with the derived levels, and these levels."""
+    """Return the context with the derived levels, and the list of these levels."""
     derived = [*_derive_machines(context), *_derive_bindings(context), *_derive_pauses(context)]
     if not derived:
         return context, []
@@ -48,18 +50,18 @@ def add_derived_levels(context: Context) -> tuple[Context, list[DerivedLevel]]:
 
 
 def report_derived_levels(context: Context, derived: list[DerivedLevel], sink: Sink) -> None:
-    """Report for each derived level what it follows from."""
+    """Report each derived level with the reason for it (SM483)."""
     for entry in derived:
         sink.report(
             DERIVED,
             context.graph.subject(entry.element),
             element=context.name(entry.element),
-            level=_ARTICLES[entry.level],
+            level=_LEVEL_TEXTS[entry.level],
             because=entry.because,
         )
 
 
-_ARTICLES = {
+_LEVEL_TEXTS = {
     "machine": "a machine",
     "opc ua call": "a stereotype of OPC UA calls",
     "opc ua variable": "a stereotype of OPC UA variables",
@@ -81,7 +83,7 @@ def _derive_machines(context: Context) -> Iterator[DerivedLevel]:
 
 
 def _derive_bindings(context: Context) -> Iterator[DerivedLevel]:
-    """Yield the stereotypes whose node ids have the form of OPC UA."""
+    """Yield the stereotypes with a tag ``nodeId`` whose value is a node id of OPC UA."""
     stated = set(context.levels.values())
     for stereotype in context.graph.of_kind(Kind.STEREOTYPE):
         applied = context.graph.sources(stereotype, Edge.INSTANCE_OF)
@@ -104,7 +106,7 @@ def _applies_to_behaviour(context: Context, applied: list[Element]) -> bool:
 
 
 def _derive_pauses(context: Context) -> Iterator[DerivedLevel]:
-    """Yield the called behaviours that have a duration and nothing else."""
+    """Yield the called activities whose only feature is an input parameter for a duration."""
     if "delay" in context.levels.values():
         return
     for activity in context.graph.of_kind(Kind.ACTIVITY):
@@ -127,4 +129,4 @@ def _is_duration(context: Context, parameter: Element) -> bool:
     if type_ is not None and type_.attrs.get("qualified_name") == "ISQBase::DurationValue":
         return True
     kind = quantity_kind_of(context.graph, parameter)
-    return kind is not None and kind.name.lower() in _DURATIONS
+    return kind is not None and kind.name.lower() in _DURATION_QUANTITIES

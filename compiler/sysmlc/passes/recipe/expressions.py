@@ -1,6 +1,6 @@
-"""Expressions of recipes, read from the texts of a model, and the features that they name.
+"""Expressions of recipes, read from texts of the model, and the features that they refer to.
 
-A dotted name means a feature, which has a type, a unit and a value.
+A dotted name refers to a feature, which has a type, a unit and a default value.
 """
 
 from collections.abc import Iterator
@@ -19,11 +19,12 @@ from sysmlc.recipe.expression import (
 )
 from sysmlc.recipe.model import EnumType, ListType, Parameter, ReferenceType, Scalar, ValueType
 
+# Recipe expressions have no xor; on Booleans it equals !=.
 _OPERATORS = {"%": "mod", "xor": "!="}
 
 
 def read_expression(text: str) -> source.Expression:
-    """Return the expression of a text, or Opaque if it is none."""
+    """Return the expression of a text, or an opaque one if the text has no valid syntax."""
     try:
         return translate_expression(parse_expression(text))
     except source.ExpressionError:
@@ -31,7 +32,7 @@ def read_expression(text: str) -> source.Expression:
 
 
 def read_time(text: str) -> source.Expression:
-    """Return a duration in milliseconds, from a number with a unit or an expression."""
+    """Return the duration of a text in milliseconds, or its expression if it has no unit."""
     duration = parse_milliseconds(text)
     return read_expression(text) if duration is None else source.Literal(duration)
 
@@ -75,7 +76,7 @@ def _make_call(function: str, *args: source.Expression) -> source.Expression:
 
 
 def read_assignments(text: str) -> list[tuple[str, source.Expression]] | None:
-    """Return the variables and values of an effect that only assigns; None for any other effect."""
+    """Return the variables and values of an effect; None unless it consists of assignments."""
     try:
         statements = parse_effect(text)
     except source.ExpressionError:
@@ -96,7 +97,7 @@ def resolve_literals(
 ) -> source.Expression:
     """Replace enumeration literals by their values (SysML 2.0, 8.3.8).
 
-    A literal that is compared with something of its own enumeration stays a name.
+    A literal that is compared with an operand of its own enumeration stays a name.
     """
     name = variable_name(expression)
     if name is not None:
@@ -125,8 +126,8 @@ def _resolve_operand(
     name = variable_name(operand)
     literal = context.find_literal(name) if name is not None and "::" in name else None
     owner = None if literal is None else context.graph.owner(literal)
-    is_kept = owner is not None and context.name(owner) in enumerations
-    return operand if is_kept else resolve_literals(context, activity, operand)
+    is_compared = owner is not None and context.name(owner) in enumerations
+    return operand if is_compared else resolve_literals(context, activity, operand)
 
 
 def _find_enumerations(
@@ -151,15 +152,20 @@ _PRIMITIVES: dict[str, ValueType] = {
     "Real": "real",
     "String": "string",
 }
-_HEADS = (Kind.PARAMETER, Kind.PROPERTY)
+_FEATURE_KINDS = (Kind.PARAMETER, Kind.PROPERTY)
 
 
 def find_feature(context: Context, activity: Element, name: str) -> Element | None:
-    """Return the parameter, variable or feature of a dotted name in an activity, or None."""
+    """Return the parameter, attribute or nested feature of a name in an activity, or None."""
     head, *rest = name.split(".")
     elements = context.contents(activity)
     feature = next(
-        (element for element in elements if element.kind in _HEADS and element.name == head), None
+        (
+            element
+            for element in elements
+            if element.kind in _FEATURE_KINDS and element.name == head
+        ),
+        None,
     )
     for part in rest:
         type_ = None if feature is None else query.type_of(context.graph, feature)
@@ -178,7 +184,7 @@ def find_member(context: Context, type_: Element, name: str) -> Element | None:
 
 
 def build_parameter(context: Context, element: Element) -> Parameter:
-    """Return a parameter, pin or property as a recipe's parameter."""
+    """Return the recipe parameter for a parameter, pin or property."""
     parameter = context.parameters.get(element.id)
     if parameter is None:
         type_, measure = value_type(context, element), unit_name(context, element)
@@ -188,12 +194,12 @@ def build_parameter(context: Context, element: Element) -> Parameter:
 
 
 def is_data(context: Context, element: Element) -> bool:
-    """Whether the element holds a value, and is no machine or material."""
+    """Whether the type of the element is neither a machine nor a material."""
     return context.level(query.type_of(context.graph, element)) not in ("machine", "material")
 
 
 def is_input(context: Context, element: Element) -> bool:
-    """Whether the element holds a value, or a machine that is required."""
+    """Whether the element holds a value or a required machine (lower bound above 0)."""
     if is_data(context, element):
         return True
     limits = query.bounds(element.attrs.get("multiplicity"))
@@ -202,8 +208,9 @@ def is_input(context: Context, element: Element) -> bool:
 
 
 def value_type(context: Context, element: Element) -> ValueType | None:
-    """Return the type of a typed element; a list if its multiplicity allows several, None if
-    untyped.
+    """Return the recipe type of an element, or None if it is untyped.
+
+    The type is a list if the multiplicity allows several values.
     """
     type_ = query.type_of(context.graph, element)
     if type_ is None:
@@ -256,13 +263,13 @@ def unit_name(context: Context, element: Element) -> str:
 
 
 def literal_default(element: Element) -> Scalar | None:
-    """Return the default value if it is a literal."""
+    """Return the default value if it is a single literal, or else None."""
     default = default_value(element)
     return default if isinstance(default, bool | int | float | str) else None
 
 
 def default_value(element: Element) -> Scalar | tuple[Scalar, ...] | None:
-    """Return the default value if it is a literal or a list of literals."""
+    """Return the default value if it is a literal or a list of literals, or else None."""
     default = element.attrs.get("default")
     if element.attrs.get("default_language") is not None:
         return None
@@ -273,6 +280,6 @@ def default_value(element: Element) -> Scalar | tuple[Scalar, ...] | None:
 
 
 def literal_value(literal: Element) -> Scalar:
-    """Return the value of an enumeration literal; its name if it has none."""
+    """Return the value of an enumeration literal, or its name if it has no value."""
     value = literal.attrs.get("value")
     return value if isinstance(value, bool | int | float | str) else literal.name

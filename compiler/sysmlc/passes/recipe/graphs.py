@@ -32,28 +32,35 @@ from sysmlc.recipe.model import FlowEdge, FlowGraph, Node
 _CALLED_LEVELS = {"service": "service", "function": "machine function"}
 
 
-def refine(context: Context, activity: Element, inside: str) -> Refinement:
-    """Return the content of an activity that refines a task or a service (*inside*)."""
-    refinement = context.refinements.get((inside, activity.id))
+def refine(context: Context, activity: Element, activity_level: str) -> Refinement:
+    """Return the content of an activity that refines a task or a service.
+
+    *activity_level* states which of the two: ``task`` or ``service``.
+    """
+    refinement = context.refinements.get((activity_level, activity.id))
     if refinement is None:
-        graph = build_flow_graph(context, activity, inside)
-        calls = tuple(_list_calls(context, activity, inside))
-        refinement = Refinement(graph, calls, tuple(_list_remarks(context, activity, inside)))
-        context.refinements[inside, activity.id] = refinement
+        graph = build_flow_graph(context, activity, activity_level)
+        calls = tuple(_list_calls(context, activity, activity_level))
+        refinement = Refinement(
+            graph, calls, tuple(_list_remarks(context, activity, activity_level))
+        )
+        context.refinements[activity_level, activity.id] = refinement
     return refinement
 
 
-def _list_calls(context: Context, activity: Element, inside: str) -> Iterator[Call]:
+def _list_calls(context: Context, activity: Element, activity_level: str) -> Iterator[Call]:
     for node in context.nodes(activity):
-        kind = step_kind(context, node, inside)
+        kind = step_kind(context, node, activity_level)
         if kind in ("call", "service", "function"):
             definition = context.definition(node) or node
             yield Call(kind, node.id, definition.id)
 
 
-def _list_remarks(context: Context, activity: Element, inside: str) -> Iterator[tuple[str, str]]:
+def _list_remarks(
+    context: Context, activity: Element, activity_level: str
+) -> Iterator[tuple[str, str]]:
     for node in context.nodes(activity):
-        kind = step_kind(context, node, inside)
+        kind = step_kind(context, node, activity_level)
         if node.kind is Kind.STRUCTURED and not is_inlined(context.graph, node):
             yield node.id, ""
         elif is_by_position(context, node, kind):
@@ -65,7 +72,11 @@ _ENDS = ("final", "flow-final")
 
 @dataclass(slots=True)
 class Draft:
-    """Nodes and edges so far; ``first`` and ``last`` map activity nodes to recipe nodes."""
+    """A flow graph under construction.
+
+    Several recipe nodes may stand for one activity node. By its id, ``first`` has the recipe node
+    that its incoming edges reach, and ``last`` the recipe node that its outgoing edges leave.
+    """
 
     nodes: list[Node] = field(default_factory=list)
     edges: list[FlowEdge] = field(default_factory=list)
@@ -77,7 +88,7 @@ class Draft:
 
 
 def open_region(context: Context, region: Element, draft: Draft) -> None:
-    """Replace the initial nodes in a region by its first node, final ones by its last."""
+    """Remove initial and final nodes in a region; their edges then join its first or last node."""
     for node in list_steps(context.graph, region):
         if node.kind is Kind.CONTROL and node.subkind in ("initial", *_ENDS):
             draft.nodes = [
@@ -88,7 +99,10 @@ def open_region(context: Context, region: Element, draft: Draft) -> None:
 
 
 def close_region(context: Context, region: Element, draft: Draft) -> None:
-    """Connect a region with its content. A for-each node is both the first and the last node."""
+    """Connect the first and last node of a region with its content.
+
+    Both are the same node if the region is a for-each loop.
+    """
     begin, end = draft.first[region.id], draft.last[region.id]
     starts = [node for node in find_entries(context.graph, region) if node.subkind != "initial"]
     draft.edges += (FlowEdge(begin, draft.first[node.id], element=region.id) for node in starts)
@@ -132,13 +146,14 @@ def _edge_to_final(node: Node, final: str) -> FlowEdge:
 
 
 def add_results(context: Context, activity: Element, data: Data, draft: Draft) -> None:
-    """Add before the end the assignments of outputs that are given by expressions."""
+    """Add assignments before the end, for outputs whose values are given by expressions."""
     computed = [
         element
         for element in query.parameters(context.graph, activity, *_OUT)
         if is_computed(element)
     ]
     ends = [node for node in draft.nodes if node.kind == "final"]
+    # A flow final node ends its own flow only, so that it counts only if nothing else is an end.
     ends = ends or [node for node in draft.nodes if node.kind == "flowFinal"]
     for number, end in enumerate(ends if computed else (), 1):
         mark = "" if number == 1 else f"#{number}"
@@ -150,7 +165,7 @@ _OUT = ("out", "inout", "return")
 
 
 def is_computed(parameter: Element) -> bool:
-    """Whether an expression gives the value of an output, and not only its initial value."""
+    """Whether an expression determines the value of an output, not only its initial value."""
     is_text = isinstance(parameter.attrs.get("default"), str)
     is_expression = is_text and "default_language" in parameter.attrs
     return is_expression and not parameter.attrs.get("initial")
@@ -164,7 +179,7 @@ def _build_result(context: Context, parameter: Element, data: Data, mark: str) -
 
 
 def _insert_before(inserted: list[Node], end: Node, draft: Draft) -> None:
-    """Insert nodes before an end; if several edges lead to it, they are merged first."""
+    """Insert nodes before an end, after a merge node if several edges lead to the end."""
     incoming = [edge for edge in draft.edges if edge.target == end.id]
     if len(incoming) > 1:
         inserted = [
@@ -178,13 +193,13 @@ def _insert_before(inserted: list[Node], end: Node, draft: Draft) -> None:
     draft.nodes += inserted
 
 
-def build_flow_graph(context: Context, activity: Element, inside: str) -> FlowGraph:
-    """Return the graph of an activity; *inside* is its level, ``task`` or ``service``."""
+def build_flow_graph(context: Context, activity: Element, activity_level: str) -> FlowGraph:
+    """Return the graph of an activity; *activity_level* is its level, ``task`` or ``service``."""
     data = Data.build(context, activity)
     draft = Draft()
     nodes = context.nodes(activity)
     for node in nodes:
-        _add_nodes(context, node, step_kind(context, node, inside), data, draft)
+        _add_nodes(context, node, step_kind(context, node, activity_level), data, draft)
     regions = [node for node in nodes if is_inlined(context.graph, node)]
     for region in regions:
         open_region(context, region, draft)
@@ -208,9 +223,9 @@ def build_flow_graph(context: Context, activity: Element, inside: str) -> FlowGr
 
 
 def _sort_graph(graph: FlowGraph) -> FlowGraph:
-    """Return the graph in an order that does not depend on the order of the model.
+    """Return the graph with nodes in the order of execution and edges in the order of their ends.
 
-    Nodes are in the order of execution, edges in that of their ends.
+    The order does not depend on the order of the model.
     """
     by_id = {node.id: node for node in sorted(graph.nodes, key=lambda node: node.id)}
     graph = replace(graph, nodes=tuple(by_id.values()))
@@ -264,7 +279,7 @@ def _list_object_edges(
 
 
 def _find_targets(context: Context, flow: Element, draft: Draft) -> list[Element]:
-    """Return the nodes that an object flow reaches, also through buffers of data."""
+    """Return the nodes that an object flow reaches, directly or through buffers of data."""
     targets: dict[str, Element] = {}
     seen: set[str] = set()
     stack = [flow]
@@ -300,8 +315,9 @@ def _build_edge(
 def _read_guard(
     context: Context, flow: Element, source: Element, text: str, data: Data
 ) -> Expression | None:
-    """Return a guard; a literal is compared with the decision's input as in fUML (1.5, 8.5.2.2)."""
+    """Return a guard. A literal is compared with the decision input as in fUML 1.5, 8.5.2.2."""
     is_literal = bool(flow.attrs.get("guard_literal"))
+    # Tools write the literal `true` by default; a literal is a guard only after a decision.
     if not text or (is_literal and source.subkind != "decision"):
         return None
     expression = data.read(text)

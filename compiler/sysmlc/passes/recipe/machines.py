@@ -22,10 +22,10 @@ class Relation(Struct, frozen=True):
 
 
 def find_machine(context: Context, element: Element | None) -> Element | None:
-    """Return the machine that an element is or stands for, or None.
+    """Return the machine that an element represents, or None.
 
-    An object node or pin stands for its type if that is a machine; a property, instance or class is
-    a machine itself.
+    An object node or pin represents its type if the type is a machine. A property, instance or
+    class of the level machine represents itself.
     """
     if element is None or context.level(element) != "machine":
         return None
@@ -56,9 +56,7 @@ def relations_by_dependency(context: Context, client: Element) -> Iterator[Relat
 
 
 def _is_plant_location(context: Context, supplier: Element) -> bool:
-    """Whether the supplier says where in the plant a service runs, which the pass ``platform``
-    reads.
-    """
+    """Whether the pass ``platform`` reads the supplier: an operation or a plant element."""
     if context.level(supplier) == "machine":
         return False
     return supplier.kind is Kind.OPERATION or is_of_plant(context.graph, supplier)
@@ -77,7 +75,7 @@ def _relations_by_association(context: Context, client: Element) -> Iterator[Rel
 
 
 def relations_by_partition(context: Context, node: Element) -> Iterator[Relation]:
-    """Yield the partitions that represent machines."""
+    """Yield the partitions of a node that represent machines."""
     for partition in context.graph.targets(node, Edge.IN_PARTITION):
         represented = context.graph.target(partition, Edge.REPRESENTS)
         machine = find_machine(context, represented) or find_machine(context, partition)
@@ -86,7 +84,7 @@ def relations_by_partition(context: Context, node: Element) -> Iterator[Relation
 
 
 def relations_by_pins(context: Context, step: Element) -> Iterator[Relation]:
-    """Yield one relation to all machines that are arguments of a step: it needs them at once."""
+    """Yield one relation to all machines that are arguments of a step, which needs all of them."""
     machines = _machines_of_features(
         context, (pin for pin in context.graph.owned(step) if _is_argument(pin))
     )
@@ -95,7 +93,7 @@ def relations_by_pins(context: Context, step: Element) -> Iterator[Relation]:
 
 
 def relations_by_parameters(context: Context, behavior: Element) -> Iterator[Relation]:
-    """Yield a relation to each machine that is a parameter of a behaviour."""
+    """Yield one relation for each machine among the input parameters of a behaviour."""
     for machine in _machines_of_features(context, query.parameters(context.graph, behavior, "in")):
         yield Relation(behavior, (machine,))
 
@@ -134,10 +132,14 @@ def _conforming_machines(context: Context, owner: Element) -> Iterator[Element]:
 
 
 def build_modes(context: Context, relations: Iterator[Relation]) -> tuple[Mode, ...]:
-    """Return the ways to equip a task; relations with the same ``mode`` are needed together."""
+    """Return the modes of a task: sets of machines, each of which suffices to perform it.
+
+    Relations with the same tag ``mode`` form one set, other relations a set of their own.
+    """
     groups: dict[str, list[Mode]] = {}
     for relation in relations:
         tags = context.tags(relation.element, "Capability")
+        # No tag contains the character NUL, so that a relation without a mode stays alone.
         key = tags.text("mode") or f"\x00{relation.element.id}"
         groups.setdefault(key, []).append(_build_mode(context, relation))
     return tuple(sorted(map(_combine_modes, groups.values()), key=lambda mode: mode.machines))
@@ -186,9 +188,9 @@ def build_providers(context: Context, relations: Iterator[Relation]) -> tuple[Pr
     return tuple(by_machine[machine] for machine in sorted(by_machine))
 
 
-_OPC_UA = ("opc ua call", "opc ua variable")
-_OF_SPACE = ("parentNodeId", "nodeId")
-"""Tags of other stereotypes for OPC UA calls: the object and its method."""
+_OPC_UA_LEVELS = ("opc ua call", "opc ua variable")
+_ADDRESS_SPACE_TAGS = ("parentNodeId", "nodeId")
+"""Tags for the object and its method, in stereotypes of other profiles for OPC UA calls."""
 
 
 def _find_opcua_application(context: Context, element: Element) -> Element | None:
@@ -197,7 +199,7 @@ def _find_opcua_application(context: Context, element: Element) -> Element | Non
     application = context.find_application(element, "OpcUaCall")
     for candidate in query.applications(context.graph, element):
         stereotype = context.graph.target(candidate, Edge.INSTANCE_OF)
-        if stereotype is not None and context.own_level(stereotype) in _OPC_UA:
+        if stereotype is not None and context.own_level(stereotype) in _OPC_UA_LEVELS:
             application = application or candidate
     return application
 
@@ -205,7 +207,7 @@ def _find_opcua_application(context: Context, element: Element) -> Element | Non
 def build_opcua(context: Context, element: Element) -> OpcUa | None:
     """Return the OPC UA call of an element or of the behaviour that implements it, or None.
 
-    A stereotype to which the options give this level has its node ids in ``nodeId`` and
+    A stereotype of another profile with this level has its node ids in the tags ``nodeId`` and
     ``parentNodeId``, the words of OPC UA's own address space.
     """
     family = [element, *context.graph.targets(element, Edge.METHOD)]
@@ -217,8 +219,8 @@ def build_opcua(context: Context, element: Element) -> OpcUa | None:
     tags = Tags(application.attrs)
     return OpcUa(
         tags.call_kind("kind") or "call",
-        tags.text("object") or tags.text(_OF_SPACE[0]),
-        tags.text("method") or tags.text(_OF_SPACE[1]),
+        tags.text("object") or tags.text(_ADDRESS_SPACE_TAGS[0]),
+        tags.text("method") or tags.text(_ADDRESS_SPACE_TAGS[1]),
         tags.endpoint("endpoint") or "",
         tags.text("namespaceUri"),
         read_optional(tags.text("doneWhen")),
@@ -228,10 +230,10 @@ def build_opcua(context: Context, element: Element) -> OpcUa | None:
 
 
 def find_opcua_node(context: Context, variable: Element) -> str:
-    """Return the OPC UA node of a variable as written, or the empty string."""
+    """Return the text of a variable's OPC UA node id, or the empty string."""
     application = _find_opcua_application(context, variable)
     tags = Tags({} if application is None else application.attrs)
-    texts = (tags.text(name) for name in ("node", _OF_SPACE[1], "object"))
+    texts = (tags.text(name) for name in ("node", _ADDRESS_SPACE_TAGS[1], "object"))
     return next((text for text in texts if text), "")
 
 
@@ -239,7 +241,7 @@ def find_opcua_node(context: Context, variable: Element) -> str:
 
 
 def build_machine(context: Context, element: Element) -> Machine:
-    """Return an element at the level machine as a value; the tags may be those of its class."""
+    """Return the machine of an element; its tags may be on the element, a general or its type."""
     family = [element, *query.generals(context.graph, element)]
     type_ = query.type_of(context.graph, element)
     family += [] if type_ is None else [type_]
@@ -260,7 +262,7 @@ def build_machine(context: Context, element: Element) -> Machine:
 
 
 def build_material(context: Context, element: Element) -> Material:
-    """Return an element at the level material as a value, with its attributes as properties."""
+    """Return the material of an element, with its attributes as properties."""
     tags = context.tags(element, "Material")
     return Material(
         context.name(element),
@@ -275,8 +277,9 @@ def build_material(context: Context, element: Element) -> Material:
 
 
 def _property_order(named_value: tuple[str, object]) -> tuple[str, str]:
-    """Return the sort key of a property. Values of one name, as 1 and ``red``, need not be
-    comparable.
+    """Return the sort key of a property: its name and the text of its value.
+
+    Values of one name, such as ``1`` and ``red``, may not be comparable.
     """
     return named_value[0], str(named_value[1])
 

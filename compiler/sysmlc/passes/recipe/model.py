@@ -1,6 +1,6 @@
 """The model of one recipe: the recipe itself and everything that it refers to.
 
-Variables of machines belong to it if the expressions of the recipe read or set them.
+The model includes a variable of a machine if expressions of the recipe read or assign it.
 """
 
 import re
@@ -50,7 +50,11 @@ _T = TypeVar("_T", bound=_Named)
 
 @dataclass(slots=True)
 class _Closure:
-    """The definitions that a recipe needs, each with the nodes that use it, by element id."""
+    """The transitive callees of a recipe.
+
+    ``services`` and ``functions`` map the id of a definition to the definition and the nodes that
+    call it. The graphs have ids of activities as keys.
+    """
 
     services: dict[str, tuple[Element, list[Element]]] = field(default_factory=dict)
     functions: dict[str, tuple[Element, list[Element]]] = field(default_factory=dict)
@@ -59,7 +63,7 @@ class _Closure:
 
 
 def build_model(context: Context, activity: Element) -> Model:
-    """Return the recipe of an activity, with everything derived."""
+    """Return the model of the recipe that an activity describes."""
     steps = list_steps(context, activity)
     closure = _Closure()
     for step in steps:
@@ -109,12 +113,14 @@ def _build_recipe(
     )
 
 
-def _add_refinement(context: Context, activity: Element, inside: str, closure: _Closure) -> None:
-    """Add the graph of an activity and its calls, level by level; a graph is added once."""
-    graphs = closure.service_graphs if inside == "task" else closure.function_graphs
+def _add_refinement(
+    context: Context, activity: Element, activity_level: str, closure: _Closure
+) -> None:
+    """Add the graph of an activity and, recursively, the graphs of its callees, each once."""
+    graphs = closure.service_graphs if activity_level == "task" else closure.function_graphs
     if activity.id in graphs:
         return
-    refinement = refine(context, activity, inside)
+    refinement = refine(context, activity, activity_level)
     graphs[activity.id] = refinement.graph
     tables = {"service": closure.services, "function": closure.functions}
     for call in refinement.calls:
@@ -137,7 +143,7 @@ def _name_materials(context: Context, recipe: Recipe, activity: Element) -> set[
 def _build_named(
     context: Context, names: set[str], make: Callable[[Context, Element], _T], level: str
 ) -> tuple[_T, ...]:
-    """Return values for the names that belong to elements of the level, sorted by name."""
+    """Build a value with *make* for each element of the level with one of the names, sorted."""
     # Computing a qualified name is slow, so skip elements whose own word occurs in no name.
     all_names = "\n".join(names)
     candidates = (
@@ -156,9 +162,9 @@ def _sort_by_id(values: Iterable[_T]) -> tuple[_T, ...]:
 def build_performances(
     context: Context, recipe: Element, graphs: Iterable[str]
 ) -> tuple[Performance, ...]:
-    """Return for each block that runs the recipe its machines and steps, sorted by block.
+    """Return, for each block that runs the recipe, its allocations of parameters and steps.
 
-    *graphs* are the ids of the activities whose nodes the recipe's graphs have.
+    *graphs* are the ids of the activities that refine tasks and services of the recipe.
     """
     owners = {recipe.id, *graphs}
     blocks = context.graph.sources(recipe, Edge.CLASSIFIER_BEHAVIOR)
@@ -184,7 +190,7 @@ def _build_performance(
 
 
 def _list_allocations(context: Context, block: Element) -> Iterator[tuple[Element, str]]:
-    """Yield the elements that the block allocates, and the path from the block to their target."""
+    """Yield each element that the block allocates, with the path of names to the target."""
     graph = context.graph
     for allocation in graph.owned(block):
         if allocation.kind is Kind.DEPENDENCY and allocation.role == "allocate":
@@ -213,7 +219,7 @@ _NAME = re.compile(r"[^\W\d]\w*")
 
 
 def add_machine_variables(context: Context, model: Model) -> Model:
-    """Return the model, each machine with the variables that expressions name."""
+    """Return the model with, for each machine, the variables that expressions refer to."""
     names_by_machine: dict[str, set[str]] = {}
     for parameters, expressions in _list_scopes(model):
         machines = dict(_machine_parameters(parameters))
@@ -234,7 +240,7 @@ def add_machine_variables(context: Context, model: Model) -> Model:
 
 
 def _machine_parameters(parameters: Iterable[Parameter]) -> Iterator[tuple[str, str]]:
-    """Yield the names of parameters that stand for machines, with the machine."""
+    """Yield the name and the machine id of each parameter whose type is a machine."""
     for parameter in parameters:
         if isinstance(parameter.type, ReferenceType) and parameter.type.to == "machine":
             yield parameter.name, parameter.type.name
@@ -275,7 +281,7 @@ def _natural_order(name: str) -> tuple[str, int, str]:
 def _add_variable(
     context: Context, type_: Element, name: str, variables_by_name: dict[str, MachineVariable]
 ) -> None:
-    """Add a variable by its dotted name, with its elements and described features."""
+    """Add the variable of a dotted name, the elements of a list and the features of a part."""
     feature: Element | None = None
     owner: Element | None = type_
     for part in name.split("."):

@@ -22,19 +22,21 @@ CONTROL_KINDS = {
 _HELPERS = ("opaque", "function")
 
 
-def step_kind(context: Context, node: Element, inside: str) -> str:
-    """Return the kind of the recipe node for an activity node; empty for a buffer of data.
+def step_kind(context: Context, node: Element, activity_level: str) -> str:
+    """Return the kind of the recipe node for an activity node, or "" for a buffer of data.
 
-    *inside* is the level of the activity: a task calls services and a service calls functions,
-    unless a level states something else.
+    *activity_level* is ``task`` or ``service``. In a task, a called element without a level is a
+    service, and in a service it is a machine function or a helper.
     """
-    kind = context.kinds.get((node.id, inside))
+    kind = context.kinds.get((node.id, activity_level))
     if kind is None:
-        kind = context.kinds[node.id, inside] = _find_step_kind(context, node, inside)
+        kind = context.kinds[node.id, activity_level] = _find_step_kind(
+            context, node, activity_level
+        )
     return kind
 
 
-def _find_step_kind(context: Context, node: Element, inside: str) -> str:  # noqa: PLR0911 - a table
+def _find_step_kind(context: Context, node: Element, activity_level: str) -> str:  # noqa: PLR0911 - a table
     if node.kind is Kind.CONTROL:
         return CONTROL_KINDS.get(node.subkind, "action")
     if node.kind is Kind.STRUCTURED:
@@ -51,15 +53,18 @@ def _find_step_kind(context: Context, node: Element, inside: str) -> str:  # noq
     definition = context.definition(node) if node.kind is Kind.ACTION else None
     if definition is None or node.subkind not in ("call-behavior", "call-operation"):
         return _plain_kind(context, node)
-    if definition.subkind in _HELPERS or (inside == "service" and is_helper(context, definition)):
+    if definition.subkind in _HELPERS or (
+        activity_level == "service" and is_helper(context, definition)
+    ):
         return "call"
-    return "service" if inside == "task" else "function"
+    return "service" if activity_level == "task" else "function"
 
 
 def is_helper(context: Context, behavior: Element) -> bool:
-    """Whether a behaviour without a level that a service calls only orders other steps.
+    """Whether a behaviour without a level that a service calls is a helper, not a machine function.
 
-    In a model that marks some behaviours as machine functions, no unmarked behaviour is one.
+    A helper has steps of its own. If the model marks any behaviour as a machine function, all
+    unmarked behaviours are helpers.
     """
     return find_refinement(context, behavior) is not None or bool(
         context.elements_of_level("machine function")
@@ -67,8 +72,10 @@ def is_helper(context: Context, behavior: Element) -> bool:
 
 
 def find_refinement(context: Context, definition: Element | None) -> Element | None:
-    """Return the activity that a definition is, that implements it, or that it runs, if it has
-    nodes.
+    """Return the activity with nodes that describes a definition, or None.
+
+    Candidates are the definition, its method, its classifier behaviour, activities that it owns,
+    and elements that refine it, in this order.
     """
     if definition is None:
         return None
@@ -98,7 +105,7 @@ def _region_kind(context: Context, node: Element) -> str:
 
 
 def is_by_position(context: Context, node: Element, kind: str) -> bool:
-    """Whether only the position of the call makes the node a service or a function."""
+    """Whether the node is a service or function only because of the activity that calls it."""
     return kind in ("service", "function") and not context.level(node)
 
 
@@ -120,7 +127,7 @@ def _list_triggers(context: Context, node: Element) -> Iterator[Element]:
 
 
 def build_nodes(context: Context, node: Element, kind: str, data: Data) -> list[Node]:
-    """Return the nodes of the recipe graph for one node; several assignments become a chain."""
+    """Return the recipe nodes for one activity node: several for a block or several assignments."""
     recipe_node = Node(context.name(node), kind, element=node.id)
     return _MAKERS.get(kind, _build_bare)(context, node, recipe_node, data)
 
@@ -131,6 +138,7 @@ def _build_bare(context: Context, node: Element, base: Node, data: Data) -> list
 
 def _build_call(context: Context, node: Element, base: Node, data: Data) -> list[Node]:
     definition = context.definition(node)
+    # The graph of a helper is named after the activity that describes it.
     if base.kind == "call":
         definition = find_refinement(context, definition) or definition
     ref = context.name(node if definition is None else definition)
@@ -163,7 +171,7 @@ def _build_wait(context: Context, node: Element, base: Node, data: Data) -> list
 
 
 def _build_block(context: Context, node: Element, base: Node, data: Data) -> list[Node]:
-    """Return the node in which a block is entered and the node in which it is left."""
+    """Return the merge nodes at the start and at the end of a block."""
     return [_change(base, kind="merge"), _change(base, kind="merge", id=f"{base.id}::end")]
 
 
@@ -211,7 +219,7 @@ def list_flows(context: Context, activity: Element) -> list[Element]:
 
 
 def node_of_end(context: Context, end: Element | None) -> Element | None:
-    """Return the node that an end of a flow belongs to: a pin stands for its action."""
+    """Return the node at an end of a flow: the action if the end is a pin."""
     if end is None or end.kind is not Kind.PIN:
         return end
     return context.graph.owner(end)

@@ -11,26 +11,25 @@ from sysmlc.recipe.model import Range
 NAMESPACE = "urn:sysmlc:profile:1"
 """Namespace of the shipped profile, metamodels/sysmlc.profile.uml."""
 
-_OF_PARTS = ("capability", "opc ua call")
-"""What else the profile marks: no levels, but what services and machine functions have."""
-LEVELS = {name: level for name, level in vocabulary.LEVELS.items() if level not in _OF_PARTS}
+_NO_LEVELS = ("capability", "opc ua call")
+"""Entries of the vocabulary that are no levels: they mark relations and calls of services."""
+LEVELS = {name: level for name, level in vocabulary.LEVELS.items() if level not in _NO_LEVELS}
 """Level of the recipe, by stereotype of the profile."""
 
 CALL_KINDS = ("call", "read", "write", "subscribe")
 MATERIAL_USES = ("consumed", "produced", "carried")
 
-_FOLLOWED = (Edge.SPECIALIZES, Edge.TYPED_BY, Edge.REDEFINES, Edge.CALLS, Edge.METHOD)
-"""Edges along which an element has the level of another one."""
+_LEVEL_EDGES = (Edge.SPECIALIZES, Edge.TYPED_BY, Edge.REDEFINES, Edge.CALLS, Edge.METHOD)
+"""Edges whose source takes over the level of their target."""
 
 
 def find_stated_levels(
     graph: Graph, levels: Mapping[str, str], segment: Callable[[Element], str]
 ) -> dict[str, str]:
-    """Return by id the levels that elements have themselves: by options, ``classify`` or a
-    stereotype.
+    """Return the levels by id that options, ``classify`` or stereotypes give to elements.
 
     *levels* are those of the options, by ids or qualified names, and take precedence. *segment*
-    returns the part of an element in such a name.
+    returns the part of a qualified name that stands for an element.
     """
     stated = _levels_of_stereotypes(graph)
     names = frozenset(LEVELS.values())
@@ -47,7 +46,7 @@ def find_stated_levels(
 
 
 def _levels_of_stereotypes(graph: Graph) -> dict[str, str]:
-    """Return levels by id that follow from the applied stereotypes."""
+    """Return the levels by id that applied stereotypes give to elements."""
     names: dict[str, set[str]] = {}
     for application in graph.of_kind(Kind.APPLICATION):
         for subject in graph.targets(application, Edge.SUBJECT):
@@ -79,7 +78,7 @@ def applied_stereotypes(application: Element) -> tuple[str, ...]:
 def _find_named(
     graph: Graph, name: str, siblings: list[Element], segment: Callable[[Element], str]
 ) -> Iterator[Element]:
-    """Yield the elements of a qualified name. Only subtrees whose name is a prefix are searched."""
+    """Yield the elements with a qualified name, searching only owners whose name is a prefix."""
     for element in siblings:
         part = segment(element)
         if name == part:
@@ -89,12 +88,12 @@ def _find_named(
 
 
 def find_followers(graph: Graph, first: Iterable[str]) -> set[str]:
-    """Return the ids of elements, and of all that may take their level over from one of them."""
+    """Return *first* and the ids of all elements that may take over a level from one of these."""
     worklist = [graph[id] for id in first]
     reached = {element.id for element in worklist}
     while worklist:
         element = worklist.pop()
-        users = (user for edge in _FOLLOWED for user in graph.sources(element, edge))
+        users = (user for edge in _LEVEL_EDGES for user in graph.sources(element, edge))
         new = [user for user in users if user.id not in reached]
         reached.update(user.id for user in new)
         worklist += new
@@ -102,12 +101,15 @@ def find_followers(graph: Graph, first: Iterable[str]) -> set[str]:
 
 
 class Tags(Struct, frozen=True):
-    """Tagged values with the types that the profile gives them; None or empty if absent."""
+    """Tagged values of an application, read as the types of the profile.
+
+    The methods return None or an empty value for a tag that is absent or has another form.
+    """
 
     attrs: Mapping[str, object]
 
     def text(self, name: str) -> str:
-        """Return the text, or the empty string."""
+        """Return the first text of a tag, or the empty string."""
         return next(iter(self.texts(name)), "")
 
     def texts(self, name: str) -> list[str]:
@@ -118,7 +120,7 @@ class Tags(Struct, frozen=True):
         return [str(item) for item in value] if isinstance(value, tuple) else [str(value)]
 
     def ids(self, name: str) -> list[str]:
-        """Return references: ids of elements, or names. Several ids in one text are split."""
+        """Return the references of a tag, ids or names; spaces separate several in one text."""
         return [id for text in self.texts(name) for id in text.split()]
 
     def flag(self, name: str) -> bool | None:
@@ -152,8 +154,7 @@ class Tags(Struct, frozen=True):
         return text if text in MATERIAL_USES else None
 
     def range(self, low: str, high: str) -> Range | None:
-        """Return the range of two tags; one number stands for both bounds."""
-
+        """Return the range of two tags; if only one is present, it is both bounds."""
         values = [v for v in (self.amount(low), self.amount(high)) if v is not None]
         return Range(values[0], values[-1]) if values else None
 
@@ -164,6 +165,7 @@ def read_number(text: str) -> int | float | None:
         value = float(text)
     except ValueError:
         return None
+    # float() also reads `nan` and `inf`; NaN is the only number that differs from itself.
     if value != value or value in (float("inf"), float("-inf")):
         return None
     return int(value) if value == int(value) else value

@@ -1,4 +1,4 @@
-"""Reports of the recipe pass: unreadable tags, levels by position, content that is left out."""
+"""Reports of the recipe pass: unreadable tags, levels by position and omitted content."""
 
 from collections.abc import Callable, Iterator
 
@@ -18,13 +18,13 @@ UNREADABLE_TAG = rule(
     help="correct the tagged value",
 )
 
-_Reading = tuple[str, Callable[[Tags, str], object]]
-_WHOLE: _Reading = ("a whole number, 0 or more", Tags.integer)
-_AMOUNT: _Reading = ("a number, 0 or more", Tags.amount)
-_ENDPOINT: _Reading = ("an address opc.tcp://...", Tags.endpoint)
+_Expectation = tuple[str, Callable[[Tags, str], object]]
+_WHOLE_NUMBER: _Expectation = ("a whole number, 0 or more", Tags.integer)
+_AMOUNT: _Expectation = ("a number, 0 or more", Tags.amount)
+_ENDPOINT: _Expectation = ("an address opc.tcp://...", Tags.endpoint)
 _TIMES = ("duration", "minDuration", "maxDuration", "timeout")
-_EXPECTED: dict[str, _Reading] = {
-    **dict.fromkeys((*_TIMES, "priority", "buffer", "maxIterations"), _WHOLE),
+_EXPECTATIONS: dict[str, _Expectation] = {
+    **dict.fromkeys((*_TIMES, "priority", "buffer", "maxIterations"), _WHOLE_NUMBER),
     **dict.fromkeys(("minPower", "maxPower", "quantity"), _AMOUNT),
     "endpoint": _ENDPOINT,
     "kind": ("call, read, write or subscribe", Tags.call_kind),
@@ -33,11 +33,12 @@ _EXPECTED: dict[str, _Reading] = {
 
 
 def check_tags(context: Context, sink: Sink) -> None:
-    """Report tagged values that are left out because they cannot be read."""
+    """Report tagged values that are ignored because they have another form than expected."""
     for application, stereotype in _list_applications(context):
         tags = Tags(application.attrs)
-        for name, (expected, reading) in _EXPECTED.items():
+        for name, (expected, reading) in _EXPECTATIONS.items():
             value = tags.text(name)
+            # `use` of a MachineFunction lists resources; `use` of a Material is one of three words.
             is_resource = stereotype == "MachineFunction" and name == "use"
             if value and not is_resource and reading(tags, name) is None:
                 owner = context.graph.owner(application) or application
@@ -53,7 +54,7 @@ def check_tags(context: Context, sink: Sink) -> None:
 
 
 def _list_applications(context: Context) -> Iterator[tuple[Element, str]]:
-    """Yield the applications of stereotypes of the shipped profile."""
+    """Yield the applications of stereotypes of the shipped profile, with their names."""
     for application in context.graph.of_kind(Kind.APPLICATION):
         if application.attrs.get("namespace") == NAMESPACE:
             yield application, str(application.attrs.get("stereotype", ""))
@@ -90,14 +91,18 @@ SAME_NAME = rule(
 
 
 def report_decisions(context: Context, model: Model, sink: Sink) -> None:
-    """Report levels that follow from positions, content that is left out, and equal names."""
+    """Report decisions of the pass that the model does not state.
+
+    These are levels that follow from the position of a call (SM614), omitted content (SM615),
+    choices between tasks (SM617), and unrefined tasks with the name of an activity (SM619).
+    """
     recipe = context.graph[model.recipe.element]
     _report_tasks(context, recipe, sink)
     graphs = [(flow_graph, "task") for flow_graph in model.service_graphs]
     graphs += [(flow_graph, "service") for flow_graph in model.function_graphs]
-    for graph, inside in graphs:
+    for graph, activity_level in graphs:
         activity = context.graph[graph.element]
-        for id, level in refine(context, activity, inside).remarks:
+        for id, level in refine(context, activity, activity_level).remarks:
             _report_step(context, activity, context.graph[id], level, sink)
 
 

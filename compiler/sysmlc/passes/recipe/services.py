@@ -19,13 +19,14 @@ from sysmlc.passes.recipe.nodes import find_refinement
 from sysmlc.recipe.model import Function, MaterialUse, Parameter, Range, Resource, Service
 
 _USES = {"in": "consumed", "out": "produced", "return": "produced", "inout": "carried"}
-_MODES = ("acquire", "hold", "release", "use")
+_RESOURCE_MODES = ("acquire", "hold", "release", "use")
 
 
 def build_service(context: Context, definition: Element, callers: list[Element]) -> Service:
-    """Return a service as a value; *callers* are the nodes that call it in the recipe's tasks.
+    """Return the service of a definition; *callers* are the nodes that call it in the recipe.
 
-    A service without a level is a machine service if a machine offers it, else infrastructure.
+    A service without a level is a machine service if a machine offers it, or else an infrastructure
+    service.
     """
     level = context.level(definition) or _level_of_callers(context, callers)
     is_machine = level == "machine service"
@@ -68,7 +69,11 @@ def _find_holder(
 def _find_relations(
     context: Context, definition: Element, callers: list[Element]
 ) -> Iterator[Relation]:
-    """Yield where a service can run: as stated, else the owner's machines, else partitions."""
+    """Yield the relations of a service to the machines that offer it.
+
+    The first of these sources with a result counts: dependencies of the definition, its owner,
+    dependencies of its callers, partitions of its callers, its machine parameters.
+    """
     relations = list(relations_by_dependency(context, definition)) or list(
         relations_by_owner(context, definition)
     )
@@ -84,7 +89,7 @@ def _find_relations(
 
 
 def build_constants(context: Context, definition: Element) -> tuple[Parameter, ...]:
-    """Return the read-only attributes that hold values."""
+    """Return the read-only attributes of a definition, without machines and materials."""
     owned = context.graph.owned(definition)
     attributes = (
         element
@@ -97,7 +102,7 @@ def build_constants(context: Context, definition: Element) -> tuple[Parameter, .
 
 
 def build_material_uses(context: Context, definition: Element) -> tuple[MaterialUse, ...]:
-    """Return the materials that are parameters; one that goes in and out again is carried."""
+    """Return the materials among the parameters; an input that is also an output is carried."""
     uses: dict[str, MaterialUse] = {}
     for parameter in query.parameters(context.graph, definition):
         type_ = query.type_of(context.graph, parameter)
@@ -115,7 +120,7 @@ def build_material_uses(context: Context, definition: Element) -> tuple[Material
 
 
 def build_function(context: Context, definition: Element, callers: list[Element]) -> Function:
-    """Return a machine function as a value."""
+    """Return the machine function of a definition; *callers* are the nodes that call it."""
     tags = context.tags(
         _find_holder(context, definition, callers, "MachineFunction"), "MachineFunction"
     )
@@ -128,7 +133,7 @@ def build_function(context: Context, definition: Element, callers: list[Element]
         bounds if exact is None else Range(exact, exact),
         tuple(
             Resource(context.reference(id), mode)
-            for mode in _MODES
+            for mode in _RESOURCE_MODES
             for id in sorted(tags.ids(mode), key=context.reference)
         ),
         bool(tags.flag("interruptible")),

@@ -30,7 +30,7 @@ class Step(Struct, frozen=True):
 
 
 def list_steps(context: Context, recipe: Element) -> list[Step]:
-    """Return the task nodes of a recipe, in order. An element that a recipe calls is a task."""
+    """Return the task nodes of a recipe, in order. Called elements without a level are tasks."""
     steps = []
     for node in context.nodes(recipe):
         calls = node.kind is Kind.ACTION and node.subkind in ("call-behavior", "call-operation")
@@ -42,7 +42,7 @@ def list_steps(context: Context, recipe: Element) -> list[Step]:
 
 
 def build_task(context: Context, recipe: Element, step: Step, data: Data) -> Task:
-    """Return one task node as a value."""
+    """Return the task for a task node."""
     holder = step.definition or step.node
     source = step.node if context.find_application(step.node, "Task") else holder
     tags = context.tags(source, "Task")
@@ -68,7 +68,10 @@ def build_task(context: Context, recipe: Element, step: Step, data: Data) -> Tas
 
 
 def _find_relations(context: Context, recipe: Element, step: Step) -> Iterator[Relation]:
-    """Yield relations to machines of the node; without any, those of its definition."""
+    """Yield the relations of a task to machines.
+
+    These are the relations of its node, or else of its definition, or else its machine arguments.
+    """
     relations = [
         *_relations_by_flow(context, recipe, step.node),
         *relations_by_dependency(context, step.node),
@@ -109,12 +112,17 @@ def is_machine_flow(context: Context, flow: Element) -> bool:
 
 
 def build_material_uses(context: Context, recipe: Element, step: Step) -> tuple[MaterialUse, ...]:
-    """Return the materials of a task by the direction of their flows, or as carried."""
+    """Return the materials that a task consumes, produces or carries.
+
+    The direction of a flow decides between consumed and produced. A material in both directions is
+    carried.
+    """
     amounts: dict[tuple[str, str], float] = {}
     for flow in list_flows(context, recipe):
         for material, use, quantity in _read_use(context, flow, step):
             key = (context.name(material), use)
             amounts[key] = amounts.get(key, 0) + quantity
+    # A material that flows in and out again is one use; the amount that flows in counts.
     for name in {name for name, _ in amounts}:
         if {(name, "consumed"), (name, "produced")} <= amounts.keys():
             amounts[name, "carried"] = amounts.pop((name, "consumed"))
@@ -147,7 +155,7 @@ def _read_use(context: Context, flow: Element, step: Step) -> Iterator[tuple[Ele
 
 
 def find_material(context: Context, flow: Element) -> Element | None:
-    """Return the material that a flow carries: a type of one end, or the end itself."""
+    """Return the material that a flow transports: the type of one end, or the end itself."""
     graph = context.graph
     ends = (query.flow_source(graph, flow), query.flow_target(graph, flow))
     for end in ends:
@@ -166,7 +174,7 @@ def find_material(context: Context, flow: Element) -> Element | None:
 def find_precedence(
     context: Context, recipe: Element, steps: list[Step]
 ) -> tuple[tuple[str, str], ...]:
-    """Return the pairs of consecutive tasks, by control and material flow."""
+    """Return the pairs of tasks that a path of control and material flows connects directly."""
     following: dict[str, list[Element]] = {}
     for flow in list_flows(context, recipe):
         source, target = find_flow_ends(context, flow)
