@@ -80,11 +80,11 @@ _OUT = ("out", "inout", "return")
 
 
 class Behaviours(Struct, frozen=True):
-    """Link operations to the methods they inherit, and check calls.
+    """Link operations to the methods that they inherit, and check calls.
 
-    Assumes effective features. Guarantees: an operation that redefines another one and has no
-    method of its own has the other's; every call, trigger and state behaviour leads to an element
-    of the right kind, or is reported. The component of a behaviour is ``ir.query.component_name``.
+    Assumes effective features. Guarantees: an operation without a method has the method of the
+    operation that it redefines; every call, trigger and behaviour of a state leads to an element of
+    the right kind, or is reported. The component of a behaviour is ``ir.query.component_name``.
     """
 
     name: ClassVar[str] = "behaviours"
@@ -117,7 +117,7 @@ def _inherit_method(graph: Graph, operation: Element) -> None:
 
 
 def _is_only_user(graph: Graph, operation: Element, methods: list[Element]) -> bool:
-    """Whether no other operation has the methods: linking them again changes no order."""
+    """Whether no other operation has the methods, so that their edges may stay as they are."""
     return all(graph.sources(method, Edge.METHOD) == [operation] for method in methods)
 
 
@@ -141,7 +141,8 @@ def _check_method(graph: Graph, sink: Sink, operation: Element) -> None:
 
 
 def _parameter_directions(graph: Graph, owner: Element) -> list[str]:
-    """Return the directions of the parameters, results last: tools put them at either end."""
+    """Return the directions of the parameters in their order, with results at the end."""
+    # Tools put the result first or last.
     directions = [
         str(parameter.attrs.get("direction", "in")) for parameter in parameters(graph, owner)
     ]

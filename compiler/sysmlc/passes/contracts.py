@@ -1,8 +1,8 @@
 """Pass ``contracts``: the contract of every behaviour, with the formulas written in the model.
 
-State machines and activities are derived (design, section 7); constraints written in LTL are
-conjuncts of the contract of the component that they constrain; what requirements assume and
-demand of a subject is a contract of its own, and so are the pre- and postconditions of a service.
+The pass derives contracts from state machines and activities (design, section 7). Constraints in
+LTL become conjuncts in the contract of the component that they constrain. The requirements of a
+subject give a separate contract, and so do the pre- and postconditions of a service.
 """
 
 from collections import Counter
@@ -46,8 +46,8 @@ SAME_COMPONENT = rule(
 class Contracts(Struct, frozen=True):
     """Derive contracts.
 
-    ``tick_seconds`` is the length of a step for durations with a unit; ``assumed_low`` and
-    ``assumed_high`` are the range of Integers that declare none.
+    ``tick_seconds`` is the length of a step, for durations with a unit. ``assumed_low`` and
+    ``assumed_high`` are the range of Integers without a declared range.
     """
 
     tick_seconds: float = 1.0
@@ -59,6 +59,7 @@ class Contracts(Struct, frozen=True):
 
     def run(self, graph: Graph, sink: Sink) -> None:
         """Store the Contracts of behaviours, of subjects of requirements and of services."""
+        # `add_formulas` finds contracts by component, so that these names must be distinct before.
         derived = [*self._derive_machines(graph, sink), *_derive_activities(graph)]
         derived = add_formulas(graph, _number_components(graph, derived, sink), sink)
         assumed_range = self.assumed_low, self.assumed_high
@@ -94,14 +95,17 @@ class Contracts(Struct, frozen=True):
 
 
 def _is_behaviour(graph: Graph, element: Element) -> bool:
-    """Whether the state machine states what a component does: drawn here, and no protocol."""
+    """Whether the state machine describes the behaviour of a component.
+
+    Protocol state machines, submachines and machines without regions or of other files do not.
+    """
     is_drawn = any(region.kind is Kind.REGION for region in graph.owned(element))
     is_concrete = is_drawn and element.subkind != "protocol" and not element.attrs.get("external")
     return is_concrete and not _is_submachine(graph, element)
 
 
 def _is_submachine(graph: Graph, machine: Element) -> bool:
-    """Whether only states refer to the machine, so that it is nobody's behaviour by itself."""
+    """Whether only states refer to the machine, so that no component has it as its behaviour."""
     is_called = any(user.kind is Kind.STATE for user in graph.sources(machine, Edge.CALLS))
     owner_edges = (Edge.CLASSIFIER_BEHAVIOR, Edge.METHOD)
     return is_called and not any(graph.sources(machine, edge) for edge in owner_edges)
@@ -113,7 +117,7 @@ def _derive_activities(graph: Graph) -> Iterator[Contract]:
 
 
 def _number_components(graph: Graph, contracts: list[Contract], sink: Sink) -> list[Contract]:
-    """Return the contracts with distinct components: the second of a name gets ``#2``."""
+    """Return the contracts with distinct component names; the second of a name gets ``#2``."""
     totals = Counter(contract.component for contract in contracts)
     counts: Counter[str] = Counter()
     numbered: list[Contract] = []
@@ -132,7 +136,7 @@ def _number_components(graph: Graph, contracts: list[Contract], sink: Sink) -> l
 
 
 def _report_same_name(graph: Graph, contract: Contract, same: list[Contract], sink: Sink) -> None:
-    """Report that a component is not the only one of its name, with the files of the others."""
+    """Report that other components have the same name; the notes name their files."""
     behaviour, name = graph[contract.origin], contract.component
     files = dict.fromkeys(graph[other.origin].source for other in same)
     files.pop(behaviour.source, None)
@@ -180,7 +184,7 @@ OUTSIDE_GR1 = rule(
 
 
 def add_formulas(graph: Graph, contracts: list[Contract], sink: Sink) -> list[Contract]:
-    """Return the contracts with the formulas of the model's constraints as further conjuncts."""
+    """Return the contracts, extended by the formulas in constraints of the model."""
     by_component = {contract.component: contract for contract in contracts}
     performed = _Performers(graph, contracts)
     for constraint in graph.of_kind(Kind.CONSTRAINT):
@@ -205,7 +209,7 @@ def _is_formula(constraint: Element) -> bool:
 
 
 class _Performers:
-    """Index of the components that perform an action: its usages, and what specialises it."""
+    """Index of the components that perform an action definition, directly or as a special one."""
 
     def __init__(self, graph: Graph, contracts: list[Contract]) -> None:
         self._graph = graph
@@ -227,16 +231,17 @@ class _Performers:
 
 
 def _list_definitions(graph: Graph, usage: Element) -> list[Element]:
-    """Return the usage, its method, and everything that these specialise."""
+    """Return the usage, its definition or method, and the generals of the definition."""
     action = definition_of(graph, usage)
     return [usage, *dict.fromkeys((action, *query.generals(graph, action)))]
 
 
 def _list_components(graph: Graph, constraint: Element, performed: _Performers) -> Iterator[str]:
-    """Yield the names of the components that a constraint is about, each once.
+    """Yield the names of the components that a constraint restricts, each once.
 
-    Constraints of requirements are no part of a behaviour (``logic.requirements``). A constraint of
-    an action holds for all that perform it; an action of a library is no component itself.
+    Constraints of requirements have contracts of their own (``logic.requirements``). A constraint
+    of an action restricts all components that perform the action. An action of a library is not a
+    component itself.
     """
     owner = graph.owner(constraint)
     subjects = graph.targets(constraint, Edge.REFERENCES) or ([] if owner is None else [owner])
@@ -289,8 +294,7 @@ def _add_formula(graph: Graph, contract: Contract, constraint: Element, sink: Si
 
 
 def report_general(graph: Graph, contracts: Iterable[Contract], sink: Sink) -> None:
-    """Report each constraint of requirements that no reduction brings into GR(1)."""
-
+    """Report each constraint of requirements that no reduction transforms to GR(1)."""
     general = [
         conjunct.origin
         for contract in contracts
@@ -303,7 +307,7 @@ def report_general(graph: Graph, contracts: Iterable[Contract], sink: Sink) -> N
 
 
 def _find_scope(graph: Graph, contract: Contract) -> Scope | None:
-    """Return the features of an action, which formulas about it may use, too."""
+    """Return the scope of an action, whose features formulas may use, or None for a machine."""
     origin = graph[contract.origin]
     if origin.kind not in _ACTIONS:
         return None
@@ -311,8 +315,9 @@ def _find_scope(graph: Graph, contract: Contract) -> Scope | None:
 
 
 def _extend(contract: Contract, conjuncts: list[Conjunct]) -> Contract:
-    """Return the contract with further conjuncts: assumptions if they read only inputs, else
-    guarantees.
+    """Return the contract with further conjuncts.
+
+    A conjunct over inputs only becomes an assumption, any other a guarantee.
     """
     assumptions = [
         conjunct for conjunct in conjuncts if _reads_only_inputs(contract, conjunct.formula)
@@ -327,5 +332,6 @@ def _extend(contract: Contract, conjuncts: list[Conjunct]) -> Contract:
 
 def _reads_only_inputs(contract: Contract, formula: Formula) -> bool:
     owners = {variable.name: variable.owner for variable in contract.variables}
+    # A formula without variables assumes nothing of the environment.
     used = [owners[variable.name] for variable in f.variables(formula)]
     return bool(used) and all(owner is Owner.ENVIRONMENT for owner in used)

@@ -1,4 +1,4 @@
-"""Pass ``inherit``: effective features of every classifier, and rules of inheritance."""
+"""Pass ``inherit``: effective features of every classifier, and checks of generalizations."""
 
 from collections.abc import Iterator
 from typing import ClassVar
@@ -24,7 +24,7 @@ GENERALIZATION_KIND = rule(
     "{kind} '{element}' specialises {general_kind} '{general}'",
     help="use a realization, or make both the same kind of element",
 )
-REDEFINES_STRANGER = rule(
+NOT_INHERITED = rule(
     "SM202",
     "redefines-stranger",
     Severity.WARNING,
@@ -52,12 +52,12 @@ _RELATIONS = {Edge.REDEFINES: "redefines", Edge.SUBSETS: "subsets"}
 
 
 class Inherit(Struct, frozen=True):
-    """Give every classifier its effective features, and check generalizations.
+    """Add the effective features of every classifier, and check generalizations.
 
     Assumes resolved references. Guarantees ``feature`` edges from each classifier to its own
-    properties, ports, operations and receptions and then to those of each general in turn, each
-    once, without redefined ones. Private features are included, because instances have them.
-    Generalization cycles are reported and inherit nothing.
+    properties, ports, operations and receptions, and then to those of its generals, each once and
+    without redefined features. Private features are included, because instances have them.
+    Classifiers on a generalization cycle are reported and do not inherit along the cycle.
     """
 
     name: ClassVar[str] = "inherit"
@@ -66,7 +66,7 @@ class Inherit(Struct, frozen=True):
     def run(self, graph: Graph, sink: Sink) -> None:
         """Add the edges and report; see the class."""
         hierarchy = _Hierarchy(graph)
-        for cycle in hierarchy.circles:
+        for cycle in hierarchy.cycles:
             _report_cycle(graph, sink, cycle)
         for classifier in graph.of_kind(*CLASSIFIERS):
             features = hierarchy.effective_features(classifier)
@@ -79,12 +79,12 @@ class Inherit(Struct, frozen=True):
 
 
 class _Hierarchy:
-    """The generalization graph without its cycles."""
+    """The generalizations without cycles, and the effective features of the classifiers."""
 
     def __init__(self, graph: Graph) -> None:
         self._graph = graph
         self._component: dict[str, int] = {}
-        self.circles: list[list[Element]] = []
+        self.cycles: list[list[Element]] = []
         self._features: dict[str, dict[Element, None]] = {}
         # Components are in topological order, so that generals are complete before specifics.
         for number, ids in enumerate(strongly_connected_components(_index_generals(graph))):
@@ -94,12 +94,12 @@ class _Hierarchy:
     def _add_component(self, ids: list[str]) -> None:
         members = sorted((self._graph[id] for id in ids), key=_document_order)
         if len(members) > 1 or members[0] in self._graph.targets(members[0], Edge.SPECIALIZES):
-            self.circles.append(members)
+            self.cycles.append(members)
         for member in members:
             self._features[member.id] = self._collect_features(member)
 
     def direct_generals(self, classifier: Element) -> list[Element]:
-        """Return the generals of the classifier that do not lead back to it."""
+        """Return the direct generals of the classifier that are not on a cycle with it."""
         component = self._component.get(classifier.id)
         general_classifiers = self._graph.targets(classifier, Edge.SPECIALIZES)
         return [
@@ -202,7 +202,7 @@ def _check_relation(
         return
     if not _can_relate(graph, edge, feature, other, hierarchy):
         sink.report(
-            REDEFINES_STRANGER,
+            NOT_INHERITED,
             graph.subject(feature),
             element=graph.qualified_name(feature),
             relation=_RELATIONS[edge],
@@ -216,7 +216,7 @@ def _check_relation(
 def _check_types(graph: Graph, sink: Sink, edge: Edge, feature: Element, other: Element) -> None:
     type_, general = (graph.target(element, Edge.TYPED_BY) for element in (feature, other))
     if type_ is not None and type_.subkind == "attribute":
-        return  # In AutomationML an attribute with attributes replaces the inherited one wholly.
+        return  # In AutomationML a nested attribute replaces the inherited attribute as a whole.
     if type_ is None or general is None or _is_narrower(graph, type_, general):
         return
     sink.report(
@@ -266,7 +266,7 @@ def _can_relate(
 def _is_feature_of_role(
     graph: Graph, owner: Element, role_class: Element, hierarchy: _Hierarchy
 ) -> bool:
-    """Whether the owner plays the role that has the feature: AutomationML maps one on the other."""
+    """Whether *owner* has the role class, whose attributes an element of AutomationML may map."""
     if role_class.subkind != "role-class":
         return False
     family = (owner, *generals(graph, owner))

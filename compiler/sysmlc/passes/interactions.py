@@ -1,4 +1,4 @@
-"""Pass ``interactions``: checks whether the runs that sequence diagrams show can happen."""
+"""Pass ``interactions``: checks whether the traces of sequence diagrams are possible."""
 
 from collections.abc import Iterator
 from typing import ClassVar
@@ -69,15 +69,15 @@ CREATED_LATE = rule(
 
 
 _ONE_OPERAND = frozenset({"opt", "loop", "break", "assert", "neg"})
-_Place = tuple[str, int]
-"""The interaction or operand that holds an occurrence, and the position in it."""
+_Position = tuple[str, int]
+"""The id of the interaction or operand that contains an occurrence, and the index in it."""
 
 
 class Interactions(Struct, frozen=True):
     """Check every interaction; the graph stays unchanged.
 
     Assumes features and generalizations (``inherit``). Faulty elements stay in the graph, and
-    diagrams draw them as far as they can.
+    diagrams show them as far as possible.
     """
 
     name: ClassVar[str] = "interactions"
@@ -86,20 +86,20 @@ class Interactions(Struct, frozen=True):
     def run(self, graph: Graph, sink: Sink) -> None:
         """Report faults; see the class."""
         for interaction in graph.of_kind(Kind.INTERACTION):
-            places = dict(_locate_occurrences(graph, interaction))
+            positions_by_id = dict(_locate_occurrences(graph, interaction))
             for message in interactions.messages(graph, interaction):
-                _check_message(graph, sink, interaction, message, places)
+                _check_message(graph, sink, interaction, message, positions_by_id)
             for item in graph.subtree(interaction):
                 if item.kind is Kind.FRAGMENT:
                     _check_operands(graph, sink, interaction, item)
                 elif item.kind is Kind.EXECUTION:
-                    _check_execution(graph, sink, interaction, item, places)
+                    _check_execution(graph, sink, interaction, item, positions_by_id)
             _check_destructions(graph, sink, interaction)
             _check_creations(graph, sink, interaction)
 
 
-def _locate_occurrences(graph: Graph, interaction: Element) -> Iterator[tuple[str, _Place]]:
-    """Yield the id of each occurrence with its container and its position."""
+def _locate_occurrences(graph: Graph, interaction: Element) -> Iterator[tuple[str, _Position]]:
+    """Yield the id of each occurrence with its position."""
     for container in interactions.iter_containers(graph, interaction):
         for position, item in enumerate(interactions.interaction_fragments(graph, container)):
             yield item.id, (container.id, position)
@@ -109,13 +109,17 @@ def _locate_occurrences(graph: Graph, interaction: Element) -> Iterator[tuple[st
 
 
 def _check_message(
-    graph: Graph, sink: Sink, interaction: Element, message: Element, places: dict[str, _Place]
+    graph: Graph,
+    sink: Sink,
+    interaction: Element,
+    message: Element,
+    positions_by_id: dict[str, _Position],
 ) -> None:
     problem = _find_missing_end(graph, message)
     if problem and not message.attrs.get("unresolved"):
         _report(graph, sink, MESSAGE_WITHOUT_LIFELINE, interaction, message, problem=problem)
     ends = (graph.target(message, Edge.SEND_EVENT), graph.target(message, Edge.RECEIVE_EVENT))
-    positions = [places.get(end.id) for end in ends if end is not None]
+    positions = [positions_by_id.get(end.id) for end in ends if end is not None]
     if len(positions) == 2 and positions[0] is not None and positions[1] is not None:
         (sent_in, sent_at), (received_in, received_at) = positions[0], positions[1]
         if sent_in != received_in:
@@ -126,7 +130,8 @@ def _check_message(
 
 
 def _find_missing_end(graph: Graph, message: Element) -> str:
-    """Return what is missing at the ends of a message; gates and lost ends count as ends."""
+    """Return a clause about a missing end of a message, or "" if there is none."""
+    # A gate, or the open end of a lost or found message, is no occurrence and needs no lifeline.
     if message.attrs.get("message_kind") == "unknown":
         return "has no lifeline at either end"
     for event, lifeline, verb in (
@@ -155,19 +160,20 @@ def _check_operation(graph: Graph, sink: Sink, interaction: Element, message: El
 
 
 def _has_operation(graph: Graph, type_: Element, operation: Element) -> bool:
-    """Whether the type has the operation: own, inherited, realised, or at one of its ports."""
+    """Whether the type, a general, a realised interface or the type of a port has the operation."""
     owner = graph.owner(operation)
     if owner is None or operation.attrs.get("external"):
         return True
     offering_classifiers = {
         classifier.id: classifier for classifier in _list_offering(graph, type_)
     }
+    # An external stub may have operations that the unit does not show.
     is_open = any(classifier.attrs.get("external") for classifier in offering_classifiers.values())
     return is_open or owner.id in offering_classifiers or _is_shared_namespace(owner)
 
 
 def _list_offering(graph: Graph, type_: Element) -> Iterator[Element]:
-    """Yield the type, its generals and realised interfaces, and the same of its ports' types."""
+    """Yield the type and the types of its ports, each with its generals and realised interfaces."""
     types = [graph.target(port, Edge.TYPED_BY) for port in query.ports(graph, type_)]
     for type_of_port in (type_, *(port_type for port_type in types if port_type is not None)):
         for general in (type_of_port, *query.generals(graph, type_of_port)):
@@ -177,7 +183,7 @@ def _list_offering(graph: Graph, type_: Element) -> Iterator[Element]:
 
 
 def _is_shared_namespace(owner: Element) -> bool:
-    """Whether operations of the owner belong to no classifier in particular."""
+    """Whether operations of *owner* may be called on any type (interactions, collaborations)."""
     return owner.kind is Kind.INTERACTION or owner.subkind == "collaboration"
 
 
@@ -201,12 +207,17 @@ def _check_operands(graph: Graph, sink: Sink, interaction: Element, fragment: El
 
 
 def _check_execution(
-    graph: Graph, sink: Sink, interaction: Element, execution: Element, places: dict[str, _Place]
+    graph: Graph,
+    sink: Sink,
+    interaction: Element,
+    execution: Element,
+    positions_by_id: dict[str, _Position],
 ) -> None:
     ends = (graph.target(execution, Edge.START), graph.target(execution, Edge.FINISH))
-    positions = [places.get(end.id) for end in ends if end is not None]
+    positions = [positions_by_id.get(end.id) for end in ends if end is not None]
     if len(positions) == 2 and positions[0] is not None and positions[1] is not None:
         is_same = positions[0][0] == positions[1][0]
+        # In different operands, the order depends on the operator of the fragment.
         if is_same and positions[1][1] < positions[0][1]:
             sink.report(
                 EXECUTION_BACKWARDS,

@@ -1,4 +1,4 @@
-"""Pass ``kept``: restores what UML cannot express, from the comment that back end ``uml`` wrote."""
+"""Pass ``kept``: restores facts that UML cannot express from a comment of the back end ``uml``."""
 
 import json
 from collections.abc import Iterable, Iterator
@@ -20,7 +20,10 @@ UNREADABLE = rule(
 
 
 class _StoredElement(NamedTuple):
-    """An element that is not in the model; ``href`` is the external target of references to it."""
+    """An element that the UML model lacks.
+
+    References to it lead to the external element ``href`` in the UML model.
+    """
 
     id: str
     kind: Kind
@@ -30,7 +33,11 @@ class _StoredElement(NamedTuple):
 
 
 class _Record(Struct, frozen=True):
-    """The content of the comment (metamodels/sysmlc-kept.schema.json)."""
+    """The content of the comment (metamodels/sysmlc-kept.schema.json).
+
+    ``made`` are the ids of elements that only the UML model has, and which are removed. ``applied``
+    are the ids of packages to which profiles were applied for the roles of their elements.
+    """
 
     elements: list[_StoredElement]
     attributes: dict[str, dict[str, AttrValue]]
@@ -42,13 +49,13 @@ class _Record(Struct, frozen=True):
 
 
 class Kept(Struct, frozen=True):
-    """Restore what back end ``uml`` stored; records of removed elements are ignored."""
+    """Restore the facts in the comment. Facts about elements that were deleted are ignored."""
 
     name: ClassVar[str] = "kept"
     after: ClassVar[tuple[str, ...]] = ("resolve",)
 
     def run(self, graph: Graph, sink: Sink) -> None:
-        """Restore the elements and remove the comment."""
+        """Restore elements, attributes, names, owners and edges, and remove the comment."""
         for comment in graph.of_kind(Kind.COMMENT):
             body = comment.attrs.get("body")
             if isinstance(body, str) and body.startswith(PREFIX):
@@ -65,7 +72,10 @@ class Kept(Struct, frozen=True):
 
 
 def _read_record(data: Any) -> _Record:  # noqa: ANN401 - JSON
-    """Return the record. A damaged one raises Value-, Type-, Key- or AttributeError."""
+    """Return the record of the JSON data.
+
+    Raises ValueError, TypeError, KeyError or AttributeError for data of another form.
+    """
     return _Record(
         elements=[
             _StoredElement(
@@ -125,7 +135,7 @@ def _restore(graph: Graph, record: _Record) -> None:
 
 
 def _list_present(graph: Graph, ids: Iterable[str]) -> Iterator[Element]:
-    """Yield the elements of those ids that are still in the graph."""
+    """Yield the elements with these ids that are still in the graph."""
     return (element for id in ids if (element := graph.get(id)) is not None)
 
 
@@ -140,12 +150,13 @@ def _move_elements(graph: Graph, owners: dict[str, str | None]) -> None:
         element, new_owner = graph.get(id), graph.get(owner)
         if element is None or (owner is not None and new_owner is None):
             continue
+        # An author may have moved the new owner into the element: no element may own itself.
         if new_owner is None or element not in (new_owner, *graph.ancestors(new_owner)):
             graph.move(element, new_owner)
 
 
 def _redirect_references(graph: Graph, elements: list[_StoredElement]) -> None:
-    """Redirect references to external library elements to the elements that are restored."""
+    """Redirect references to external stubs to the restored elements that these stand for."""
     restored = {stored.id for stored in elements}
     external = [
         element for element in graph if "href" in element.attrs and element.id not in restored
@@ -167,7 +178,7 @@ def _redirect_references(graph: Graph, elements: list[_StoredElement]) -> None:
 
 
 def _connect_edges(graph: Graph, edges: list[tuple[Edge, str, str]]) -> None:
-    """Add the relations, in their order if the model has no others."""
+    """Add the edges. The stored targets of an edge follow the other targets, in their order."""
     wanted: dict[tuple[Edge, str], list[Element]] = {}
     for edge, source, target in edges:
         if source in graph and target in graph and edge is not Edge.OWNS:
@@ -179,7 +190,7 @@ def _connect_edges(graph: Graph, edges: list[tuple[Edge, str, str]]) -> None:
 
 
 def _remove_profiles(graph: Graph, packages: list[str]) -> None:
-    """Remove the profiles that were applied for the restored roles."""
+    """Remove the applications of profiles from packages, and external profiles without content."""
     profiles: dict[str, Element] = {}
     for package in _list_present(graph, packages):
         for profile in graph.targets(package, Edge.APPLIES):

@@ -1,4 +1,4 @@
-"""The passes: their interface, and their order by name, as their ``after`` requires."""
+"""The interface of passes, and the pipeline that runs them in the order of their ``after``."""
 
 from collections.abc import Callable, Iterable, Sequence
 from importlib import import_module
@@ -12,9 +12,10 @@ from sysmlc.ir.verify import verify
 
 
 class Pass(Protocol):
-    """A refinement of the graph. The graph is valid before and after; running it twice equals once.
+    """A refinement of the graph.
 
-    A pass is a frozen value; its fields are its options.
+    The graph is valid before and after the pass, and a second run changes nothing. A pass is a
+    frozen value whose fields are its options. ``after`` names the passes that must run before it.
     """
 
     name: ClassVar[str]
@@ -43,7 +44,7 @@ NAMES = (
     "robots",
     "views",
 )
-"""Every pass; ``sysmlc.passes.<name>`` has the class of that name, capitalised."""
+"""All passes in order; the class of a pass is its capitalised name in ``sysmlc.passes.<name>``."""
 
 
 class InvalidGraphError(RuntimeError):
@@ -62,9 +63,9 @@ def load(name: str) -> Pass:
 
 
 def sort_passes(passes: Iterable[Pass]) -> list[Pass]:
-    """Sort passes so that each follows those that it names in ``after``, else in the given order.
+    """Return the passes in a topological order by ``after``, otherwise in the given order.
 
-    Names in ``after`` that are not among them are ignored. Raises ValueError for a cycle.
+    Names in ``after`` of passes that are not given are ignored. Raises ValueError for a cycle.
     """
     remaining = list(passes)
     sorted_passes: list[Pass] = []
@@ -92,7 +93,7 @@ class Pipeline(Struct, frozen=True):
         until: str | None = None,
         after_pass: Callable[[str, Graph], None] | None = None,
     ) -> None:
-        """Run the passes, up to and including *until*; *after_pass* gets the graph after each.
+        """Run the passes up to and including *until*, and call *after_pass* after each pass.
 
         Raises KeyError if no pass has the name *until*, and, with *verify_each*, InvalidGraphError
         if the graph is not valid before the first pass or after a pass.
@@ -123,9 +124,9 @@ def run(
     until: str | None = None,
     after_pass: Callable[[str, Graph], None] | None = None,
 ) -> None:
-    """Run all passes, or those up to and including *until*; see ``Pipeline.run``.
+    """Run all passes, or the passes up to and including *until*; see ``Pipeline.run``.
 
-    A pass after *until* is not even imported.
+    The modules of later passes are not imported.
     """
     names = NAMES if until is None else NAMES[: _find_position(until) + 1]
     build_pipeline(names).run(

@@ -1,6 +1,6 @@
 """Pass ``ports``: type and direction of every port, as far as the model states them.
 
-AutomationML leaves much open, so its ports have one diagnostic for each file.
+Ports of AutomationML often have neither, so that they are reported once for each file.
 """
 
 from collections.abc import Iterable
@@ -59,20 +59,20 @@ EMPTY_MULTIPLICITY = rule(
 )
 
 
-_LISTED = 8
+_MAX_LISTED = 8
 _CONJUGATED = ("~InterfaceBlock", "_InterfaceBlock", "ConjugatedInterfaceBlock")
 """SysML 1.6 clause 9.3.2.14, as OMG, MagicDraw and Papyrus call the stereotype."""
-_BY_PARAMETER = {"in": "in", "out": "out", "return": "out", "inout": "inout"}
+_PORT_DIRECTIONS = {"in": "in", "out": "out", "return": "out", "inout": "inout"}
 
 
 class Ports(Struct, frozen=True):
-    """Give every port its type and direction.
+    """Set type and direction of every port.
 
-    Assumes effective features and roles. Guarantees: a port without a type that redefines a typed
-    one has the same type; ``direction`` is set where, in this order, a flow port's own direction,
-    the flow properties of its type, the parameters of its type's operations, item flows, or the
-    redefined port give it; a conjugated port has the opposite of the direction of its type. All
-    other ports stay undirected and are counted for each block. A direction in the source stays.
+    Assumes effective features and roles. Guarantees: an untyped port has the type of the port that
+    it redefines. The first of these that states a direction sets ``direction``: the source, the tag
+    of a flow port, the flow properties of the type, the parameters of operations of the type, item
+    flows, the redefined port. A conjugated port has the opposite of the direction of its type.
+    Ports without a direction are reported once for each block.
     """
 
     name: ClassVar[str] = "ports"
@@ -119,10 +119,10 @@ def _find_direction(graph: Graph, port: Element) -> str | None:
 
 
 def _own_direction(graph: Graph, port: Element) -> str | None:
-    """Return the direction of a flow port (SysML 1.2 clause 9.3.2.3; an atomic one is inout by
-    default).
+    """Return the direction of a flow port (SysML 1.2 clause 9.3.2.3), or None for other ports.
 
-    A flow port that is typed by a flow specification takes its direction from there.
+    The result is None, too, if the type gives the direction, as a flow specification does. Without
+    a tag, the direction of an atomic flow port is inout.
     """
     if port.role != "flow port":
         return None
@@ -153,7 +153,7 @@ def _direction_of_type(graph: Graph, type_: Element) -> str | None:
 
 
 def _direction_of_original(graph: Graph, type_: Element) -> str | None:
-    """Return the direction of the block that an empty ~InterfaceBlock conjugates."""
+    """Return the direction of the block that a ~InterfaceBlock conjugates, or None."""
     if not has_stereotype(graph, type_, *_CONJUGATED):
         return None
     original = graph.get(str(tag(graph, type_, "original")))
@@ -167,7 +167,7 @@ def _parameter_directions(graph: Graph, type_: Element) -> Iterable[str]:
         if operation.kind is Kind.OPERATION:
             required = tag(graph, operation, "featureDirection") == "required"
             for parameter in parameters(graph, operation):
-                direction = _BY_PARAMETER.get(direction_of(parameter), "inout")
+                direction = _PORT_DIRECTIONS.get(direction_of(parameter), "inout")
                 yield (opposite(direction) or direction) if required else direction
 
 
@@ -191,7 +191,7 @@ def _is_item_flow(flow: Element) -> bool:
 def _runs_inside(graph: Graph, port: Element, flow: Element) -> bool:
     """Whether the flow runs between the port and the inside of its block.
 
-    A flow from a block's own port to a part has entered the block through it.
+    A flow that leaves the port to a part inside has entered the block through the port.
     """
     realising = [
         connector
@@ -231,7 +231,7 @@ def _redefined_direction(graph: Graph, port: Element) -> str | None:
 
 
 def _is_typed(graph: Graph, port: Element) -> bool:
-    """Whether the port has a type, or its missing type has been reported."""
+    """Whether the port has a type, its missing type has been reported, or it is external."""
     unresolved = port.attrs.get("unresolved") or ()
     is_unresolved = isinstance(unresolved, tuple) and Edge.TYPED_BY.value in unresolved
     has_type = graph.target(port, Edge.TYPED_BY) is not None
@@ -270,13 +270,13 @@ def _report_undirected(graph: Graph, sink: Sink, ports: list[Element]) -> None:
             blocks.setdefault(port.owner, []).append(port)
     for id, undirected in blocks.items():
         names = [f"'{member.name or member.id}'" for member in undirected]
-        more = f" and {len(names) - _LISTED} more" if len(names) > _LISTED else ""
+        more = f" and {len(names) - _MAX_LISTED} more" if len(names) > _MAX_LISTED else ""
         sink.report(
             UNDIRECTED_PORTS,
             graph.subject(graph[id]),
             block=graph.qualified_name(graph[id]),
             count=len(names),
-            ports=", ".join(names[:_LISTED]) + more,
+            ports=", ".join(names[:_MAX_LISTED]) + more,
         )
 
 
@@ -306,11 +306,11 @@ def find_plant_files(graph: Graph) -> frozenset[str]:
 
 
 def find_undirected_plant_ports(graph: Graph, ports: Iterable[Element]) -> list[Element]:
-    """Return the ports without direction in files where other ports have one; in most files none
-    has.
+    """Return the ports without direction, in files where other ports have a direction.
 
-    A port that leads to a document, such as a drawing of the element, has no direction.
+    Ports that refer to a document, such as a drawing of the element, need no direction.
     """
+    # In most files no port has a direction, which is no fault of single ports.
     flow_ports = [port for port in ports if not _leads_to_document(graph, port)]
     files_with_directions = {port.source for port in flow_ports if "direction" in port.attrs}
     return [
@@ -326,7 +326,7 @@ def _leads_to_document(graph: Graph, port: Element) -> bool:
 def report_by_file(
     graph: Graph, sink: Sink, rule: Rule, faulty: Iterable[Element], ports: Iterable[Element]
 ) -> None:
-    """Report the *faulty* among all *ports* once for each file, at the first of them."""
+    """Report the *faulty* ones of *ports* once for each file, at the first faulty port."""
     totals: dict[str, int] = {}
     for port in ports:
         totals[port.source] = totals.get(port.source, 0) + 1
@@ -334,8 +334,8 @@ def report_by_file(
     for port in faulty:
         by_file.setdefault(port.source, []).append(port)
     for file, reported in by_file.items():
-        names = [f"'{graph.qualified_name(port)}'" for port in reported[:_LISTED]]
-        more = f" and {len(reported) - _LISTED} more" if len(reported) > _LISTED else ""
+        names = [f"'{graph.qualified_name(port)}'" for port in reported[:_MAX_LISTED]]
+        more = f" and {len(reported) - _MAX_LISTED} more" if len(reported) > _MAX_LISTED else ""
         sink.report(
             rule,
             graph.subject(reported[0]),

@@ -1,7 +1,7 @@
-"""Pass ``robots``: studies of robots on floors, with the contracts that the thesis writes by hand.
+"""Pass ``robots``: studies of robots on floors, with the contracts of the MOOD4I thesis.
 
-What specialises ``Floors::Floor`` has contracts of the whole system, of its environment, of each
-robot and of the mission (MOOD4I thesis, chapter 4).
+A block that specialises ``Floors::Floor`` has contracts of the whole system, of its environment, of
+each robot and of the mission (chapter 4).
 """
 
 from typing import ClassVar
@@ -23,12 +23,13 @@ class Robots(Struct, frozen=True):
     after: ClassVar[tuple[str, ...]] = ("contracts",)
 
     def run(self, graph: Graph, sink: Sink) -> None:
-        """Store a Study for each floor, and its contracts beside the others."""
+        """Store a Study for each floor, and add its contracts to the others."""
         if not any(package.name == "Floors" for package in graph.of_kind(Kind.PACKAGE)):
             return
         floor_studies = list(read_studies(graph, sink))
         contracts = [contract for study in floor_studies for contract in study_contracts(study)]
         names = {contract.component for contract in contracts}
+        # The contract of a study replaces a derived contract of the same component.
         contracts += [
             contract for contract in graph.derived(Contract) if contract.component not in names
         ]

@@ -1,4 +1,4 @@
-"""Pass ``views``: turns the diagrams of authors into elements that refer to what they show."""
+"""Pass ``views``: turns the diagrams of authors into View elements."""
 
 from collections.abc import Iterable, Iterator
 from typing import ClassVar
@@ -19,16 +19,16 @@ MISSING = rule(
 )
 
 SUBKIND = "diagram"
-"""Subkind of the Views that this pass makes."""
+"""Subkind of the Views that this pass adds."""
 
 
 class Views(Struct, frozen=True):
     """Turn the drawings that a front end stored into Views.
 
-    Assumes resolved references. Guarantees a View ``subkind="diagram"`` for each drawing, owned by
-    the owner of the diagram, with ``references`` to every element of the unit that it shows.
-    Nothing else in the graph changes. The pass runs last because other passes ask who refers to an
-    element.
+    Assumes resolved references. Guarantees a View ``subkind="diagram"`` for each drawing. Its owner
+    is the owner of the diagram, and it has ``references`` to every element of the unit that the
+    diagram shows. Nothing else in the graph changes. The pass runs last, because other passes query
+    the references to an element.
     """
 
     name: ClassVar[str] = "views"
@@ -48,7 +48,7 @@ class Views(Struct, frozen=True):
 
 
 class _DiagramIndex:
-    """Elements by the ids that diagrams use; of an href only the id counts."""
+    """Index of elements by the ids that diagrams use: ids without file, and fragments of hrefs."""
 
     def __init__(self, graph: Graph) -> None:
         self._graph = graph
@@ -61,13 +61,13 @@ class _DiagramIndex:
                 self._by_id.setdefault(href.rpartition("#")[2], element)
 
     def find(self, file: str, target: str) -> Element | None:
-        """Return the element that the id or href means in the file, or None."""
+        """Return the element to which an id or href in the file leads, or None."""
         id = target.rpartition("#")[2]
         exact = self._graph.get(f"{file}#{id}")
         return exact or self._graph.get(id) or self._by_id.get(id)
 
     def ids(self, file: str, targets: Iterable[str]) -> tuple[str, ...]:
-        """Return the ids of the elements that exist, each once."""
+        """Return the ids of the elements to which *targets* lead, each once."""
         elements = (self.find(file, target) for target in targets)
         return tuple(dict.fromkeys(element.id for element in elements if element is not None))
 
@@ -127,6 +127,7 @@ def _list_relations(drawing: Drawing, index: _DiagramIndex) -> Iterator[AttrValu
 def _report_missing(
     graph: Graph, sink: Sink, drawing: Drawing, view: Element, shown: list[Element | None]
 ) -> None:
+    # `shown` also lists the lines for edges of the graph, for which no element exists.
     relation_count = len(drawing.relations)
     missing = sum(element is None for element in shown) - relation_count
     if missing > 0:

@@ -55,14 +55,18 @@ _Meanings = dict[str, tuple[str, ...]]
 
 
 class Classify(Struct, frozen=True):
-    """Give every stereotype application its lineage and every element its role.
+    """Set the lineage of every stereotype application and the role of every element.
 
-    Assumes resolved references. Guarantees: ``lineage`` on applications, and ``instance-of`` if the
-    stereotype is in the unit; ``role`` as docs/ir.md lists them (a role from a front end stays
-    unless a stereotype states another one); the meaning of the tags of SysML's stereotypes, as
-    attributes and edges; ``req_id`` and ``text`` of requirements; ``direction`` of flow properties;
-    ``level`` on elements to which a stereotype of the shipped profile, or a general classifier,
-    gives one; the edges that dependencies and bindings mean. The kind of an element never changes.
+    Assumes resolved references. Guarantees:
+
+    - ``lineage`` on applications, and ``instance-of`` if the stereotype is in the unit
+    - ``role`` as in docs/ir.md; a role from a front end stays unless a stereotype states another
+    - attributes and edges for the tags of SysML's stereotypes
+    - ``req_id`` and ``text`` of requirements, and ``direction`` of flow properties
+    - ``level`` on elements with a stereotype of the shipped profile or a general with a level
+    - the edges that dependencies and bindings mean
+
+    The kind of an element never changes.
     """
 
     name: ClassVar[str] = "classify"
@@ -107,7 +111,10 @@ def _find_lineages(graph: Graph) -> dict[str, tuple[Ancestor, ...]]:
 def _find_meanings(
     graph: Graph, sink: Sink, lineages: dict[str, tuple[Ancestor, ...]]
 ) -> _Meanings:
-    """Return the SysML stereotypes that each application stands for, look-alikes included."""
+    """Return the SysML stereotypes that each application means, and report doubtful applications.
+
+    A custom stereotype may mean a SysML stereotype of the same name.
+    """
     meanings: _Meanings = {}
     doubtful: dict[tuple[str, str], list[Element]] = {}
     for id, lineage in lineages.items():
@@ -146,7 +153,7 @@ def _has_unknown_stereotype(
 
 
 def _is_missing_in_sysml(ancestor: Ancestor) -> bool:
-    """Whether its namespace is SysML's, which has no such stereotype."""
+    """Whether the stereotype is in the namespace of SysML, but SysML does not define it."""
     name = mangle(ancestor.name)
     return ancestor.family is Family.SYSML and not (name in HANDLERS or is_known(name))
 
@@ -200,7 +207,7 @@ def _give_levels(graph: Graph, lineages: dict[str, tuple[Ancestor, ...]]) -> Non
 
 
 def _inherit_levels(graph: Graph) -> None:
-    """Give classifiers without a level that of the nearest general one, layer by layer."""
+    """Set the level of classifiers without one to that of their nearest general, breadth first."""
     layer = [element for element in graph if "level" in element.attrs]
     while layer:
         specials = (

@@ -1,6 +1,6 @@
 """Constraint properties: checks of their types and parameters, and binding connectors.
 
-A binding connector gets its role, and the bound elements get edges.
+The pass sets the role of binding connectors and adds edges between the bound elements.
 """
 
 from sysmlc.diagnostics import Severity, Sink, rule
@@ -32,7 +32,7 @@ UNITS_DIFFER = rule(
 
 
 def check_constraints(graph: Graph, sink: Sink) -> None:
-    """Report usages without constraint block, parameters without binding, and units that differ."""
+    """Report usages without constraint block, unbound parameters, and bindings between units."""
     for usage in graph.of_kind(Kind.PROPERTY):
         if usage.role == "constraint property" and not usage.attrs.get("external"):
             _check_usage(graph, sink, usage)
@@ -86,9 +86,8 @@ def _check_units(graph: Graph, sink: Sink, left: Element, right: Element) -> Non
 
 
 def _is_same_unit(left: Element, right: Element) -> bool:
-    """Whether two units are the same. A unit that only a text names is an element of each value
-    type.
-    """
+    """Whether two units are the same element or have the same name."""
+    # For a unit that is only a text, the pass adds one element to each value type.
     return left is right or left.name == right.name
 
 
@@ -98,7 +97,7 @@ _BINDING = "binding connector"
 
 
 def add_bindings(graph: Graph) -> None:
-    """Give connectors at constraint parameters their role, and bound elements ``binds`` edges.
+    """Set the role of binding connectors, and add ``binds`` edges between the bound elements.
 
     Every connector of a parametric diagram is a binding connector (SysML 1.6 clause 10.3.1.2), with
     or without its stereotype; no other connector is attached to a constraint parameter.

@@ -1,4 +1,4 @@
-"""The lineage of stereotype applications: the applied stereotype and its general ones."""
+"""The lineage of stereotype applications: the applied stereotype and its generals."""
 
 import re
 from collections.abc import Iterator
@@ -11,7 +11,7 @@ from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.ir.query import tag
 from sysmlc.passes.classify.vocabulary import MEANINGFUL, Family, find_family, find_generals, mangle
 
-_REMEMBERED = 1 << 10
+_CACHE_SIZE = 1 << 10
 """Size of the cache of lineages: a model applies a few stereotypes thousands of times."""
 
 
@@ -27,7 +27,7 @@ _FAMILIES = {
     "additional_stereotypes": Family.SYSML,
     "sysmlc": Family.SYSMLC,
 }
-"""Whose a profile is that does not say its namespace, by its name."""
+"""Family of a profile without a namespace, by the name of the profile."""
 
 _LIBRARY_FAMILIES = _FAMILIES | {
     **dict.fromkeys(
@@ -35,7 +35,7 @@ _LIBRARY_FAMILIES = _FAMILIES | {
     ),
     **dict.fromkeys(("MagicDraw_Profile", "UML_Standard_Profile"), Family.TOOL),
 }
-"""The same for library content, which says no namespace and is nobody's own."""
+"""Family of a profile in a library, by its name; library profiles have no namespace either."""
 
 
 @dataclass(slots=True)
@@ -43,21 +43,20 @@ class Profiles:
     """Index of the stereotypes of the unit, by namespace and local name."""
 
     graph: Graph
-    _named: dict[str, list[Element]] = field(default_factory=dict)
+    _by_name: dict[str, list[Element]] = field(default_factory=dict)
     _families: dict[str, Family] = field(default_factory=dict)
-    _chosen: dict[tuple[str, str], Element | None] = field(default_factory=dict)
+    _stereotypes: dict[tuple[str, str], Element | None] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         for stereotype in self.graph.of_kind(Kind.STEREOTYPE):
             if stereotype.attrs.get("library") or not stereotype.attrs.get("external"):
-                self._named.setdefault(mangle(stereotype.name), []).append(stereotype)
+                self._by_name.setdefault(mangle(stereotype.name), []).append(stereotype)
 
     def lineage(self, application: Element) -> tuple[Ancestor, ...]:
-        """Return the stereotypes from the applied one to the most general, each name of a family
-        once.
+        """Return the applied stereotype and its generals, the most special one first.
 
-        Profiles of the unit come first; they are followed by, or without them replaced by, the
-        generals that SysML defines for its own stereotypes.
+        Generals in profiles of the unit are followed by those that SysML defines for its own
+        stereotypes. If no profile of the unit defines the stereotype, only SysML's generals follow.
         """
         stereotype = self.find_stereotype(application)
         if stereotype is None:
@@ -73,24 +72,24 @@ class Profiles:
         return tuple(dict.fromkeys(ancestors))
 
     def find_stereotype(self, application: Element) -> Element | None:
-        """Return the applied Stereotype if a file of the unit, or an external stub, has it."""
+        """Return the applied Stereotype, an element of the unit or external stub, or None."""
         assigned = self.graph.target(application, Edge.INSTANCE_OF)
         if assigned is not None and assigned.kind is Kind.STEREOTYPE:
             return assigned
         namespace = str(application.attrs.get("namespace", ""))
         key = namespace, mangle(str(application.attrs.get("stereotype", "")))
-        if key not in self._chosen:
-            self._chosen[key] = self._choose(*key)
-        return self._chosen[key]
+        if key not in self._stereotypes:
+            self._stereotypes[key] = self._choose(*key)
+        return self._stereotypes[key]
 
     def _choose(self, namespace: str, name: str) -> Element | None:
         """Return the stereotype of that name whose profile has the namespace, or None.
 
-        If only one stereotype of the unit has the name, it is taken, unless the namespace belongs
-        to another known family.
+        If no profile matches, the result is a stereotype of that name in the same family. In the
+        family of custom profiles it must be the only one.
         """
         owner_family = find_family(namespace)
-        candidates = sorted(self._named.get(name, ()), key=lambda candidate: candidate.id)
+        candidates = sorted(self._by_name.get(name, ()), key=lambda candidate: candidate.id)
         if owner_family is not Family.CUSTOM:
             # The vocabulary knows SysML's own stereotypes, so that stubs are not needed.
             candidates = [
@@ -162,7 +161,7 @@ class Profiles:
         return any(mangle(profile.name) == last for profile in self._profiles_of(stereotype))
 
 
-@lru_cache(_REMEMBERED)
+@lru_cache(_CACHE_SIZE)
 def _lineage_by_name(namespace: str, name: str) -> tuple[Ancestor, ...]:
     """Return the lineage of a stereotype that no profile of the unit defines."""
     return tuple(dict.fromkeys(_walk_sysml_generals(Ancestor(name, find_family(namespace)))))
@@ -182,13 +181,13 @@ def _walk_sysml_generals(start: Ancestor) -> Iterator[Ancestor]:
 
 
 def find_meanings(lineage: tuple[Ancestor, ...]) -> tuple[str, ...]:
-    """Return the names that count as stereotypes of SysML, UML's Trace and Refine among them."""
+    """Return the stereotypes of SysML and of UML's standard profile (Trace, Refine) by name."""
     families = (Family.SYSML, Family.STANDARD)
     return tuple(mangle(ancestor.name) for ancestor in lineage if ancestor.family in families)
 
 
 def find_look_alike(lineage: tuple[Ancestor, ...]) -> str:
-    """Return the name of a SysML stereotype in a purely custom lineage, or the empty string.
+    """Return the first SysML name in a lineage of custom stereotypes only, or the empty string.
 
     Papyrus profiles often declare a FullPort of their own without specialising SysML's, and a
     profile that is not in the unit cannot state its generals. A stereotype in the namespace of
@@ -200,5 +199,5 @@ def find_look_alike(lineage: tuple[Ancestor, ...]) -> str:
 
 
 def meanings_of_sysml(name: str) -> tuple[str, ...]:
-    """Return the meanings of SysML's stereotype of this name."""
+    """Return the meanings of the SysML stereotype with this name: itself and its generals."""
     return find_meanings(tuple(_walk_sysml_generals(Ancestor(name, Family.SYSML))))

@@ -1,4 +1,4 @@
-"""Edges that dependencies and «allocate» partitions mean: satisfies, derives, allocated-to ..."""
+"""Edges for the meaning of dependencies and «allocate» partitions: satisfies, allocated-to ..."""
 
 from collections.abc import Iterator
 
@@ -20,7 +20,7 @@ _OF_REQUIREMENTS = frozenset({"satisfy", "derive", "verify", "copy"})
 
 
 def add_relations(graph: Graph, sink: Sink) -> None:
-    """Add from each client to each supplier the edge that the role of the dependency means."""
+    """Add an edge from each client to each supplier; the dependency's role gives its type."""
     for dependency in graph.of_kind(Kind.DEPENDENCY):
         edge = _choose_edge(dependency)
         for client in graph.targets(dependency, Edge.CLIENT):

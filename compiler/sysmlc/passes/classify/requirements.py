@@ -6,17 +6,6 @@ from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.ir.query import CLASSIFIERS, tag
 
-_SYSML = 'namespace="http://www.omg.org/spec/SysML/20150709/SysML"'
-
-
-def _requirement(id: str, name: str, tags: str) -> str:
-    return (
-        f'Class {id} "{name}"\n'
-        f'  Application {id}.a stereotype="Requirement" {_SYSML} {tags}\n'
-        f"    -> subject {id}\n"
-    )
-
-
 REPEATED_ID = rule(
     "SM213",
     "repeated-requirement-id",
@@ -44,7 +33,7 @@ _KINDS = (*CLASSIFIERS, Kind.PACKAGE, Kind.OPERATION)
 
 
 def complete_requirement(graph: Graph, requirement: Element) -> None:
-    """Set ``req_id`` and ``text`` from the tags, in whatever spelling the tool uses."""
+    """Set ``req_id`` and ``text`` from the tags, whose case depends on the tool."""
     for attribute, tag_name in (("req_id", "id"), ("text", "text")):
         value = tag(graph, requirement, tag_name)
         if value is not None:
@@ -64,7 +53,7 @@ def strip_markup(text: str) -> str:
 
 
 def check_requirements(graph: Graph, sink: Sink) -> None:
-    """Report missing and repeated ids, and copies whose text differs from their master's."""
+    """Report missing and repeated ids, and copies with another text than their master."""
     by_id: dict[str, list[Element]] = {}
     for requirement in (
         element for element in graph.of_kind(*_KINDS) if element.role == "requirement"
@@ -104,35 +93,38 @@ def _normalise_text(requirement: Element) -> str:
     return " ".join(str(requirement.attrs.get("text", "")).split())
 
 
-_BLOCKS = frozenset(["p", "br", "li", "tr", "div", "h1", "h2", "h3", "h4", "ul", "ol", "table"])
-_SILENT = frozenset(["head", "style", "script"])
+_BLOCK_TAGS = frozenset(["p", "br", "li", "tr", "div", "h1", "h2", "h3", "h4", "ul", "ol", "table"])
+_SILENT_TAGS = frozenset(["head", "style", "script"])
 
 
 def extract_text(text: str) -> str:
-    """Return the words of an HTML document, a line for each block."""
+    """Return the text of an HTML document, with one line for each block element."""
     parser = _TextExtractor()
     parser.feed(text)
     parser.close()
-    rows = (" ".join(row.split()) for row in "".join(parser.found).splitlines())
+    rows = (" ".join(row.split()) for row in "".join(parser.fragments).splitlines())
     return "\n".join(row for row in rows if row)
 
 
 class _TextExtractor(HTMLParser):
+    """Collects the text outside of head, style and script elements."""
+
     def __init__(self) -> None:
         super().__init__(convert_charrefs=True)
-        self.found: list[str] = []
-        self._silent = 0
+        self.fragments: list[str] = []
+        self._silent_depth = 0
 
     def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        self._silent += tag in _SILENT
-        if tag in _BLOCKS:
-            self.found.append("\n")
+        self._silent_depth += tag in _SILENT_TAGS
+        if tag in _BLOCK_TAGS:
+            self.fragments.append("\n")
 
     def handle_endtag(self, tag: str) -> None:
-        self._silent = max(0, self._silent - (tag in _SILENT))
-        if tag in _BLOCKS:
-            self.found.append("\n")
+        # Documents of tools may have an end tag without a start tag.
+        self._silent_depth = max(0, self._silent_depth - (tag in _SILENT_TAGS))
+        if tag in _BLOCK_TAGS:
+            self.fragments.append("\n")
 
     def handle_data(self, data: str) -> None:
-        if not self._silent:
-            self.found.append(data.replace("\n", " "))
+        if not self._silent_depth:
+            self.fragments.append(data.replace("\n", " "))

@@ -54,22 +54,25 @@ _BY_KIND = {
     Kind.FLOW_PROPERTY: "flow property",
 }
 STRUCTURED = (Kind.PROPERTY, Kind.CLASS, *_BY_KIND)
-"""Kinds to which ``by_structure`` may give a role."""
+"""Kinds of elements to which ``role_by_structure`` may give a role."""
 
 _SYSML_PORTS = frozenset(PORT_ROLES.values())
-_VALUES = frozenset({Kind.DATA_TYPE, Kind.ENUMERATION})
-_OBJECTS = frozenset({Kind.CLASS, Kind.COMPONENT, Kind.ACTOR, Kind.ITEM})
-_OTHERS = frozenset({Kind.INTERFACE, Kind.SIGNAL, Kind.USE_CASE})
+_VALUE_KINDS = frozenset({Kind.DATA_TYPE, Kind.ENUMERATION})
+_OBJECT_KINDS = frozenset({Kind.CLASS, Kind.COMPONENT, Kind.ACTOR, Kind.ITEM})
+_REFERENCE_KINDS = frozenset({Kind.INTERFACE, Kind.SIGNAL, Kind.USE_CASE})
 
 
 def role_by_stereotype(element: Element, meanings: tuple[str, ...]) -> str:
-    """Return the role that SysML stereotypes give to an element of this kind, or ""."""
+    """Return the role that the SysML stereotypes *meanings* give to the element, or ""."""
     roles = _BY_STEREOTYPE.get(element.kind, {})
     return next((role for name, role in roles.items() if name in meanings), "")
 
 
 def role_by_structure(graph: Graph, element: Element) -> str:
-    """Return the role that kind, type and owner give; the roles of types must be known already."""
+    """Return the role that follows from kind, type and owner, or "".
+
+    The roles by stereotype must be set before, because the role of a type may decide.
+    """
     if element.kind is Kind.PROPERTY:
         return _property_role(graph, element)
     if element.kind is Kind.CLASS:
@@ -115,8 +118,8 @@ def _is_association_end(graph: Graph, owner: Element, feature: Element) -> bool:
 def _role_by_type(feature: Element, type_: Element | None) -> str:
     if type_ is None:
         return ""
-    if type_.kind in _VALUES:
+    if type_.kind in _VALUE_KINDS:
         return "value"
-    if type_.kind in _OBJECTS and feature.attrs.get("aggregation") == "composite":
+    if type_.kind in _OBJECT_KINDS and feature.attrs.get("aggregation") == "composite":
         return "part"
-    return "reference" if type_.kind in _OBJECTS | _OTHERS else ""
+    return "reference" if type_.kind in _OBJECT_KINDS | _REFERENCE_KINDS else ""

@@ -1,8 +1,8 @@
-"""Meanings of the tags of SysML's stereotypes: attributes and edges, by a table of handlers.
+"""Tags of SysML's stereotypes: a table of handlers turns them into attributes and edges.
 
-SysML 1.6 (formal/19-11-01), the stereotype tables of clauses 7 to 11; docs/ir.md has the result.
-Tags that a profile of the unit does not define are reported, and so are values that are no literals
-of the enumerations of UML and SysML.
+The handlers implement the stereotype tables of SysML 1.6 (formal/19-11-01), clauses 7 to 11;
+docs/ir.md lists the results. The module also reports tags that a profile of the unit does not
+define, and directions and aggregations that UML and SysML do not define.
 """
 
 from collections.abc import Callable, Iterator, Mapping
@@ -13,7 +13,7 @@ from sysmlc.ir.query import FLOW_DIRECTIONS, bounds, generals, tag
 from sysmlc.passes.classify.vocabulary import mangle
 
 _Handler = Callable[[Graph, Element, Element], None]
-"""Takes the graph, the application and an element that it is applied to."""
+"""A handler gets the graph, the application and the element with the application."""
 
 
 def apply_tags(graph: Graph, meanings: Mapping[str, tuple[str, ...]]) -> None:
@@ -26,7 +26,11 @@ def apply_tags(graph: Graph, meanings: Mapping[str, tuple[str, ...]]) -> None:
 
 
 def _find_subjects(graph: Graph, application: Element) -> list[Element]:
-    """Return the subjects of an application; for an event, the triggers that name it."""
+    """Return the elements that an application describes: its subjects.
+
+    The graph has no elements for change events and generalizations. Their applications refer to the
+    triggers of the event, or to the special classifier.
+    """
     folded = application.attrs.get("on") in ("change-event", "generalization")
     return graph.targets(application, Edge.REFERENCES if folded else Edge.SUBJECT)
 
@@ -35,7 +39,7 @@ def _find_subjects(graph: Graph, application: Element) -> list[Element]:
 
 
 def tag_value(application: Element, name: str) -> AttrValue:
-    """Return a tag of one application; tools differ in the case of its name."""
+    """Return the value of a tag of an application, ignoring the case of the tag's name."""
     exact = application.attrs.get(f"tag.{name}")
     if exact is not None:
         return exact
@@ -44,7 +48,7 @@ def tag_value(application: Element, name: str) -> AttrValue:
 
 
 def tag_elements(graph: Graph, application: Element, name: str) -> list[Element]:
-    """Return the elements that a tag refers to; an application stands for its subjects.
+    """Return the elements to which a tag refers; an application is replaced by its subjects.
 
     Papyrus writes the id of the application if a tag is typed by a stereotype.
     """
@@ -72,7 +76,7 @@ def _subjects_or_itself(graph: Graph, element: Element) -> list[Element]:
 
 
 def _name_or_value(graph: Graph, content: AttrValue) -> AttrValue:
-    """Return the value, or the name of the element whose id it is."""
+    """Return the name of an element if the value is its id, or else the value."""
     element = graph.get(content) if isinstance(content, str) else None
     return element.name if element is not None and element.name else content
 
@@ -81,46 +85,46 @@ def _name_or_value(graph: Graph, content: AttrValue) -> AttrValue:
 
 
 def _set_attribute(attribute: str, tag_name: str) -> _Handler:
-    def give(graph: Graph, application: Element, subject: Element) -> None:
-        found = _name_or_value(graph, tag_value(application, tag_name))
-        if found not in (None, ""):
-            graph.set(subject, **{attribute: found})
+    def handle(graph: Graph, application: Element, subject: Element) -> None:
+        value = _name_or_value(graph, tag_value(application, tag_name))
+        if value not in (None, ""):
+            graph.set(subject, **{attribute: value})
 
-    return give
+    return handle
 
 
 def _set_flag(attribute: str, tag_name: str) -> _Handler:
-    def give(graph: Graph, application: Element, subject: Element) -> None:
+    def handle(graph: Graph, application: Element, subject: Element) -> None:
         if tag_value(application, tag_name) in ("true", True):
             graph.set(subject, **{attribute: True})
 
-    return give
+    return handle
 
 
 def _set_constant(attribute: str, constant: AttrValue) -> _Handler:
-    def give(graph: Graph, _application: Element, subject: Element) -> None:
+    def handle(graph: Graph, _application: Element, subject: Element) -> None:
         graph.set(subject, **{attribute: constant})
 
-    return give
+    return handle
 
 
 def _add_edges(edge: Edge, *tag_names: str) -> _Handler:
-    def give(graph: Graph, application: Element, subject: Element) -> None:
+    def handle(graph: Graph, application: Element, subject: Element) -> None:
         for tag_name in tag_names:
             for target in tag_elements(graph, application, tag_name):
                 if target is not subject:
                     graph.connect(edge, subject, target)
 
-    return give
+    return handle
 
 
 def _set_ids(attribute: str, tag_name: str) -> _Handler:
-    def give(graph: Graph, application: Element, subject: Element) -> None:
+    def handle(graph: Graph, application: Element, subject: Element) -> None:
         ids = tuple(element.id for element in tag_elements(graph, application, tag_name))
         if ids:
             graph.set(subject, **{attribute: ids})
 
-    return give
+    return handle
 
 
 def _add_allocations_from(graph: Graph, application: Element, subject: Element) -> None:
@@ -140,9 +144,10 @@ def _add_binding(graph: Graph, application: Element, subject: Element) -> None:
 
 
 def _add_conformance(graph: Graph, application: Element, subject: Element) -> None:
-    """Let a view that conforms by generalization (clause 7.3.2.1) realise what it specialises.
+    """Add realizations from a view to its viewpoints for a «Conform» generalization (7.3.2.1).
 
-    The role of its generals shows which of several generalizations is meant.
+    The graph does not show which of several generalizations has the stereotype, so that generals
+    with the role viewpoint, and external ones, are taken.
     """
     if application.attrs.get("on") == "generalization":
         for general in graph.targets(subject, Edge.SPECIALIZES):
@@ -154,12 +159,13 @@ def _set_path_multiplicity(graph: Graph, application: Element, subject: Element)
     # Clause 8.3.2.10: without bounds none is given for the path.
     lower, upper = tag_value(application, "lower"), tag_value(application, "upper")
     if lower is not None or upper is not None:
+        # Tools on the basis of Ecore write an unlimited upper bound as -1.
         text = f"{'0' if lower is None else lower}..{'*' if upper in (None, '-1') else upper}"
         graph.set(subject, path_multiplicity=text)
 
 
 def _set_distribution(graph: Graph, application: Element, subject: Element) -> None:
-    """Set the distribution with its parameters: ``Normal(mean=5, standardDeviation=1)``."""
+    """Set the distribution as text: ``Normal(mean=5, standardDeviation=1)``."""
     name = str(application.attrs.get("stereotype", ""))
     parameters = [
         f"{key.removeprefix('tag.')}={value}"
@@ -210,7 +216,7 @@ HANDLERS: dict[str, tuple[_Handler, ...]] = {
     "_InterfaceBlock": (_add_edges(Edge.REFERENCES, "original"),),
     "ConjugatedInterfaceBlock": (_add_edges(Edge.REFERENCES, "original"),),
 }
-"""By stereotype; one that specialises it has the same meaning, in the order of the lineage."""
+"""Handlers by stereotype. They also apply to stereotypes that specialise it."""
 
 
 def find_optional_with_value(
@@ -236,7 +242,7 @@ _TAG = "tag."
 
 
 def check_tags(graph: Graph, sink: Sink) -> None:
-    """Report undefined tags of stereotypes of the unit, each once per stereotype."""
+    """Report tags that the applied stereotype does not define, each once per stereotype."""
     defined: dict[str, frozenset[str] | None] = {}
     undefined: dict[tuple[str, str], list[Element]] = {}
     for application in graph.of_kind(Kind.APPLICATION):
@@ -252,7 +258,7 @@ def check_tags(graph: Graph, sink: Sink) -> None:
 
 
 def _list_properties(graph: Graph, stereotype: Element) -> frozenset[str] | None:
-    """Return the names of its properties as XML shows them, or None if some cannot be known."""
+    """Return the names of a stereotype's properties in lower case, or None if some are unknown."""
     family = [stereotype, *generals(graph, stereotype)]
     if any(
         classifier.attrs.get("external") or classifier.attrs.get("library") for classifier in family
@@ -304,7 +310,7 @@ _LITERALS = {
 
 
 def check_literals(graph: Graph, sink: Sink) -> None:
-    """Report and remove directions and aggregations that do not exist."""
+    """Report and remove values of direction and aggregation that UML and SysML do not define."""
     for element in graph.of_kind(*_DIRECTED):
         attrs = element.attrs
         for attribute, literals in _LITERALS.items() if attrs else ():

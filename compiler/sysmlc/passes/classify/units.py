@@ -1,6 +1,6 @@
 """Units and quantity kinds: their elements, their symbols, and the value types that use them.
 
-SysML 1.0 to 1.2 have stereotypes for them; since SysML 1.3 they are instances of library blocks
+SysML 1.0 to 1.2 have stereotypes for both; since SysML 1.3 both are instances of library blocks
 (SysML 1.6 clause 8.3.3.2 and annex E.5, QUDV). Tools without the library write plain text.
 """
 
@@ -19,13 +19,17 @@ _UNIT = re.compile(
 )
 _KINDS = (Kind.UNIT, Kind.QUANTITY_KIND, Kind.INSTANCE, Kind.DATA_TYPE)
 _LIBRARY = re.compile(r"UnitAndQuantityKind|QUDV")
-_TEXTS = {"symbol": "symbol", "description": "description", "definitionURI": "definition_uri"}
-_NAMED = re.compile(r"(?P<kind>[^\[\]]+)\[(?P<unit>[^\[\]]+)\]")
+_TEXT_ATTRIBUTES = {
+    "symbol": "symbol",
+    "description": "description",
+    "definitionURI": "definition_uri",
+}
+_VALUE_TYPE_NAME = re.compile(r"(?P<kind>[^\[\]]+)\[(?P<unit>[^\[\]]+)\]")
 """Name of a value type of MagicDraw's ISO 80000 library: ``length[metre]``."""
 
 
 def link_units(graph: Graph, meanings: Mapping[str, tuple[str, ...]]) -> None:
-    """Give units and quantity kinds their role, and link value types to them; see docs/ir.md."""
+    """Set the roles of units and quantity kinds, and link value types to them; see docs/ir.md."""
     _give_library_roles(graph)
     for unit in graph.of_kind(*_KINDS):
         if is_unit(unit) or is_quantity_kind(unit):
@@ -38,7 +42,7 @@ def link_units(graph: Graph, meanings: Mapping[str, tuple[str, ...]]) -> None:
         _link_by_name(graph, value_type)
 
 
-# -- what is a unit ----------------------------------------------------------------------------
+# -- units and quantity kinds ------------------------------------------------------------------
 
 
 def _give_library_roles(graph: Graph) -> None:
@@ -66,29 +70,34 @@ def _is_in_library(graph: Graph, block: Element) -> bool:
     return any(_LIBRARY.search(above.name) for above in graph.ancestors(block))
 
 
-# -- what it says ------------------------------------------------------------------------------
+# -- symbols and descriptions ------------------------------------------------------------------
 
 
 def _describe_unit(graph: Graph, unit: Element) -> None:
     for slot in graph.owned(unit):
         for feature in graph.targets(slot, Edge.INSTANCE_OF) if slot.kind is Kind.SLOT else ():
-            if feature.name in _TEXTS and slot.attrs.get("value") not in (None, ""):
-                graph.set(unit, **{_TEXTS[feature.name]: slot.attrs["value"]})
+            if feature.name in _TEXT_ATTRIBUTES and slot.attrs.get("value") not in (None, ""):
+                graph.set(unit, **{_TEXT_ATTRIBUTES[feature.name]: slot.attrs["value"]})
             elif feature.name in ("quantityKind", "quantityKinds"):
                 for kind in graph.targets(slot, Edge.REFERENCES):
                     graph.connect(Edge.REFERENCES, unit, kind)
     for application in graph.sources(unit, Edge.SUBJECT):
-        for tag, attribute in _TEXTS.items() if application.kind is Kind.APPLICATION else ():
+        for tag, attribute in (
+            _TEXT_ATTRIBUTES.items() if application.kind is Kind.APPLICATION else ()
+        ):
             text = tag_value(application, tag)
             if text not in (None, ""):
                 graph.set(unit, **{attribute: text})
 
 
-# -- which value type has which ----------------------------------------------------------------
+# -- value types -------------------------------------------------------------------------------
 
 
 def _link_by_tags(graph: Graph, application: Element, subject: Element) -> None:
-    """Link a value type by its tags ``unit`` and ``quantityKind`` (``dimension`` until 1.1)."""
+    """Link a value type to the elements in its tags ``unit`` and ``quantityKind``.
+
+    Until SysML 1.1 the latter tag is called ``dimension``.
+    """
     for tag, kind in (
         ("unit", Kind.UNIT),
         ("quantityKind", Kind.QUANTITY_KIND),
@@ -107,14 +116,15 @@ def _link_by_tags(graph: Graph, application: Element, subject: Element) -> None:
 
 
 def _find_stubs(graph: Graph, subject: Element, href: AttrValue) -> list[Element]:
-    """Return the stubs that the front end left for a unit in a file that is not read."""
+    """Return the stubs that the front end added for a unit in a file outside the compile unit."""
     referred = graph.targets(subject, Edge.REFERENCES)
     return [element for element in referred if href and element.attrs.get("href") == href]
 
 
 def _is_name(text: AttrValue) -> bool:
-    """Whether a text is a name. A text with ``#`` or in the form of a tool's id is a broken
-    reference.
+    """Whether the text of a tag is the name of a unit, not a broken reference.
+
+    Broken references contain ``#`` or have the form of a tool's id.
     """
     if not isinstance(text, str) or not text.strip():
         return False
@@ -122,7 +132,7 @@ def _is_name(text: AttrValue) -> bool:
 
 
 def _give_unit_role(graph: Graph, target: Element, kind: Kind) -> None:
-    """Give the target of a value type's unit the role of a unit, also to unknown stubs."""
+    """Set the role of the target of a tag, unless its kind or a role states the same."""
     if target.kind is not kind and not target.role:
         graph.set(target, role="unit" if kind is Kind.UNIT else "quantity kind")
 
@@ -140,7 +150,9 @@ def _ensure_named(graph: Graph, origin: str, owner: Element, kind: Kind, name: s
 
 
 def _link_by_name(graph: Graph, value_type: Element) -> None:
-    match = _NAMED.fullmatch(value_type.name) if value_type.attrs.get("external") else None
+    match = (
+        _VALUE_TYPE_NAME.fullmatch(value_type.name) if value_type.attrs.get("external") else None
+    )
     if match is None or not _is_used_by_model(graph, value_type):
         return
     if not any(map(is_unit, graph.targets(value_type, Edge.REFERENCES))):
@@ -159,10 +171,10 @@ def _list_users(graph: Graph, value_type: Element) -> Iterator[Element]:
 
 
 def give_symbols(graph: Graph) -> None:
-    """Set the symbol of each derived unit without one if all its factors are known.
+    """Set the symbol of each derived unit without a symbol, such as ``m·s^-1``, from its factors.
 
-    ``m·s^-1`` comes from the factors of QUDV (SysML 1.6 annex E.5): a DerivedUnit has UnitFactors,
-    each a unit with an exponent, which is a number or an instance of Rational.
+    A DerivedUnit of QUDV has UnitFactors, each with a unit and an exponent, which is a number or an
+    instance of Rational (SysML 1.6 annex E.5). All factors must be known.
     """
     for unit in graph.of_kind(Kind.INSTANCE):
         if is_unit(unit) and "symbol" not in unit.attrs:

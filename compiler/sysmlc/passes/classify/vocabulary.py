@@ -1,7 +1,7 @@
-"""Known stereotypes: their namespaces in every dialect, their generalizations, their roles.
+"""Known stereotypes: their namespaces in all dialects, their generals and their roles.
 
-SysML 1.6 (formal/19-11-01); MagicDraw's additional stereotypes; SysML 1.1's FlowPort and
-FlowSpecification (SysML 1.6 annex C).
+The stereotypes are those of SysML 1.6 (formal/19-11-01), MagicDraw's additional ones, and FlowPort
+and FlowSpecification of SysML 1.1 (SysML 1.6 annex C).
 """
 
 import re
@@ -93,7 +93,7 @@ CLASSIFIER_ROLES = {
     "Stakeholder": "stakeholder",
     "ControlOperator": "control operator",
 }
-"""Role of a classifier or package, by stereotype; the first that is in the lineage counts."""
+"""Role of a classifier or package, by stereotype; the first entry that is in the lineage counts."""
 
 PROPERTY_ROLES = {
     "FlowProperty": "flow property",
@@ -114,8 +114,10 @@ UNIT_ROLES = {
     "QuantityKind": "quantity kind",
     "Dimension": "quantity kind",
 }
-"""SysML 1.2's stereotypes of instance specifications, 1.0's of value types; since SysML 1.3 units
-are instances of library blocks with these names (annex E.5)."""
+"""Role of a unit or quantity kind, by stereotype: of value types in SysML 1.0, of instances in 1.2.
+
+Since SysML 1.3, units are instances of library blocks with these names (annex E.5).
+"""
 
 DEPENDENCY_ROLES: dict[str, tuple[str, Edge]] = {
     "Satisfy": ("satisfy", Edge.SATISFIES),
@@ -153,9 +155,9 @@ MEANINGFUL = frozenset(
         *DEPENDENCY_ROLES,
     ]
 )
-"""SysML stereotypes that give a role; a custom stereotype of such a name is taken for it."""
+"""SysML stereotypes that give a role; a custom stereotype of the same name counts as one."""
 
-KEPT = frozenset(
+WITHOUT_MEANING = frozenset(
     [
         "AcceptChangeStructuralFeatureEventAction",
         "AddFlowPropertyValueOnNestedPortAction",
@@ -167,12 +169,14 @@ KEPT = frozenset(
         "TriggerOnNestedPort",
     ]
 )
-"""SysML stereotypes whose meaning something else says already: their type, their multiplicity,
-the stereotype that they specialise, or the front end that reads their path. Their applications
-are kept."""
+"""SysML stereotypes that add no information to the graph.
+
+The graph already has it from a type, a multiplicity, a general stereotype, or a path that the front
+end reads. The applications are preserved.
+"""
 
 
-MAGICDRAW = frozenset(
+MAGICDRAW_STEREOTYPES = frozenset(
     [
         "Actuator",
         "Boundary_system",
@@ -184,8 +188,10 @@ MAGICDRAW = frozenset(
         "numberOwner",
     ]
 )
-"""What MagicDraw adds in SysML's namespace, kept without meaning: kinds of actors, settings of
-tables and numbers."""
+"""Stereotypes that MagicDraw adds in SysML's namespace: kinds of actors, settings of tables.
+
+They have no meaning here, but their applications are preserved.
+"""
 
 ROLES = (
     CLASSIFIER_ROLES,
@@ -202,12 +208,16 @@ ROLES = (
 
 
 def is_known(name: str) -> bool:
-    """Whether a stereotype in SysML's namespace gives a role, or is retained for other readers."""
-    return name in KEPT or name in MAGICDRAW or any(name in table for table in ROLES)
+    """Whether a stereotype in SysML's namespace is in one of the tables of this module."""
+    return (
+        name in WITHOUT_MEANING
+        or name in MAGICDRAW_STEREOTYPES
+        or any(name in table for table in ROLES)
+    )
 
 
 def find_family(namespace: str) -> Family:
-    """Return the family of the stereotypes of a namespace, or of the file of a profile."""
+    """Return the family of a profile from its namespace or its file."""
     for candidate, namespaces in _NAMESPACES:
         if namespaces.match(namespace):
             return candidate
@@ -216,17 +226,16 @@ def find_family(namespace: str) -> Family:
 
 @cache
 def mangle(name: str) -> str:
-    """Return the name of a stereotype as XML tags show it: ``SD-DD`` becomes ``SD_DD``."""
+    """Return the name of a stereotype in the form of XML tags: ``SD-DD`` becomes ``SD_DD``."""
     return re.sub(r"\W", "_", name)
 
 
 @cache
 def find_generals(name: str) -> tuple[str, ...]:
-    """Return the generals of a stereotype of SysML, if no profile of the unit defines them.
+    """Return the generals that SysML and MagicDraw define for a stereotype of SysML.
 
-    *name* and the result are names as XML tags show them.
+    *name* and the result have the form of XML tags.
     """
-
     names = (
         general for library in _LIBRARIES for general in load_libraries().generals(library, name)
     )

@@ -1,4 +1,4 @@
-"""Pass ``flows``: item flows on connectors, and what connectors and flows must agree on."""
+"""Pass ``flows``: item flows on connectors, and checks that ports, flows and connectors agree."""
 
 from collections.abc import Iterator
 from typing import ClassVar
@@ -85,10 +85,10 @@ MIXED_DOMAINS = rule(
 class Flows(Struct, frozen=True):
     """Attach item flows to connectors and give both a domain.
 
-    Assumes directions of ports. Guarantees: an item flow that names no connector is ``realizing``
-    the connector between its source and its target, if there is exactly one; ``domain`` of item
-    flows and connectors is that of the conveyed items, if it is the same for all. Nothing is
-    repaired: conflicts are reported.
+    Assumes directions of ports. Guarantees: an item flow that names no connector has an edge
+    ``realizing`` to the connector between its source and its target, if there is exactly one; item
+    flows and connectors have the ``domain`` of the conveyed items, if all have the same. Conflicts
+    are reported and not repaired.
     """
 
     name: ClassVar[str] = "flows"
@@ -113,6 +113,7 @@ def _attach(graph: Graph, flow: Element) -> None:
     source, target = flow_source(graph, flow), flow_target(graph, flow)
     if source is None or target is None or graph.target(flow, Edge.REALIZING) is not None:
         return
+    # Several connectors between the same ends: the model must say which one the flow uses.
     at_target = {connector.id for connector in connectors_of(graph, target)}
     candidates = [
         connector for connector in connectors_of(graph, source) if connector.id in at_target
@@ -144,7 +145,7 @@ def _check_flow(graph: Graph, sink: Sink, flow: Element) -> None:
 
 
 def _title(graph: Graph, relation: Element) -> str:
-    """Return a name for a relation, which often has none: the names of its ends."""
+    """Return the name of a relation in messages: its own name, or the names of its ends."""
     if relation.name:
         return graph.qualified_name(relation)
     if relation.kind is Kind.ITEM_FLOW:
@@ -155,7 +156,7 @@ def _title(graph: Graph, relation: Element) -> str:
 
 
 def _list_port_ends(graph: Graph, flow: Element) -> Iterator[tuple[Element, str, str]]:
-    """Yield the ports at the ends of the flow, the expected direction, and a verb."""
+    """Yield each port at an end of the flow, its expected direction, and the verb for messages."""
     for edge, outside, inside, way in (
         (Edge.FLOW_SOURCE, "out", "in", "leaves"),
         (Edge.FLOW_TARGET, "in", "out", "enters"),
@@ -166,6 +167,7 @@ def _list_port_ends(graph: Graph, flow: Element) -> Iterator[tuple[Element, str,
 
 
 def _runs_inside(graph: Graph, flow: Element, port: Element) -> bool:
+    """Whether a delegation connector leads the flow from the port to the inside of its block."""
     for connector in graph.targets(flow, Edge.REALIZING):
         connector_ends = ends(graph, connector)
         outer = [end for end in connector_ends if is_boundary(graph, end)]
@@ -281,6 +283,7 @@ def _has_matching_directions(graph: Graph, connector_ends: list[Element]) -> boo
     first, second = (end_direction(graph, end) for end in connector_ends)
     if "inout" in (first, second) or None in (first, second):
         return True
+    # A delegation connector continues the direction of the outer port; others join opposites.
     delegates = is_boundary(graph, connector_ends[0]) != is_boundary(graph, connector_ends[1])
     return (first == second) is delegates
 
@@ -316,6 +319,7 @@ def _check_types(graph: Graph, sink: Sink, connector: Element, ports: list[Eleme
 
 def _are_compatible(graph: Graph, first: Element, second: Element) -> bool:
     families = [[classifier, *generals(graph, classifier)] for classifier in (first, second)]
+    # The generals and features of an external stub are unknown, so that nothing is reported.
     if any(classifier.attrs.get("external") for family in families for classifier in family):
         return True
     if _conform(graph, first, second) or any(

@@ -1,4 +1,4 @@
-"""Connector ends whose path leads through a feature that does not exist."""
+"""Check of connector ends: their paths must lead through existing features."""
 
 from collections.abc import Iterator
 
@@ -16,7 +16,7 @@ BROKEN_PATH = rule(
 
 
 def check_paths(graph: Graph, sink: Sink, connector: Element) -> None:
-    """Report each end of the connector with a broken path, at the first step that is missing."""
+    """Report each end of the connector with a broken path, at the first missing feature."""
     owner = graph.owner(connector)
     if owner is None or connector.attrs.get("external"):
         return
@@ -32,7 +32,10 @@ def check_paths(graph: Graph, sink: Sink, connector: Element) -> None:
 
 
 def _find_breaks(graph: Graph, owner: Element, end: Element) -> Iterator[tuple[Element, Element]]:
-    """Yield the first step that its classifier lacks; an unknown type ends the search."""
+    """Yield the first step of a path that is no feature of its classifier, if there is one.
+
+    The result is a pair of the classifier and the step. A step of unknown type ends the search.
+    """
     classifier: Element | None = _start_of_paths(graph, owner)
     for step in (*graph.targets(end, Edge.PATH), *graph.targets(end, Edge.ROLE)):
         if step.kind is Kind.INSTANCE:
@@ -49,7 +52,9 @@ def _find_breaks(graph: Graph, owner: Element, end: Element) -> Iterator[tuple[E
 
 
 def _start_of_paths(graph: Graph, owner: Element) -> Element | None:
-    """Return the classifier whose features paths start from: for an instance, its classifier."""
+    """Return the classifier whose features start the paths: the owner or, for an instance, its
+    classifier.
+    """
     if owner.kind is Kind.INSTANCE:
         return graph.target(owner, Edge.INSTANCE_OF)
     return owner
@@ -63,7 +68,7 @@ def _is_partly_known(graph: Graph, classifier: Element) -> bool:
 
 
 def _has_feature(graph: Graph, classifier: Element, feature: Element) -> bool:
-    """Whether it is an effective feature, or one that an effective feature redefines."""
+    """Whether an effective feature of the classifier is *feature* or redefines it."""
     effective = features(graph, classifier)
     return feature in effective or any(
         feature in redefined_features(graph, other) for other in effective

@@ -19,8 +19,8 @@ class Overlay(Struct, frozen=True):
     """Add item types, flows, port directions, operations, behaviours and allocations.
 
     Assumes resolved references, and overlays that the driver has stored in the graph. Guarantees:
-    each entry is in the graph as an author of SysML would have drawn it, or is reported at its
-    place in the overlay. The pass runs before features are inherited and ports directed, so that
+    each entry is in the graph as if the author of the model had drawn it, or is reported at its
+    location in the overlay. The pass runs before features are inherited and ports directed, so that
     added elements are inherited, directed and checked like all others.
     """
 
@@ -33,9 +33,9 @@ class Overlay(Struct, frozen=True):
 
 
 def apply_overlays(refinements: Sequence[Refinement], graph: Graph, sink: Sink) -> None:
-    """Apply overlays in steps: elements that later steps name come first.
+    """Apply overlays in steps, each of them for all overlays before the next one.
 
-    Each step is done for all overlays before the next one.
+    Elements that an entry may refer to are added in an earlier step than the entry.
     """
     roots = graph.roots()
     in_file_order = sorted(refinements, key=lambda refinement: refinement.file)
@@ -64,9 +64,9 @@ def apply_overlays(refinements: Sequence[Refinement], graph: Graph, sink: Sink) 
 
 
 def add_allocation(finder: Finder, entry: Allocation) -> None:
-    """Add an allocation (SysML 1.6 clause 15) as its author would have drawn it.
+    """Add the dependency of an allocation (SysML 1.6 clause 15).
 
-    The pass ``classify`` gives it its meaning.
+    The pass ``classify`` derives the edges that the dependency means.
     """
     graph = finder.graph
     client, supplier = (
@@ -91,7 +91,7 @@ def add_allocation(finder: Finder, entry: Allocation) -> None:
 
 
 def refine_port(finder: Finder, entry: PortEntry) -> None:
-    """Give a port its direction and type; report contradictions to the model."""
+    """Set direction and type of a port; report a direction that contradicts the model."""
     graph = finder.graph
     port = finder.find_entry(entry.key, PORT)
     if port is None:
@@ -99,7 +99,7 @@ def refine_port(finder: Finder, entry: PortEntry) -> None:
     stated = port.attrs.get("direction")
     if entry.direction and stated not in (None, entry.direction):
         finder.report(
-            rules.OTHER_WISE,
+            rules.CONTRADICTION,
             entry.key,
             name=graph.qualified_name(port),
             what="direction",

@@ -1,7 +1,7 @@
 """Behaviours that an overlay gives to blocks and operations, and the calls in them.
 
-A call operation action without an operation means the one that its block, or a part of the block,
-has under the action's name; ``calls`` of the overlay states it where that is not enough.
+A call operation action without an operation calls the operation of the action's name in the block
+or in a part of the block. The entry ``calls`` of the overlay names it if this is ambiguous.
 """
 
 from collections.abc import Iterator
@@ -16,14 +16,14 @@ from sysmlc.support.suggestions import did_you_mean
 
 
 def find_behaviors(finder: Finder, entry: BlockEntry) -> None:
-    """Find the behaviours of a block while all are at their place in the model."""
+    """Look up the behaviours of a block before ``add_behaviors`` moves them to other owners."""
     for term in (entry.behavior, *(operation.method for operation in entry.operations)):
         if term is not None:
             finder.behaviors[term.text] = finder.find_named(term.text, BEHAVIOR)
 
 
 def add_behaviors(finder: Finder, entry: BlockEntry) -> None:
-    """Make activities and state machines methods, or the block's classifier behaviour."""
+    """Make the stated behaviours methods of operations, or the block's classifier behaviour."""
     block = find_block(finder, entry)
     if block is None:
         return
@@ -41,7 +41,7 @@ def list_behaviors(finder: Finder, block: Element) -> list[Element]:
 
 
 def find_block(finder: Finder, entry: BlockEntry) -> Element | None:
-    """Return the block of an entry. An unclear block has been reported before."""
+    """Return the block of an entry, or None for an unknown or ambiguous one, already reported."""
     for word in (entry.key.text, entry.key.path):
         blocks = finder.find_named(word, BLOCK) if word else []
         if blocks:
@@ -67,9 +67,10 @@ def _give_method(finder: Finder, block: Element, entry: OperationEntry, method: 
 def _assign_behavior(
     finder: Finder, block: Element, holder: Element, edge: Edge, term: Term
 ) -> Element | None:
-    """Connect the holder with the behaviour and move it to the block (UML 2.5.1, 13.2.3)."""
+    """Connect *holder* with the behaviour and move it to the block (UML 2.5.1, 13.2.3)."""
     graph = finder.graph
     current = graph.target(holder, edge)
+    # A second run of the pass must change nothing (`pipeline.Pass`).
     if current is not None and graph.owner(current) is block and current.name == _last_name(term):
         return current
     behavior = finder.require_one(term, finder.behaviors.get(term.text, []), BEHAVIOR, "")
@@ -91,7 +92,7 @@ def _last_name(term: Term) -> str:
 
 
 def _find_user(finder: Finder, behavior: Element) -> Element | None:
-    """Return the operation or block that the behaviour implements already."""
+    """Return the operation or block that has the behaviour already, or None."""
     for edge in (Edge.METHOD, Edge.CLASSIFIER_BEHAVIOR):
         user = finder.graph.source(behavior, edge)
         if user is not None:
@@ -102,11 +103,11 @@ def _find_user(finder: Finder, behavior: Element) -> Element | None:
 _IN = ("in", "inout")
 _OUT = ("out", "inout", "return")
 _Scope = dict[str, list[Element]]
-"""Operations by the names under which a behaviour of the block can call them."""
+"""Operations that a behaviour of the block can call, by name."""
 
 
 def resolve_calls(finder: Finder, entry: BlockEntry) -> None:
-    """Resolve the open calls in the behaviours that the block owns."""
+    """Resolve the calls without an operation in the behaviours of the block."""
     block = find_block(finder, entry)
     if block is None:
         return
@@ -146,7 +147,7 @@ def _operations(finder: Finder, block: Element) -> Iterator[Element]:
 
 
 def _list_features(finder: Finder, block: Element, kind: Kind) -> Iterator[Element]:
-    """Yield own and inherited features of a kind; the nearest one of a name hides the others."""
+    """Yield own and inherited features of a kind; the nearest feature hides others of its name."""
     names: set[str] = set()
     for classifier in (block, *generals(finder.graph, block)):
         for feature in finder.graph.owned(classifier):
@@ -180,7 +181,7 @@ def _resolve_by_name(finder: Finder, scope: _Scope, block: Element, action: Elem
         _type_pins(finder, action, operations[0])
         return
     listed = ", ".join(f"'{graph.qualified_name(operation)}'" for operation in operations)
-    rule = rules.CALL_OF_SEVERAL if operations else rules.CALL_OF_NONE
+    rule = rules.SEVERAL_OPERATIONS if operations else rules.NO_OPERATION
     advice = did_you_mean(action.name, [name for name in scope if "::" not in name])
     name = graph.qualified_name(block)
     subject = graph.subject(action)
@@ -189,7 +190,7 @@ def _resolve_by_name(finder: Finder, scope: _Scope, block: Element, action: Elem
 
 
 def _type_pins(finder: Finder, action: Element, operation: Element) -> None:
-    """Give pins without a type the type of their parameter (UML 2.5.1 clause 16.3.3)."""
+    """Set the type of untyped pins to the type of their parameter (UML 2.5.1 clause 16.3.3)."""
     graph = finder.graph
     pins = [pin for pin in graph.owned(action) if pin.kind is Kind.PIN]
     for subkind, directions in (("argument", _IN), ("result", _OUT)):
@@ -203,7 +204,7 @@ def _type_pins(finder: Finder, action: Element, operation: Element) -> None:
 
 
 def _mark_unresolved(finder: Finder, action: Element) -> None:
-    """Mark the call as unresolved, so that later passes do not report its consequences."""
+    """Mark the call as unresolved, so that later passes do not report it again."""
     value = action.attrs.get("unresolved")
     unresolved = value if isinstance(value, tuple) else ()
     if Edge.CALLS.value not in unresolved:

@@ -1,6 +1,6 @@
 """Entries about blocks: general blocks, values, operations with their parameters, item types.
 
-Item types are the blocks that flow, and have a domain (thesis 3.4.1).
+Item types are the types of what flows over connectors; they have a domain (thesis 3.4.1).
 """
 
 from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind, derived_id
@@ -13,7 +13,7 @@ _Signature = list[tuple[str, AttrValue]]
 
 
 def refine_block(finder: Finder, entry: BlockEntry) -> None:
-    """Apply what the overlay states about a block, except behaviours."""
+    """Add the generals, values and operations that the overlay states for a block."""
     block = finder.find_entry(entry.key, BLOCK)
     if block is None:
         return
@@ -59,7 +59,7 @@ def _add_value(finder: Finder, block: Element, entry: ValueEntry) -> None:
         graph.connect(Edge.TYPED_BY, value, type_)
         if entry.default is not None and not fits_type(graph, entry.default, type_):
             facts = {"value": str(entry.default), "feature": entry.name.text, "type": type_.name}
-            finder.report(rules.UNFIT_VALUE, entry.name, **facts)
+            finder.report(rules.INVALID_VALUE, entry.name, **facts)
 
 
 def _with_generals(finder: Finder, block: Element) -> list[Element]:
@@ -67,7 +67,7 @@ def _with_generals(finder: Finder, block: Element) -> list[Element]:
 
 
 def _has_other_feature(finder: Finder, block: Element, entry: ValueEntry, id: str) -> bool:
-    """Whether a block owns another feature of the name."""
+    """Whether a block owns a feature of the entry's name that this overlay did not add."""
     owned = finder.graph.owned(block)
     return any(feature.name == entry.name.text and feature.id != id for feature in owned)
 
@@ -95,7 +95,7 @@ def _add_operation(finder: Finder, block: Element, entry: OperationEntry) -> Non
 
 
 def find_operation(finder: Finder, block: Element, name: Term) -> Element | None:
-    """Return the operation that the block, or the nearest general block, has under this name."""
+    """Return the operation with this name in the block, or in the nearest general block."""
     for classifier in (block, *generals(finder.graph, block)):
         for feature in finder.graph.owned(classifier):
             if feature.kind is Kind.OPERATION and feature.name == name.text:
@@ -111,8 +111,9 @@ def add_parameter(
     direction: str,
     type: Term | Element | None,
 ) -> None:
-    """Add a parameter at its position among the others."""
+    """Add the parameter at position *number* of an operation."""
     id = derived_id(operation.id, f"parameter:{number}:{name.text}")
+    # A parameter without the attribute has UML's default direction, which is `in`.
     stated_direction = None if direction == "in" else direction
     parameter = finder.ensure_element(
         id,
@@ -139,26 +140,26 @@ def _stated_signature(entry: OperationEntry) -> _Signature:
     )
 
 
-_FORMS: dict[str, tuple[type, ...]] = {
+_PYTHON_TYPES: dict[str, tuple[type, ...]] = {
     "Boolean": (bool,),
     "Integer": (int,),
     "UnlimitedNatural": (int,),
     "Real": (int, float),
     "String": (str,),
 }
-"""What YAML makes of the values of UML's primitives."""
+"""Python types of YAML values that UML's primitive types accept."""
 
 
 def fits_type(graph: Graph, value: AttrValue, type_: Element) -> bool:
-    """Whether a value belongs to the primitive or the enumeration that a type is or specialises.
+    """Whether the value is valid for a primitive type, an enumeration or a special of these.
 
-    Values of any other type cannot be checked, so any value fits.
+    Values of other types cannot be checked and count as valid.
     """
     for candidate in (type_, *generals(graph, type_)):
         if candidate.kind is Kind.ENUMERATION:
             return value in [literal.name for literal in _literals(graph, candidate)]
-        if candidate.kind is Kind.DATA_TYPE and candidate.name in _FORMS:
-            return isinstance(value, _FORMS[candidate.name]) and _agrees_on_boolean(
+        if candidate.kind is Kind.DATA_TYPE and candidate.name in _PYTHON_TYPES:
+            return isinstance(value, _PYTHON_TYPES[candidate.name]) and _agrees_on_boolean(
                 value, candidate
             )
     return True
@@ -169,7 +170,7 @@ def _literals(graph: Graph, enumeration: Element) -> list[Element]:
 
 
 def _agrees_on_boolean(value: AttrValue, type_: Element) -> bool:
-    """Whether Booleans and numbers are not confused: to Python, true is a number."""
+    """Whether value and type are both Boolean or both not: in Python, True is also an int."""
     return isinstance(value, bool) == (type_.name == "Boolean")
 
 
@@ -190,7 +191,7 @@ def add_items(finder: Finder) -> None:
 
 
 def check_domains(finder: Finder) -> None:
-    """Report item types without a domain: those of entries, and those that overlays let flow."""
+    """Report item types without a domain, in entries for items and in flows of the overlay."""
     keys = {
         finder.items[entry.key.text].id: entry.key
         for entry in finder.refinement.items
@@ -212,7 +213,8 @@ def _find_item(finder: Finder, term: Term) -> Element | None:
 
 
 def _ensure_item(finder: Finder, key: Key) -> Element | None:
-    """Return the element with this id or path, else a new block with this name."""
+    """Return the element with this id, path or name, or else a new block with this name."""
+    # A text with a separator is a path, which cannot be the name of a new block.
     is_known = key.path or finder.find_named(key.text, TYPE)
     if is_known or any(separator in key.text for separator in "/:#["):
         return finder.find_entry(key, TYPE)
@@ -244,7 +246,7 @@ def _describe_item(finder: Finder, entry: ItemEntry, item: Element) -> None:
     stated = item.attrs.get("domain")
     if entry.domain and stated not in (None, entry.domain):
         finder.report(
-            rules.OTHER_WISE,
+            rules.CONTRADICTION,
             entry.key,
             name=item.name,
             what="domain",

@@ -1,4 +1,4 @@
-"""Lookup of the words of an overlay: by id first, then by path or qualified name."""
+"""Lookup of the references in an overlay: by id first, then by path or qualified name."""
 
 import re
 from collections.abc import Iterable, Iterator
@@ -36,31 +36,30 @@ def _read_names(path: str) -> Iterator[str]:
 
 
 def join_path(names: Iterable[str]) -> str:
-    """Return the path of these names. AML.Engine brackets all names if one needs it, we only that
-    one.
-    """
+    """Return the path of these names, with brackets around names that contain a separator."""
+    # AML.Engine writes brackets around all names as soon as one name needs them.
     return "/".join(f"[{n}]" if _SEPARATORS.intersection(n) else n for n in names)
 
 
 def name_in_unit(file: str, name: str) -> str:
-    """Return the name in the unit of the file that *file* calls *name*."""
+    """Return the name in the unit of a file that *file* refers to by the relative path *name*."""
     return normalize("NFC", normpath(f"{dirname(file) or '.'}/{name}"))
 
 
 _GUID = re.compile(r"\{?([0-9A-Fa-f]{8}(?:-[0-9A-Fa-f]{4}){3}-[0-9A-Fa-f]{12})\}?")
 _PRIMITIVES = frozenset({"Boolean", "Integer", "Real", "String", "UnlimitedNatural"})
-_TELLING = 2_000
-"""Names that are compared for a suggestion; comparing more takes seconds."""
-_ADVISED = 20
-"""Unknown words that get a suggestion; a new export may invalidate thousands of them."""
-_LISTED = 5
+_MAX_COMPARED = 2_000
+"""Limit of names for a suggestion; comparing more takes seconds."""
+_MAX_SUGGESTIONS = 20
+"""Limit of suggestions: a new export of the model may invalidate thousands of references."""
+_MAX_LISTED = 5
 
 
 _ByName = dict[str, list[Element]]
 
 
 class Sort(NamedTuple):
-    """The kinds of elements that a word may mean, and their name in messages."""
+    """The kinds of elements to which a reference may lead, and their title in messages."""
 
     title: str
     kinds: tuple[Kind, ...]
@@ -79,39 +78,39 @@ ANYTHING = Sort("element", ())
 
 @dataclass(slots=True)
 class Finder:
-    """Looks up the words of one overlay in the graph, reports failures, and adds elements."""
+    """Looks up the references of one overlay, reports failures, and adds elements to the graph."""
 
     graph: Graph
     sink: Sink
     refinement: Refinement
     roots: list[Element]
-    """What no element owns; packages that overlays add join them."""
+    """Elements without an owner, including packages that overlays add."""
     items: dict[str, Element] = field(default_factory=dict)
     """Item types by the keys of their entries."""
     behaviors: dict[str, list[Element]] = field(default_factory=dict)
-    """What the words for behaviours meant before any behaviour was moved."""
-    about: str = ""
-    """Id of the element that the entry is about which is being added: errors in it are its own."""
+    """Behaviours by reference, looked up before any behaviour was moved."""
+    entry_element: str = ""
+    """Id of the element of the current entry, which errors in the entry are attributed to."""
     _other_ids: dict[str, Element] | None = None
-    _named: dict[str, tuple[tuple[int, str], _ByName]] = field(default_factory=dict)
-    _advised: int = 0
+    _members: dict[str, tuple[tuple[int, str], _ByName]] = field(default_factory=dict)
+    _suggestions: int = 0
 
-    # -- what words mean -----------------------------------------------------------------------
+    # -- lookup --------------------------------------------------------------------------------
 
     def find_entry(self, key: Key, sort: Sort) -> Element | None:
-        """Return the element that an entry is about; report an unclear one, return None."""
+        """Return the element of an entry; report an unknown or ambiguous one and return None."""
         elements = self.find_named(key.text, sort)
         if key.path:
             elements = self._compare_with_path(key, elements, self.find_named(key.path, sort))
-        self.about = ""
+        self.entry_element = ""
         element = self.require_one(Term(key.text, key.spot), elements, sort, key.path)
-        self.about = "" if element is None else element.id
+        self.entry_element = "" if element is None else element.id
         return element
 
     def _compare_with_path(
         self, key: Key, by_id: list[Element], by_path: list[Element]
     ) -> list[Element]:
-        """Return the elements of the id, else those of the path; report if the two disagree."""
+        """Return the elements with the id, or else those at the path; report a disagreement."""
         if len(by_path) != 1 or by_path == by_id:
             return by_id or by_path
         id, path = key.text, str(key.path)
@@ -122,7 +121,7 @@ class Finder:
         return by_id or by_path
 
     def find_term(self, term: Term, sort: Sort) -> Element | None:
-        """Return the element that a word means, or None if that is unclear, which is reported."""
+        """Return the element of a reference; report an unknown or ambiguous one, return None."""
         if sort is TYPE:
             item = self.items.get(term.text) or self._find_primitive(term.text)
             if item is not None:
@@ -130,7 +129,10 @@ class Finder:
         return self.require_one(term, self.find_named(term.text, sort), sort, "")
 
     def find_named(self, text: str, sort: Sort) -> list[Element]:
-        """Return the elements of an id, a path, a qualified name or ``file#qualified name``."""
+        """Return the elements of a reference.
+
+        The text is an id, a path, a qualified name or ``file#qualified name``.
+        """
         by_id = self._find_by_id(text)
         if by_id is not None:
             return _unique([self._convert(by_id, sort)])
@@ -163,7 +165,7 @@ class Finder:
                 yield element
 
     def _find_inside(self, top: Element, name: str) -> list[Element]:
-        """Return the elements of this name in an element, its types or their generals."""
+        """Return the members with this name of an element, its types or their generals."""
         scopes = [top]
         for scope in scopes[:]:
             scopes += self.graph.targets(scope, Edge.INSTANCE_OF)
@@ -178,22 +180,20 @@ class Finder:
         return []
 
     def _index_members(self, top: Element) -> _ByName:
-        """Return the elements that an element owns, by name.
-
-        The index is stored, because large hierarchies are searched again and again.
-        """
+        """Return the elements that an element owns, by name. The index is cached."""
         owned = self.graph.owned(top)
+        # Overlays append members or move them away, which changes their number or the last id.
         current = (len(owned), owned[-1].id if owned else "")
-        version, by_name = self._named.get(top.id, ((-1, ""), {}))
+        version, by_name = self._members.get(top.id, ((-1, ""), {}))
         if version != current:
             by_name = {}
             for element in owned:
                 by_name.setdefault(element.name, []).append(element)
-            self._named[top.id] = (current, by_name)
+            self._members[top.id] = (current, by_name)
         return by_name
 
     def _convert(self, element: Element, sort: Sort) -> Element | None:
-        """Return the element, or its classifier if only that is of the sort."""
+        """Return the element, or else its part or classifier, if it is of the sort, or None."""
         if not sort.kinds or element.kind in sort.kinds:
             return element
         if sort is FEATURE:
@@ -216,17 +216,17 @@ class Finder:
         attrs: dict[str, AttrValue] = {"external": True, "href": href, "subkind": "primitive"}
         return self.graph.add(Element(derived_id(href, "stub"), Kind.DATA_TYPE, name, attrs=attrs))
 
-    # -- what is reported ----------------------------------------------------------------------
+    # -- diagnostics ---------------------------------------------------------------------------
 
     def report(self, rule: Rule, term: Term | Key, **facts: str) -> None:
-        """Report a rule about a word of the overlay."""
-        subject = self.refinement.subject(term, self.about)
+        """Report a diagnostic at a term of the overlay."""
+        subject = self.refinement.subject(term, self.entry_element)
         self.sink.report(rule, subject, notes=(), help="", **facts)
 
     def require_one(
         self, term: Term, elements: list[Element], sort: Sort, path: str
     ) -> Element | None:
-        """Return the only element; report if there is none, or if there are several."""
+        """Return the only element; report a missing or ambiguous one and return None."""
         if len(elements) == 1:
             return elements[0]
         if elements:
@@ -241,15 +241,15 @@ class Finder:
         return None
 
     def _describe_missing_file(self, term: Term) -> str:
-        """Return a clause if the file that a word names was not read."""
+        """Return a clause if the reference names a file that is not in the unit, or else ""."""
         file, separator, _ = term.text.partition("#")
         name = name_in_unit(self.refinement.file, file)
         is_present = not separator or any(element.source == name for element in self.graph)
         return "" if is_present else f"the file '{file}' is not part of the compile unit"
 
     def _suggest(self, word: str, sort: Sort) -> str:
-        self._advised += 1
-        if self._advised > _ADVISED:
+        self._suggestions += 1
+        if self._suggestions > _MAX_SUGGESTIONS:
             return "only the first findings of this kind name similar elements"
         if _GUID.fullmatch(word.strip()):
             return "'sysmlc show MODEL' prints all ids"
@@ -258,30 +258,30 @@ class Finder:
 
     def _list_paths(self, elements: Iterable[Element]) -> str:
         words = [f"{self.path_of(element)} ({element.id})" for element in elements]
-        return ", ".join(words[:_LISTED]) + (", ..." if len(words) > _LISTED else "")
+        return ", ".join(words[:_MAX_LISTED]) + (", ..." if len(words) > _MAX_LISTED else "")
 
     def list_paths(self, sort: Sort) -> list[str]:
-        """Return the paths of the elements that a word of this sort may mean, for suggestions."""
+        """Return the paths of elements of this sort, for suggestions."""
         elements = self.graph.of_kind(*sort.kinds) if sort.kinds else list(self.graph)
         named_elements = [
             element for element in elements if element.name and not element.attrs.get("library")
         ]
         return [
             *(self.items if sort is TYPE else ()),
-            *(self.path_of(element) for element in named_elements[:_TELLING]),
+            *(self.path_of(element) for element in named_elements[:_MAX_COMPARED]),
         ]
 
     def path_of(self, element: Element) -> str:
-        """Return the path by which an element can be named."""
+        """Return the path of an element in overlays, or its id if an owner has no name."""
         names = [element.name, *(ancestor.name for ancestor in self.graph.ancestors(element))]
         return join_path(reversed(names)) if all(names) else element.id
 
-    # -- what is added -------------------------------------------------------------------------
+    # -- new elements --------------------------------------------------------------------------
 
     def ensure_element(
         self, id: str, kind: Kind, name: str, owner: str | None, spot: Spot, **attrs: AttrValue
     ) -> Element:
-        """Return the element with this id, added if it is new, with these attributes."""
+        """Return the element with this id, after adding it if needed and setting *attrs*."""
         element = self.graph.get(id)
         if element is None:
             file = self.refinement.file
@@ -293,7 +293,7 @@ class Finder:
 
 
 def _list_other_ids(graph: Graph) -> Iterator[tuple[str, Element]]:
-    """Yield further ids: those of repeated interfaces, and GUIDs in another spelling."""
+    """Yield alternative ids of elements: GUIDs in another spelling, ids of repeated interfaces."""
     for element in graph:
         if normalise_guid(element.id) != element.id:
             yield normalise_guid(element.id), element
@@ -306,9 +306,8 @@ def _list_other_ids(graph: Graph) -> Iterator[tuple[str, Element]]:
 
 
 def normalise_guid(id: str) -> str:
-    """Return a GUID without braces and in lower case, because tools differ in both; else the id
-    itself.
-    """
+    """Return a GUID in lower case and without braces; return any other id unchanged."""
+    # Tools differ in braces and case, and may change both in a new export.
     match = _GUID.fullmatch(id.strip())
     return match[1].lower() if match else id
 

@@ -45,7 +45,8 @@ def _add_flow(
 def _find_features(finder: Finder, end_sides: _Ends) -> _Ends:
     """Return the ports or parts at both sides.
 
-    Two parts with the same port are told from one another by the parts, else the direction is lost.
+    If two parts of the same type are connected at the same port, the result has the parts, because
+    the port would not show the direction.
     """
     sides = [[_role_or_end(finder, end) for end in side] for side in end_sides]
     if len(end_sides[0]) == 1 and sides[0] == sides[1]:
@@ -66,7 +67,7 @@ def _part_or_role(finder: Finder, end: Element) -> Element:
 
 
 def _find_ends(finder: Finder, connector: Element, flow: FlowEntry) -> _Ends | None:
-    """Return the ends that the flow starts from and leads to; both for a two-way flow."""
+    """Return the source and target ends of a flow; a two-way flow has both ends on each side."""
     connector_ends = [end for end in ends(finder.graph, connector) if role_of(finder.graph, end)]
     if flow.is_both:
         return (
@@ -97,12 +98,12 @@ def _require_two(
     if len(named_ends) == 2:
         return True
     name = finder.path_of(connector)
-    finder.report(rules.NO_TWO_ENDS, flow.item, item=flow.item.text, connector=name)
+    finder.report(rules.MISSING_FLOW_END, flow.item, item=flow.item.text, connector=name)
     return False
 
 
 def _find_end(finder: Finder, connector_ends: list[Element], word: Term | None) -> Element | None:
-    """Return the end that a word means: by its port or part, the path to it, or the id of one."""
+    """Return the end with this port, part, path or id; report an unknown or ambiguous word."""
     if word is None:
         return None
     spellings = {end.id: list(_list_spellings(finder, end)) for end in connector_ends}
@@ -113,7 +114,7 @@ def _find_end(finder: Finder, connector_ends: list[Element], word: Term | None) 
         return matches[0]
     longest = [max(names, key=len) for names in spellings.values()]
     advice = did_you_mean(word.text, longest)
-    rule = rules.END_OF_BOTH if matches else rules.ONTO_NOTHING
+    rule = rules.AMBIGUOUS_END if matches else rules.UNKNOWN_END
     finder.report(rule, word, end=word.text, listed=" and ".join(longest), advice=advice)
     return None
 

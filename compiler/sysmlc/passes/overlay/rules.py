@@ -1,6 +1,6 @@
 """Rules about overlays that do not fit their model.
 
-The small overlays below are about a plant in which block Gate has the parts st (a Stopper with
+The examples of these rules are about a plant in which block Gate has the parts st (a Stopper with
 the ports p_sIn and p_sOut) and sw (a Switch with p_swIn); the connector l1 joins st.p_sOut and
 sw.p_swIn, and the activity Handle of gate.uml calls getIn.
 """
@@ -35,21 +35,21 @@ WRONG_SORT = rule(
     "'{word}' is a {kind} and not a {sort}",
     help="name a {sort}, or move the entry to where it belongs",
 )
-ONTO_NOTHING = rule(
+UNKNOWN_END = rule(
     "SM328",
     "flow-onto-nothing",
     Severity.ERROR,
     "the connector has no end '{end}'; its ends are {listed}",
     help="{advice}",
 )
-END_OF_BOTH = rule(
+AMBIGUOUS_END = rule(
     "SM329",
     "flow-end-unclear",
     Severity.ERROR,
     "'{end}' may be either end of the connector: {listed}",
     help="write part and port, such as 'st/p_sOut'",
 )
-NO_TWO_ENDS = rule(
+MISSING_FLOW_END = rule(
     "SM330",
     "flow-without-two-ends",
     Severity.ERROR,
@@ -84,7 +84,7 @@ FEATURE_TWICE = rule(
     "block '{block}' has '{feature}' already{where}",
     help="rename the value, or remove it from the overlay",
 )
-UNFIT_VALUE = rule(
+INVALID_VALUE = rule(
     "SM637",
     "overlay-value-not-of-type",
     Severity.ERROR,
@@ -101,14 +101,14 @@ BEHAVIOR_TAKEN = rule(
     "'{behavior}' is already the behaviour of '{holder}'",
     help="let each operation and block have a behaviour of its own",
 )
-CALL_OF_NONE = rule(
+NO_OPERATION = rule(
     "SM336",
     "call-without-operation",
     Severity.ERROR,
     "action '{action}' calls no operation: neither '{block}' nor a part of it has one of this name",
     help="add the operation to a block, or name one under 'calls'; {advice}",
 )
-CALL_OF_SEVERAL = rule(
+SEVERAL_OPERATIONS = rule(
     "SM337",
     "call-of-several-operations",
     Severity.ERROR,
@@ -122,7 +122,7 @@ NO_ACTION = rule(
     "no behaviour of the block has a call operation action '{action}'",
     help="{advice}",
 )
-OTHER_WISE = rule(
+CONTRADICTION = rule(
     "SM339",
     "overlay-contradicts-model",
     Severity.WARNING,

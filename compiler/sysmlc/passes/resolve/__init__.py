@@ -1,4 +1,4 @@
-"""Pass ``resolve``: turns references into edges, some to stubs of external elements."""
+"""Pass ``resolve``: turns references into edges to elements or external stubs."""
 
 from typing import ClassVar
 
@@ -20,12 +20,12 @@ from sysmlc.passes.resolve.resolver import (
 class Resolve(Struct, frozen=True):
     """Turn every reference into an edge.
 
-    Assumes the output of a front end: elements, the edges it could add at once, ``graph.pending``.
-    Guarantees: nothing is pending; the ids in attributes exist; the target of every edge is an
-    element, or an external stub (``external``, ``href``) if its file is not part of the unit. A
-    reference to a missing element is reported, and the holder's attribute ``unresolved`` names the
-    relation, so that later passes do not report its consequences. The result does not depend on the
-    order of the files.
+    Assumes the output of a front end: elements, edges between them, and references in
+    ``graph.pending``. Guarantees: nothing is pending; the ids in attributes exist; the target of
+    every edge is an element, or an external stub (``external``, ``href``) if its file is not part
+    of the unit. A reference to a missing element is reported, and the attribute ``unresolved`` of
+    its holder names the relation, so that later passes do not report its consequences. The result
+    does not depend on the order of the files.
     """
 
     name: ClassVar[str] = "resolve"
@@ -53,7 +53,7 @@ class Resolve(Struct, frozen=True):
 
 
 def _connect_pending(graph: Graph, resolver: Resolver) -> list[Use]:
-    """Turn the pending references into edges. Return those without a target, in order."""
+    """Turn the pending references into edges. Return the references without a target, in order."""
     unresolved: list[Use] = []
     for reference in graph.pending:
         source = graph.get(reference.source)

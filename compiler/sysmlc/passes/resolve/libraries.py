@@ -1,8 +1,8 @@
 """Elements of the libraries of UML, SysML and MagicDraw, and the hrefs that refer to them.
 
-The data are our own (metamodels/libraries.json): the names in the standards and tools, and the form
-of references to them. They are read when a reference first needs them. An href into another file
-has a file and a fragment; the files of the standards are recognised by their names.
+The data (metamodels/libraries.json, written for this project) are the names in the standards and
+tools, and the forms of references to them. They are loaded when a reference first needs them. An
+href consists of a file and a fragment; the files of the standards are recognised by their names.
 """
 
 import json
@@ -24,7 +24,7 @@ _METACLASS = re.compile(r"[A-Z][A-Za-z]+")
 
 
 class LibraryElement(Struct, frozen=True):
-    """An element of a library that is not read.
+    """An element of a library whose file is not part of the unit.
 
     ``generals`` and ``metaclasses`` are qualified names; ``href`` is the same for all dialects.
     """
@@ -50,12 +50,13 @@ class _Library(Struct, frozen=True):
     name: str
     uri: str
     files: str
-    """A regular expression, compiled when somebody asks for a file."""
+    """A regular expression for names of files, compiled at the first use."""
     others: str
+    """Kind of the elements that are not listed, such as the metaclasses of UML, or empty."""
 
 
 class Libraries:
-    """The library elements by qualified name, by id, and by the name that a reference shows."""
+    """Index of library elements by qualified name, by id, and by simple name."""
 
     def __init__(self, content: str) -> None:
         data = json.loads(content)
@@ -76,10 +77,10 @@ class Libraries:
     def find(
         self, file: str, fragment: str, path: str, kinds: Iterable[Kind]
     ) -> LibraryElement | None:
-        """Return the element that a reference into *file* means, or None.
+        """Return the element to which a reference into *file* leads, or None.
 
-        It is identified by its id, else by the name in the fragment, else by *path*, the qualified
-        name that the reference shows. *kinds* are the kinds that the references expect.
+        The element is found by its id, or else by the name in the fragment, or else by *path*, the
+        qualified name in the reference. *kinds* are the kinds that the references expect.
         """
         name = self._by_id.get(fragment)
         if name is None:
@@ -139,19 +140,19 @@ class Libraries:
                 return min(
                     candidates,
                     key=lambda candidate: _distance(
-                        candidate, names, self._expectedof(candidate), kinds
+                        candidate, names, self._kind_of(candidate), kinds
                     ),
                 )
             if library.others and _METACLASS.fullmatch(names[-1]):
                 return f"{library.name}::{names[-1]}"
         return ""
 
-    def _expectedof(self, name: str) -> Kind:
+    def _kind_of(self, name: str) -> Kind:
         return Kind(str(self._entries[name]["kind"]))
 
 
 def read_names(fragment: str) -> list[str]:
-    """Return the names that a fragment shows, from the root down, as the tools write them.
+    """Return the names in a fragment, from the root down.
 
     Eclipse: ``SysML.package_packagedElement_Blocks.stereotype_packagedElement_Block`` or
     ``//blocks/Block``; OMG: ``SysML.Block``, ``_SysML_Libraries_PackageableElement-...``.
@@ -169,7 +170,7 @@ def read_names(fragment: str) -> list[str]:
 
 @cache
 def load_libraries() -> Libraries:
-    """Return the libraries; they are read once."""
+    """Return the libraries, which are loaded once."""
     return Libraries(resources.read_text("metamodels", "libraries.json"))
 
 
@@ -185,7 +186,7 @@ def _is_root(fragment: str) -> bool:
 def _distance(
     name: str, names: list[str], kind: Kind, kinds: Iterable[Kind]
 ) -> tuple[bool, int, int, str]:
-    """Return how far an element is from what a reference shows: kind, owners, depth."""
+    """Return the sort key of a candidate for a reference: mismatch of kind and owners, depth."""
     owners = {part.lower() for part in name.split("::")}
     missing = sum(part.lower() not in owners for part in names)
     is_package = kind in (Kind.PACKAGE, Kind.PROFILE)
@@ -200,19 +201,19 @@ def _decode_character(code: re.Match[str]) -> str:
 def find_library_element(
     target: str, paths: Collection[str], kinds: Collection[Kind]
 ) -> LibraryElement | None:
-    """Return the element of a known library that a reference means, or None.
+    """Return the element of a known library to which a target leads, or None.
 
-    *paths* and *kinds* come from all references to it, because their order must not matter.
+    *paths* and *kinds* come from all references to the target, so that their order has no effect.
     """
     file, fragment = split_href(target)
     return load_libraries().find(file, fragment, min(filter(None, paths), default=""), kinds)
 
 
 def add_stub(graph: Graph, library_element: LibraryElement, origin: str) -> Element:
-    """Add an external stub with its packages, generals and metaclasses, unless it exists.
+    """Return the external stub of a library element; add it with its packages and generals.
 
-    The packages of SysML are profiles, because Eclipse applies them one by one: a stub must not
-    depend on the dialect that refers to it.
+    The packages of SysML become profiles in all dialects, because Eclipse applies them one by one
+    and a stub must not depend on the dialect of the reference.
     """
     owner = _add_named_stub(graph, library_element.owner, origin)
     id = derived_id(library_element.href, "stub")
@@ -300,20 +301,20 @@ def is_href(target: str) -> bool:
 
 
 def is_standard(library: str) -> bool:
-    """Whether the file belongs to UML, SysML or sysmlc: its content is known unread."""
+    """Whether the file belongs to UML, SysML or sysmlc, so that its content is known."""
     return _STANDARD.match(unquote(library)) is not None
 
 
 def has_primitives_only(library: str) -> bool:
-    """Whether the file is UML's library of primitive types, which never gets new elements."""
+    """Whether the file is UML's library of primitive types, whose elements are all known."""
     return _PRIMITIVES_ONLY.fullmatch(unquote(library)) is not None
 
 
 def find_primitive(href: str, path: str, kind: Kind) -> str:
     """Return the UML primitive that an href leads to, or the empty string.
 
-    *path* and *kind* are what the source says about the target. The primitive value types of SysML
-    count as those of UML, the types of Ecore and Java as the nearest one.
+    *path* and *kind* are the qualified name and the kind that the reference states. The primitive
+    value types of SysML and the types of Ecore and Java are mapped to the nearest primitive.
     """
     if kind not in (Kind.CLASS, Kind.DATA_TYPE) or not is_standard(split_href(href)[0]):
         return ""
@@ -321,7 +322,7 @@ def find_primitive(href: str, path: str, kind: Kind) -> str:
 
 
 def read_name(href: str, path: str) -> str:
-    """Return the name of the target from its path, else from the fragment."""
+    """Return the name of the target of an href: from *path*, or else from the fragment."""
     if path:
         return path.rpartition("::")[2]
     fragment = unquote(split_href(href)[1])
@@ -333,9 +334,9 @@ def read_name(href: str, path: str) -> str:
 
 
 def choose_kind(href: str, kinds: set[Kind]) -> Kind:
-    """Return the kind of the target from the kinds that its references expect.
+    """Return the kind of an external target from the kinds that its references expect.
 
-    A kind other than Class is more specific and wins.
+    Class is chosen only if no reference expects another kind.
     """
     if "stereotype_packagedElement_" in href:
         return Kind.STEREOTYPE

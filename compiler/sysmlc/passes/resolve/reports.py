@@ -4,7 +4,7 @@ from sysmlc.diagnostics import Place, Rule, Severity, Sink, Subject, rule
 from sysmlc.ir import Graph, Kind
 from sysmlc.ir.element import is_generated
 from sysmlc.passes.resolve.libraries import PRIMITIVES, has_primitives_only, is_standard, split_href
-from sysmlc.passes.resolve.resolver import Need, Use, stub_id
+from sysmlc.passes.resolve.resolver import Use, UseGroup, stub_id
 
 BROKEN_REFERENCE = rule(
     "SM150",
@@ -51,19 +51,19 @@ UNKNOWN_IN_LIBRARY = rule(
 )
 
 
-_SINGLY = 4
-"""References of one element and relation that lead nowhere and are reported one by one."""
+_MAX_SINGLE_REPORTS = 4
+"""Limit of broken references of one element and relation that are reported one by one."""
 
 
 def report_unresolved(graph: Graph, sink: Sink, unresolved: list[Use]) -> None:
-    """Report references without target; a long list of one element is one diagnostic."""
+    """Report references without target; many references of one relation share one diagnostic."""
     lists: dict[tuple[str, str], list[Use]] = {}
     for use in unresolved:
         lists.setdefault((use.holder.id, use.relation), []).append(use)
     for uses in lists.values():
-        for use in uses if len(uses) <= _SINGLY else ():
+        for use in uses if len(uses) <= _MAX_SINGLE_REPORTS else ():
             _report_broken(graph, sink, use)
-        if len(uses) > _SINGLY:
+        if len(uses) > _MAX_SINGLE_REPORTS:
             _report_many(graph, sink, uses)
 
 
@@ -106,16 +106,16 @@ def _subject(graph: Graph, use: Use) -> Subject:
     return Subject(graph.qualified_name(holder), holder.id, Place(holder.source, use.ordinal))
 
 
-_LISTED = 10
+_MAX_LISTED = 10
 
 
-def report_libraries(graph: Graph, sink: Sink, external: dict[str, list[Need]]) -> None:
+def report_libraries(graph: Graph, sink: Sink, external: dict[str, list[UseGroup]]) -> None:
     """Report each missing file once, with its users. *external* is keyed by href."""
     libraries: dict[str, dict[str, list[Use]]] = {}
-    for href, needs in external.items():
+    for href, groups in external.items():
         library, _ = split_href(href)
         if not is_standard(library) or _is_doubtful(graph, href):
-            uses = [use for need in needs for use in need.uses()]
+            uses = [use for group in groups for use in group.uses()]
             libraries.setdefault(library, {})[href] = uses
     for library in sorted(libraries):
         rule = UNKNOWN_IN_LIBRARY if is_standard(library) else MISSING_LIBRARY
@@ -123,10 +123,12 @@ def report_libraries(graph: Graph, sink: Sink, external: dict[str, list[Need]]) 
 
 
 def _is_doubtful(graph: Graph, href: str) -> bool:
-    """Whether a standard library surely has no such element, or only the element's id is known.
+    """Whether to report a missing element of a standard library.
 
-    Newer versions may have new elements; an applied profile has no effect by itself.
+    This is an element without a known name, or in the library of primitive types. Other libraries
+    may have new elements in newer versions.
     """
+    # Only the application of a nameless profile is lost, which has no effect by itself.
     stub = graph[stub_id(href)]
     is_nameless = is_generated(stub.name) and stub.kind is not Kind.PROFILE
     return is_nameless or (has_primitives_only(split_href(href)[0]) and stub.name not in PRIMITIVES)
@@ -138,20 +140,18 @@ def _report_library(
     first = min((use for uses in missing.values() for use in uses), key=Use.location)
     file, ordinal, _ = first.location()
     lines = [_describe_loss(graph, href, missing[href]) for href in sorted(missing)]
-    more = [f"and {len(lines) - _LISTED} more"] if len(lines) > _LISTED else []
+    more = [f"and {len(lines) - _MAX_LISTED} more"] if len(lines) > _MAX_LISTED else []
     sink.report(
         rule,
         _subject_of_first(graph, first, Place(file, ordinal) if file else None),
-        notes=(*lines[:_LISTED], *more),
+        notes=(*lines[:_MAX_LISTED], *more),
         library=library,
         count=len(missing),
     )
 
 
 def _subject_of_first(graph: Graph, first: Use, place: Place | None) -> Subject:
-    """Return the first user of a library as the subject; a use in another library has no element
-    id.
-    """
+    """Return the first user of a library as subject, without an id if it is in a library."""
     holder = first.holder
     id = "" if holder.attrs.get("library") else holder.id
     return Subject(graph.qualified_name(holder), id, place)

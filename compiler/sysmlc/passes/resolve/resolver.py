@@ -1,6 +1,6 @@
-"""Name resolution: the element of the unit, or the external stub, that each reference means.
+"""Resolution of references to elements of the unit or to external stubs.
 
-Pending references and attributes that hold ids are uses of elements that must be resolved.
+A use is a pending reference, or an id in an attribute.
 """
 
 import posixpath
@@ -26,7 +26,7 @@ from sysmlc.passes.resolve.libraries import (
     split_href,
 )
 
-_ATTRIBUTES: dict[Kind, dict[str, Kind]] = {
+_ID_ATTRIBUTES: dict[Kind, dict[str, Kind]] = {
     Kind.CONTROL: {"decision_input": Kind.ACTIVITY, "decision_input_flow": Kind.OBJECT_FLOW},
     Kind.CONTROL_FLOW: {"interrupts": Kind.STRUCTURED},
     Kind.OBJECT_FLOW: {"interrupts": Kind.STRUCTURED},
@@ -38,11 +38,11 @@ _ATTRIBUTES: dict[Kind, dict[str, Kind]] = {
     Kind.OPERATION: {"raised_exception": Kind.CLASS},
     Kind.STRUCTURED: dict.fromkeys(("test", "body_part", "setup_part", "clauses"), Kind.ACTION),
 }
-"""Attributes that hold ids (docs/ir.md), by the kind of their element: what they name."""
+"""Attributes that hold ids (docs/ir.md) with the kind of their targets, by kind of the holder."""
 
 
 class Use(NamedTuple):
-    """One use of an element: a pending edge, or an attribute that holds an id."""
+    """One use of an element: a pending reference (``edge``) or an id in an attribute."""
 
     holder: Element
     target: str
@@ -58,14 +58,14 @@ class Use(NamedTuple):
         return self.edge.value if self.edge else self.attribute
 
     def location(self) -> tuple[str, int, str]:
-        """Return file, ordinal and id of the holder, which order uses by the text."""
+        """Return file, ordinal and id of the holder: the sort key for the order of the text."""
         ordinal = self.ordinal if self.ordinal >= 0 else self.holder.ordinal
         return self.holder.source, ordinal, self.holder.id
 
 
 @dataclass(slots=True)
-class Need:
-    """All uses in one file that name a target with the same words."""
+class UseGroup:
+    """The uses in one file with the same target, expected kind and stated path."""
 
     graph: Graph
     file: str
@@ -73,47 +73,48 @@ class Need:
     kind: Kind
     path: str
     references: list[Reference] = field(default_factory=list)
-    """The pending references among the places."""
-    held: list[Use] = field(default_factory=list)
-    """The attributes among the places."""
+    """The pending references of the group."""
+    attribute_uses: list[Use] = field(default_factory=list)
+    """The uses in attributes."""
 
     def uses(self) -> list[Use]:
         """Return all uses."""
-        return [use_of(self.graph[r.source], r) for r in self.references] + self.held
+        return [use_of(self.graph[r.source], r) for r in self.references] + self.attribute_uses
 
     def first_use(self) -> Use:
-        """Return the first use in the unit, whatever the order in which files are read."""
+        """Return the first use by file and position, independent of the order of reading."""
         return min(self.uses(), key=Use.location)
 
 
 def use_of(holder: Element, reference: Reference) -> Use:
-    """Return the place of a pending reference that leaves *holder*."""
+    """Return the use for a pending reference from *holder*."""
     edge, _, target, kind, path, ordinal = reference
     return Use(holder, target, kind, path, ordinal, edge)
 
 
-def group_uses(graph: Graph, held_ids: list[Use]) -> list[Need]:
-    """Group uses by file, target and description of the target.
+def group_uses(graph: Graph, held_ids: list[Use]) -> list[UseGroup]:
+    """Group uses by file, target, expected kind and stated path.
 
-    These are the pending references whose target is no id of the graph, and all attributes.
+    The groups contain all uses in attributes, and the pending references whose target is not an id
+    of the graph.
     """
-    groups: dict[tuple[str, str, Kind, str], Need] = {}
+    groups: dict[tuple[str, str, Kind, str], UseGroup] = {}
     for reference in graph.pending:
         holder = graph.get(reference.source)
         if holder is not None and reference.target not in graph:
             key = (holder.source, reference.target, reference.kind, reference.name)
             if key not in groups:
-                groups[key] = Need(graph, *key)
+                groups[key] = UseGroup(graph, *key)
             groups[key].references.append(reference)
     for use in held_ids:
         key = (use.holder.source, use.target, use.kind, use.path)
-        groups.setdefault(key, Need(graph, *key)).held.append(use)
+        groups.setdefault(key, UseGroup(graph, *key)).attribute_uses.append(use)
     return list(groups.values())
 
 
 def list_held_ids(graph: Graph) -> Iterator[Use]:
     """Yield the uses in attributes that hold ids."""
-    for holder_kind, attributes_of_kind in _ATTRIBUTES.items():
+    for holder_kind, attributes_of_kind in _ID_ATTRIBUTES.items():
         for element in graph.of_kind(holder_kind):
             attrs = element.attrs
             if attrs and not attrs.keys().isdisjoint(attributes_of_kind):
@@ -133,7 +134,7 @@ class UnitIndex:
 
     @cached_property
     def _by_shared_id(self) -> dict[str, list[Element]]:
-        """Elements whose id occurs in several files, by that id without the file."""
+        """Elements with an id that several files contain, by that id without the file."""
         index: dict[str, list[Element]] = {}
         for element in self._graph:
             if "#" in element.id and element.source:
@@ -154,10 +155,10 @@ class UnitIndex:
         return index
 
     def find(self, file: str, target: str) -> Element | None:
-        """Return the element that *target* means in *file*, or None if no file of the unit has it.
+        """Return the element to which *target* leads from *file*, or None if it is not in the unit.
 
-        A file is found by its path relative to *file*, else by its base name, which is all that a
-        ``pathmap:`` leaves. An id that no tool assigns twice is found in any file.
+        A file is found by its path relative to *file*, or else by its base name, because a
+        ``pathmap:`` address has no usable path. A globally unique id is found in any file.
         """
         exact = self._graph.get(target)
         if exact is not None:
@@ -173,10 +174,11 @@ class UnitIndex:
         return element
 
     def files(self, file: str, library: str) -> tuple[str, ...]:
-        """Return the files of the unit that *library*, as *file* names it, can mean."""
+        """Return the files of the unit to which the path *library* in *file* may lead."""
         plain = unquote(library)
         named = self._files.get(_basename(plain), set())
         relative = posixpath.normpath(posixpath.join(posixpath.dirname(file), plain))
+        # The name of a file in an archive is `archive!member`; references name the archive.
         exact = [name for name in named if name.partition("!")[0] in (relative, plain)]
         return tuple(sorted(exact or named))
 
@@ -196,23 +198,24 @@ def _smallest_id(elements: Iterable[Element]) -> Element | None:
 
 @dataclass(slots=True)
 class Resolver:
-    """The meaning of each target, by the file that names it."""
+    """Map from targets, in the files that refer to them, to elements and external stubs."""
 
     graph: Graph
     index: UnitIndex
-    external: dict[str, list[Need]] = field(default_factory=dict)
+    external: dict[str, list[UseGroup]] = field(default_factory=dict)
     """Uses of elements outside the unit, by the href of the stub."""
     library_elements: dict[str, LibraryElement] = field(default_factory=dict)
     """The elements of known libraries among them, by href."""
     _internal: dict[tuple[str, str], str | None] = field(default_factory=dict)
     _stubs: dict[str, str] = field(default_factory=dict)
 
-    def resolve(self, needs: list[Need]) -> None:
-        """Resolve every target, and add external stubs for those outside the unit."""
-        external: dict[str, list[Need]] = {}
-        for need in needs:
-            if need.target not in self.graph and self._is_outside(need.file, need.target):
-                external.setdefault(need.target, []).append(need)
+    def resolve(self, groups: list[UseGroup]) -> None:
+        """Resolve every target, and add external stubs for targets outside the unit."""
+        # Sorted, so that ids and origins of stubs do not depend on the order of the files.
+        external: dict[str, list[UseGroup]] = {}
+        for group in groups:
+            if group.target not in self.graph and self._is_outside(group.file, group.target):
+                external.setdefault(group.target, []).append(group)
         for target in sorted(external):
             href = self._find_canonical_href(target, external[target])
             self._stubs[target] = stub_id(href)
@@ -221,7 +224,7 @@ class Resolver:
             self._add_external(href, self.external[href])
 
     def get(self, file: str, target: str) -> Element | None:
-        """Return the element that *target* means in a file."""
+        """Return the element or stub to which *target* leads from a file, or None."""
         if target in self.graph:
             return self.graph[target]
         id = self._internal.get((file, target)) or self._stubs.get(target)
@@ -234,10 +237,10 @@ class Resolver:
             return False
         return not self.index.files(file, split_href(target)[0])
 
-    def _find_canonical_href(self, target: str, needs: list[Need]) -> str:
-        """Return the href of a target's stub, one for all spellings of a library element."""
-        # All references to the target count, because their order must not matter.
-        descriptions = {(need.path, need.kind) for need in needs}
+    def _find_canonical_href(self, target: str, groups: list[UseGroup]) -> str:
+        """Return the href of a target's stub; all spellings of a library element have the same."""
+        # All references to the target are read, so that their order has no effect.
+        descriptions = {(group.path, group.kind) for group in groups}
         name = max({find_primitive(target, path, kind) for path, kind in descriptions})
         if name:
             return PRIMITIVE_TYPES + name
@@ -251,33 +254,33 @@ class Resolver:
         self.library_elements[element.href] = element
         return element.href
 
-    def _add_external(self, href: str, needs: list[Need]) -> None:
+    def _add_external(self, href: str, groups: list[UseGroup]) -> None:
         if href in self.library_elements:
-            add_stub(self.graph, self.library_elements[href], _find_origin(needs))
+            add_stub(self.graph, self.library_elements[href], _find_origin(groups))
         else:
-            _add_unknown_stub(self.graph, href, needs)
+            _add_unknown_stub(self.graph, href, groups)
 
 
 def stub_id(href: str) -> str:
-    """Return the id of the external stub for an address."""
+    """Return the id of the external stub for an href."""
     return derived_id(href, "stub")
 
 
-def _find_origin(needs: list[Need]) -> str:
-    return min((need.first_use() for need in needs), key=Use.location).holder.id
+def _find_origin(groups: list[UseGroup]) -> str:
+    return min((group.first_use() for group in groups), key=Use.location).holder.id
 
 
-def _add_unknown_stub(graph: Graph, href: str, needs: list[Need]) -> None:
+def _add_unknown_stub(graph: Graph, href: str, groups: list[UseGroup]) -> None:
     id = stub_id(href)
     if id in graph:
         return
-    path = min((need.path for need in needs if need.path), default="")
-    kind = choose_kind(href, {need.kind for need in needs})
+    path = min((group.path for group in groups if group.path), default="")
+    kind = choose_kind(href, {group.kind for group in groups})
     attrs: dict[str, AttrValue] = {"external": True, "href": href}
     if href.startswith(PRIMITIVE_TYPES):
         kind, path = Kind.DATA_TYPE, ""
         attrs["subkind"] = "primitive"
     if "::" in path:
         attrs["qualified_name"] = path
-    attrs["origin"] = _find_origin(needs)
+    attrs["origin"] = _find_origin(groups)
     graph.add(Element(id, kind, read_name(href, path), attrs=attrs))
