@@ -3,7 +3,6 @@
 from collections.abc import Iterator
 
 from sysmlc.diagnostics import Sink, Subject
-from sysmlc.overlay import schema as shape
 from sysmlc.overlay.model import (
     Allocation,
     BlockEntry,
@@ -20,7 +19,7 @@ from sysmlc.overlay.model import (
     ValueEntry,
     place_of,
 )
-from sysmlc.overlay.schema import SYNTAX
+from sysmlc.overlay.schema import SYNTAX, check_schema
 from sysmlc.overlay.yaml_tree import TreeError, Value, parse_yaml
 from sysmlc.sources import Source
 
@@ -32,10 +31,10 @@ def read_overlay(source: Source, sink: Sink) -> Refinement | None:
     try:
         top = parse_yaml(source.data)
     except TreeError as error:
-        subject = Subject(place=place_of(source.name, error.find_spot))
+        subject = Subject(place=place_of(source.name, error.spot))
         sink.report(SYNTAX, subject, problem=error.problem)
         return None
-    if not shape.check_schema(top, source.name, sink):
+    if not check_schema(top, source.name, sink):
         return None
     return _build_refinement(top, source.name)
 

@@ -46,19 +46,19 @@ KEY_TWICE = rule(
 )
 
 
-_LONGEST = 200
-_MOST = 100
-"""Faults that are told of one overlay; a file of another kind has thousands."""
+_MAX_MESSAGE = 200
+_MAX_FAULTS = 100
+"""Faults that are reported for one overlay; a file of another kind has thousands."""
 
 
 def check_schema(top: Value, file: str, sink: Sink) -> bool:
-    """Whether the overlay has the form of the schema; faults are reported."""
+    """Return whether the overlay is valid, and report its faults."""
     repeated = list(_find_repeated_keys(top))
-    for where, key, spot in repeated[:_MOST]:
+    for where, key, spot in repeated[:_MAX_FAULTS]:
         subject = Subject(place=place_of(file, spot))
         sink.report(KEY_TWICE, subject, where=where, key=key)
     errors = sorted(_load_validator().iter_errors(top.as_json()), key=_path_of)
-    for error in errors[:_MOST]:
+    for error in errors[:_MAX_FAULTS]:
         _report_error(error, top, file, sink)
     return not errors and not repeated
 
@@ -83,7 +83,7 @@ def _find_repeated_keys(top: Value) -> Iterator[tuple[str, str, Spot]]:
         if id(value) in visited:
             continue
         visited.add(id(value))
-        yield from ((_describe_path(path), key, spot) for key, spot in value.again)
+        yield from ((_describe_path(path), key, spot) for key, spot in value.repeated)
         worklist += [(inner, (*path, key)) for key, inner in (value.entries or {}).items()]
         worklist += [(inner, (*path, index)) for index, inner in enumerate(value.items or [])]
 
@@ -124,4 +124,4 @@ def _describe_problem(error: "ValidationError") -> str:
     if error.validator == "type" and error.instance is None:
         return f"it is empty, but should be of type {error.validator_value}"
     text = error.message
-    return text if len(text) <= _LONGEST else f"{text[:_LONGEST]}..."
+    return text if len(text) <= _MAX_MESSAGE else f"{text[:_MAX_MESSAGE]}..."

@@ -17,9 +17,9 @@ if TYPE_CHECKING:
 
 Scalar = str | int | float | bool | None
 
-_LARGEST = 4 << 20
-_DEEPEST = 20
-_MOST = 50_000
+_MAX_BYTES = 4 << 20
+_MAX_DEPTH = 20
+_MAX_VALUES = 50_000
 _NEWLINE = re.compile("\r\n|\r|\n")
 _STRING = "tag:yaml.org,2002:str"
 _CONSTANTS: dict[str, Scalar] = {
@@ -37,22 +37,22 @@ class TreeError(Exception):
     def __init__(self, problem: str, spot: Spot) -> None:
         super().__init__(problem)
         self.problem = problem
-        self.find_spot = spot
+        self.spot = spot
 
 
 @dataclass(slots=True)
 class Value:
-    """A scalar, a list or a mapping. ``size`` counts its values, those of aliases at every use."""
+    """A scalar, a list or a mapping; ``size`` counts its values, those of an alias at every use."""
 
     spot: Spot
     scalar: Scalar = None
     text: str = ""
-    """A scalar as it is written."""
+    """The text of a scalar as it is written."""
     items: "list[Value] | None" = None
     entries: "dict[str, Value] | None" = None
     keys: dict[str, Spot] = field(default_factory=dict)
-    again: list[tuple[str, Spot]] = field(default_factory=list)
-    """Keys that stand there once more."""
+    repeated: list[tuple[str, Spot]] = field(default_factory=list)
+    """Keys that a mapping has a second time."""
     size: int = 1
 
     def as_json(self) -> object:
@@ -66,8 +66,8 @@ class Value:
 
 def parse_yaml(data: bytes) -> Value:
     """Return the document in a file; an empty file is an empty mapping. Raises TreeError."""
-    if len(data) > _LARGEST:
-        raise TreeError(f"it is larger than {_LARGEST >> 20} MB", Spot())
+    if len(data) > _MAX_BYTES:
+        raise TreeError(f"it is larger than {_MAX_BYTES >> 20} MB", Spot())
     try:
         text = data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
@@ -82,7 +82,7 @@ class Lines:
 
     def __init__(self, text: str, mark: int) -> None:
         self._text = text
-        self._starts = [0, *(found.end() for found in _NEWLINE.finditer(text))]
+        self._starts = [0, *(match.end() for match in _NEWLINE.finditer(text))]
         self._bytes = [mark]
         for start, end in zip(self._starts, self._starts[1:], strict=False):
             self._bytes.append(self._bytes[-1] + len(text[start:end].encode()))
@@ -112,7 +112,7 @@ class _Builder:
 
         try:
             for number, event in enumerate(YAML(typ="rt", pure=True).parse(self._text)):
-                if number > _MOST:
+                if number > _MAX_VALUES:
                     raise TreeError("it has too many values", self._spot(event.start_mark))
                 self._handle_event(event)
         except MarkedYAMLError as error:
@@ -159,7 +159,7 @@ class _Builder:
 
     def _open_collection(self, event: "CollectionStartEvent", collection: Value) -> None:
         _refuse_tag(event.tag, collection.spot)
-        if len(self._open) == _DEEPEST:
+        if len(self._open) == _MAX_DEPTH:
             raise TreeError("it is nested too deeply", collection.spot)
         if event.anchor:
             self._anchors[event.anchor] = None
@@ -172,7 +172,7 @@ class _Builder:
             self._top = value
             return
         self._open[-1].add(value)
-        if self._open[-1].value.size > _MOST:
+        if self._open[-1].value.size > _MAX_VALUES:
             raise TreeError("its aliases make it too large", value.spot)
 
 
@@ -196,7 +196,7 @@ class _OpenCollection:
 
     def _add_entry(self, key: str, spot: Spot, value: Value) -> None:
         if self.value.entries is None or key in self.value.entries:
-            self.value.again.append((key, spot))
+            self.value.repeated.append((key, spot))
             return
         self.value.entries[key] = value
         self.value.keys[key] = spot

@@ -1,4 +1,4 @@
-"""Reading of templates: the shipped ones, and those of a folder that is not trusted."""
+"""Reads templates: shipped ones, and those of a folder that is not trusted."""
 
 from pathlib import Path
 from typing import NamedTuple

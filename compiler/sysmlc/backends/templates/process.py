@@ -1,7 +1,7 @@
-"""The process that renders templates of strangers, as its parent sees it.
+"""The parent's side of the process that renders templates that are not trusted.
 
-The sandbox of Jinja cannot stop ``{{ 10 ** 10 ** 8 }}`` or a loop that prints nothing. A process
-of its own can be ended: it has limits of time, memory and output (``worker``).
+The sandbox of Jinja cannot stop ``{{ 10 ** 10 ** 8 }}`` or a loop that prints nothing. A separate
+process can be ended: it has limits of time, memory and output (``worker``).
 """
 
 import json
@@ -55,16 +55,16 @@ class RenderingProcess:
 
     def _exchange(self, request: str) -> dict[str, str] | None:
         """Send a line and read the answer; None if the process ended."""
-        streams = self._process.stdin, self._process.stdout
-        assert streams[0] is not None
-        assert streams[1] is not None
+        requests, answers = self._process.stdin, self._process.stdout
+        assert requests is not None
+        assert answers is not None
         with suppress(BrokenPipeError):
             if self._setup:
-                streams[0].write(json.dumps(self._setup).encode() + b"\n")
+                requests.write(json.dumps(self._setup).encode() + b"\n")
                 self._setup = {}
-            streams[0].write(request.encode() + b"\n")
-            streams[0].flush()
-            line = streams[1].readline()
+            requests.write(request.encode() + b"\n")
+            requests.flush()
+            line = answers.readline()
             if line.endswith(b"\n"):
                 answer: dict[str, str] = json.loads(line)
                 return answer

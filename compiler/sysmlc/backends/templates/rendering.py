@@ -25,8 +25,8 @@ MAX_CHARACTERS = 10_000_000
 class Templates:
     """Templates of one back end; a context manager.
 
-    Shipped templates are rendered in this process. As soon as *folder* holds a template of its own,
-    a ``RenderingProcess`` renders all: its author may be a stranger.
+    Shipped templates are rendered in this process. If *folder* holds a template, which may be
+    hostile, a ``RenderingProcess`` renders all templates.
     """
 
     def __init__(self, backend: str, folder: Path | None) -> None:
@@ -79,12 +79,9 @@ class Templates:
 
 
 def _render_shipped(backend: str, name: str, values: dict[str, object]) -> str:
-
     return render(_shipped_environment(backend), name, values, MAX_CHARACTERS)
 
 
 @cache
 def _shipped_environment(backend: str) -> "ImmutableSandboxedEnvironment":
-    # jinja2 takes 0.06 s to import, and only back ends with templates need it.
-
     return make_environment(read_shipped(backend))

@@ -1,4 +1,4 @@
-"""The process that renders templates of strangers: ``python -m sysmlc.backends.templates.worker``.
+"""The process that renders untrusted templates: ``python -m sysmlc.backends.templates.worker``.
 
 The first line of standard input holds the templates and the limits; each further line asks for one
 text and is answered by one line of standard output. All lines are JSON.
