@@ -40,9 +40,9 @@ def test_long_names_are_cut_and_stay_distinct():
 
 @given(st.lists(st.text(min_size=1), unique=True, max_size=8))
 def test_any_names_become_distinct_safe_file_names(names):
-    made = list(assign_file_names(names).values())
-    assert len({name.lower() for name in made}) == len(names)
-    for name in made:
+    file_names = list(assign_file_names(names).values())
+    assert len({name.lower() for name in file_names}) == len(names)
+    for name in file_names:
         assert len(name.encode()) <= 120
         assert name not in {"", ".", ".."}
         assert not set(name) & set('/\\:*?"<>| ')

@@ -15,13 +15,13 @@ from sysmlc.support import resources
 RIGHT = "overlay: 1\nitems:\n  MiniPallet: {domain: physical}\n"
 
 
-def told(data):
+def list_findings(data):
     """Code, line, column and message of each finding; nothing of a bad overlay is used."""
     sink = Sink()
     text = data.encode("utf-8") if isinstance(data, str) else data
-    made = read_overlay(Source("p.overlay.yaml", text), sink)
-    assert (made is None) == bool(len(sink))
-    places = [(found, found.subject.place) for found in sink]
+    refinement = read_overlay(Source("p.overlay.yaml", text), sink)
+    assert (refinement is None) == bool(len(sink))
+    places = [(diagnostic, diagnostic.subject.place) for diagnostic in sink]
     return [(f.rule.code, place.line, place.column, f.message) for f, place in places]
 
 
@@ -55,11 +55,11 @@ def bomb(levels=12, width=9):
     ],
     ids=lambda value: str(value)[:24],
 )
-def test_bad_yaml_is_told_with_its_place(data, line, column, problem):
-    ((code, told_line, told_column, message),) = told(data)
+def test_bad_yaml_is_reported_with_its_location(data, line, column, problem):
+    ((code, found_line, found_column, message),) = list_findings(data)
     assert code == "SM320"
     assert problem in message
-    assert (told_line, told_column if column else 0) == (line, column)
+    assert (found_line, found_column if column else 0) == (line, column)
 
 
 @pytest.mark.parametrize(
@@ -137,14 +137,14 @@ def test_bad_yaml_is_told_with_its_place(data, line, column, problem):
         ),
     ],
 )
-def test_each_fault_of_shape_is_told_with_its_place(text, findings):
-    assert told(text) == findings
+def test_each_violation_of_the_schema_is_reported_with_its_location(text, findings):
+    assert list_findings(text) == findings
 
 
 def test_a_misspelt_word_is_answered_with_the_nearest():
     sink = Sink()
     read_overlay(Source("p.overlay.yaml", RIGHT.replace("domain", "domian").encode()), sink)
-    assert [found.help for found in sink] == ["did you mean 'domain'?"]
+    assert [diagnostic.help for diagnostic in sink] == ["did you mean 'domain'?"]
 
 
 def test_places_count_characters_and_bytes():
@@ -158,7 +158,7 @@ def test_plain_words_are_names_and_quoted_digits_are_too():
     top = parse_yaml(
         b"a: no\nb: 0x1F\nc: '12'\nd: 12\ne: 1.5\nf: true\ng: ~\nh: 2024-01-01\n1: x\n"
     )
-    assert {key: one.scalar for key, one in top.entries.items()} == {
+    assert {key: value.scalar for key, value in top.entries.items()} == {
         "a": "no",
         "b": "0x1F",
         "c": "12",
@@ -173,20 +173,22 @@ def test_plain_words_are_names_and_quoted_digits_are_too():
 
 def test_anchors_may_be_used_for_what_is_said_again():
     text = RIGHT + "connectors:\n  a: &one\n    flows: [{item: MiniPallet, to: x}]\n  b: *one\n"
-    made = read_overlay(Source("p.overlay.yaml", text.encode()), Sink())
-    assert [one.key.text for one in made.connectors] == ["a", "b"]
-    assert made.connectors[0].flows == made.connectors[1].flows
+    refinement = read_overlay(Source("p.overlay.yaml", text.encode()), Sink())
+    assert [connector.key.text for connector in refinement.connectors] == ["a", "b"]
+    assert refinement.connectors[0].flows == refinement.connectors[1].flows
 
 
 def test_entries_have_an_order_of_their_own():
     rows = ["  B: {domain: physical}\n", "  A: {domain: information}\n"]
-    made = [
+    refinements = [
         read_overlay(
             Source("p.overlay.yaml", ("overlay: 1\nitems:\n" + "".join(order)).encode()), Sink()
         )
         for order in (rows, rows[::-1])
     ]
-    names = [[(one.key.text, one.domain) for one in each.items] for each in made]
+    names = [
+        [(item.key.text, item.domain) for item in refinement.items] for refinement in refinements
+    ]
     assert names[0] == names[1] == [("A", "information"), ("B", "physical")]
 
 
@@ -196,14 +198,16 @@ def test_files_that_terms_name_are_known():
         "    values: {v: {type: 'types.uml#T::V'}}\n"
         "    operations: {go: {method: 'models/gate.uml#Gate::Go'}}\n"
     )
-    made = read_overlay(Source("p.overlay.yaml", text.encode()), Sink())
-    assert list_files(made) == ["models/gate.uml", "types.uml"]
+    refinement = read_overlay(Source("p.overlay.yaml", text.encode()), Sink())
+    assert list_files(refinement) == ["models/gate.uml", "types.uml"]
 
 
 def test_the_schema_is_a_schema_and_its_words_are_explained():
     schema = json.loads(resources.read_text("metamodels", "sysmlc-overlay.schema.json"))
     Draft202012Validator.check_schema(schema)
-    assert all("description" in one for one in schema["properties"].values() if "$ref" not in one)
+    assert all(
+        "description" in entry for entry in schema["properties"].values() if "$ref" not in entry
+    )
 
 
 @pytest.mark.parametrize(

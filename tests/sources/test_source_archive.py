@@ -27,8 +27,8 @@ def refusal(source, limits=None):
 
 
 def test_entries_come_sorted_and_are_named_after_their_archive():
-    found = read_entries(archive(("b", b"2"), ("a", b"1")), everything)
-    assert [(entry.name, entry.data) for entry in found] == [
+    entries = read_entries(archive(("b", b"2"), ("a", b"1")), everything)
+    assert [(entry.name, entry.data) for entry in entries] == [
         ("plant.mdzip!a", b"1"),
         ("plant.mdzip!b", b"2"),
     ]

@@ -15,9 +15,9 @@ class Schema:
 
     def __init__(self, path):
         self.root = etree.parse(path).getroot()
-        self.named = {one.get("name"): one for one in self.root.iter(f"{XS}complexType")}
-        self.groups = {one.get("name"): one for one in self.root.iter(f"{XS}group")}
-        self.elements = [one for one in self.root.iter(f"{XS}element") if one.get("name")]
+        self.named = {node.get("name"): node for node in self.root.iter(f"{XS}complexType")}
+        self.groups = {node.get("name"): node for node in self.root.iter(f"{XS}group")}
+        self.elements = [node for node in self.root.iter(f"{XS}element") if node.get("name")]
 
     def type_of(self, element):
         inside = element.find(f"{XS}complexType")
@@ -29,33 +29,33 @@ class Schema:
     def holds_text(self, element):
         """Whether it is of a simple type, or of one that only adds attributes to such a type."""
         type_ = self.type_of(element)
-        inside = () if type_ is None else self.own(type_)
-        bases = [one.get("base") for one in inside if one.get("base")]
+        inside = () if type_ is None else self.iter_own_nodes(type_)
+        bases = [node.get("base") for node in inside if node.get("base")]
         names = {local(name) for name in [element.get("type"), *bases]}
         return bool(names & SIMPLE) or self.is_free(element)
 
     def attributes(self, type_):
-        for one in self.own(type_):
-            if one.tag == f"{XS}attribute":
-                yield one.get("name")
-            elif one.get("base") and local(one.get("base")) in self.named:
-                yield from self.attributes(self.named[local(one.get("base"))])
+        for node in self.iter_own_nodes(type_):
+            if node.tag == f"{XS}attribute":
+                yield node.get("name")
+            elif node.get("base") and local(node.get("base")) in self.named:
+                yield from self.attributes(self.named[local(node.get("base"))])
 
     def children(self, type_):
-        for one in self.own(type_):
-            if one.get("base") and local(one.get("base")) in self.named:
-                yield from self.children(self.named[local(one.get("base"))])
-            elif one.tag == f"{XS}group" and one.get("ref"):
-                yield from self.children(self.groups[local(one.get("ref"))])
-            elif one.tag == f"{XS}element":
-                yield one.get("name")
+        for node in self.iter_own_nodes(type_):
+            if node.get("base") and local(node.get("base")) in self.named:
+                yield from self.children(self.named[local(node.get("base"))])
+            elif node.tag == f"{XS}group" and node.get("ref"):
+                yield from self.children(self.groups[local(node.get("ref"))])
+            elif node.tag == f"{XS}element":
+                yield node.get("name")
 
-    def own(self, type_):
+    def iter_own_nodes(self, type_):
         """What stands in a type, but not in the elements that are declared in it."""
-        for one in () if type_ is None else type_.iterchildren(etree.Element):
-            yield one
-            if one.tag not in (f"{XS}element", f"{XS}attribute"):
-                yield from self.own(one)
+        for node in () if type_ is None else type_.iterchildren(etree.Element):
+            yield node
+            if node.tag not in (f"{XS}element", f"{XS}attribute"):
+                yield from self.iter_own_nodes(node)
 
 
 FREE = {"AdditionalInformation"}
@@ -73,27 +73,27 @@ def schema(request, corpus):
 
 @pytest.mark.corpus
 def test_the_order_is_that_of_every_sequence(schema):
-    sequences = [list(schema.children(schema.type_of(one))) for one in schema.elements]
+    sequences = [list(schema.children(schema.type_of(node))) for node in schema.elements]
     assert sum(map(len, sequences)) > 200
     for names in sequences:
         is_choice = "NominalScaledType" in names
         ranks = [ORDER[name] for name in names]
-        assert is_choice or all(one < two for one, two in pairwise(ranks)), names
+        assert is_choice or all(first < second for first, second in pairwise(ranks)), names
 
 
 @pytest.mark.corpus
 def test_an_element_has_the_attributes_that_one_of_the_schemas_gives_it(corpus):
-    found = {}
+    attributes = {}
     for path in (corpus / "aml" / "schema").glob("*.xsd"):
         schema = Schema(path)
-        for one in schema.elements:
-            names = set(schema.attributes(schema.type_of(one)))
-            is_free = schema.is_free(one) or one.get("name") in FREE
-            found.setdefault(one.get("name"), set()).update({None} if is_free else names)
-    assert found == {tag: {None} if k is None else k for tag, k in ATTRIBUTES.items()}
+        for node in schema.elements:
+            names = set(schema.attributes(schema.type_of(node)))
+            is_free = schema.is_free(node) or node.get("name") in FREE
+            attributes.setdefault(node.get("name"), set()).update({None} if is_free else names)
+    assert attributes == {tag: {None} if k is None else k for tag, k in ATTRIBUTES.items()}
 
 
 @pytest.mark.corpus
 def test_texts_stand_in_elements_of_simple_types(schema):
-    found = {one.get("name") for one in schema.elements if schema.holds_text(one)}
-    assert found == TEXTS & {one.get("name") for one in schema.elements}
+    texts = {node.get("name") for node in schema.elements if schema.holds_text(node)}
+    assert texts == TEXTS & {node.get("name") for node in schema.elements}

@@ -14,9 +14,9 @@ TEXT = '<?xml version="1.0" encoding="%s"?>\n<a name="%s"/>'
 def names(data):
     """Names in the file as it is read from disk."""
     seen = []
-    made = make_parser()
-    made.StartElementHandler = lambda _tag, values: seen.append(values["name"])
-    parse(convert_to_utf8(Source("m.uml", data)), made)
+    parser = make_parser()
+    parser.StartElementHandler = lambda _tag, values: seen.append(values["name"])
+    parse(convert_to_utf8(Source("m.uml", data)), parser)
     return seen
 
 
@@ -71,7 +71,7 @@ def test_the_digest_is_that_of_the_file(tmp_path):
     assert source.sha256 == hashlib.sha256(data).hexdigest()
 
 
-def test_bytes_of_another_encoding_are_told_from_bad_markup():
+def test_bytes_of_another_encoding_are_not_reported_as_bad_markup():
     data = (TEXT % ("UTF-8", "Förderer")).encode("latin-1")
     reason = "it is not encoded in UTF-8: invalid start byte"
     assert refusal(data) == (reason, data.index(b"\xf6"))

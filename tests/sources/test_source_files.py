@@ -14,7 +14,7 @@ def test_a_plain_file_is_one_source(tmp_path):
     assert (source.name, source.data) == ("models/plant.uml", b"<a/>")
 
 
-def test_an_archive_is_told_by_its_content(tmp_path):
+def test_an_archive_is_recognised_by_its_content(tmp_path):
     path = tmp_path / "plant.uml"
     with zipfile.ZipFile(path, "w") as opened:
         opened.writestr("com.nomagic.magicdraw.uml_model.model", "<a/>")

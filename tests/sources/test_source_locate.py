@@ -10,8 +10,8 @@ from sysmlc.sources.xml import make_parser, parse
 
 def where(text, *places, encoding="utf-8"):
     source = Source("f", text.encode(encoding))
-    found = locate([source], places)
-    return [found.get(place) for place in places]
+    locations = locate([source], places)
+    return [locations.get(place) for place in places]
 
 
 @pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16", "windows-1252"])
@@ -32,8 +32,8 @@ def test_lines_are_right_past_65535():
 
 def test_columns_are_right_in_files_of_one_line():
     text = "<a>" + "<b/>" * 50_000 + "<c/></a>"
-    (found,) = where(text, Place("f", 50_001))
-    assert (found.line, found.column) == (1, 4 + 4 * 50_000)
+    (location,) = where(text, Place("f", 50_001))
+    assert (location.line, location.column) == (1, 4 + 4 * 50_000)
 
 
 def test_text_places_are_offsets_in_bytes():
@@ -44,7 +44,7 @@ def test_places_that_are_located_already_get_their_line():
     assert where("one\ntwo", Place("f", line=2, column=3)) == [Location(2, 3, "two")]
 
 
-def test_what_is_not_there_is_not_found():
+def test_unknown_ordinals_and_files_have_no_location():
     assert where("<a/>", Place("f", 7), Place("g", 0), Place("f")) == [None, None, None]
 
 
@@ -67,14 +67,14 @@ HIDDEN = [
 def test_start_tags_are_where_a_parser_sees_them(text):
     encoding = "windows-1252" if "1252" in text else "utf-8"
     source = Source("f", text.encode(encoding))
-    seen, made = [], make_parser()
-    made.StartElementHandler = lambda *_: seen.append(made.CurrentByteIndex)
-    parse(source, made)
-    assert find_start_tags(source.data) in (seen, None)
-    places = [Place("f", ordinal) for ordinal in range(len(seen))]
+    offsets, parser = [], make_parser()
+    parser.StartElementHandler = lambda *_: offsets.append(parser.CurrentByteIndex)
+    parse(source, parser)
+    assert find_start_tags(source.data) in (offsets, None)
+    places = [Place("f", ordinal) for ordinal in range(len(offsets))]
     located = locate([source], places)
     assert {p.ordinal: (located[p].line, located[p].column) for p in places} == (
-        find_positions([source], {"f": range(len(seen))})["f"]
+        find_positions([source], {"f": range(len(offsets))})["f"]
     )
 
 
@@ -85,18 +85,18 @@ def test_only_plain_text_is_searched_for_tags():
     assert find_start_tags(b"<?xml version='1.0'") is None
 
 
-def test_what_is_not_there_has_no_position():
+def test_unknown_ordinals_and_files_have_no_position():
     source = Source("f", b"<a>\n<b/></a>")
     assert find_positions([source], {"f": [1, 2, -1, 1], "g": [0]}) == {"f": {1: (2, 1)}}
 
 
-def test_of_a_long_line_the_part_around_the_place_is_kept():
+def test_the_excerpt_of_a_long_line_is_the_part_around_the_column():
     """A file of one line with thousands of findings held that line thousands of times."""
     text = "<a>" + "<b/>" * 50_000 + "</a>"
     first, far = where(text, Place("f", 1), Place("f", 25_000))
     assert (first.shift, first.text) == (0, text[:400])
-    at = far.column - 1 - far.shift
-    assert (len(far.text), far.text[at : at + 4]) == (400, "<b/>")
+    index = far.column - 1 - far.shift
+    assert (len(far.text), far.text[index : index + 4]) == (400, "<b/>")
 
 
 @pytest.mark.parametrize("name", ["base64", "idna", "rot13", "klingon", "unicode_escape"])

@@ -14,23 +14,23 @@ HEAD = '<Relationships xmlns="http://schemas.openxmlformats.org/package/2006/rel
 
 def relationships(*targets, root="/plant.aml", mode=""):
     rows = [(ROOT, root), *((KINDS + "AnyContent", target) for target in targets)]
-    told = "".join(
+    elements = "".join(
         f'<Relationship Type="{kind}" Target="{target}" Id="R{n}"{mode if n else ""}/>'
         for n, (kind, target) in enumerate(rows)
     )
-    return f"{HEAD}{told}</Relationships>"
+    return f"{HEAD}{elements}</Relationships>"
 
 
 def packed(tmp_path, name="plant.amlx", **parts):
-    given = {"_rels/.rels": relationships(), "plant.aml": "<CAEXFile/>", **parts}
-    made = io.BytesIO()
-    with zipfile.ZipFile(made, "w") as archive:
+    entries = {"_rels/.rels": relationships(), "plant.aml": "<CAEXFile/>", **parts}
+    buffer = io.BytesIO()
+    with zipfile.ZipFile(buffer, "w") as archive:
         archive.writestr("[Content_Types].xml", "<Types/>")
-        for entry, text in given.items():
+        for entry, text in entries.items():
             if text is not None:
                 archive.writestr(entry, text)
     path = tmp_path / name
-    path.write_bytes(made.getvalue())
+    path.write_bytes(buffer.getvalue())
     return path
 
 

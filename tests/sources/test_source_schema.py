@@ -27,8 +27,8 @@ def plain(version="1"):
 
 
 def problems(loaded, body):
-    _, found = loaded.find_violations(Source("a.xml", f"<File>{body}</File>".encode()))
-    return [(one.ordinal, one.element, one.problem) for one in found]
+    _, violations = loaded.find_violations(Source("a.xml", f"<File>{body}</File>".encode()))
+    return [(violation.ordinal, violation.element, violation.problem) for violation in violations]
 
 
 @pytest.mark.parametrize(
@@ -68,7 +68,7 @@ def test_a_violation_has_its_element_and_says_what_is_wrong(body, expected, tmp_
 def test_every_violation_is_found_far_behind_line_65535(tmp_path):
     loaded = schemas(tmp_path, file=plain())
     body = '<Item Name="a"/>\n' * 70_000 + '<Item Name="last" Count="x"/>'
-    assert [one[:2] for one in problems(loaded, body)] == [(70_001, "last")]
+    assert [problem[:2] for problem in problems(loaded, body)] == [(70_001, "last")]
 
 
 def test_the_schema_is_chosen_by_namespace_element_and_version(tmp_path):
@@ -99,7 +99,7 @@ def test_a_schema_may_include_another_of_its_folder(tmp_path):
     (tmp_path / "types").mkdir()
     (tmp_path / "types" / "item.xsd").write_text(HEAD.format("", ITEM))
     loaded = schemas(tmp_path, file=HEAD.format("", include + FILE.format("1")))
-    assert [one.name for one in loaded.schemas] == ["file.xsd"]
+    assert [schema.name for schema in loaded.schemas] == ["file.xsd"]
     assert problems(loaded, "<Item/>") == [(1, "Item", "'Item' has no attribute 'Name'")]
 
 

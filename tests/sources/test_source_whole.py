@@ -9,24 +9,24 @@ from sysmlc.sources import Fault, Limits, SourceError, files
 LIMITS = Limits()
 
 
-def stamps(monkeypatch, *pairs):
-    """What the file looks like before and after each reading: size and time."""
-    left = list(pairs)
-    monkeypatch.setattr(files, "_make_state", lambda _: left.pop(0))
+def set_states(monkeypatch, *pairs):
+    """Set size and time of the file before and after each reading."""
+    states = list(pairs)
+    monkeypatch.setattr(files, "_make_state", lambda _: states.pop(0))
     monkeypatch.setattr(files, "_PAUSE", 0)
 
 
 def test_a_file_that_changes_once_while_it_is_read_is_read_again(tmp_path, monkeypatch):
     path = tmp_path / "plant.uml"
     path.write_bytes(b"<a/>")
-    stamps(monkeypatch, (4, 1), (4, 2), (4, 2), (4, 2))
+    set_states(monkeypatch, (4, 1), (4, 2), (4, 2), (4, 2))
     assert files.read_whole(path, "plant.uml", LIMITS) == b"<a/>"
 
 
 def test_a_file_that_keeps_changing_is_reported_and_not_used(tmp_path, monkeypatch):
     path = tmp_path / "plant.uml"
     path.write_bytes(b"<a/>")
-    stamps(monkeypatch, (4, 1), (4, 2), (4, 3), (4, 4))
+    set_states(monkeypatch, (4, 1), (4, 2), (4, 3), (4, 4))
     with pytest.raises(SourceError, match="changes while it is read") as raised:
         files.read_whole(path, "plant.uml", LIMITS)
     assert (raised.value.fault, raised.value.exit_code) == (Fault.CHANGING, 2)
@@ -35,7 +35,7 @@ def test_a_file_that_keeps_changing_is_reported_and_not_used(tmp_path, monkeypat
 def test_a_file_that_grows_after_it_was_looked_at_is_read_again(tmp_path, monkeypatch):
     path = tmp_path / "plant.uml"
     path.write_bytes(b"<a/>")
-    stamps(monkeypatch, (2, 1), (2, 1), (4, 1), (4, 1))
+    set_states(monkeypatch, (2, 1), (2, 1), (4, 1), (4, 1))
     assert files.read_whole(path, "plant.uml", LIMITS) == b"<a/>"
 
 

@@ -20,17 +20,17 @@ _SAFE = {"huge_tree": True, "resolve_entities": False, "no_network": True}
 
 def paths(data, *places):
     source = Source("f", data if isinstance(data, bytes) else data.encode())
-    found = locate([source], places, with_xpath=True)
-    return [found[place].xpath for place in places]
+    locations = locate([source], places, with_xpath=True)
+    return [locations[place].xpath for place in places]
 
 
-def declared(tree):
+def list_prefixes(tree):
     """The meaning that each prefix has first."""
-    found = {}
+    namespaces = {}
     for element in tree.iter(etree.Element):
         for prefix, uri in element.nsmap.items():
-            found.setdefault(prefix, uri)
-    return {prefix: uri for prefix, uri in found.items() if prefix}
+            namespaces.setdefault(prefix, uri)
+    return {prefix: uri for prefix, uri in namespaces.items() if prefix}
 
 
 def check(data, ordinals=None):
@@ -39,7 +39,7 @@ def check(data, ordinals=None):
     every = list(tree.iter(etree.Element))
     numbers = range(len(every)) if ordinals is None else ordinals(len(every))
     places = [Place("f", ordinal=number) for number in numbers]
-    namespaces = declared(tree)
+    namespaces = list_prefixes(tree)
     for place, path in zip(places, paths(data, *places), strict=True):
         assert tree.xpath(path, namespaces=namespaces) == [every[place.ordinal]], path
 
@@ -136,8 +136,8 @@ def test_text_has_no_path():
 
 
 def where(data, *places):
-    found = locate([Source("f", data)], places, with_xpath=True)
-    return [(found[p].line, found[p].column, found[p].xpath) for p in places]
+    locations = locate([Source("f", data)], places, with_xpath=True)
+    return [(locations[p].line, locations[p].column, locations[p].xpath) for p in places]
 
 
 _ENCODINGS = ("utf-8", "utf-8-sig", "utf-16", "utf-16-le", "utf-16-be", "windows-1252", "ascii")
@@ -183,8 +183,8 @@ def test_a_fault_is_counted_in_characters(encoding):
     with pytest.raises(SourceError) as problem:
         parse(source, make_parser())
     line = text.splitlines()[2]
-    found = where(data, Place("f", offset=problem.value.offset))
-    assert found == [(3, line.index("c>") + 1, "/a")]
+    locations = where(data, Place("f", offset=problem.value.offset))
+    assert locations == [(3, line.index("c>") + 1, "/a")]
 
 
 def test_an_entry_of_an_archive(tmp_path):
@@ -194,8 +194,8 @@ def test_an_entry_of_an_archive(tmp_path):
     (tmp_path / "p.mdzip").write_bytes(packed.getvalue())
     sources = load(tmp_path / "p.mdzip", "p.mdzip")
     place = Place(sources[0].name, 1)
-    found = locate(sources, [place], with_xpath=True)[place]
-    assert (place.file, found.line, found.column, found.xpath) == (
+    location = locate(sources, [place], with_xpath=True)[place]
+    assert (place.file, location.line, location.column, location.xpath) == (
         "p.mdzip!com.nomagic.magicdraw.uml_model.model",
         2,
         2,

@@ -27,11 +27,11 @@ GATE = machine(
 )
 
 
-def emitted(text, templates=None):
+def emit_contracts(text, templates=None):
     graph, sink, output = parse_text(text), Sink(), Output()
     pipeline.run(graph, sink, verify_each=True)
     BACKEND.emit(graph, output, sink, EmitOptions(templates=templates))
-    return graph, {one.path: one for one in output.artefacts()}, sink
+    return graph, {artefact.path: artefact for artefact in output.artefacts()}, sink
 
 
 def schema():
@@ -46,15 +46,15 @@ def domain_of(type_):
 
 def test_json_is_laid_out_as_the_library_does():
     """Some classes of conjuncts are empty, some are not; texts have quotes and umlauts."""
-    _, files, _ = emitted(GATE.replace('"Gate"', '"Gä\\"te"'))
-    (text,) = [one.text for path, one in files.items() if path.endswith(".json")]
+    _, files, _ = emit_contracts(GATE.replace('"Gate"', '"Gä\\"te"'))
+    (text,) = [file.text for path, file in files.items() if path.endswith(".json")]
     assert '"liveness": []' in text
     assert 'Gä\\"te' in text
     assert text == json.dumps(json.loads(text), ensure_ascii=False, indent=2) + "\n"
 
 
 def test_three_files_a_contract():
-    _, files, _ = emitted(GATE)
+    _, files, _ = emit_contracts(GATE)
     assert list(files) == [
         "contracts/Plant.Gate.contract.json",
         "contracts/Plant.Gate.md",
@@ -63,7 +63,7 @@ def test_three_files_a_contract():
 
 
 def test_the_json_keeps_to_its_schema_and_can_be_read_back():
-    graph, files, _ = emitted(GATE)
+    graph, files, _ = emit_contracts(GATE)
     document = json.loads(files["contracts/Plant.Gate.contract.json"].text)
     jsonschema.Draft202012Validator.check_schema(schema())
     jsonschema.validate(document, schema())
@@ -71,9 +71,9 @@ def test_the_json_keeps_to_its_schema_and_can_be_read_back():
     domains = {name: domain_of(v["type"]) for name, v in document["variables"].items()}
     assert domains == {v.name: v.domain for v in contract.variables}
     read = [
-        (parse_formula(one["formula"], domains), one["class"], one["origin"])
+        (parse_formula(conjunct["formula"], domains), conjunct["class"], conjunct["origin"])
         for conjuncts in document["guarantees"].values()
-        for one in conjuncts
+        for conjunct in conjuncts
     ]
     assert read == [(c.formula, c.class_, c.origin) for c in contract.guarantees]
 
@@ -87,7 +87,7 @@ def test_the_json_keeps_to_its_schema_and_can_be_read_back():
     ],
 )
 def test_the_schema_refuses_what_is_no_contract(change, path):
-    document = json.loads(emitted(GATE)[1]["contracts/Plant.Gate.contract.json"].text)
+    document = json.loads(emit_contracts(GATE)[1]["contracts/Plant.Gate.contract.json"].text)
     change(document)
     with pytest.raises(jsonschema.ValidationError) as caught:
         jsonschema.validate(document, schema())
@@ -95,7 +95,7 @@ def test_the_schema_refuses_what_is_no_contract(change, path):
 
 
 def test_the_explanation_names_elements_in_words():
-    text = emitted(GATE)[1]["contracts/Plant.Gate.md"].text
+    text = emit_contracts(GATE)[1]["contracts/Plant.Gate.md"].text
     assert text.startswith("# Contract of Plant::Gate\n")
     assert "| `level` | 0..9 | property 'level' of 'Gate' |" in text
     assert (
@@ -106,25 +106,27 @@ def test_the_explanation_names_elements_in_words():
 
 
 def test_a_fault_in_an_effect_withholds_the_contract():
-    _, files, sink = emitted(machine(arrow("a", "b", "start", effect="level := 77")))
-    (error,) = [found for found in sink if found.is_error]
+    _, files, sink = emit_contracts(machine(arrow("a", "b", "start", effect="level := 77")))
+    (error,) = [diagnostic for diagnostic in sink if diagnostic.is_error]
     assert error.rule.code == "SM414"
-    assert all(error.subject.id in one.trace for one in files.values())
+    assert all(error.subject.id in file.trace for file in files.values())
 
 
 def test_a_formula_with_too_many_values_is_reported_and_the_rest_is_written():
     text = machine(arrow("a", "b", "start", "level * fixed * size > 3"))
     text = text.replace("readonly=true", "").replace("<= 9", "<= 99")
-    _, files, sink = emitted(text)
+    _, files, sink = emit_contracts(text)
     assert list(files) == ["contracts/Plant.Gate.contract.json", "contracts/Plant.Gate.md"]
-    assert "SM520" in [found.rule.code for found in sink]
-    assert len(emitted(text.replace(" * size", ""))[1]) == 3
+    assert "SM520" in [diagnostic.rule.code for diagnostic in sink]
+    assert len(emit_contracts(text.replace(" * size", ""))[1]) == 3
 
 
 def test_own_templates_replace_ours_and_their_faults_are_reported(tmp_path):
     (tmp_path / "contract.md.j2").write_text("Mine: {{ page.component }}\n", encoding="utf-8")
-    assert emitted(GATE, tmp_path)[1]["contracts/Plant.Gate.md"].text == "Mine: Plant::Gate\n"
+    assert (
+        emit_contracts(GATE, tmp_path)[1]["contracts/Plant.Gate.md"].text == "Mine: Plant::Gate\n"
+    )
     (tmp_path / "contract.md.j2").write_text("{{ page.nothing }}", encoding="utf-8")
-    _, files, sink = emitted(GATE, tmp_path)
+    _, files, sink = emit_contracts(GATE, tmp_path)
     assert "contracts/Plant.Gate.md" not in files
-    assert [found.rule.code for found in sink] == ["SM521"]
+    assert [diagnostic.rule.code for diagnostic in sink] == ["SM521"]

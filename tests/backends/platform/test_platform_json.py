@@ -45,20 +45,23 @@ def unit(tmp_path):
     return tmp_path
 
 
-def compiled(*inputs):
+def compile_inputs(*inputs):
     backends = tuple(select_backends(["platform"]))
     return compile_model(Request(inputs=inputs, backends=backends))
 
 
 def platform(*inputs):
-    (made,) = compiled(*inputs).artefacts
-    assert made.path == "platform.json"
-    return json.loads(made.text)
+    (artefact,) = compile_inputs(*inputs).artefacts
+    assert artefact.path == "platform.json"
+    return json.loads(artefact.text)
 
 
-def told(made):
-    found = (one for one in made.diagnostics if "SM623" <= one.rule.code <= "SM630")
-    return [f"{one.rule.code} {one.message}" for one in found]
+def list_findings(compilation):
+    return [
+        f"{diagnostic.rule.code} {diagnostic.message}"
+        for diagnostic in compilation.diagnostics
+        if "SM623" <= diagnostic.rule.code <= "SM630"
+    ]
 
 
 def test_the_file_has_a_schema(unit):
@@ -66,14 +69,14 @@ def test_the_file_has_a_schema(unit):
 
 
 def test_the_overlay_of_the_documentation_does_what_the_documentation_says(unit):
-    (left, right) = platform(unit / "recipe.uml", unit / "plant.aml")["elements"]
-    assert (left["id"], left["qualified_name"], left["type"]) == (
+    (left_arm, right_arm) = platform(unit / "recipe.uml", unit / "plant.aml")["elements"]
+    assert (left_arm["id"], left_arm["qualified_name"], left_arm["type"]) == (
         "k1",
         "ICE::Cell::KukaLeft",
         "Lib::Kuka",
     )
-    assert left["source"] == {"file": "plant.aml", "line": 7, "column": 7}
-    assert left["machines"] == [
+    assert left_arm["source"] == {"file": "plant.aml", "line": 7, "column": 7}
+    assert left_arm["machines"] == [
         {
             "machine": "FourTasks::Plant::Arm1",
             "bound_by": "overlay",
@@ -81,8 +84,12 @@ def test_the_overlay_of_the_documentation_does_what_the_documentation_says(unit)
         }
     ]
     offered = [
-        (one["service"].rpartition(":")[2], one["operation"]["qualified_name"], one["bound_by"])
-        for one in right["services"]
+        (
+            service["service"].rpartition(":")[2],
+            service["operation"]["qualified_name"],
+            service["bound_by"],
+        )
+        for service in right_arm["services"]
     ]
     assert offered == [
         ("Mount", "Roles::Manipulation::Mount", "name"),
@@ -92,32 +99,32 @@ def test_the_overlay_of_the_documentation_does_what_the_documentation_says(unit)
 
 
 def test_machines_and_services_of_the_recipe_are_listed_bound_or_not(unit):
-    made = platform(unit)
-    assert {one["machine"].rpartition(":")[2]: one["element"] for one in made["machines"]} == {
+    document = platform(unit)
+    assert {m["machine"].rpartition(":")[2]: m["element"] for m in document["machines"]} == {
         "Arm1": "k1",
         "Arm2": "k2",
         "Cart": None,
         "Mill1": None,
         "Mill2": None,
     }
-    assert {one["service"].rpartition(":")[2]: one["elements"] for one in made["services"]} == {
+    assert {s["service"].rpartition(":")[2]: s["elements"] for s in document["services"]} == {
         "Mount": ["k1", "k2"],
         "PickPin": ["k1", "k2"],
         "ReadTorque": [],
         "Turn": ["k1", "k2"],
     }
-    assert {tuple(one["recipes"]) for one in made["machines"]} == {
+    assert {tuple(machine["recipes"]) for machine in document["machines"]} == {
         ("FourTasks::Recipes::FourTasks",)
     }
 
 
 def test_unused_elements_of_the_plant_are_listed(unit):
-    found = [(one["id"], one["contents"]) for one in platform(unit)["unused"]]
-    assert found == [("m1", 0), ("o1", 1)]
+    unused = [(element["id"], element["contents"]) for element in platform(unit)["unused"]]
+    assert unused == [("m1", 0), ("o1", 1)]
 
 
 def test_what_is_not_bound_is_told_with_a_suggestion(unit):
-    assert told(compiled(unit)) == [
+    assert list_findings(compile_inputs(unit)) == [
         f"SM624 machine 'FourTasks::Plant::{name}' is bound to no element of the plant"
         for name in ("Mill1", "Mill2", "Cart")
     ]
@@ -137,8 +144,8 @@ def test_an_allocation_in_xmi_may_lead_to_the_plant(unit):
     )
     text = text.replace("</uml:Model>", f"{allocation}</uml:Model>{applied}")
     recipe.write_text(text)
-    bound = {one["id"]: one["machines"] for one in platform(unit)["elements"]}
-    assert [(one["machine"], one["bound_by"]) for one in bound["m1"]] == [
+    machines = {element["id"]: element["machines"] for element in platform(unit)["elements"]}
+    assert [(machine["machine"], machine["bound_by"]) for machine in machines["m1"]] == [
         ("FourTasks::Plant::Mill1", "allocation")
     ]
 
@@ -149,33 +156,33 @@ def test_an_id_on_the_machine_binds_it(unit):
     assert text.count('endpoint="opc.tcp://mill2:4840"') == 1
     end = 'endpoint="opc.tcp://mill2:4840"'
     recipe.write_text(text.replace(end, f'{end} amlId="m1"'))
-    made = platform(unit)
+    document = platform(unit)
     assert [
-        one["bound_by"] for e in made["elements"] if e["id"] == "m1" for one in e["machines"]
+        m["bound_by"] for e in document["elements"] if e["id"] == "m1" for m in e["machines"]
     ] == ["id"]
     recipe.write_text(text.replace(end, f'{end} amlId="gone"'))
     assert (
         "SM628 machine 'FourTasks::Plant::Mill2' has the amlId 'gone', "
         "which no element of the plant has"
-    ) in told(compiled(unit))
+    ) in list_findings(compile_inputs(unit))
 
 
 @pytest.mark.parametrize("alone", ["recipe.uml", "plant.aml"])
 def test_without_the_other_half_there_is_no_file_and_no_finding(unit, alone):
     (unit / "plant.overlay.yaml").unlink()
-    made = compiled(unit / alone)
-    assert made.artefacts == ()
-    assert told(made) == []
+    compilation = compile_inputs(unit / alone)
+    assert compilation.artefacts == ()
+    assert list_findings(compilation) == []
 
 
 def test_the_order_of_the_inputs_does_not_matter(unit):
-    one = compiled(unit / "recipe.uml", unit / "plant.aml").artefacts
-    assert compiled(unit / "plant.aml", unit / "recipe.uml").artefacts == one
+    artefacts = compile_inputs(unit / "recipe.uml", unit / "plant.aml").artefacts
+    assert compile_inputs(unit / "plant.aml", unit / "recipe.uml").artefacts == artefacts
 
 
 def test_the_file_is_traced_to_recipe_and_plant(unit):
-    compilation = compiled(unit)
-    (made,) = compilation.artefacts
-    files = {compilation.graph[id].source for id in made.trace}
+    compilation = compile_inputs(unit)
+    (artefact,) = compilation.artefacts
+    files = {compilation.graph[id].source for id in artefact.trace}
     assert files == {"recipe.uml", "plant.aml", "plant.overlay.yaml"}
-    assert {compilation.graph[id].name for id in made.trace} >= {"Arm1", "KukaLeft", "takePin"}
+    assert {compilation.graph[id].name for id in artefact.trace} >= {"Arm1", "KukaLeft", "takePin"}

@@ -14,7 +14,7 @@ EXAMPLES = Path(__file__).parents[3] / "examples"
 SCHEMA = json.loads(resources.read_text("metamodels", "sysmlc-recipe.schema.json"))
 
 
-def compiled(name: str):
+def compile_example(name: str):
     """The compilation of an example with the back end recipe only."""
     model = EXAMPLES / name / f"{name}.uml"
     return compile_model(Request((model,), backends=tuple(select_backends(["recipe"]))))
@@ -32,7 +32,9 @@ def short(value: object) -> object:
 def content(name: str) -> dict:
     """The only recipe file of an example."""
     (artefact,) = [
-        one for one in compiled(name).list_published() if one.path.startswith("recipes/")
+        artefact
+        for artefact in compile_example(name).list_published()
+        if artefact.path.startswith("recipes/")
     ]
     return json.loads(artefact.text)
 
@@ -60,17 +62,17 @@ def materials(task: dict) -> set[tuple[str, float, str]]:
 
 
 def graph(file: dict, level: str, name: str) -> dict:
-    return next(one for one in file[level] if one["id"] == name)
+    return next(entry for entry in file[level] if entry["id"] == name)
 
 
-def ways(found: dict) -> set[tuple[str, str]]:
-    return {(edge["from"], edge["to"]) for edge in found["edges"]}
+def list_edges(graph: dict) -> set[tuple[str, str]]:
+    return {(edge["from"], edge["to"]) for edge in graph["edges"]}
 
 
 @pytest.mark.parametrize("name", ["lego-recipe", "four-tasks"])
 def test_the_file_is_valid_and_nothing_is_said_against_the_recipe(name):
-    found = [one for one in compiled(name).diagnostics if one.rule.code.startswith("SM6")]
-    assert found == []
+    diagnostics = compile_example(name).diagnostics
+    assert [d for d in diagnostics if d.rule.code.startswith("SM6")] == []
     assert list(Draft202012Validator(SCHEMA).iter_errors(content(name))) == []
 
 
@@ -83,11 +85,11 @@ def test_four_tasks_fork_and_join(four):
 
 
 def test_four_tasks_have_alternatives_with_their_own_durations(four):
-    found = tasks(four)
-    assert equipment(found["t1"]) == {("Mill1",): 12000, ("Mill2",): 15000}
-    assert equipment(found["t2"]) == {("Arm1",): 14000, ("Arm2",): 13500}
-    assert equipment(found["t3"]) == {("Cart", "Mill1"): 25000, ("Cart", "Mill2"): 30000}
-    assert equipment(found["t4"]) == {("Arm2",): None}
+    four_tasks = tasks(four)
+    assert equipment(four_tasks["t1"]) == {("Mill1",): 12000, ("Mill2",): 15000}
+    assert equipment(four_tasks["t2"]) == {("Arm1",): 14000, ("Arm2",): 13500}
+    assert equipment(four_tasks["t3"]) == {("Cart", "Mill1"): 25000, ("Cart", "Mill2"): 30000}
+    assert equipment(four_tasks["t4"]) == {("Arm2",): None}
 
 
 def test_the_pin_stays_in_one_hand(four):
@@ -118,17 +120,17 @@ def test_assemble_goes_before_store(lego):
 
 
 def test_three_pieces_become_a_stack_that_is_stored(lego):
-    found = tasks(lego)
+    lego_tasks = tasks(lego)
     pieces = {(name, 1, "consumed") for name in ("BasePiece", "MiddlePiece", "TopPiece")}
-    assert materials(found["assemble"]) == {*pieces, ("LegoStack", 1, "produced")}
-    assert materials(found["store"]) == {("LegoStack", 1, "consumed")}
+    assert materials(lego_tasks["assemble"]) == {*pieces, ("LegoStack", 1, "produced")}
+    assert materials(lego_tasks["store"]) == {("LegoStack", 1, "consumed")}
 
 
 def test_assemble_has_two_robots_to_choose_from_and_store_needs_two_machines_at_once(lego):
-    found = tasks(lego)
-    assert equipment(found["assemble"]) == {("Robot1",): 70000, ("Robot2",): 72000}
-    assert equipment(found["store"]) == {("Conveyor", "Warehouse"): 18000}
-    assert found["store"]["equipment"][0]["power"] == {"min": 190, "max": 1020}
+    lego_tasks = tasks(lego)
+    assert equipment(lego_tasks["assemble"]) == {("Robot1",): 70000, ("Robot2",): 72000}
+    assert equipment(lego_tasks["store"]) == {("Conveyor", "Warehouse"): 18000}
+    assert lego_tasks["store"]["equipment"][0]["power"] == {"min": 190, "max": 1020}
 
 
 def test_assemble_is_a_retry_loop_inside_a_loop_over_the_pieces(lego):
@@ -143,7 +145,7 @@ def test_assemble_is_a_retry_loop_inside_a_loop_over_the_pieces(lego):
         ("allPlaced?", "nextPiece"): "body",
         ("allPlaced?", "assembled"): "exit",
     }
-    assert {("start", "reservePieces"), ("turn", "place"), ("place", "checkQuality")} <= ways(
+    assert {("start", "reservePieces"), ("turn", "place"), ("place", "checkQuality")} <= list_edges(
         assemble
     )
 
@@ -173,8 +175,8 @@ def test_turn_chooses_a_function_by_actual_and_target_angle(lego):
 
 
 def test_sub_tasks_offer_the_robots_and_stand_in_order(lego):
-    found = tasks(lego)["assemble"]["derived"]["subTasks"]
-    offers = {one["node"]: [m["machines"][0] for m in one["alternatives"]] for one in found}
+    sub_tasks = tasks(lego)["assemble"]["derived"]["subTasks"]
+    offers = {s["node"]: [m["machines"][0] for m in s["alternatives"]] for s in sub_tasks}
     assert offers == {
         "reservePieces": [],
         "pick": ["Robot1", "Robot2"],
@@ -184,17 +186,17 @@ def test_sub_tasks_offer_the_robots_and_stand_in_order(lego):
         "remove": ["Robot1", "Robot2"],
         "reportReject": [],
     }
-    before = {one["node"]: one.get("after", []) for one in found}
+    before = {sub_task["node"]: sub_task.get("after", []) for sub_task in sub_tasks}
     assert before["turn"] == ["pick"]
     assert before["remove"] == ["checkQuality"]
     seen: set[str] = set()
-    for one in found:
-        assert set(one.get("after", ())) <= seen
-        seen.add(one["node"])
+    for sub_task in sub_tasks:
+        assert set(sub_task.get("after", ())) <= seen
+        seen.add(sub_task["node"])
 
 
 def test_services_know_their_opc_ua_calls(lego):
-    services = {one["id"]: one for one in lego["services"]}
+    services = {service["id"]: service for service in lego["services"]}
     assert services["CheckQuality"]["kind"] == "infrastructure"
     assert services["CheckQuality"]["opcua"]["method"] == "ns=3;s=Camera.Inspect"
     calls = {p["machine"]: p["opcua"]["method"] for p in services["Pick"]["providers"]}
@@ -205,7 +207,11 @@ def test_services_know_their_opc_ua_calls(lego):
 def test_the_same_model_as_magicdraw_saves_it_gives_the_same_recipe(name, tmp_path):
     model = tmp_path / f"{name}.xml"
     model.write_bytes(write_xml((EXAMPLES / name / f"{name}.uml").read_bytes()))
-    found = compile_model(Request((model,), backends=tuple(select_backends(["recipe"]))))
-    (artefact,) = [one for one in found.list_published() if one.path.startswith("recipes/")]
+    compilation = compile_model(Request((model,), backends=tuple(select_backends(["recipe"]))))
+    (artefact,) = [
+        artefact
+        for artefact in compilation.list_published()
+        if artefact.path.startswith("recipes/")
+    ]
     theirs, ours = short(json.loads(artefact.text)), short(content(name))
     assert {**theirs, "source": None} == {**ours, "source": None}

@@ -26,8 +26,8 @@ def emit(text: str) -> tuple[dict[str, dict], list[str]]:
     graph, sink, output = parse_text(text), Sink(), Output()
     Recipe().run(graph, Sink())
     BACKEND.emit(graph, output, sink, EmitOptions(inputs=INPUTS))
-    files = {one.path: json.loads(one.text) for one in output.artefacts()}
-    return files, [found.rule.code for found in sink]
+    files = {artefact.path: json.loads(artefact.text) for artefact in output.artefacts()}
+    return files, [diagnostic.rule.code for diagnostic in sink]
 
 
 def recipe_file(text: str) -> dict:
@@ -73,7 +73,7 @@ def test_a_recipe_without_tasks_is_told_and_not_written():
 
 def test_an_opc_ua_call_that_nobody_can_make_is_left_out():
     text = samples.task().replace('tag.object="ns=2;s=Robot"', 'tag.object="Robot"')
-    providers = {one["id"]: one.get("providers") for one in recipe_file(text)["services"]}
+    providers = {s["id"]: s.get("providers") for s in recipe_file(text)["services"]}
     assert "opcua" not in providers["Plant::Grip"][0]
     assert complaints(recipe_file(text)) == []
 
@@ -137,23 +137,23 @@ MUTATIONS = {
 
 def service(content: dict, kind: str) -> dict:
     """First service of a kind."""
-    return next(one for one in content["services"] if one["kind"] == kind)
+    return next(service for service in content["services"] if service["kind"] == kind)
 
 
 def opcua(content: dict) -> dict:
     """First OPC UA call of a provider."""
-    offers = [p for one in content["services"] for p in one.get("providers", ())]
-    return next(one["opcua"] for one in offers if "opcua" in one)
+    offers = [p for service in content["services"] for p in service.get("providers", ())]
+    return next(provider["opcua"] for provider in offers if "opcua" in provider)
 
 
 def node(content: dict, kind: str) -> dict:
     """First node of a kind in the service graph."""
-    return next(one for one in at(content, "serviceGraphs", 0, "nodes") if one["kind"] == kind)
+    return next(node for node in at(content, "serviceGraphs", 0, "nodes") if node["kind"] == kind)
 
 
 def resource(content: dict) -> dict:
     """First resource of a function."""
-    return next(one["resources"][0] for one in content["functions"] if "resources" in one)
+    return next(f["resources"][0] for f in content["functions"] if "resources" in f)
 
 
 @pytest.mark.parametrize("name", MUTATIONS)

@@ -23,12 +23,12 @@ def spoilt(text: str, random: Random) -> str:
     lines = text.split("\n")
     for _ in range(random.randint(1, 3)):
         number = random.randrange(5, len(lines) - 3)
-        line, found = lines[number], list(ATTRIBUTE.finditer(lines[number]))
+        line, attributes = lines[number], list(ATTRIBUTE.finditer(lines[number]))
         choice = random.random()
         if choice < 0.5:
             lines[number] = "" if line.strip().endswith("/>") else line
-        elif choice < 0.8 and found:
-            gone = random.choice(found)
+        elif choice < 0.8 and attributes:
+            gone = random.choice(attributes)
             lines[number] = line[: gone.start()] + line[gone.end() :]
         else:
             value = random.choice(["-1", "0", "99999999", "x"])
@@ -43,7 +43,7 @@ def test_a_spoilt_recipe_gives_a_valid_file_or_none(seed, tmp_path):
     model = tmp_path / f"{name}.uml"
     text = (EXAMPLES / name / f"{name}.uml").read_text(encoding="utf-8")
     model.write_text(spoilt(text, random), encoding="utf-8")
-    found = compile_model(Request((model,), backends=tuple(select_backends(["recipe"]))))
-    for artefact in found.list_published():
+    compilation = compile_model(Request((model,), backends=tuple(select_backends(["recipe"]))))
+    for artefact in compilation.list_published():
         if artefact.path.startswith("recipes/"):
             assert list(SCHEMA.iter_errors(json.loads(artefact.text))) == []

@@ -40,16 +40,16 @@ def relation(stereotype, client, supplier):
     )
 
 
-def emitted(text, templates=None):
+def emit_tables(text, templates=None):
     graph, sink, output = parse_text(text), Sink(), Output()
     pipeline.run(graph, sink, verify_each=True)
     before = len(sink)
     BACKEND.emit(graph, output, sink, EmitOptions(templates))
-    return {one.path: one.text for one in output.artefacts()}, list(sink)[before:]
+    return {artefact.path: artefact.text for artefact in output.artefacts()}, list(sink)[before:]
 
 
 def table(text, name="Plant"):
-    files, _ = emitted(text)
+    files, _ = emit_tables(text)
     rows = list(csv.DictReader(io.StringIO(files[f"requirements/{name}.requirements.csv"])))
     return {row["name"]: row for row in rows}
 
@@ -72,7 +72,7 @@ PLANT_MODEL = (
 
 def test_one_csv_and_one_markdown_for_each_root_with_requirements():
     other = requirement("Else", 'tag.id="E1"').replace("  Class", "Class").replace("\n  ", "\n")
-    files, _ = emitted(PLANT_MODEL + other + 'Package q "Empty"\n')
+    files, _ = emit_tables(PLANT_MODEL + other + 'Package q "Empty"\n')
     assert list(files) == [
         "requirements/Else.requirements.csv",
         "requirements/Else.requirements.md",
@@ -86,12 +86,16 @@ def test_rows_are_in_the_natural_order_of_their_ids():
 
 
 def test_relations_are_read_from_the_requirement():
-    found = table(PLANT_MODEL)
-    assert found["Quiet"]["derived from"] == "R2 No jam"
-    assert found["Quiet"]["verified by"] == found["Quiet"]["refined by"] == "Plant::Test jams"
-    assert found["Quiet"]["traced to"] == "Plant::Gate"
-    assert found["No jam"]["satisfied by"] == "Plant::Gate"
-    assert found["No jam"]["owner"] == "Plant"
+    requirements = table(PLANT_MODEL)
+    assert requirements["Quiet"]["derived from"] == "R2 No jam"
+    assert (
+        requirements["Quiet"]["verified by"]
+        == requirements["Quiet"]["refined by"]
+        == "Plant::Test jams"
+    )
+    assert requirements["Quiet"]["traced to"] == "Plant::Gate"
+    assert requirements["No jam"]["satisfied by"] == "Plant::Gate"
+    assert requirements["No jam"]["owner"] == "Plant"
 
 
 def test_a_copy_has_its_masters_text_and_is_no_trace():
@@ -104,16 +108,16 @@ def test_a_copy_has_its_masters_text_and_is_no_trace():
 
 
 def test_custom_tags_are_columns_and_derived_tags_are_none():
-    found = table(PLANT_MODEL)
-    assert found["Copied"]["risk"] == "high"
-    assert found["Quiet"]["risk"] == ""
-    assert "DerivedFrom" not in found["Copied"]
+    requirements = table(PLANT_MODEL)
+    assert requirements["Copied"]["risk"] == "high"
+    assert requirements["Quiet"]["risk"] == ""
+    assert "DerivedFrom" not in requirements["Copied"]
 
 
 def test_tags_that_lead_to_elements_show_their_names():
     text = 'Package p "Plant"\n' + requirement("Quiet", 'tag.id="R1" tag.owners=["gate","late"]')
-    found = table(text + '  Class gate "Gate"\n')
-    assert found["Quiet"]["owners"] == "Plant::Gate\nlate"
+    requirements = table(text + '  Class gate "Gate"\n')
+    assert requirements["Quiet"]["owners"] == "Plant::Gate\nlate"
 
 
 def test_a_custom_stereotype_names_the_kind_and_what_it_specialises():
@@ -125,14 +129,14 @@ def test_a_custom_stereotype_names_the_kind_and_what_it_specialises():
         '  Stereotype r "Requirement"\n'
     )
     text = 'Package p "Plant"\n' + requirement("Quiet", "", "SafetyRequirement", PLANT)
-    found = table(text + profile)
-    assert found["Quiet"]["kind"] == "SafetyRequirement (functionalRequirement)"
+    requirements = table(text + profile)
+    assert requirements["Quiet"]["kind"] == "SafetyRequirement (functionalRequirement)"
     assert table(PLANT_MODEL)["Gentle"]["kind"] == "performanceRequirement"
     assert table(PLANT_MODEL)["No jam"]["kind"] == ""
 
 
 def test_csv_lines_end_as_rfc_4180_says_and_quotes_are_doubled():
-    files, _ = emitted(PLANT_MODEL)
+    files, _ = emit_tables(PLANT_MODEL)
     text = files["requirements/Plant.requirements.csv"]
     assert text.endswith("\r\n")
     assert '"At most 60 dB | ""A"".\nBy night 50."' in text
@@ -160,7 +164,7 @@ def test_markdown_shows_the_text_as_it_is(text, shown):
 
 
 def test_markdown_has_no_column_without_values():
-    files, _ = emitted('Package p "Plant"\n' + requirement("Quiet", 'tag.id="R1"'))
+    files, _ = emit_tables('Package p "Plant"\n' + requirement("Quiet", 'tag.id="R1"'))
     assert files["requirements/Plant.requirements.md"] == (
         "# Requirements of Plant\n\n"
         "1 requirement; made by sysmlc: change the model, not this file.\n\n"
@@ -177,9 +181,9 @@ def test_html_text_of_magicdraw_is_shown_without_its_marks():
 
 
 def test_the_same_name_twice_gives_two_files():
-    one = requirement("Quiet", 'tag.id="R1"')
-    other = one.replace("quiet", "quiet2")
-    files, _ = emitted(f'Package p "Plant"\n{one}Package q "Plant"\n{other}')
+    first = requirement("Quiet", 'tag.id="R1"')
+    second = first.replace("quiet", "quiet2")
+    files, _ = emit_tables(f'Package p "Plant"\n{first}Package q "Plant"\n{second}')
     assert [path for path in files if path.endswith(".csv")] == [
         "requirements/Plant-2.requirements.csv",
         "requirements/Plant.requirements.csv",
@@ -191,12 +195,12 @@ def test_the_same_name_twice_gives_two_files():
 
 @pytest.mark.parametrize("rule", [UNSATISFIED, UNVERIFIED], ids=lambda r: r.name)
 def test_open_requirements_are_reported(rule):
-    assert rule in [found.rule for found in emitted(rule.read_page().wrong)[1]]
-    assert [found.rule for found in emitted(rule.read_page().right)[1]] == []
+    assert rule in [diagnostic.rule for diagnostic in emit_tables(rule.read_page().wrong)[1]]
+    assert [diagnostic.rule for diagnostic in emit_tables(rule.read_page().right)[1]] == []
 
 
 def open_ones(text):
-    return [(one.rule.name, one.subject.name) for one in emitted(text)[1]]
+    return [(diagnostic.rule.name, diagnostic.subject.name) for diagnostic in emit_tables(text)[1]]
 
 
 def test_a_derived_requirement_answers_its_source_and_parts_their_whole():
@@ -228,15 +232,19 @@ def test_derivations_in_a_circle_do_not_hang():
 
 def test_a_faulty_template_is_reported_and_the_csv_is_written(tmp_path):
     (tmp_path / "requirements.md.j2").write_text(BAD_TEMPLATE.read_page().wrong, encoding="utf-8")
-    files, found = emitted(PLANT_MODEL, tmp_path)
-    assert [one.rule for one in found if one.is_error] == [BAD_TEMPLATE]
+    files, diagnostics = emit_tables(PLANT_MODEL, tmp_path)
+    assert [diagnostic.rule for diagnostic in diagnostics if diagnostic.is_error] == [BAD_TEMPLATE]
     assert list(files) == ["requirements/Plant.requirements.csv"]
     (tmp_path / "requirements.md.j2").write_text(BAD_TEMPLATE.read_page().right, encoding="utf-8")
-    assert emitted(PLANT_MODEL, tmp_path)[0]["requirements/Plant.requirements.md"] == "Plant\n"
+    assert emit_tables(PLANT_MODEL, tmp_path)[0]["requirements/Plant.requirements.md"] == "Plant\n"
 
 
 def test_the_tables_of_an_example(golden):
     example = Path(__file__).parents[3] / "examples/lego-recipe/lego-recipe.uml"
-    made = compile_model(Request((example,), backends=tuple(select_backends(("reqtable",)))))
-    files = {one.path: one.text for one in made.list_published() if "requirements/" in one.path}
+    compilation = compile_model(Request((example,), backends=tuple(select_backends(("reqtable",)))))
+    files = {
+        artefact.path: artefact.text
+        for artefact in compilation.list_published()
+        if "requirements/" in artefact.path
+    }
     golden.check("reqtable/lego", {path.rpartition("/")[2]: files[path] for path in files})

@@ -50,11 +50,11 @@ def test_the_files_for_each_tool_are_read_without_diagnostics(name):
 def test_spot_gets_a_formula_and_the_owners_of_its_variables():
     _, files, _ = emit(GATE, "spot")
     formula = files["contracts/Plant.Gate.spot.ltl"].text
-    part = files["contracts/Plant.Gate.spot.part"].text
-    names = {word for line in part.splitlines() for word in line.split()[1:]}
+    partition = files["contracts/Plant.Gate.spot.part"].text
+    names = {word for line in partition.splitlines() for word in line.split()[1:]}
     propositions = spot.atomic_prop_collect(spot.formula(formula))
     assert names >= {str(proposition) for proposition in propositions}
-    assert [line.split()[0] for line in part.splitlines()] == [".inputs", ".outputs"]
+    assert [line.split()[0] for line in partition.splitlines()] == [".inputs", ".outputs"]
 
 
 @pytest.mark.parametrize(("name", "count"), [("gr1c", 1), ("slugs", 2), ("tlsf", 0), ("spot", 0)])
