@@ -64,7 +64,7 @@ def draw_whole(graph: Graph, activity: Element) -> GraphView:
 class _ActivityDrawing:
     """Builder of the view of one activity.
 
-    ``homes`` maps the id of each possible end of a flow (a node or a pin) to the alias of its node.
+    ``alias_by_end`` maps the id of each node or pin, where flows may end, to the alias of the node.
     """
 
     graph: Graph

@@ -77,7 +77,7 @@ def keywords(graph: Graph, element: Element) -> tuple[str, ...]:
 def _find_role_keyword(graph: Graph, element: Element, stereotypes: tuple[str, ...]) -> str:
     """Return the keyword of the role, or an empty text if an applied stereotype expresses the role.
 
-    In SysML v2 the role is expressed by a keyword of the language, never by a stereotype.
+    In SysML v2 a keyword of the language expresses the role.
     """
     word = _ROLE_WORDS.get(element.role, "")
     if not word:

@@ -215,7 +215,7 @@ def _list_label_ids(graph: Graph, transition: Element) -> list[str]:
 def format_transition(graph: Graph, transition: Element) -> str:
     """Return ``trigger [guard] / effect`` (UML 2.5.1, 14.2.4).
 
-    A protocol transition has ``/ [postcondition]`` instead of effects.
+    A protocol transition also has ``/ [postcondition]``.
     """
     triggers = [format_trigger(graph, item) for item in graph.targets(transition, Edge.TRIGGER)]
     effects = [format_behaviour(item) for item in graph.targets(transition, Edge.EFFECT)]

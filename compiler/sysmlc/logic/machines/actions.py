@@ -48,12 +48,12 @@ SHARED = rule(
 
 
 class Sharing(Struct, frozen=True):
-    """Finds writers other than the state machine of a feature that the machine writes."""
+    """Finds further writers of the features that a state machine writes."""
 
     graph: Graph
     machine: Element
     writers: WriterIndex | None = None
-    """None: it alone is looked at."""
+    """The writers of each feature; None if only the machine itself is considered."""
 
     def find_other_writer(self, feature: Element) -> Element | None:
         """Return a behaviour outside the machine that writes *feature*."""
@@ -113,8 +113,9 @@ RULE_OF_FAULT = {
 
 @dataclass(slots=True)
 class ReadingContext:
-    """State collected while a state machine is read: auxiliary variables, and which features are
-    read and assigned.
+    """State of reading one state machine.
+
+    It collects auxiliary variables, and the features that the machine reads and assigns.
     """
 
     graph: Graph
@@ -124,35 +125,36 @@ class ReadingContext:
     tick_seconds: float
     sharing: Sharing
     auxiliary: dict[str, Variable] = field(default_factory=dict)
-    """Variables beside the properties, by what they stand for."""
+    """Variables that are not properties, such as inputs and timers, by a unique key."""
     read_variables: dict[str, None] = field(default_factory=dict)
     assigned_variables: dict[str, None] = field(default_factory=dict)
     output_names: dict[str, None] = field(default_factory=dict)
 
     def find_symbol(self, name: str) -> Symbol | None:
-        """Return the symbol that *name* stands for in an expression."""
+        """Return the symbol for *name*: a property, an auxiliary variable or a literal."""
         feature = self.context.features.get(name)
         if feature is not None:
             if feature.is_constant and feature.default is not None:
                 return Symbol(f.const(feature.default), feature.domain)
             return Symbol(f.var(feature.variable), feature.domain)
+        # A condition without meaning is replaced by the name of an input, which is resolved here.
         for variable in self.auxiliary.values():
             if variable.name == name:
                 return Symbol(f.var(name), variable.domain)
         return find_literal(self.context, name)
 
     def variable_for(self, key: str, name: str, owner: Owner, domain: Domain, origin: str) -> str:
-        """Return the variable that stands for *key*; create it on first use."""
+        """Return the name of the auxiliary variable with this key; create it on first use."""
         if key not in self.auxiliary:
             self.auxiliary[key] = Variable(self.names.new(name), owner, domain, origin)
         return self.auxiliary[key].name
 
     def input_for(self, key: str, name: str, origin: str) -> str:
-        """Return the name of the Boolean input that stands for *key*."""
+        """Return the name of the Boolean input with this key; create the input on first use."""
         return self.variable_for(key, name, Owner.ENVIRONMENT, BooleanDomain(), origin)
 
     def output_for(self, key: str, name: str, origin: str) -> str:
-        """Return the name of the Boolean output that stands for *key*."""
+        """Return the name of the Boolean output with this key; create the output on first use."""
         output = self.variable_for(key, name, Owner.SYSTEM, BooleanDomain(), origin)
         self.output_names[output] = None
         return output
@@ -190,8 +192,9 @@ def walk_expression(expression: Expression) -> list[Expression]:
 
 
 def read_condition(reading: ReadingContext, text: str, what: str, element: Element) -> Expression:
-    """Return the expression in *text*; replace one without meaning by a Boolean input and report
-    it.
+    """Return the expression in *text*.
+
+    A text that is no valid condition is reported and replaced by a Boolean input.
     """
     try:
         expression = parse_expression(text)
@@ -214,9 +217,7 @@ def _replace_by_input(
     reason: str,
     name: str,
 ) -> Expression:
-    """Report why the condition has no meaning and return the name of the Boolean input that
-    replaces it.
-    """
+    """Report an invalid condition and return the name of the Boolean input that replaces it."""
     variable = reading.input_for(f"condition {text}", text or what, element.id)
     reading.sink.report(
         rule,
@@ -267,7 +268,7 @@ def _read_opaque_effect(reading: ReadingContext, text: str, behaviour: Element) 
 
 
 def _effect_output(reading: ReadingContext, text: str, behaviour: Element) -> str:
-    """Return the output that is true when the effect is done."""
+    """Return the output that reports the effect."""
     return reading.output_for(f"done {text.strip()}", text, behaviour.id)
 
 

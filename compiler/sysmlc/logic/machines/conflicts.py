@@ -1,9 +1,11 @@
 """Transitions that can be enabled in the same step, and the conflicts between them.
 
-Two transitions can be enabled at once if their triggers can occur together and some values satisfy
-both guards. Such a pair is a conflict if it leaves orthogonal regions that assign the same property
-or leave their common state, or if one transition is nested in the source of the other and so takes
-precedence.
+Two transitions can be enabled at once if their triggers can occur in one step and some values
+satisfy both guards. There are three kinds of conflict:
+
+- transitions of orthogonal regions assign the same property;
+- a transition of an orthogonal region leaves the state that contains the regions;
+- a transition is nested in the source of the other, so that it preempts the other.
 """
 
 from collections.abc import Iterator
@@ -31,11 +33,12 @@ from sysmlc.logic.machines.machine import (
 )
 from sysmlc.logic.machines.well_formedness import collect_segments, find_common_state
 
-_LIMIT = 4096
-"""Valuations tried to see whether two guards exclude one another; more count as possible."""
+_MAX_VALUATIONS_OF_PAIR = 4096
+"""Valuations tried to decide whether two guards exclude one another; beyond it, they do not."""
 MAX_VALUATIONS = 2_000_000
-"""Valuations tried for all guards of a machine, about 2 s of work: every transition may have to be
-compared with every other."""
+"""Valuations tried for all guards of a machine, about 2 s of work.
+
+The number of comparisons may be quadratic in the number of transitions."""
 
 
 class TooManyValuationsError(Exception):
@@ -43,7 +46,7 @@ class TooManyValuationsError(Exception):
 
 
 class GuardComparison:
-    """Compares guards of the transitions of one machine, with a bound on the work in all."""
+    """Compares guards of the transitions of one machine, with a bound on the total work."""
 
     def __init__(self, scope: Scope) -> None:
         self._scope = scope
@@ -54,8 +57,8 @@ class GuardComparison:
     def are_compatible(self, left: Transition, right: Transition) -> bool:
         """Return whether some values of the variables satisfy both guards.
 
-        If one comparison has more than ``_LIMIT`` valuations, the answer is yes. Raises
-        TooManyValuationsError beyond the bound for the machine.
+        The answer is yes if the comparison has more than ``_MAX_VALUATIONS_OF_PAIR`` valuations.
+        Raises TooManyValuationsError beyond the bound for the machine.
         """
         left_guard, left_domains = self._read_guard(left)
         right_guard, right_domains = self._read_guard(right)
@@ -64,7 +67,7 @@ class GuardComparison:
             return False
         variables = left_domains | right_domains
         count = domains.count(variables)
-        if count > _LIMIT:
+        if count > _MAX_VALUATIONS_OF_PAIR:
             return True
         self._remaining -= count
         if self._remaining < 0:
@@ -98,7 +101,7 @@ def may_compete(
 def have_common_cause(
     outgoing: tuple[Transition, ...], vertex: Vertex, comparison: GuardComparison
 ) -> bool:
-    """Return whether two of the transitions can be enabled by one and the same occurrence."""
+    """Return whether one occurrence can enable two of the *outgoing* transitions."""
     return any(
         (vertex.kind != "state" or _have_equal_trigger(left, right))
         and comparison.are_compatible(left, right)
@@ -107,7 +110,7 @@ def have_common_cause(
 
 
 def _have_equal_trigger(left_transition: Transition, right_transition: Transition) -> bool:
-    """Return whether both transitions can be triggered by one and the same occurrence."""
+    """Return whether a single occurrence can trigger both transitions."""
     if not left_transition.occurrences or not right_transition.occurrences:
         return not left_transition.occurrences and not right_transition.occurrences
     pairs = [
@@ -119,7 +122,7 @@ def _have_equal_trigger(left_transition: Transition, right_transition: Transitio
 
 
 def can_coincide(left_transition: Transition, right_transition: Transition) -> bool:
-    """Return whether occurrences of both transitions can fall into one step, for one source.
+    """Return whether two transitions with the same source can be triggered in one step.
 
     A completion transition and a triggered transition never compete: the completion goes first.
     """
@@ -133,20 +136,21 @@ def can_coincide(left_transition: Transition, right_transition: Transition) -> b
 
 
 def _can_share_step(left: object, right: object) -> bool:
-    """Return whether two occurrences can fall into one step."""
+    """Return whether two occurrences of triggers can happen in one step."""
     if isinstance(left, OnEvent) and isinstance(right, OnEvent):
         return left.literal is None or right.literal is None or left.literal == right.literal
+    # Both count the steps since their common source was entered.
     if isinstance(left, AfterTicks) and isinstance(right, AfterTicks):
         return left.count == right.count
     return True
 
 
 def can_be_simultaneous(left: Transition, right: Transition) -> bool:
-    """Return whether both transitions can be triggered in one step, for sources that can be
-    active at once.
-    """
+    """Return whether two transitions with different sources can be triggered in one step."""
     if not left.occurrences or not right.occurrences:
         return True
+    # A step has at most one event, but times and changes coincide with any other occurrence. The
+    # sources may have been entered at different times, so that equal counts prove nothing.
     other_occurrences = [
         occurrence
         for occurrence in (*left.occurrences, *right.occurrences)
@@ -216,7 +220,7 @@ def _orthogonal_pairs(machine: Machine) -> Iterator[tuple[Transition, Transition
 
 
 def _common_state_of_sources(machine: Machine, left: Transition, right: Transition) -> str | None:
-    """Return the state in different regions of which all sources of both lie, or None."""
+    """Return the state whose orthogonal regions separate the sources of both, or None."""
     states = [find_common_state(machine, a, b) for a in left.sources for b in right.sources]
     return None if None in states else states[0]
 
@@ -224,8 +228,9 @@ def _common_state_of_sources(machine: Machine, left: Transition, right: Transiti
 def _report_races(
     graph: Graph, machine: Machine, comparison: GuardComparison, sink: Sink
 ) -> Iterator[str]:
-    """Report pairs that can assign one property in one step. Yield the ids of the first
-    transitions.
+    """Report pairs of transitions that can assign the same property in one step.
+
+    Yield the id of the first transition of each pair.
     """
     assigned = {
         transition.id: _list_assigned(machine, transition)
@@ -240,9 +245,7 @@ def _report_races(
 
 
 def _list_assigned(machine: Machine, transition: Transition) -> dict[str, None]:
-    """Return the properties that the compound transition may assign; the result may contain too
-    many.
-    """
+    """Return an overapproximation of the properties that the compound transition assigns."""
     segments = collect_segments(machine, transition)
     actions = [action for segment in segments for action in segment.effect]
     regions = {machine.find_main_region(segment) for segment in segments}
@@ -269,7 +272,8 @@ def _report_crossings(
     graph: Graph, machine: Machine, comparison: GuardComparison, sink: Sink
 ) -> Iterator[str]:
     """Report exits from an orthogonal state that compete with a transition in another region.
-    Yield their ids.
+
+    Yield the ids of the exits.
     """
     for left, right, state in _orthogonal_pairs(machine):
         for leaver, stayer in ((left, right), (right, left)):
@@ -311,9 +315,7 @@ OVERRIDDEN = rule(
 def report_lost_events(
     graph: Graph, machine: Machine, comparison: GuardComparison, sink: Sink
 ) -> None:
-    """Report each transition whose event is lost if an inner transition is taken in the same
-    step.
-    """
+    """Report each transition whose event is lost when an inner transition preempts it."""
     for outer in machine.list_transitions():
         inner = list(_find_preempting(machine, outer, comparison))
         if inner:

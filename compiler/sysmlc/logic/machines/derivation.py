@@ -1,7 +1,7 @@
 """Contracts of state machines, derived from the diagram.
 
-``interpreter`` defines what a step is; each conjunct states one fact about it. The reaction to a
-step becomes visible in the next one, so guarantees prime the variables of the system.
+Each conjunct states one fact about a step, as ``interpreter`` defines it. The reaction to a step
+becomes visible in the next step, so guarantees prime the variables of the system.
 """
 
 from collections.abc import Callable, Iterator
@@ -41,9 +41,7 @@ _Touches = Callable[[Path, str], bool]
 
 
 def derive_contract(graph: Graph, machine: Machine, component: str, sink: Sink) -> Contract | None:
-    """Return the contract of a state machine, or None if it would be too large, which is
-    reported.
-    """
+    """Return the contract of a state machine; report and return None if it would be too large."""
     exploration = explore_machine(graph, machine, sink)
     if exploration is None:
         return None
@@ -67,8 +65,9 @@ def derive_contract(graph: Graph, machine: Machine, component: str, sink: Sink) 
 
 
 def _derive_start(exploration: Exploration) -> Iterator[Conjunct]:
-    """Yield the initial conditions: facts common to all initial paths one by one, then their
-    alternatives.
+    """Yield the initial conditions.
+
+    Each fact that all initial paths share is one conjunct; a disjunction of the others follows.
     """
     alternatives = [_initial_facts(exploration, path) for path in exploration.starts]
     if not alternatives:
@@ -93,7 +92,7 @@ def _derive_start(exploration: Exploration) -> Iterator[Conjunct]:
 def _derive_start_alternatives(
     exploration: Exploration, alternatives: list[dict[str, Formula]]
 ) -> Iterator[Conjunct]:
-    """Yield the disjunction over the initial paths of the facts in which they differ."""
+    """Yield a disjunction over the initial paths of the facts in which these paths differ."""
     differing = [
         name
         for name in alternatives[0]
@@ -109,7 +108,7 @@ def _derive_start_alternatives(
 
 
 def _initial_facts(exploration: Exploration, path: Path) -> dict[str, Formula]:
-    """Return, by variable, what holds in the first step on one initial path."""
+    """Return the formula about each variable in the first step of one initial path."""
     machine = exploration.machine
     facts: dict[str, Formula] = {}
     for region in machine.regions.values():
@@ -158,7 +157,7 @@ def _origin_of(exploration: Exploration, name: str) -> str:
 
 
 def _derive_transition(exploration: Exploration, move: Move) -> Iterator[Conjunct]:
-    """Yield one conjunct for each path of a transition, and one that it takes some path."""
+    """Yield a conjunct for the effects of each path, and one that some path is taken."""
     origin = element_id(move.transition.id)
     for path in move.paths:
         choices = [
@@ -174,6 +173,8 @@ def _derive_transition(exploration: Exploration, move: Move) -> Iterator[Conjunc
                 exploration.machine, move.transition, path, branch, preempting
             )
             yield Conjunct(formula, Class.SAFETY, origin, text)
+    # The conjuncts above apply only if a choice variable names their branch. This conjunct excludes
+    # a step that names no branch and therefore has no effect.
     if any(list(_choices_on_path(exploration, move, path)) for path in move.paths):
         branches = [
             f.both(
@@ -200,7 +201,7 @@ def _choices_on_path(exploration: Exploration, move: Move, path: Path) -> Iterat
 
 
 def _effect_formulas(exploration: Exploration, path: Path) -> Iterator[Formula]:
-    """Yield what holds in the next step when the path is taken."""
+    """Yield the formulas about the next step if the path is taken."""
     for variable, literal in path.entered.items():
         yield f.prime(f.eq(f.var(variable), Const(literal)))
     for name, value in path.values.items():
@@ -210,12 +211,14 @@ def _effect_formulas(exploration: Exploration, path: Path) -> Iterator[Formula]:
 
 
 def _derive_choices(exploration: Exploration) -> Iterator[Conjunct]:
-    """Yield that a state with competing transitions takes one of those that are enabled."""
+    """Yield, for each state with competing transitions, that an enabled transition is taken."""
     machine = exploration.machine
     for state in machine.list_states():
         if not state.pick:
             continue
         moves = [move for move in exploration.moves if move.transition.source == state.id]
+        # ``fires`` contains the primed choice variable. As a premise it would make the conjunct
+        # trivially true, so only its unprimed part is used.
         eligibility = [
             f.both(*(conjunct for conjunct in _conjuncts(move.fires) if not _has_primes(conjunct)))
             for move in moves
@@ -251,9 +254,7 @@ def _derive_frames(exploration: Exploration) -> Iterator[Conjunct]:
 
 
 def _derive_frame(exploration: Exploration, name: str, touches: _Touches) -> Conjunct:
-    """Return the frame condition of a variable: it keeps its value, or its neutral value, unless
-    a move changes it.
-    """
+    """Return the frame condition of a variable: what it equals unless a move changes it."""
     changes = [
         change
         for move in exploration.moves
@@ -271,7 +272,10 @@ def _derive_frame(exploration: Exploration, name: str, touches: _Touches) -> Con
 
 
 def _frame_formula(exploration: Exploration, name: str) -> Formula:
-    """Return what holds in the next step if no move changes the variable."""
+    """Return the formula about the next step if no move changes the variable.
+
+    An output is then false and a choice variable "none"; other variables do not change.
+    """
     machine = exploration.machine
     if name in machine.outputs:
         return f.negate(f.prime(f.var(name)))
@@ -297,13 +301,16 @@ def _change_conditions(
 
 
 def _derive_clocks(exploration: Exploration) -> Iterator[Conjunct]:
-    """Yield the behaviour of the timers: count while the state stays active, stop at the bound,
-    else 0.
+    """Yield the conjuncts about timers.
+
+    A timer counts while its state stays active, up to its bound, and else is 0.
     """
     for state in exploration.machine.list_states():
         if not state.timer:
             continue
         clock, stay = f.var(state.timer), _stay_condition(exploration, state)
+        # The bound is the largest time that a transition of the state waits for. Counting further
+        # would add states to the contract that no transition distinguishes.
         bound = exploration.domains[state.timer]
         assert isinstance(bound, IntegerDomain)
         is_below = f.compare(Op.LT, clock, Const(bound.high))
@@ -321,12 +328,12 @@ def _derive_clocks(exploration: Exploration) -> Iterator[Conjunct]:
 
 
 def _stay_condition(exploration: Exploration, state: Vertex) -> Formula:
-    """Return the condition that a state is active and not left in this step."""
+    """Return the condition that a state is active and the step does not leave it."""
     exits = [
         change
         for move in exploration.moves
         for change in _change_conditions(
-            exploration, move, state.id, lambda path, id: id in path.left
+            exploration, move, state.id, lambda path, id: id in path.left_states
         )
     ]
     formula = f.both(
@@ -356,7 +363,7 @@ def _derive_memories(exploration: Exploration) -> Iterator[Conjunct]:
 
 
 def _derive_history(exploration: Exploration, region: Region) -> Iterator[Conjunct]:
-    """Yield how the variable behind a history pseudostate is updated and kept."""
+    """Yield the update and the frame condition of the memory of a history pseudostate."""
     origin, next_memory = _origin_of(exploration, region.memory), f.prime(f.var(region.memory))
     is_inactive = f.eq(f.var(region.variable), Const(INACTIVE))
     state = exploration.machine.vertices[region.state].literal
@@ -369,7 +376,7 @@ def _derive_history(exploration: Exploration, region: Region) -> Iterator[Conjun
 
 
 def _derive_assumptions(exploration: Exploration) -> Iterator[Conjunct]:
-    """Yield that each do behaviour ends again and again."""
+    """Yield the fairness assumption that each running do behaviour ends eventually."""
     for state in exploration.machine.list_states():
         if state.done:
             formula = f.either(f.negate(f.var(state.do)), f.var(state.done))

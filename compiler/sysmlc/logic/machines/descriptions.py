@@ -28,7 +28,7 @@ INITIAL_ALTERNATIVES = "The initial transition is taken on one of the ways that 
 
 
 def name_transition(transition: Transition) -> str:
-    """Return the transition as diagnostics name it."""
+    """Return the name of the transition in diagnostics."""
     return f"transition '{transition.words}'"
 
 
@@ -124,7 +124,7 @@ def describe_frame(machine: Machine, name: str) -> str:
 
 
 def describe_memory(name: str, truth: Formula) -> str:
-    """Describe that a memory stores the truth of a condition in the step before."""
+    """Describe a memory: it stores whether a condition was true in the previous step."""
     return f"'{name}' says whether {print_formula(truth)} held in the step before."
 
 

@@ -108,9 +108,7 @@ def run_trace(
     inputs: Sequence[Mapping[str, Literal]],
     choose: Callable[[list[Valuation]], Valuation] = lambda options: options[0],
 ) -> list[Valuation]:
-    """Return one trace over the inputs; *choose* selects among the steps that the diagram
-    allows.
-    """
+    """Return one trace over the inputs; *choose* selects one of the possible next steps."""
     trace = [choose(initial_steps(machine, inputs[0]))] if inputs else []
     for following in inputs[1:]:
         trace.append(choose(next_steps(machine, trace[-1], following)))
@@ -152,6 +150,8 @@ def _complete_valuation(
                 0 if is_first else _count_ticks(machine, now, after, reaction, state)
             )
     for name, condition in machine.memories.items():
+        # The first step has no previous step, and a condition that is true from the start does
+        # not rise.
         after[name] = bool(evaluate_expression(machine, condition, after if is_first else now))
     for region in machine.regions.values():
         if region.memory:
@@ -167,7 +167,7 @@ def _count_ticks(
     state: Vertex,
 ) -> int:
     """Return the value of the timer of *state* after the reaction."""
-    has_stayed = is_active(machine, now, state.id) and state.id not in reaction.left
+    has_stayed = is_active(machine, now, state.id) and state.id not in reaction.left_states
     if not has_stayed or not is_active(machine, after, state.id):
         return 0
     domain = machine.find_variable(state.timer).domain
@@ -186,8 +186,9 @@ def _drop_duplicates(valuations: list[Valuation]) -> list[Valuation]:
 
 
 def _list_reactions(machine: Machine, now: Mapping[str, Literal]) -> list[Reaction]:
-    """Return the combinations of reactions of all active states; orthogonal regions react
-    together.
+    """Return all combinations of the reactions of active states.
+
+    Orthogonal regions react in the same step, so each combination has one reaction of each.
     """
     enabled = {
         state.id: options
@@ -197,6 +198,7 @@ def _list_reactions(machine: Machine, now: Mapping[str, Literal]) -> list[Reacti
         if options
     }
     _apply_joins(machine, now, enabled)
+    # Inner transitions go before outer ones (UML 2.5.1, 14.2.3.9).
     sources = [
         source
         for source in enabled
@@ -243,12 +245,14 @@ def _apply_joins(
 
 
 def _merge_reactions(before: Mapping[str, Literal], left: Reaction, right: Reaction) -> Reaction:
+    # No variable changes in both: a machine whose orthogonal regions assign the same property is
+    # not read (SM426).
     changed = {name: value for name, value in right.store.items() if value != before[name]}
     return Reaction(
         {**left.store, **changed},
         left.raised | right.raised,
         {**left.picked, **right.picked},
-        left.left | right.left,
+        left.left_states | right.left_states,
     )
 
 
@@ -296,6 +300,7 @@ def _has_occurrence(
             case OnEvent(literal):
                 happens = now["event"] == literal
             case AfterTicks(count):
+                # The step that takes the transition is the last tick.
                 happens = now[state.timer] == count - 1
             case OnRise(memory, condition):
                 happens = bool(evaluate_expression(machine, condition, now)) and not now[memory]

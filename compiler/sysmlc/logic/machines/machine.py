@@ -1,7 +1,7 @@
 """A state machine as plain values, the common input of the derivation and the interpreter.
 
-The values describe the diagram and name the variables of the contract. What happens in a step is
-defined by ``interpreter``.
+The values describe the diagram and name the variables of the contract. ``interpreter`` defines the
+meaning of a step.
 """
 
 from msgspec import Struct, field
@@ -12,17 +12,19 @@ from sysmlc.logic.expressions.expression import Expression
 from sysmlc.logic.formula import Literal
 
 NO_EVENT = "none"
-"""Literal of ``event`` when nothing happens, and of a choice that was not made."""
+"""Literal of ``event`` in a step without event, and of a choice variable without choice."""
 INACTIVE = "inactive"
-"""Literal of an inner region whose state is not active."""
+"""Literal of the variable of an inner region while its owner, a state, is inactive."""
 HISTORIES = ("shallow-history", "deep-history")
 _SUBMACHINE_SEPARATOR = "\x1f"
-"""Between the id of a submachine state and ids of what it has of its submachine."""
+"""Separates the id of a submachine state from the id of an element of the submachine."""
 
 
 def submachine_id(state: str, id: str) -> str:
-    """Return the id of an element of a submachine inside the state *state* that uses the
-    submachine.
+    """Return the id of the copy of element *id* in the submachine state *state*.
+
+    Each submachine state has its own copy of the elements of its submachine. An empty *state*
+    means the machine itself.
     """
     return f"{state}{_SUBMACHINE_SEPARATOR}{id}" if state else id
 
@@ -41,7 +43,7 @@ class Assign(Struct, frozen=True):
 
 
 class Raise(Struct, frozen=True):
-    """An action without meaning in the model, shown as an output that is true when it is done."""
+    """An action other than an assignment, represented by an output that is true when it is done."""
 
     output: str
     origin: str
@@ -63,8 +65,9 @@ class AfterTicks(Struct, frozen=True):
 
 
 class OnRise(Struct, frozen=True):
-    """A condition is true and was false in the step before; ``memory`` is the variable that stores
-    its last value.
+    """A condition is true and was false in the previous step.
+
+    The variable ``memory`` stores the previous truth of the condition.
     """
 
     memory: str
@@ -72,7 +75,7 @@ class OnRise(Struct, frozen=True):
 
 
 class OnInput(Struct, frozen=True):
-    """An occurrence that only the environment knows, as a Boolean input."""
+    """An occurrence that the environment reports by a Boolean input."""
 
     variable: str
 
@@ -81,8 +84,9 @@ Occurrence = OnEvent | AfterTicks | OnRise | OnInput
 
 
 class Transition(Struct, frozen=True):
-    """A transition; one without occurrences that leaves a state is a completion transition.
+    """A transition; without occurrences, a transition from a state is a completion transition.
 
+    ``literal`` is its value of the choice variable, ``words`` its description for diagnostics.
     ``join_partners`` are the other transitions that lead to the same join. All of them are taken
     together, when all their sources are complete.
     """
@@ -142,7 +146,7 @@ class Region(Struct, frozen=True):
     id: str
     variable: str
     state: str
-    """The state that owns it, or empty for a region of the machine."""
+    """The state that owns the region; empty for a region of the machine."""
     initial: str
     vertices: tuple[str, ...]
     memory: str = ""
@@ -160,7 +164,7 @@ class Machine(Struct, frozen=True):
     top: tuple[str, ...]
     scope: Scope
     initial: dict[str, Literal] = field(default_factory=dict)
-    """Initial values of the properties that the machine assigns, where they have one."""
+    """Default values of the assigned properties; a property without default is not in it."""
     outputs: tuple[str, ...] = ()
     assigned: tuple[str, ...] = ()
     memories: dict[str, Expression] = field(default_factory=dict)
@@ -170,7 +174,7 @@ class Machine(Struct, frozen=True):
         return next(variable for variable in self.variables if variable.name == name)
 
     def list_states(self) -> list[Vertex]:
-        """List all states in order."""
+        """List all states in the order of the model."""
         return [vertex for vertex in self.vertices.values() if vertex.kind == "state"]
 
     def list_transitions(self) -> list[Transition]:
@@ -240,6 +244,7 @@ class Machine(Struct, frozen=True):
             self.list_enclosing_regions(transition.source),
             self.list_enclosing_regions(transition.target),
         )
+        # Transitions from an entry point stay inside the state, whose border is already crossed.
         if start.kind == "entry-point" and start.border:
             border_regions = self.vertices[start.border].regions
             return next((region for region in target_regions if region in border_regions), None)

@@ -2,7 +2,7 @@
 
 A transition is enabled by its occurrences, its guard, and a feasible path through pseudostates.
 Inner transitions go before outer ones, and completion before triggers. If several transitions of a
-state are enabled, its choice variable says which one is taken.
+state are enabled, its choice variable names the transition that is taken.
 """
 
 from collections.abc import Iterator, Mapping
@@ -64,8 +64,10 @@ TOO_LARGE = rule(
 
 
 class Move(Struct, frozen=True):
-    """A transition with its paths and the condition under which it is taken; ``before`` are the
-    moves that preempt it.
+    """A transition with its paths and conditions.
+
+    ``enabled`` is the condition that the transition is enabled. ``fires`` is the condition that it
+    is taken: it is enabled, not preempted, and chosen.
     """
 
     transition: Transition
@@ -73,7 +75,7 @@ class Move(Struct, frozen=True):
     enabled: Formula
     fires: Formula = f.FALSE
     before: tuple["Move", ...] = ()
-    """What goes first where both are enabled."""
+    """The moves that preempt this move when both are enabled."""
 
 
 class Exploration(Struct, frozen=True):
@@ -86,9 +88,7 @@ class Exploration(Struct, frozen=True):
 
 
 def explore_machine(graph: Graph, machine: Machine, sink: Sink) -> Exploration | None:
-    """Explore all transitions; return None, after reporting it, if a transition has too many
-    paths.
-    """
+    """Explore all transitions; report a transition with too many paths and return None."""
     domains = {transition.name: transition.domain for transition in machine.variables}
     explorer = PathExplorer(machine, domains)
     moves: list[Move] = []
@@ -129,7 +129,6 @@ def _enable_joins(machine: Machine, domains: Mapping[str, Domain], moves: list[M
     if not any(move.transition.join_partners for move in moves):
         return moves
     moves_by_id = {move.transition.id: move for move in moves}
-    # Inner joins first: the condition of an outer join negates theirs.
     joins = [move for move in moves if move.transition.join_partners]
     for move in sorted(
         joins,
@@ -159,8 +158,8 @@ def _leaves_inner_state(machine: Machine, inner_move: Move, outer_move: Move) ->
     )
 
 
-def _give_up(graph: Graph, id: str, named: str, sink: Sink) -> None:
-    sink.report(TOO_LARGE, graph.subject(graph[element_id(id)]), transition=named, limit=MAX_PATHS)
+def _give_up(graph: Graph, id: str, name: str, sink: Sink) -> None:
+    sink.report(TOO_LARGE, graph.subject(graph[element_id(id)]), transition=name, limit=MAX_PATHS)
 
 
 def _explore_starts(
@@ -192,9 +191,7 @@ def _list_read_variables(path: Path) -> Iterator[str]:
 def _enabling_condition(
     machine: Machine, domains: Mapping[str, Domain], transition: Transition, paths: list[Path]
 ) -> Formula:
-    """Return the condition that the sources are active, a trigger occurs, and a path is
-    feasible.
-    """
+    """Return the condition that all sources are active, a trigger occurs and a path is feasible."""
     occurs = _occurrence_condition(machine, transition)
     path_condition = _path_condition(machine, domains, transition, paths)
     active_sources = (is_active_formula(machine, source) for source in transition.sources)
@@ -204,7 +201,10 @@ def _enabling_condition(
 def _path_condition(
     machine: Machine, domains: Mapping[str, Domain], transition: Transition, paths: list[Path]
 ) -> Formula:
-    """Return the condition that some path is feasible; the guard alone if it implies that."""
+    """Return the condition that some path is feasible.
+
+    It is the guard alone if the guard implies that some path is feasible.
+    """
     guard = (
         f.TRUE if transition.guard is None else elaborate_condition(transition.guard, machine.scope)
     )
@@ -231,8 +231,9 @@ def _occurrence_condition(machine: Machine, transition: Transition) -> Formula:
 
 
 def _completion_condition(machine: Machine, state: Vertex) -> Formula:
-    """Return the condition that a state is complete: do behaviour ended, inner regions in final
-    states.
+    """Return the condition that the state is complete.
+
+    Its do behaviour has ended and its regions are in final states (UML 2.5.1, 14.2.3.8.3).
     """
     end = f.var(state.done) if state.done else f.TRUE
     inner = []
@@ -259,9 +260,7 @@ def _trigger_condition(machine: Machine, state: Vertex, occurrence: Occurrence) 
 
 
 def _firing_condition(machine: Machine, move: Move, moves: list[Move]) -> Formula:
-    """Return the condition that the move is enabled, not preempted, and chosen among its
-    competitors.
-    """
+    """Return the condition that the move is enabled, not preempted, and chosen by its source."""
     source = machine.vertices[move.transition.source]
     choice = is_chosen_formula(source.pick, move.transition.literal) if source.pick else f.TRUE
     return f.both(_eligibility_condition(machine, move, moves), choice)
@@ -274,8 +273,9 @@ def _eligibility_condition(machine: Machine, move: Move, moves: list[Move]) -> F
 
 
 def _find_preempting(machine: Machine, move: Move, moves: list[Move]) -> Iterator[Move]:
-    """Yield the moves that preempt this one: of inner states, and the completion of the same
-    state.
+    """Yield the moves that preempt *move*.
+
+    These are moves of states inside its sources, and completions of its source.
     """
     transition = move.transition
     for other in moves:
@@ -295,9 +295,7 @@ def _yields_to_completion(transition: Transition, other: Transition) -> bool:
 
 
 def is_chosen_formula(pick: str, literal: str) -> Formula:
-    """Return the formula that a choice was made in favour of a transition; it becomes visible in
-    the next step.
-    """
+    """Return the formula that the choice variable *pick* names a transition in the next step."""
     return f.prime(f.eq(f.var(pick), Const(literal)))
 
 

@@ -1,7 +1,8 @@
 """Symbolic execution of the transitions of a state machine.
 
-A path is one way that a transition can take through choices, saturation and the inner states that
-it leaves. Its values are formulas over the step before.
+A transition has several paths if it leads through choices, leaves inner states with different exit
+behaviours, or assigns values that may saturate. The values of a path are formulas over the previous
+step. Paths are executed transition by transition (decision 27).
 """
 
 from collections.abc import Iterator, Mapping
@@ -47,9 +48,7 @@ class PathExplorer(Struct, frozen=True):
         return self._drop_infeasible(self._start_open_regions(paths))
 
     def explore_start(self, values: Mapping[str, Formula]) -> list[Path]:
-        """Return the feasible paths into the initial states; *values* are the initial values of
-        properties.
-        """
+        """Return the feasible paths into the initial states; properties start with *values*."""
         paths = [Path(values=values, config=self._inactive_regions())]
         for region in self.machine.top:
             paths = self._start_open_regions(
@@ -62,7 +61,7 @@ class PathExplorer(Struct, frozen=True):
         return {region.variable: INACTIVE for region in self.machine.regions.values()}
 
     def _known_configuration(self, sources: tuple[str, ...]) -> dict[str, str]:
-        """Return the literals of the regions around the sources while these are active."""
+        """Return the literals of regions that follow from the fact that the sources are active."""
         states = [
             state
             for source in sources
@@ -100,17 +99,20 @@ class PathExplorer(Struct, frozen=True):
         source = self.machine.vertices[transition.source]
         # A choice is dynamic (UML 2.5.1, 14.2.3.7): guards behind it read the values reached there.
         if source.kind == "choice":
-            path = replace(path, seen=path.values)
+            path = replace(path, guard_values=path.values)
         if transition.guard is not None:
-            truth = substitute(elaborate_condition(transition.guard, self.machine.scope), path.seen)
+            truth = substitute(
+                elaborate_condition(transition.guard, self.machine.scope), path.guard_values
+            )
             path = replace(path, branch=f.both(path.branch, truth))
         if source.pick:
             path = replace(path, picked={**path.picked, source.pick: transition.literal})
         return path
 
     def _arrive(self, path: Path, id: str) -> list[Path]:
-        """Return the paths after reaching the vertex, through outgoing transitions of a
-        pseudostate.
+        """Return the paths after the vertex is reached.
+
+        From a pseudostate, they continue along its outgoing transitions.
         """
         vertex, following = self.machine.vertices[id], self.machine.outgoing.get(id, ())
         if vertex.is_stable:
@@ -154,9 +156,7 @@ class PathExplorer(Struct, frozen=True):
     def _split_assignment(
         self, path: Path, action: Assign, domain: Domain
     ) -> Iterator[tuple[Formula, Formula, bool]]:
-        """Yield the values that an assignment can give, each with its condition and whether it
-        was clamped.
-        """
+        """Yield the cases of an assignment: condition, value, and whether the value was clamped."""
         result = elaborate_value(action.value, self.machine.scope, domain)
         for guarded_case in result.cases:
             case = substitute(guarded_case.condition, path.values)
@@ -182,14 +182,17 @@ class PathExplorer(Struct, frozen=True):
         if literal is not None:
             candidates = [state for state in candidates if state.literal == literal]
             return self._leave_state(path, region, candidates[0]) if candidates else [path]
-        busy = [state for state in candidates if self._does_on_exit(state)]
+        # States without exit behaviours share one path, because leaving them has the same effects.
+        busy = [state for state in candidates if self._has_exit_behaviour(state)]
         paths: list[Path] = []
         for state in busy:
             case = f.both(path.case, f.eq(f.var(variable), Const(state.literal)))
             paths += self._leave_state(replace(path, case=case), region, state)
         conditions = [f.compare(Op.NE, f.var(variable), Const(state.literal)) for state in busy]
         other = replace(
-            path, case=f.both(path.case, *conditions), left=self._states_left(path, candidates)
+            path,
+            case=f.both(path.case, *conditions),
+            left_states=self._states_left(path, candidates),
         )
         return [*paths, set_region(other, variable, INACTIVE, self._inner_variables(region))]
 
@@ -206,7 +209,7 @@ class PathExplorer(Struct, frozen=True):
             for inner_path in paths
         ]
 
-    def _does_on_exit(self, state: Vertex) -> bool:
+    def _has_exit_behaviour(self, state: Vertex) -> bool:
         """Return whether the state, or a state inside it, has an exit behaviour."""
         inner = [
             vertex
@@ -223,7 +226,7 @@ class PathExplorer(Struct, frozen=True):
             for inner in self.machine.list_states()
             if inner is state or self.machine.contains(state.id, inner.id)
         ]
-        return (*path.left, *ids)
+        return (*path.left_states, *ids)
 
     def _inner_variables(self, region: str) -> list[str]:
         """List the variables of the regions below *region*."""
@@ -272,7 +275,7 @@ class PathExplorer(Struct, frozen=True):
         return self._run_actions(opened, state.entry)
 
     def _start_open_regions(self, paths: list[Path]) -> list[Path]:
-        """Start the regions of entered states that no path has entered, innermost states first."""
+        """Start the inactive regions of the entered states, innermost states first."""
         filled: list[Path] = []
         for path in paths:
             region = self._find_open_region(path)
@@ -291,7 +294,7 @@ class PathExplorer(Struct, frozen=True):
 
     def _start_region(self, path: Path, region: str) -> list[Path]:
         """Start a region with its initial transition."""
-        started = replace(path, seen=path.values)
+        started = replace(path, guard_values=path.values)
         outgoing = self.machine.outgoing[self.machine.regions[region].initial]
         return [after for transition in outgoing for after in self._follow(started, transition)]
 
@@ -314,6 +317,7 @@ class PathExplorer(Struct, frozen=True):
             for after in self._reenter(add_case(path, case), state, is_deep)
             if case != f.FALSE
         ]
+        # A region that ended in a final state starts again, so that only states are restored.
         conditions = (
             f.negate(self._was_last_active(path, history.region, state)) for state in states
         )

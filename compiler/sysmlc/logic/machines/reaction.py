@@ -76,6 +76,7 @@ def _evaluate_name(machine: Machine, name: Name | Member, store: Mapping[str, Li
 def _divide(left: int, right: int) -> int:
     if right == 0:
         return 0
+    # Python's // rounds down; contracts divide towards zero.
     sign = 1 if (left < 0) == (right < 0) else -1
     return sign * (abs(left) // abs(right))
 
@@ -100,17 +101,15 @@ _OPERATIONS: dict[str, Callable[..., Literal]] = {
 
 
 class Reaction(Struct, frozen=True):
-    """A reaction in progress; ``store`` holds the current values, those of region variables
-    included.
-    """
+    """A reaction in progress; ``store`` has the current values, including region variables."""
 
     store: Mapping[str, Literal]
     raised: frozenset[str] = frozenset()
     picked: Mapping[str, str] = field(default_factory=dict)
-    left: frozenset[str] = frozenset()
+    left_states: frozenset[str] = frozenset()
     opened: tuple[str, ...] = ()
-    """States that were entered and may have regions that nothing has started yet."""
-    seen: Mapping[str, Literal] = field(default_factory=dict)
+    """Entered states, outermost first; some of their regions may not have started yet."""
+    guard_values: Mapping[str, Literal] = field(default_factory=dict)
     """The values that guards read."""
 
     def with_value(self, name: str, value: Literal) -> "Reaction":
@@ -125,10 +124,11 @@ class Reaction(Struct, frozen=True):
 def take_transition(
     machine: Machine, now: Mapping[str, Literal], first: Transition
 ) -> list[Reaction]:
-    """Return all ways to take a transition that leaves a state; none if a guard on the path is
-    false.
+    """Return the possible reactions of a transition that leaves a state.
+
+    There are none if a guard is false, and several if the path leads through open choices.
     """
-    start = replace(Reaction(now), seen=now)
+    start = replace(Reaction(now), guard_values=now)
     runs = _follow(machine, start, now, first)
     return [after for run in runs for after in start_open_regions(machine, run, now)]
 
@@ -136,17 +136,17 @@ def take_transition(
 def _follow(
     machine: Machine, run: Reaction, past: Mapping[str, Literal] | None, transition: Transition
 ) -> list[Reaction]:
-    """Return the ways to take a transition and all that follow through pseudostates.
+    """Return the reactions after a transition and the transitions behind its pseudostates.
 
-    There is none if a guard is false. *past* is the valuation in which the reaction began, None at
-    the start of the machine.
+    There is none if a guard is false. *past* is the valuation in which the reaction began, or None
+    at the start of the machine.
     """
     source = machine.vertices[transition.source]
     # A choice is dynamic (UML 2.5.1, 14.2.3.7): guards behind it read the values reached there.
     if source.kind == "choice":
-        run = replace(run, seen=run.store)
+        run = replace(run, guard_values=run.store)
     if transition.guard is not None and not evaluate_expression(
-        machine, transition.guard, run.seen
+        machine, transition.guard, run.guard_values
     ):
         return []
     if source.pick:
@@ -191,7 +191,7 @@ def _leave_region(machine: Machine, run: Reaction, region: str) -> Reaction:
             run = _leave_region(machine, run, inner)
         run = _run_actions(machine, run, vertex.exit)
         opened = tuple(id for id in run.opened if id != vertex.id)
-        run = replace(run, left=run.left | {vertex.id}, opened=opened)
+        run = replace(run, left_states=run.left_states | {vertex.id}, opened=opened)
     return run.with_value(machine.regions[region].variable, INACTIVE)
 
 
@@ -220,7 +220,7 @@ def _enter_state(machine: Machine, run: Reaction, state: Vertex) -> Reaction:
 def start_open_regions(
     machine: Machine, run: Reaction, past: Mapping[str, Literal] | None
 ) -> list[Reaction]:
-    """Start the regions of entered states that no path has entered, innermost states first."""
+    """Start the inactive regions of the entered states, innermost states first."""
     for id in reversed(run.opened):
         for region in machine.vertices[id].regions:
             if run.store[machine.regions[region].variable] == INACTIVE:
@@ -238,15 +238,16 @@ def start_region(
 ) -> list[Reaction]:
     """Start a region with its initial transition."""
     outgoing = machine.outgoing[machine.regions[region].initial]
-    start = replace(run, seen=run.store)
+    start = replace(run, guard_values=run.store)
     return [after for transition in outgoing for after in _follow(machine, start, past, transition)]
 
 
 def _restore_history(
     machine: Machine, run: Reaction, past: Mapping[str, Literal] | None, history: Vertex
 ) -> list[Reaction]:
-    """Enter the stored state of a history pseudostate, else take its transition or start the
-    region.
+    """Enter the last active state of the region of a history pseudostate.
+
+    Without such a state, take the transition of the pseudostate or start the region.
     """
     last = [] if past is None else _last_active_vertices(machine, past, history.region)
     if last and last[0].kind == "state":
@@ -260,7 +261,7 @@ def _restore_history(
 def _last_active_vertices(
     machine: Machine, past: Mapping[str, Literal], region: str
 ) -> list[Vertex]:
-    """Return the vertex in which a region is, or was when it was last active."""
+    """Return the active vertex of a region, or the last active vertex of an inactive region."""
     last = last_literal(past, machine.regions[region])
     vertices = [vertex for vertex in machine.vertices.values() if vertex.region == region]
     return [vertex for vertex in vertices if vertex.is_stable and vertex.literal == last]
@@ -303,6 +304,6 @@ def is_active(machine: Machine, store: Mapping[str, Literal], vertex: str) -> bo
 
 
 def last_literal(now: Mapping[str, Literal], region: Region) -> Literal:
-    """Return the literal that the region has, or had when it was last active."""
+    """Return the literal of the active state, or of the last active state of an inactive region."""
     literal = now[region.variable]
     return literal if literal != INACTIVE or not region.memory else now[region.memory]

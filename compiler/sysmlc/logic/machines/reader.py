@@ -52,7 +52,7 @@ COINCIDING = rule(
 
 
 class MachineOptions(Struct, frozen=True):
-    """Length of a step in seconds, and the range of Integers without a stated range."""
+    """Length of a step in seconds, and the range of Integer properties without a range."""
 
     tick_seconds: float = 1.0
     assumed_range: tuple[int, int] = (0, 15)
@@ -61,8 +61,8 @@ class MachineOptions(Struct, frozen=True):
 def find_context_classifier(graph: Graph, behaviour: Element) -> Element | None:
     """Return the classifier in which names of *behaviour* are resolved.
 
-    It is the nearest classifier around the behaviour that is no behaviour, else the behaviour
-    itself.
+    It is the innermost classifier around the behaviour that is not a behaviour itself. Without one,
+    it is the behaviour.
     """
     for ancestor in graph.ancestors(behaviour):
         if ancestor.kind in query.CLASSIFIERS and ancestor.kind not in query.BEHAVIORS:
@@ -90,6 +90,8 @@ def read_machine(
     add_history_memories(draft)
     read_transitions(draft)
     raw_machine = _assemble(draft, top)
+    # combine_joins removes completion transitions from raw_machine, but their sources still need an
+    # input for the end of their do behaviours.
     completion_sources = {
         transition.source
         for transition in raw_machine.list_transitions()
@@ -102,6 +104,8 @@ def read_machine(
     comparison = GuardComparison(raw_machine.scope)
     try:
         _add_state_variables(draft, raw_machine, completion_sources, comparison)
+        # Assembled again, because competing transitions, which need choice variables, can only be
+        # found in a complete machine.
         result = _assemble(draft, top)
         if not is_well_formed(graph, result, sink):
             return None
@@ -121,6 +125,7 @@ def _start_draft(
     classifier = find_context_classifier(graph, machine)
     context = context_of(graph, classifier, options.assumed_range, machine)
     reserved = [*context.variables.values(), *context.features]
+    # No auxiliary variable may have the name of a property, which ``find_symbol`` finds first.
     names = Names("event", NO_EVENT, *reserved)
     return MachineDraft(
         ReadingContext(graph, sink, context, names, options.tick_seconds, sharing), machine
@@ -133,9 +138,9 @@ def _start_draft(
 def _add_state_variables(
     draft: MachineDraft, machine: Machine, completing: set[str], comparison: GuardComparison
 ) -> None:
-    """Add timers, ends of do behaviours and choice variables to the vertices that need them.
+    """Add timers, inputs for ends of do behaviours, and choice variables to the vertices.
 
-    *completing* are the vertices that a completion transition leaves.
+    *completing* has the sources of completion transitions.
     """
     reading = draft.reading
     for id, vertex in tuple(draft.vertices.items()):
@@ -164,8 +169,9 @@ def _add_choice_variable(
     outgoing: tuple[Transition, ...],
     comparison: GuardComparison,
 ) -> str:
-    """Create the variable that names the transition taken at a vertex; report the competing
-    transitions.
+    """Create the variable that names the transition taken at a vertex.
+
+    Report the transitions that compete there.
     """
     reading = draft.reading
     literals = tuple(transition.literal for transition in outgoing)

@@ -1,4 +1,4 @@
-"""Check that a state machine uses only constructs that can be derived.
+"""Check that contracts can be derived from all constructs of a state machine.
 
 The check runs before the machine is read, so that a diagnostic names every unsupported construct.
 """
@@ -40,7 +40,7 @@ DANGLING = rule(
     "transition '{transition}' has no {end}",
 )
 
-_PSEUDO = frozenset(
+_SUPPORTED_PSEUDOSTATES = frozenset(
     [
         *("initial", "choice", "junction", "fork", "join", "shallow-history", "deep-history"),
         *("entry-point", "exit-point", "connection-point"),
@@ -50,7 +50,7 @@ _REDEFINABLE = frozenset([Kind.STATE_MACHINE, Kind.REGION, Kind.STATE, Kind.TRAN
 
 
 def is_supported(graph: Graph, machine: Element, sink: Sink) -> bool:
-    """Return whether the whole machine can be derived; report what cannot."""
+    """Return whether a contract can be derived from the machine; report unsupported constructs."""
     elements = [
         element
         for owner in _collect_submachines(graph, machine)
@@ -72,6 +72,8 @@ def is_supported(graph: Graph, machine: Element, sink: Sink) -> bool:
 
 def _collect_submachines(graph: Graph, machine: Element) -> list[Element]:
     """Return the machine and the submachines of its states, transitively."""
+    # The loop also visits the machines that its body appends. Each is appended once, so that a
+    # submachine that contains itself does not loop; ``_describe_recursion`` reports it.
     machines = [machine]
     for member in machines:
         for element in graph.subtree(member):
@@ -95,7 +97,7 @@ def find_submachine(graph: Graph, state: Element) -> Element | None:
 
 
 def _describe_recursion(graph: Graph, state: Element) -> str:
-    """Describe a submachine state that contains itself; return "" for any other element."""
+    """Describe a submachine state whose submachine contains the state; "" for other elements."""
     submachine = find_submachine(graph, state)
     if submachine is None or submachine not in _enclosing_machines(graph, state):
         return ""
@@ -103,7 +105,7 @@ def _describe_recursion(graph: Graph, state: Element) -> str:
 
 
 def _enclosing_machines(graph: Graph, state: Element) -> list[Element]:
-    """Return the state machines that contain *state*, also through submachine states."""
+    """Return the state machines that contain *state*, directly or through submachine states."""
     machines = [
         ancestor for ancestor in graph.ancestors(state) if ancestor.kind is Kind.STATE_MACHINE
     ]
@@ -123,7 +125,7 @@ def _enclosing_machines(graph: Graph, state: Element) -> list[Element]:
 
 
 def _describe_unsupported(graph: Graph, element: Element) -> str:
-    """Describe why *element* cannot be derived; return an empty text if it can."""
+    """Describe an element that prevents a contract; return an empty text for supported elements."""
     if element.kind is Kind.PSEUDOSTATE:
         return _describe_unsupported_pseudostate(graph, element)
     if element.kind in _REDEFINABLE and graph.targets(element, Edge.REDEFINES):
@@ -142,7 +144,7 @@ def _describe_unsupported(graph: Graph, element: Element) -> str:
 
 
 def _describe_unsupported_pseudostate(graph: Graph, element: Element) -> str:
-    if element.subkind not in _PSEUDO:
+    if element.subkind not in _SUPPORTED_PSEUDOSTATES:
         return f"{element.subkind or 'pseudostate'} pseudostate '{element.name}'"
     if element.subkind == "connection-point" and len(graph.targets(element, Edge.REFERENCES)) != 1:
         return f"the connection point '{element.name}' that stands for no one point"
@@ -154,7 +156,10 @@ def _describe_unsupported_pseudostate(graph: Graph, element: Element) -> str:
 
 
 def _is_broken(graph: Graph, element: Element, sink: Sink) -> bool:
-    """Return whether a region lacks its initial pseudostate or a transition an end; report it."""
+    """Return whether the element lacks a mandatory part, and report it.
+
+    A region needs an initial pseudostate, and a transition needs both ends.
+    """
     if element.kind is Kind.REGION:
         return _lacks_initial(graph, element, sink)
     if element.kind is not Kind.TRANSITION:
@@ -163,6 +168,7 @@ def _is_broken(graph: Graph, element: Element, sink: Sink) -> bool:
         "source": graph.target(element, Edge.FLOW_SOURCE),
         "target": graph.target(element, Edge.FLOW_TARGET),
     }
+    # References to missing elements were reported when they were resolved.
     unresolved = element.attrs.get("unresolved")
     reported = unresolved if isinstance(unresolved, tuple) else ()
     for end, vertex in ends.items():

@@ -1,4 +1,4 @@
-"""A symbolic path of a transition: its case, its values and the states it leaves and enters."""
+"""A symbolic path of a transition: its condition, its values, and the states left and entered."""
 
 from collections.abc import Iterator, Mapping
 
@@ -19,35 +19,35 @@ class TooManyPathsError(Exception):
 
 
 MAX_PATHS = 200
-"""Most paths of one transition."""
+"""The largest number of paths of one transition."""
 
 
 class Path(Struct, frozen=True):
     """One path through a reaction, taken when both ``branch`` and ``case`` hold.
 
-    ``branch`` comes from guards: if no branch is true, the transition is not enabled. ``case``
-    comes from distinctions of which exactly one always holds. ``saturated`` lists the assignments
-    whose value was clamped to a bound, as pairs of variable and origin.
+    ``branch`` is the conjunction of guards: if it is false on every path, the transition is not
+    enabled. ``case`` is one of several cases that cover everything and exclude one another, such as
+    the active inner state. ``saturated`` lists the assignments whose value was clamped to a bound.
     """
 
     branch: Formula = f.TRUE
     case: Formula = f.TRUE
     values: Mapping[str, Formula] = field(default_factory=dict)
-    seen: Mapping[str, Formula] = field(default_factory=dict)
-    """The values that guards read: those before the transition, or at the last choice."""
+    guard_values: Mapping[str, Formula] = field(default_factory=dict)
+    """The values that guards read: those before the transition, or at the last choice vertex."""
     config: Mapping[str, str] = field(default_factory=dict)
-    """Literal of each region whose state is known."""
+    """The literal of each region variable that is known at this point of the path."""
     entered: Mapping[str, str] = field(default_factory=dict)
-    """Literals of the regions that the path changes."""
+    """The literals of the regions that the path changes."""
     raised: tuple[str, ...] = ()
     picked: Mapping[str, str] = field(default_factory=dict)
-    left: tuple[str, ...] = ()
+    left_states: tuple[str, ...] = ()
     saturated: tuple[tuple[str, str], ...] = ()
-    """(variable, origin) of each."""
+    """The variable and the origin of each clamped assignment."""
     before: Mapping[str, str] | None = None
-    """Literals of regions that are known before the reaction; None at the start of the machine."""
+    """The literals of regions known before the reaction; None at the start of the machine."""
     opened: tuple[str, ...] = ()
-    """States that were entered and may have regions that nothing has started yet."""
+    """Entered states, outermost first; some of their regions may not have started yet."""
 
     @property
     def when(self) -> Formula:
@@ -63,7 +63,7 @@ def add_case(path: Path, case: Formula) -> Path:
 def leave_state(path: Path, state: str) -> Path:
     """Return the path after leaving *state*."""
     opened = tuple(id for id in path.opened if id != state)
-    return replace(path, left=(*path.left, state), opened=opened)
+    return replace(path, left_states=(*path.left_states, state), opened=opened)
 
 
 def set_region(path: Path, variable: str, literal: str, inner: list[str]) -> Path:

@@ -1,6 +1,7 @@
-"""Transitions of a state machine, and their triggers; those that lead to a join become one.
+"""Transitions of a state machine and their triggers.
 
-Triggers are events, times and changes, with the variables that they need.
+Triggers are events, times and changes; the reader creates the variables that they need. The
+transitions that lead to a join are combined into one.
 """
 
 import re
@@ -40,49 +41,49 @@ from sysmlc.logic.machines.well_formedness import find_common_state
 from sysmlc.logic.names import make_unique
 
 
-def read_occurrence(parts: MachineDraft, trigger: Element, vertex: Vertex) -> Occurrence:
+def read_occurrence(draft: MachineDraft, trigger: Element, vertex: Vertex) -> Occurrence:
     """Return the occurrence that makes *trigger* fire; create its variables on first use."""
     kind = trigger.subkind
     if kind == "time" or (not kind and "when" in trigger.attrs):
-        return _read_time(parts, trigger, vertex)
+        return _read_time(draft, trigger, vertex)
     if kind == "change" or (not kind and "condition" in trigger.attrs):
-        return _read_change(parts, trigger)
+        return _read_change(draft, trigger)
     if kind == "any":
-        literals = make_unique([*parts.events.values(), "other"], "", NO_EVENT)
-        parts.events.setdefault("any", literals[-1])
+        literals = make_unique([*draft.events.values(), "other"], "", NO_EVENT)
+        draft.events.setdefault("any", literals[-1])
         return OnEvent(None)
-    return OnEvent(_read_event(parts, trigger))
+    return OnEvent(_read_event(draft, trigger))
 
 
-def _read_event(parts: MachineDraft, trigger: Element) -> str:
+def _read_event(draft: MachineDraft, trigger: Element) -> str:
     """Return the literal of ``event`` for a signal or operation; triggers of one type share it."""
-    graph = parts.reading.graph
+    graph = draft.reading.graph
     type_ = graph.target(trigger, Edge.TYPED_BY)
     key = trigger.name if type_ is None else type_.id
     name = (type_.name if type_ is not None else "") or trigger.name or "event"
-    if key not in parts.events:
-        literals = make_unique([*parts.events.values(), name], "event", NO_EVENT)
-        parts.events[key] = literals[-1]
-    return parts.events[key]
+    if key not in draft.events:
+        literals = make_unique([*draft.events.values(), name], "event", NO_EVENT)
+        draft.events[key] = literals[-1]
+    return draft.events[key]
 
 
-def _read_time(parts: MachineDraft, trigger: Element, vertex: Vertex) -> Occurrence:
-    """Return the number of steps, or an input if the time is not a constant."""
-    count = count_ticks(parts.reading, trigger)
+def _read_time(draft: MachineDraft, trigger: Element, vertex: Vertex) -> Occurrence:
+    """Return the occurrence of a time trigger; an input replaces a time that is not constant."""
+    count = count_ticks(draft.reading, trigger)
     if count is None:
-        return OnInput(make_time_input(parts.reading, trigger))
-    parts.bounds[vertex.id] = max(count, parts.bounds.get(vertex.id, 0))
+        return OnInput(make_time_input(draft.reading, trigger))
+    draft.bounds[vertex.id] = max(count, draft.bounds.get(vertex.id, 0))
     return AfterTicks(count)
 
 
-def _read_change(parts: MachineDraft, trigger: Element) -> Occurrence:
+def _read_change(draft: MachineDraft, trigger: Element) -> Occurrence:
     text = str(trigger.attrs.get("condition", "")).strip() or trigger.name
-    condition = read_condition(parts.reading, text, "change condition", trigger)
+    condition = read_condition(draft.reading, text, "change condition", trigger)
     key = f"memory {text}"
-    memory = parts.reading.variable_for(
+    memory = draft.reading.variable_for(
         key, f"was_{text}", Owner.SYSTEM, BooleanDomain(), trigger.id
     )
-    parts.memories[memory] = condition
+    draft.memories[memory] = condition
     return OnRise(memory, condition)
 
 
@@ -131,6 +132,7 @@ def count_ticks(reading: ReadingContext, trigger: Element) -> int | None:
     number = float(match[1])
     if match[2]:
         number = number * _SECONDS[match[2].lower()] / reading.tick_seconds
+    # Rounded up, so that a time trigger never occurs early; a reaction takes at least one step.
     return max(1, ceil(number))
 
 
@@ -154,20 +156,20 @@ def make_time_input(reading: ReadingContext, trigger: Element) -> str:
 # -- transitions -------------------------------------------------------------------------------
 
 
-def read_transitions(parts: MachineDraft) -> None:
+def read_transitions(draft: MachineDraft) -> None:
     """Read the transitions that leave each vertex, in the order of the diagram."""
-    graph = parts.reading.graph
-    for vertex in tuple(parts.vertices.values()):
-        elements = list_outgoing(parts, vertex.id)
+    graph = draft.reading.graph
+    for vertex in tuple(draft.vertices.values()):
+        elements = list_outgoing(draft, vertex.id)
         literals = make_unique(
             [_base_literal(graph, element) for element, _ in elements], "transition", NO_EVENT
         )
         transitions = [
-            _read_transition(parts, element, within, vertex, literal)
+            _read_transition(draft, element, within, vertex, literal)
             for (element, within), literal in zip(elements, literals, strict=True)
         ]
         if transitions:
-            parts.outgoing[vertex.id] = _expand_else(graph, transitions)
+            draft.outgoing[vertex.id] = _expand_else(graph, transitions)
 
 
 def _base_literal(graph: Graph, transition: Element) -> str:
@@ -176,13 +178,13 @@ def _base_literal(graph: Graph, transition: Element) -> str:
 
 
 def _read_transition(
-    parts: MachineDraft, element: Element, within: str, vertex: Vertex, literal: str
+    draft: MachineDraft, element: Element, within: str, vertex: Vertex, literal: str
 ) -> Transition:
-    graph = parts.reading.graph
+    graph = draft.reading.graph
     text = _guard_text(graph, element)
     guard = None
     if text and text.strip() != "else":
-        guard = read_condition(parts.reading, text.strip(), "guard", element)
+        guard = read_condition(draft.reading, text.strip(), "guard", element)
     triggers = graph.targets(element, Edge.TRIGGER) if vertex.kind == "state" else []
     target = graph.target(element, Edge.FLOW_TARGET)
     return Transition(
@@ -190,20 +192,21 @@ def _read_transition(
         literal,
         _describe(graph, element, text),
         vertex.id,
-        _resolve_target(parts, within, target),
+        _resolve_target(draft, within, target),
         element.subkind or "external",
-        tuple(read_occurrence(parts, trigger, vertex) for trigger in triggers),
+        tuple(read_occurrence(draft, trigger, vertex) for trigger in triggers),
         guard,
-        read_behaviours(parts.reading, element, Edge.EFFECT),
+        read_behaviours(draft.reading, element, Edge.EFFECT),
     )
 
 
-def _resolve_target(parts: MachineDraft, within: str, target: Element | None) -> str:
-    """Return the id of a target; a connection point of a submachine state is replaced by the point
-    that it stands for.
+def _resolve_target(draft: MachineDraft, within: str, target: Element | None) -> str:
+    """Return the id of a target.
+
+    A connection point reference of a submachine state is replaced by the point of the submachine.
     """
     id = "" if target is None else submachine_id(within, target.id)
-    return next(iter(parts.aliases.get(id, ())), id)
+    return next(iter(draft.aliases.get(id, ())), id)
 
 
 def _guard_text(graph: Graph, transition: Element) -> str:
@@ -262,9 +265,9 @@ def _share_occurrence(left: Transition, right: Transition) -> bool:
 def combine_joins(graph: Graph, machine: Machine, sink: Sink) -> bool:
     """Combine the transitions that lead to each join into one transition.
 
-    A fork or join moves to the region around the state whose regions it connects. The result is
-    False, and the fault reported, if a source of a join has another completion transition. A
-    malformed fork or join is left unchanged; ``well_formedness`` reports it.
+    A fork or join is moved to the region that contains the state whose regions it connects. If a
+    source of a join has another completion transition, the fault is reported and the result is
+    False. A malformed fork or join is not changed; ``well_formedness`` reports it.
     """
     is_valid = True
     for vertex in tuple(machine.vertices.values()):
@@ -294,7 +297,10 @@ def _can_join(machine: Machine, transition: Transition) -> bool:
 
 
 def _move_to_outer_region(machine: Machine, vertex: Vertex, ends: list[str]) -> None:
-    """Move a fork or join to the region that contains the state whose regions it connects."""
+    """Move a fork or join to the region of the state whose regions it connects.
+
+    The transitions into a join then leave that state, and those from a fork enter it.
+    """
     inner = [end for end in ends if end in machine.vertices]
     state = find_common_state(machine, inner[0], inner[1]) if len(inner) > 1 else None
     if state:
@@ -303,9 +309,7 @@ def _move_to_outer_region(machine: Machine, vertex: Vertex, ends: list[str]) -> 
 
 
 def _combine(graph: Graph, machine: Machine, incoming: list[Transition], sink: Sink) -> bool:
-    """Replace the incoming transitions of a join by the first one, with the others as its join
-    partners.
-    """
+    """Replace the transitions into a join by the first, which has the others as join partners."""
     first, *partners = incoming
     for transition in incoming:
         siblings = [
@@ -324,7 +328,7 @@ def _combine(graph: Graph, machine: Machine, incoming: list[Transition], sink: S
 def _report_competing_completion(
     graph: Graph, machine: Machine, transition: Transition, competitor: Transition, sink: Sink
 ) -> None:
-    """Report that a source of a join completes along another transition."""
+    """Report that a source of a join has another completion transition."""
     element, completion = (graph[element_id(id)] for id in (transition.source, competitor.id))
     target = graph.target(completion, Edge.FLOW_TARGET)
     name = completion.name or f"{element.name} -> {target.name if target is not None else ''}"

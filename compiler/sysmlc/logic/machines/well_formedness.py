@@ -1,5 +1,6 @@
-"""Checks of the shape of a state machine: transition targets, dead ends, cycles of pseudostates,
-forks and joins.
+"""Well-formedness of state machines.
+
+The checks concern transition targets, dead ends, cycles of pseudostates, forks and joins.
 """
 
 from collections.abc import Iterator
@@ -44,23 +45,19 @@ MALFORMED = rule(
 
 
 def has_valid_targets(graph: Graph, machine: Machine, sink: Sink) -> bool:
-    """Return whether every transition leads to a vertex of a region of the machine; report the
-    others.
-    """
+    """Return whether every transition leads to a vertex of the machine; report the others."""
     return not list(_report_foreign_targets(graph, machine, sink))
 
 
 def is_well_formed(graph: Graph, machine: Machine, sink: Sink) -> bool:
-    """Return whether every path ends in a state that it may reach; report the faults."""
+    """Return whether the machine passes the other checks; report the faults."""
     if [*_report_dead_ends(graph, machine, sink), *_report_cycles(graph, machine, sink)]:
         return False
     return not [*_report_strays(graph, machine, sink), *_report_malformed(graph, machine, sink)]
 
 
 def _report_foreign_targets(graph: Graph, machine: Machine, sink: Sink) -> Iterator[str]:
-    """Report transitions to a target that is no vertex of a region of this machine. Yield their
-    ids.
-    """
+    """Report transitions to a target outside this machine. Yield their ids."""
     for transition in machine.list_transitions():
         if transition.target not in machine.vertices:
             where = "to a vertex outside of this machine"
@@ -74,10 +71,10 @@ def _report_stray(graph: Graph, transition: Transition, where: str, sink: Sink) 
 
 
 def _report_strays(graph: Graph, machine: Machine, sink: Sink) -> Iterator[str]:
-    """Report transitions that leave the machine's regions in a way UML forbids. Yield their ids.
+    """Report transitions that leave a region although UML forbids it. Yield their ids.
 
-    Such are transitions between regions of the machine, and transitions of an initial or history
-    pseudostate to a vertex outside its own region.
+    UML forbids transitions between regions of the machine, and transitions from an initial or
+    history pseudostate to a vertex outside its region.
     """
     for transition in machine.list_transitions():
         source = machine.vertices[transition.source]
@@ -90,8 +87,9 @@ def _report_strays(graph: Graph, machine: Machine, sink: Sink) -> Iterator[str]:
 
 
 def _report_dead_ends(graph: Graph, machine: Machine, sink: Sink) -> Iterator[str]:
-    """Report pseudostates that no transition leaves; a history pseudostate needs none. Yield their
-    ids.
+    """Report pseudostates without outgoing transition. Yield their ids.
+
+    A history pseudostate needs none: its region starts by default.
     """
     for vertex in machine.vertices.values():
         is_transient = not vertex.is_stable and vertex.kind not in HISTORIES
@@ -126,8 +124,9 @@ def _reachable_pseudostates(machine: Machine, start: str) -> dict[str, None]:
 
 
 def collect_segments(machine: Machine, first: Transition) -> list[Transition]:
-    """List the segments of a compound transition: the first one, its join partners, and all that
-    follow through pseudostates.
+    """List the segments of a compound transition.
+
+    These are the first transition, its join partners, and all transitions behind pseudostates.
     """
     transitions = [first, *first.join_partners]
     if first.kind == "internal" or machine.vertices[first.target].is_stable:
@@ -206,10 +205,10 @@ def _are_orthogonal(machine: Machine, vertices: list[str]) -> bool:
 
 
 def find_common_state(machine: Machine, left: str, right: str) -> str | None:
-    """Return the state in different regions of which both vertices lie.
+    """Return the state that contains both vertices in two different regions.
 
-    The result is empty if the regions belong to the machine itself, and None if there is no such
-    state.
+    The result is empty if the two regions belong to the machine itself. It is None if no state has
+    the vertices in different regions.
     """
     if machine.contains(left, right) or machine.contains(right, left):
         return None
