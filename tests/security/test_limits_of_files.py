@@ -14,7 +14,7 @@ from sysmlc.sources.source import DOCUMENT_LIMITS
 ROOT = Path(sysmlc.__file__).parent
 SHIPPED = {
     "backends/templates/files.py": "shipped templates",
-    "diagnostics/rule_page.py": "shipped pages of rules",
+    "diagnostics/rule.py": "shipped pages of rules",
     "frontends/caex/libraries.py": "shipped libraries",
     "language/text/lalr.py": "shipped tables",
     "support/resources.py": "shipped files",
