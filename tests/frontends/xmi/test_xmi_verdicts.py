@@ -97,9 +97,9 @@ def test_a_damaged_file_does_not_take_the_others_with_it():
 
 def test_wrong_encodings_are_errors():
     latin = (MAGICDRAW % "<uml:Model name='é'/>").encode("latin-1")
-    assert "not in the encoding UTF-8" in read(source(latin)).findings[0]
+    assert "not encoded in UTF-8" in read(source(latin)).findings[0]
     unknown = (MAGICDRAW % "").replace("UTF-8", "klingon").encode()
-    assert "its encoding 'klingon' is not known" in read(source(unknown)).findings[0]
+    assert "its encoding 'klingon' is unknown" in read(source(unknown)).findings[0]
 
 
 def test_declared_encodings_are_believed():
