@@ -1,12 +1,11 @@
-"""Allocation of targets to robots: the thesis's Algorithm 1 with its defects settled (thesis
-4.4.2), and branch and bound.
+"""Allocation of targets to robots: Algorithm 1 of the thesis (4.4.2), and branch and bound.
 
-Line 10 of the algorithm adds to a robot's costs what they already contain, so costs double with
-each target; here the costs of a robot become the costs of having reached the target. The paths of
-line 8 always begin at the robot's start; here a robot continues from its last target. The order of
-the targets and 'same robot' are not in the algorithm; here targets are taken in an order that
-respects the partial order, and carried targets stay with their robot. A direct way is the shortest
-one, so no graph is searched.
+Algorithm 1 is corrected in three places. Line 10 adds a robot's previous costs twice, so they
+double with each target; here the costs of a robot are the steps to its last target. The paths of
+line 8 always begin at the robot's start; here a robot continues from its last target. The algorithm
+has neither an order of targets nor targets for the same robot; here targets are sorted
+topologically, and carried targets stay with their robot. Travel times are between places, so no
+graph is searched.
 """
 
 from collections.abc import Iterator
@@ -18,9 +17,7 @@ from sysmlc.robots.study import Study
 
 
 def sort_targets(study: Study) -> Iterator[int]:
-    """Yield the targets in an order that respects the partial order; carried ones follow at
-    once.
-    """
+    """Yield the targets in topological order, carried ones directly after their origin if ready."""
     remaining = list(range(len(study.targets)))
     visited: set[int] = set()
     carried = study.carried_targets
@@ -38,6 +35,7 @@ def sort_targets(study: Study) -> Iterator[int]:
                 study.earlier(carried_target)
             )
             target = carried_target if is_ready else None
+        # Only an order with a cycle leaves no target ready; the reader rejects such missions.
         if not visited:
             return
 
@@ -71,7 +69,7 @@ def _last_place(targets: list[int]) -> int:
 
 
 def _sort_carried_chains(study: Study) -> Iterator[int]:
-    """Yield the targets in order; carried ones directly behind their origin."""
+    """Yield the targets in topological order, but each carried target directly after its origin."""
     carried = study.carried_targets
     visited: set[int] = set()
     for target in sort_targets(study):
@@ -83,16 +81,17 @@ def _sort_carried_chains(study: Study) -> Iterator[int]:
 
 
 MAX_NODES = 10_000
-"""Partial allocations that are examined before the best one found counts as good enough."""
+"""Partial allocations after which branch and bound ends with the best allocation so far."""
 
 
 class BestAllocation(Struct, frozen=True):
-    """The best allocation that was found."""
+    """The best allocation of a search."""
 
     schedule: Schedule
     is_proven: bool
-    """Whether no allocation is better."""
+    """Whether the search was complete, so that no allocation is better."""
     nodes: int
+    """Number of partial allocations that were examined."""
 
 
 def allocate_optimally(
@@ -127,7 +126,10 @@ def _improve_by_local_search(study: Study, travel: TravelTimes, initial: Schedul
 def neighbour_allocations(
     study: Study, travel: TravelTimes, schedule: Schedule
 ) -> Iterator[Schedule]:
-    """Yield allocations in which one chain of carried targets has another position."""
+    """Yield the allocations that differ in the robot or the position of one target.
+
+    Targets that are carried one after the other move together.
+    """
     carried = study.carried_targets
     for chain_head in range(len(study.targets)):
         if chain_head in carried.values():
@@ -150,7 +152,10 @@ def neighbour_allocations(
 
 
 class _BranchAndBound:
-    """Adds targets in the order in which they are reached, and prunes by lower bounds."""
+    """Branch and bound over partial allocations.
+
+    Targets are assigned in the order in which they are reached, so each schedule occurs once.
+    """
 
     def __init__(self, study: Study, travel: TravelTimes, max_nodes: int) -> None:
         self.study, self.travel, self.max_nodes = study, travel, max_nodes
@@ -164,7 +169,7 @@ class _BranchAndBound:
         self.fewest_steps = [self._fewest_steps_to(target) for target in range(len(study.targets))]
 
     def _fewest_steps_to(self, target: int) -> int:
-        """Return the fewest steps in which any robot reaches the target from anywhere."""
+        """Return the fewest steps from any place to the target, for any robot."""
         steps_to_target = (
             steps for (_, _, goal), steps in self.travel.steps.items() if goal == target
         )
@@ -176,7 +181,11 @@ class _BranchAndBound:
             self.best = schedule
 
     def run(self, total: int = 0, last_assignment: tuple[int, int] = (0, -1)) -> None:
-        """Try all continuations; *last_assignment* is the time and robot of the last assignment."""
+        """Examine all continuations of the current partial allocation.
+
+        *total* is the number of steps travelled so far, *last_assignment* the time at which the
+        last assigned target is reached, and its robot.
+        """
         self.nodes += 1
         if self.nodes >= self.max_nodes:
             return
@@ -199,8 +208,9 @@ class _BranchAndBound:
     def _list_options(
         self, last_assignment: tuple[int, int]
     ) -> Iterator[tuple[int, int, int, int]]:
-        """Yield time, robot, target and steps of each possible next assignment, not before the last
-        one.
+        """Yield time, robot, target and steps of each possible next assignment.
+
+        Assignments that would be reached before the last one are excluded.
         """
         starts_seen: set[int | None] = set()
         for robot, targets in enumerate(self.lists):
@@ -223,8 +233,10 @@ class _BranchAndBound:
                     yield time, robot, target, steps
 
     def _next_targets(self, targets: list[int]) -> list[int]:
-        """Return the targets to which a robot may go: the carried one, else all that nobody
-        carries.
+        """Return the possible next targets of a robot.
+
+        That is the carried target, if the robot has reached its origin. Otherwise these are all
+        remaining targets that are not carried.
         """
         if targets and targets[-1] in self.carried:
             return [self.carried[targets[-1]]]
@@ -244,11 +256,11 @@ class _BranchAndBound:
         return sum(steps for target, steps in steps_by_target if target not in self.reached)
 
     def _earliest_end(self) -> int:
-        """Return a lower bound of the duration, with the remaining steps shared evenly."""
+        """Return a lower bound of the duration: the remaining steps are shared evenly."""
         end_times = sum(self.reached[targets[-1]] for targets in self.lists if targets)
         even_end = -(-(end_times + self._remaining_steps()) // len(self.lists))
         return max(even_end, *self.reached.values(), 0)
 
     def _can_prune(self, duration: int, total_steps: int) -> bool:
-        """Return whether the lower bound reaches the cost of the best schedule."""
+        """Return whether these lower bounds of the costs reach the costs of the best schedule."""
         return self.best is not None and (duration, total_steps) >= self.best.cost

@@ -1,4 +1,4 @@
-"""Answers of a robot's controller if at most one direction is offered to it."""
+"""Answers of a robot's controller, memoised, if at most one direction is offered to the robot."""
 
 from collections.abc import Callable, Mapping
 from typing import NamedTuple
@@ -14,9 +14,9 @@ class Memory(NamedTuple):
     """The state of a robot between two steps."""
 
     cell: int
-    """The cell to which the command leads."""
+    """The cell in which the robot is after its last command."""
     goal: int
-    """The target, which stays unless the robot was in it."""
+    """The cell of the target. A new target may be assigned only if ``was_at_target``."""
     was_at_target: bool = True
     """Whether the robot was in its target."""
     state: int = 0
@@ -26,7 +26,7 @@ class Memory(NamedTuple):
 
 
 class Answer(NamedTuple):
-    """The command of a controller, and the memory after it."""
+    """The command of a controller, and the memory after the command."""
 
     command: str
     memory: Memory
@@ -36,7 +36,7 @@ class Answers:
     """The controller of a robot with memoised answers."""
 
     def __init__(self, machine: Machine | Table, robot: Robot, grid: Grid) -> None:
-        """The machine must be one of the robot's contract without step counters."""
+        """Compile a controller of *robot*, synthesised from its contract without step counters."""
         self._robot, self._grid = robot, grid
         self._step = _compile_step(machine)
         variables = (*machine.inputs, *machine.outputs)
@@ -45,9 +45,10 @@ class Answers:
         self._cache: dict[tuple[Memory, int, str], Answer | None] = {}
 
     def get(self, memory: Memory, goal: int, way: str = "") -> Answer | None:
-        """Return the answer to a target and the offered direction, if there is one.
+        """Return the answer to the target *goal* and the offered direction *way*.
 
-        None if the machine has no move, which the assumptions of its contract exclude.
+        *way* is empty if no direction is offered. Return None if the controller has no answer,
+        which happens only for inputs that the assumptions of its contract exclude.
         """
         key = memory, goal, way
         if key not in self._cache:
@@ -79,9 +80,9 @@ Step = Callable[[int, Values, Values], tuple[Values, int]]
 
 
 def _compile_step(machine: Machine | Table) -> Step:
-    """Return the step function of a machine, which raises LookupError if there is no move.
+    """Return the step function of a controller, which raises LookupError if there is no answer.
 
-    The conditions are long, so they are compiled once.
+    The conditions of a machine are long, so they are compiled once for all steps.
     """
     if isinstance(machine, Table):
         return machine.step
@@ -105,11 +106,9 @@ def _compile_step(machine: Machine | Table) -> Step:
 
 
 def exceeds_travel_limit(grid: Grid, answers: Answers, cell: int, goal: int, within: int) -> bool:
-    """Return whether a robot has a target for more than *within* steps before it reaches the
-    target.
+    """Return whether a robot needs more than *within* steps from *cell* to its target *goal*.
 
-    A robot is not stopped on its way (``traffic``), so the steps are those of a robot that is
-    alone.
+    A robot that has departed is never stopped (``traffic``), so other robots need not be simulated.
     """
     memory = Memory(cell, cell)
     for _ in range(within + 1):

@@ -1,4 +1,4 @@
-"""The claims of the thesis about its four contracts, decided (MOOD4I thesis, 4.3.2 to 4.3.4)."""
+"""Decision of the claims about the four contracts of a floor (MOOD4I thesis, 4.3.2 to 4.3.4)."""
 
 from collections.abc import Callable, Iterator, Mapping
 from functools import partial
@@ -25,14 +25,15 @@ from sysmlc.synthesis.decision import Options
 from sysmlc.synthesis.witnesses import describe_run, manager_factory
 
 ManagerFactory = Callable[[], Manager]
-"""Creates a manager within the limits for each question."""
+"""Creates a manager with the limits of the options."""
 
 
 class Claim(Struct, frozen=True):
-    """A claim and its result; ``holds`` is None if it is not decided."""
+    """A claim and its result."""
 
     claim: str
     holds: bool | None
+    """None if the claim is not decided."""
     reason: str = ""
     run: tuple[str, ...] = ()
     """A run that refutes the claim, a line for each step."""
@@ -46,10 +47,12 @@ _Procedure = Callable[[str, ManagerFactory], Claim]
 def decide_claims(
     study: Study, travel: TravelTimes, options: Options, known_claims: Mapping[str, Claim] = _NONE
 ) -> Iterator[Claim]:
-    """Decide the claims for the first robot, which represents all, from any start.
+    """Yield the decided claims; claims about one robot are decided for the first robot.
 
-    Known results of the floor are reused; only the claim about its mission is decided again.
+    Results in *known_claims* are reused, except for the claim about the mission.
     """
+    # Without starts the results hold for all robots and missions of the floor, so they can be
+    # cached.
     robots_without_starts = tuple(replace(robot, start=None) for robot in study.robots)
     study = replace(study, robots=robots_without_starts)
     for claim, decide in _claim_procedures(study, travel).items():
@@ -113,10 +116,9 @@ def _decide_refinement(
 def _decide_discharge(
     study: Study, sharing: Sharing, is_alone: bool, claim: str, new_manager: ManagerFactory
 ) -> Claim:
-    """Decide whether the environment's contract entails everything that the first robot assumes of
-    it.
+    """Decide whether C_E entails the assumptions of the first robot about its environment.
 
-    A violating run is searched with as few robots as possible.
+    A violating run is searched with as few robots as possible, extended to all robots and checked.
     """
     environment = environment_contract(study, sharing)
     environment_conjuncts = (*environment.assumptions, *environment.guarantees)
@@ -133,16 +135,17 @@ def _decide_discharge(
             ):
                 reason = f"C_E does not promise: {conjunct.text}"
                 return Claim(claim, False, reason, _describe_trace(run, conjunct))
+    # The last attempt has considered all robots.
     if violation is None:
         return Claim(claim, True)
     return Claim(claim, None, "what some robots are shown is not so when all are there")
 
 
 def _iter_attempts(study: Study) -> Iterator[tuple[Study, bool]]:
-    """Yield studies with one robot, two robots and so on.
+    """Yield studies with one robot, two robots and so on, and whether the robots have to stay.
 
-    Each comes first with other robots that stay, which suffices for most runs and is explored
-    quickly.
+    Each study is yielded with staying robots first: these are explored quickly, and most violations
+    occur among them already.
     """
     for count in range(1, len(study.robots) + 1):
         few = replace(study, robots=study.robots[:count])
@@ -152,10 +155,12 @@ def _iter_attempts(study: Study) -> Iterator[tuple[Study, bool]]:
 def _find_undischarged(
     study: Study, sharing: Sharing, is_alone: bool, manager: Manager, others_stay: bool
 ) -> tuple[Conjunct, Trace] | None:
-    """Return an assumption of the first robot that is not entailed; targets belong to the
-    mission.
+    """Return an assumption of the first robot that C_E does not entail, with a violating run.
+
+    Assumptions about targets are not checked but used as facts, because the mission guarantees
+    them. Assumptions about offers read targets, too, but are checked.
     """
-    target_names = {terms.target(assumption) for assumption in study.robots}
+    target_names = {terms.target(other) for other in study.robots}
     environment = environment_contract(study, sharing)
     robot = robot_contract(study, study.robots[0], is_alone)
     target_assumptions = [
@@ -171,7 +176,7 @@ def _find_undischarged(
     facts += [
         assumption for assumption in target_assumptions if assumption not in offer_assumptions
     ]
-    facts += [terms.stay_forever(assumption) for assumption in study.robots if others_stay]
+    facts += [terms.stay_forever(other) for other in study.robots if others_stay]
     with manager.guard():
         universe = Universe((environment, robot), manager)
         runs = Entailment(universe, universe.system(facts))
@@ -225,7 +230,7 @@ def _names_of(conjunct: Conjunct) -> set[str]:
 
 
 def _is_about_offers(conjunct: Conjunct) -> bool:
-    """Return whether the conjunct reads sensors too, so that it depends on the environment."""
+    """Return whether the conjunct reads a sensor, which the environment sets."""
     return any("_sensor_" in name for name in _names_of(conjunct))
 
 

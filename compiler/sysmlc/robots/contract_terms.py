@@ -18,7 +18,7 @@ from sysmlc.robots.study import COMMANDS, STAY, WAYS, Grid, Robot, Study, Target
 
 
 def _variable_namer(suffix: str) -> Callable[[Robot], str]:
-    """The name of something of a robot."""
+    """Return a function that returns the name of a robot's variable with this suffix."""
     return lambda robot: f"{robot.word}_{suffix}"
 
 
@@ -41,19 +41,17 @@ clock = _variable_namer("clock")
 
 
 def sensor(robot: Robot, way: str) -> str:
-    """Return the variable that tells whether the neighbour cell on that side is offered to the
-    robot.
-    """
+    """Return the name of the sensor that shows whether a direction is offered to the robot."""
     return f"{robot.word}_sensor_{way}"
 
 
 def completion(target: Target) -> str:
-    """Return the variable that tells whether a target has been reached."""
+    """Return the name of the variable that is true when a target has been reached."""
     return f"{target.word}_done"
 
 
 def free(cell: int) -> str:
-    """Return the variable that tells whether no robot is in a cell."""
+    """Return the name of the variable that is true while no robot is in a cell."""
     return f"free_{cell}"
 
 
@@ -117,7 +115,7 @@ def liveness_conjunct(formula: Formula, origin: str, text: str) -> Conjunct:
 
 
 def repeat_in_every_step(conjuncts: Iterable[Conjunct]) -> Iterator[Conjunct]:
-    """Yield conjuncts about one step for the first step and for every next one."""
+    """Yield each conjunct about the first step, then once more about every next step."""
     all_conjuncts = list(conjuncts)
     yield from all_conjuncts
     for conjunct in all_conjuncts:
@@ -131,7 +129,7 @@ def stay_forever(robot: Robot) -> Conjunct:
 
 
 def start_positions(robots: Iterable[Robot]) -> Iterator[Conjunct]:
-    """State the given start positions."""
+    """State the start positions of the robots that have one."""
     for robot in robots:
         if robot.start is not None:
             text = f"'{robot.name}' starts in cell {robot.start}."
@@ -149,6 +147,8 @@ def place_on_floor(study: Study, robot: Robot) -> Iterator[Conjunct]:
 def reachable_targets(study: Study, robot: Robot) -> Iterator[Conjunct]:
     """State that targets are in cells that the robot can reach."""
     grid = study.grid
+    # Obstacles may divide the floor into regions. Within one region only obstacles are unreachable,
+    # and a conjunct for each of them is simpler.
     regions = list(dict.fromkeys(tuple(sorted(grid.distances(cell))) for cell in grid.cells))
     text = f"What '{robot.name}' is to reach can be reached."
     if len(regions) > 1:
@@ -163,8 +163,10 @@ def reachable_targets(study: Study, robot: Robot) -> Iterator[Conjunct]:
 
 
 def motion_rules(study: Study, robot: Robot, is_total: bool) -> Iterator[Conjunct]:
-    """State that commands move the robot; with ``is_total`` a blocked command leaves it in its
-    cell.
+    """State the effect of each command in each cell.
+
+    With ``is_total`` a command into a wall or an obstacle leaves the robot in its cell. The thesis
+    does not restrict the position after such a command.
     """
     for cell in study.grid.cells:
         for way in COMMANDS:
@@ -178,9 +180,9 @@ def motion_rules(study: Study, robot: Robot, is_total: bool) -> Iterator[Conjunc
 
 
 def stable_target_by_cell(study: Study, robot: Robot) -> Iterator[Conjunct]:
-    """State that a target stays until it is reached, by cell.
+    """State that a target stays until it is reached, with one conjunct for each cell.
 
-    Without this no target could be reached. The thesis does not state it.
+    The thesis does not state it, but if a target may change at any time, no robot can reach it.
     """
     text = f"The target of '{robot.name}' stays until it is reached."
     for cell in study.grid.cells:
@@ -193,7 +195,7 @@ def stable_target_by_cell(study: Study, robot: Robot) -> Iterator[Conjunct]:
 
 
 def stable_target_formula(robot: Robot) -> Conjunct:
-    """State that a target stays until it is reached, in one formula."""
+    """State that a target stays until it is reached, with a comparison of positions."""
     text = f"The target of '{robot.name}' stays until it is reached."
     target_value = f.var(target(robot))
     return safety_conjunct(
@@ -235,7 +237,7 @@ def forbid_shared_cells(study: Study) -> Iterator[Conjunct]:
 def define_free_cells(study: Study) -> Iterator[Conjunct]:
     """State that a cell is free if no robot is in it.
 
-    The thesis prints a double negation too many.
+    The formula in the thesis has one negation too many.
     """
     for cell in study.grid.cells:
         is_occupied = f.either(*(is_in_cell(robot, cell) for robot in study.robots))
@@ -244,7 +246,11 @@ def define_free_cells(study: Study) -> Iterator[Conjunct]:
 
 
 def define_sensors(study: Study, robot: Robot, is_exact: bool = True) -> Iterator[Conjunct]:
-    """State that a sensor shows whether the next cell is free, or hides it unless ``is_exact``."""
+    """State what the sensors of a robot show.
+
+    With ``is_exact`` a sensor is true if and only if the neighbour cell is free. Otherwise it may
+    be false although the cell is free, because the cell is offered to another robot.
+    """
     for way in WAYS:
         for cell in study.grid.cells:
             neighbour = study.grid.cell_after(cell, way)

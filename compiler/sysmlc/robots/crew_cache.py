@@ -1,9 +1,8 @@
-"""The cache of robot crews: everything about the robots of a floor that does not depend on the
-mission.
+"""The cache of robot crews: the results about the robots of a floor that no mission affects.
 
-New targets on the same floor only need another allocation (MOOD4I thesis, 4.6.1): the controller,
-the measured travel times and the decided claims about contracts are reused. In the stored JSON a
-formula is a list of its parts.
+New targets on the same floor only need another allocation (MOOD4I thesis, 4.6.1). The controller,
+the measured travel times and the decided claims about contracts are reused. The cache stores JSON,
+in which a formula is a list of operator and operands.
 """
 
 from collections.abc import Mapping, Sequence
@@ -59,7 +58,9 @@ def decode_controller(encoded: EncodedController, variables: Sequence[Variable])
         registers = tuple(variables_by_name[item] for item in encoded["registers"])
         states = tuple(tuple(map(_decode_move, moves)) for moves in encoded["states"])
         return Machine(inputs, outputs, registers, states)
-    first, *modes = (Entry(tuple(outputs), tuple(onward)) for outputs, onward in encoded["entries"])
+    first, *modes = (
+        Entry(tuple(bits), tuple(successors)) for bits, successors in encoded["entries"]
+    )
     nodes = tuple((bit, low, high) for bit, low, high in encoded["nodes"])
     bits = tuple(Bit(*item) for item in encoded["bits"])
     return Table(inputs, outputs, bits, nodes, first, tuple(modes))
@@ -83,6 +84,7 @@ def _decode_move(encoded: Sequence[Any]) -> Move:
 
 
 def _encode_formula(formula: Formula) -> Any:  # noqa: ANN401 - JSON
+    # Constants, variables and applications differ in the length and the first item of the list.
     match formula:
         case Const(value):
             return [value]
@@ -105,13 +107,15 @@ def _decode_formula(encoded: Any) -> Formula:  # noqa: ANN401 - JSON
 
 
 _FORMAT = 2
+"""Number of the stored format, as part of the cache key."""
 
 
 class RobotCrew(Struct, frozen=True):
-    """The robots of a floor."""
+    """The results about the robots of a floor: their common controller and how fast they are."""
 
     controller: Synthesis
     times: Times
+    """Measured travel times between all cells."""
     claims: Mapping[str, Claim] = field(default_factory=dict)
     """Decided claims about the contracts of the floor."""
 
@@ -125,18 +129,20 @@ class _Entry(msgspec.Struct, array_like=True):
 
 
 class CrewCache(Struct, frozen=True):
-    """Stores crews by floor and robots; ``tool`` is the digest of the tool."""
+    """Stores crews by floor and robots."""
 
     cache: Cache
     tool: str
+    """Digest of this compiler: another version does not reuse the entries."""
 
     def get(self, study: Study) -> RobotCrew | None:
-        """Return the crew of this floor if an earlier run has stored it."""
+        """Return the crew of this floor if an earlier run of the compiler has stored it."""
         entry = self.cache.get(self._key(study))
         if entry is None:
             return None
         try:
             return _decode_crew(msgspec.json.decode(entry, type=_Entry), study)
+        # A damaged entry is a miss.
         except (LookupError, ValueError, TypeError, AttributeError, RecursionError):
             return None
 
@@ -150,8 +156,9 @@ class CrewCache(Struct, frozen=True):
 
 
 def cache_identity(study: Study) -> Study:
-    """Return the study without what a crew does not depend on: mission, starts, ids in the
-    model.
+    """Return the study reduced to what a crew depends on, as part of the cache key.
+
+    The mission, the starts of the robots and ids of model elements are removed.
     """
     robots = tuple(replace(robot, start=None, origin="") for robot in study.robots)
     floor = replace(study, robots=robots, origin="", obstacles=())

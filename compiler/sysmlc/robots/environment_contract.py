@@ -1,8 +1,7 @@
-"""The contract of the environment, C_E (MOOD4I thesis, 4.3.3), which moves robots and offers free
-cells.
+"""The contract of the environment, C_E (MOOD4I thesis, 4.3.3): it moves robots, offers free cells.
 
-As the thesis states it, two or more robots make it unrealizable: both may be told that one cell is
-free, and go there. Either it is assumed that they do not, or the cell is offered to one of them.
+In the form of the thesis it is unrealizable for two or more robots: the sensors of two robots show
+the same free cell, both enter it, and C_E must exclude that. ``Sharing`` contains the remedies.
 """
 
 from collections.abc import Iterator
@@ -23,18 +22,18 @@ from sysmlc.robots.study import STAY, WAYS, Robot, Study
 
 
 class Sharing(StrEnum):
-    """How a free cell next to two robots is treated."""
+    """Treatment of a free cell next to two robots."""
 
     LITERAL = "literal"
-    """Both robots are told that it is free (thesis)."""
+    """The sensors of both robots show that it is free, as in the thesis."""
     ASSUMED = "assumed"
-    """Both robots are told that it is free, and they are assumed not to enter it together."""
+    """The sensors of both robots show that it is free; C_E assumes that not both enter it."""
     ARBITRATED = "arbitrated"
-    """It is offered to one of the robots."""
+    """It is offered to one of the robots only."""
 
 
 def environment_contract(study: Study, sharing: Sharing = Sharing.ARBITRATED) -> Contract:
-    """Return what robots can rely on: motion by command, sensors, cells that are never shared."""
+    """Return C_E: commands move the robots, sensors show free cells, no cell is shared."""
     is_exact = sharing is not Sharing.ARBITRATED
     sensed = [
         conjunct for robot in study.robots for conjunct in define_sensors(study, robot, is_exact)
@@ -49,9 +48,9 @@ def environment_contract(study: Study, sharing: Sharing = Sharing.ARBITRATED) ->
         (
             *(terms.command_variable(robot, Owner.ENVIRONMENT) for robot in study.robots),
             *(
-                conjunct
+                variable
                 for robot in study.robots
-                for conjunct in terms.position_and_sensors(study, robot, Owner.SYSTEM)
+                for variable in terms.position_and_sensors(study, robot, Owner.SYSTEM)
             ),
             *terms.free_cell_variables(study, Owner.SYSTEM),
         ),
@@ -85,6 +84,7 @@ def _list_assumptions(study: Study, sharing: Sharing) -> Iterator[Conjunct]:
 
 
 def _forbid_meeting(study: Study) -> Iterator[Conjunct]:
+    """State that no two robots move to one cell."""
     for first, second in combinations(study.robots, 2):
         text = f"'{first.name}' and '{second.name}' do not go to one cell."
         for cell in study.grid.cells:
@@ -93,6 +93,7 @@ def _forbid_meeting(study: Study) -> Iterator[Conjunct]:
 
 
 def _moves_to(study: Study, robot: Robot, cell: int) -> Formula:
+    """Return the predicate that a robot will be in a cell after its command."""
     ways = [f.both(terms.is_in_cell(robot, cell), terms.equals(terms.command(robot), STAY))]
     for neighbour, way in _entries_of(study, cell):
         ways.append(
@@ -108,6 +109,7 @@ def _entries_of(study: Study, cell: int) -> Iterator[tuple[int, str]]:
 
 
 def _offer_once(study: Study) -> Iterator[Conjunct]:
+    """State that no cell is offered to two robots."""
     for first, second in combinations(study.robots, 2):
         text = f"No cell is offered to both '{first.name}' and '{second.name}'."
         for cell in study.grid.cells:
@@ -124,7 +126,7 @@ def _offer_once(study: Study) -> Iterator[Conjunct]:
 
 
 def _guarantee_offers(study: Study) -> Iterator[Conjunct]:
-    """State that a robot that is not shut in is offered a direction infinitely often."""
+    """State that each robot is infinitely often offered a direction, or is enclosed by others."""
     for robot in study.robots:
         text = f"Again and again a way is offered to '{robot.name}', if one is free."
         offers = (f.var(terms.sensor(robot, way)) for way in WAYS)
@@ -134,6 +136,8 @@ def _guarantee_offers(study: Study) -> Iterator[Conjunct]:
 
 
 def _blocked_positions(study: Study, robot: Robot) -> Iterator[Formula]:
+    """Yield for each cell the predicate that the robot is in it and enclosed by other robots."""
+    # There must be enough other robots to occupy all neighbour cells.
     for cell in study.grid.cells:
         neighbours = [neighbour for _, neighbour in study.grid.neighbours(cell)]
         if len(neighbours) < len(study.robots):

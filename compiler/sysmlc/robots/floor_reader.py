@@ -15,13 +15,14 @@ from sysmlc.robots.study import Grid, Order, Robot, Study, Target
 
 LIBRARY = "Floors"
 MAX_CELLS = 400
-"""Cells of a floor at most: contracts list them one by one."""
+"""Largest number of cells of a floor: contracts have conjuncts for each cell."""
 MAX_ROBOT_PAIR_CELLS = 10_000
-"""Pairs of robots times cells at most: contracts have a conjunct for each pair and cell."""
+"""Largest product of the number of cells and the square of the number of robots: contracts have a
+conjunct for each pair of robots and each cell."""
 
 
 def read_studies(graph: Graph, sink: Sink) -> Iterator[Study]:
-    """Yield the floors of a model that have robots; faulty ones are reported."""
+    """Yield a study for each floor of a model that has robots; faulty floors are reported."""
     if not any(package.name == LIBRARY for package in graph.of_kind(Kind.PACKAGE)):
         return
     names: set[str] = set()
@@ -46,12 +47,14 @@ def _is_library_element(graph: Graph, element: Element, name: str) -> bool:
 
 
 class _PlacedPart(Struct, frozen=True):
+    """A part of a floor with its cell; None for a robot without a start, or after an error."""
+
     element: Element
     cell: int | None
 
 
 class _FloorReader:
-    """Reads one floor; ``is_good`` is false from the first error on."""
+    """Reads one floor; ``is_good`` becomes false at the first error."""
 
     def __init__(self, graph: Graph, block: Element, sink: Sink) -> None:
         self.graph, self.block, self.sink = graph, block, sink
@@ -77,7 +80,7 @@ class _FloorReader:
                 yield study
 
     def _list_robots(self, grid: Grid) -> list[Element]:
-        """Return the parts that are robots, repeated by their multiplicity."""
+        """Return the parts that are robots, each as often as its multiplicity requires."""
         robots: list[Element] = []
         max_robots = isqrt(MAX_ROBOT_PAIR_CELLS // grid.size)
         for part in self._parts_of_kind(self.block, "Robot"):
@@ -127,13 +130,13 @@ class _FloorReader:
             floor,
             targets=tuple(self._build_targets(targets)),
             orders=orders,
-            deadline=max((part for part in deadlines if part is not None), default=None),
+            deadline=max((number for number in deadlines if number is not None), default=None),
         )
 
-    def fail(self, found: Rule, element: Element, **facts: str | int) -> None:
+    def fail(self, rule: Rule, element: Element, **facts: str | int) -> None:
         """Report an error of an element; the floor then yields no study."""
         self.is_good = False
-        self.sink.report(found, self.graph.subject(element), notes=(), help="", **facts)
+        self.sink.report(rule, self.graph.subject(element), notes=(), help="", **facts)
 
     def _parts_of_kind(self, block: Element | None, kind: str) -> list[Element]:
         if block is None:
@@ -141,7 +144,7 @@ class _FloorReader:
         return [part for part in query.parts(self.graph, block) if self.is_typed(part, kind)]
 
     def is_typed(self, part: Element, kind: str) -> bool:
-        """Return whether the type of a feature is or specialises a definition of the library."""
+        """Return whether a part is typed by the library's definition *kind* or a specialisation."""
         type_ = self._type_of(part)
         if type_ is None:
             return False
@@ -167,8 +170,9 @@ class _FloorReader:
         return value or 1
 
     def _read_number(self, block: Element | None, attribute: str) -> int | None:
-        """Return the value of an attribute, or None; a value that is no natural number is
-        reported.
+        """Return the value of an attribute, or None if it has none.
+
+        A value that is not a natural number is reported.
         """
         features = query.features(self.graph, block) if block is not None else []
         feature = next((candidate for candidate in features if candidate.name == attribute), None)
@@ -189,6 +193,10 @@ class _FloorReader:
         self.fail(rules.NO_NUMBER, place, attribute=attribute, name=block.name, problem=problem)
 
     def _read_place(self, grid: Grid, part: Element, is_needed: bool = True) -> _PlacedPart:
+        """Return a part with its cell; a missing or invalid cell is reported.
+
+        Unless *is_needed*, row and column may both be missing.
+        """
         was_good = self.is_good
         row, column = (self._read_number(self._type_of(part), name) for name in ("row", "column"))
         if self.is_good != was_good:
@@ -261,23 +269,24 @@ def _parse_whole_number(value: object) -> int | None:
 
 
 class Reader(Protocol):
-    """What reads a floor."""
+    """The part of ``_FloorReader`` that reading orders needs."""
 
     graph: Graph
     sink: Sink
 
-    def fail(self, found: Rule, element: Element, **facts: str | int) -> None:
-        """Report what is wrong."""
+    def fail(self, rule: Rule, element: Element, **facts: str | int) -> None:
+        """Report an error of an element."""
 
     def is_typed(self, part: Element, kind: str) -> bool:
-        """Whether a feature is of that kind."""
+        """Return whether a part is typed by the library's definition *kind*."""
 
 
 def read_orders(
     reader: Reader, missions: Sequence[Element], targets: Sequence[Element]
 ) -> Iterator[Order]:
-    """Return the orders between targets of the missions; cycles and double carrying are
-    reported.
+    """Return the orders between targets of the missions.
+
+    Cycles are reported, and targets that are carried from or to several targets.
     """
     orders = [order for mission in missions for order in _iter_orders(reader, mission, targets)]
     _check_circles(reader, orders, targets)
@@ -289,8 +298,8 @@ def _iter_orders(reader: Reader, mission: Element, targets: Sequence[Element]) -
     graph = reader.graph
     numbers = {target.id: number for number, target in enumerate(targets)}
     block = query.type_of(graph, mission)
-    family = () if block is None else (block, *query.generals(graph, block))
-    for connector in (element for owner in family for element in graph.owned(owner)):
+    owners = () if block is None else (block, *query.generals(graph, block))
+    for connector in (element for owner in owners for element in graph.owned(owner)):
         if connector.kind is not Kind.CONNECTOR or not reader.is_typed(connector, "Before"):
             continue
         roles = [query.role_of(graph, end) for end in query.ends(graph, connector)]
@@ -312,24 +321,26 @@ def _check_circles(reader: Reader, orders: Sequence[Order], targets: Sequence[El
 
 
 def _find_order_path(orders: Sequence[Order], start: int, end: int) -> list[int]:
-    """Return the targets on a path of orders, or nothing if there is no path."""
-    came: dict[int, int] = {}
-    waiting = [start]
-    while waiting:
-        target = waiting.pop(0)
+    """Return the targets on a shortest path of orders, or an empty list if there is no path."""
+    predecessors: dict[int, int] = {}
+    worklist = [start]
+    while worklist:
+        target = worklist.pop(0)
         for order in orders:
-            if order.earlier == target and order.later not in came:
-                came[order.later] = target
-                waiting.append(order.later)
-    if end not in came:
+            if order.earlier == target and order.later not in predecessors:
+                predecessors[order.later] = target
+                worklist.append(order.later)
+    if end not in predecessors:
         return []
-    way = [end]
-    while len(way) == 1 or way[0] != start:
-        way.insert(0, came[way[0]])
-    return way
+    # Start and end may be equal: a cycle has at least one order.
+    path = [end]
+    while len(path) == 1 or path[0] != start:
+        path.insert(0, predecessors[path[0]])
+    return path
 
 
 def _check_carrying(reader: Reader, orders: Sequence[Order], targets: Sequence[Element]) -> None:
+    """Report targets that are carried to, or from, several others."""
     for side, other, prepositions in (
         ("earlier", "later", ("from", "to")),
         ("later", "earlier", ("to", "from")),

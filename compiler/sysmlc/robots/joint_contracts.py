@@ -1,7 +1,7 @@
 """All contracts of a floor, and their conjunction with the assignment of targets (thesis, 4.3).
 
-The mission gives a robot a goal; the robot takes the goal as its target when it is in its previous
-target. So targets stay until they are reached, whatever the mission does.
+The mission assigns a goal to a robot. The robot adopts the goal as its target only when it is in
+its previous target. So targets stay until they are reached, whatever the mission does.
 """
 
 from collections.abc import Iterable, Iterator, Sequence
@@ -20,10 +20,10 @@ from sysmlc.robots.system_contract import count_timers, system_contract
 
 
 class JointContracts:
-    """C_E, C_R of each robot among others, and the assignment of targets."""
+    """The contracts of a floor together: C_S, C_E, C_R of each robot, and the wiring of targets."""
 
     def __init__(self, study: Study) -> None:
-        """Build the contracts; nothing is decided."""
+        """Build the contracts of a study."""
         self.study = study
         self.system = system_contract(study)
         self.environment = environment_contract(study)
@@ -43,12 +43,12 @@ class JointContracts:
         return {variable.name: variable for variable in (*all_variables, *goal_variables)}
 
     def steps(self) -> Iterator[Conjunct]:
-        """Yield the initial and safety guarantees, and the conjuncts that connect the contracts."""
+        """Yield the initial and safety guarantees of C_E and C_R, and the wiring."""
         yield from safety_conjuncts(conjunct for part in self.parts for conjunct in part.guarantees)
         yield from self.wiring
 
     def robots_of(self, conjunct: Conjunct) -> tuple[Robot, ...] | None:
-        """Return the robots that a conjunct is about, or None if it is about cells too."""
+        """Return the robots whose variables a conjunct reads; None if it reads other variables."""
         names = _names_in(conjunct)
         if not names <= self._owner.keys():
             return None
@@ -56,10 +56,10 @@ class JointContracts:
         return tuple(robot for robot in self.study.robots if robot.word in words)
 
     def restrict_to(self, robots: Sequence[Robot]) -> tuple[Contract, list[Conjunct]]:
-        """Return the variables of some robots, and the guarantees about these alone."""
-        names = {name for one in robots for name in variable_names(one)}
-        variables = tuple(one for name, one in self.variables.items() if name in names)
-        facts = [one for one in self.steps() if _names_in(one) <= names]
+        """Return a contract with the variables of *robots*, and the conjuncts about only these."""
+        names = {name for robot in robots for name in variable_names(robot)}
+        variables = tuple(variable for name, variable in self.variables.items() if name in names)
+        facts = [conjunct for conjunct in self.steps() if _names_in(conjunct) <= names]
         return Contract("", "", variables, (), ()), facts
 
 
@@ -84,7 +84,7 @@ def _names_in(conjunct: Conjunct) -> set[str]:
 
 
 def goal_variable(study: Study, robot: Robot) -> Variable:
-    """Declare the cell to which any mission on this floor sends a robot, or none."""
+    """Declare the goal of a robot in an arbitrary mission on this floor: a cell or none."""
     cells = tuple(f"cell_{cell}" for cell in study.grid.cells)
     return Variable(terms.goal(robot), Owner.SYSTEM, EnumerationDomain((NONE, *cells)))
 
@@ -95,10 +95,9 @@ def is_sent_to(robot: Robot, cell: int) -> Formula:
 
 
 def define_targets(study: Study, robot: Robot) -> Iterator[Conjunct]:
-    """State that a robot starts in its target and takes a goal when it is in its previous target.
+    """State that a robot starts in its target, and adopts a goal when it is in its target.
 
-    No mission sends a robot to an unreachable cell, whose target would never be reached, so such a
-    goal counts as none.
+    An unreachable goal is ignored: no mission needs one, because its target is never reached.
     """
     position, target_value = f.var(terms.position(robot)), f.var(terms.target(robot))
     yield terms.initial_conjunct(
@@ -126,7 +125,7 @@ def define_targets(study: Study, robot: Robot) -> Iterator[Conjunct]:
 
 
 def mission_guarantees(study: Study) -> Iterator[Conjunct]:
-    """State what every mission guarantees about its goals (C_M), until robots are late."""
+    """State what every mission guarantees about goals (C_M) as long as its assumptions hold."""
     for robot in study.robots:
         has_no_goal = terms.equals(terms.goal(robot), NONE)
         yield terms.initial_conjunct(
@@ -148,6 +147,7 @@ def never_sent(robot: Robot) -> Conjunct:
 
 
 def _keep_goal(robot: Robot, cell: int) -> Conjunct:
+    """State that a goal stays until the robot has reached it as its target."""
     has_arrived = f.both(terms.is_in_cell(robot, cell), terms.equals(terms.target(robot), cell))
     is_under_way = f.both(is_sent_to(robot, cell), f.negate(f.prime(has_arrived)))
     text = f"'{robot.name}' keeps a target until it has reached it."
@@ -160,9 +160,10 @@ def _keep_goal(robot: Robot, cell: int) -> Conjunct:
 
 
 def study_contracts(study: Study, travel: TravelTimes | None = None) -> Iterator[Contract]:
-    """Yield C_S, C_E, C_R of each robot (alone, and among others), and C_M if there are targets.
+    """Yield all contracts of a floor: C_S, C_E, C_R of each robot in two versions, and C_M.
 
-    Without measured travel times, the mission assumes those of shortest paths.
+    C_R is yielded for a robot alone on the floor and for one among others. C_M needs targets; if no
+    travel times were measured, it assumes those of shortest paths.
     """
     yield system_contract(study)
     yield environment_contract(study)

@@ -1,10 +1,10 @@
 """Proof that robots, environment and mission together satisfy C_S (MOOD4I thesis, 4.3).
 
-Each conjunct is about one robot or two, and is checked against the guarantees about these alone:
-they are fewer, so whatever follows from them follows from all. Conjuncts that are literally
-guaranteed, or that hold initially and inductively, need no diagram. A counterexample is searched
-with as few robots as possible; the others rest (``run_extension``), and the run is checked against
-all contracts.
+Each conjunct of C_S is about one robot or two. It is checked against the guarantees about these
+robots only, which is sound: what follows from fewer guarantees follows from all. Conjuncts that
+some contract guarantees literally need no search. If a conjunct does not follow, a counterexample
+is searched with as few robots as possible. The other robots are added at rest (``run_extension``),
+and the complete run is checked against all contracts (decision 38).
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -32,21 +32,18 @@ from sysmlc.synthesis.bdd.manager import Manager
 
 
 class Counterexample(Struct, frozen=True):
-    """A conjunct that is not entailed, and a run of all robots that violates it, if one was
-    found.
-    """
+    """A conjunct that is not proven, with a run that violates it."""
 
     conjunct: Conjunct
     run: Trace | None
+    """A run of all robots; None if no violating run was found."""
 
 
 class JointProof:
-    """C_R of all robots, C_E and the targets of some mission, and the question whether they imply
-    C_S.
-    """
+    """Proof that C_R of all robots and C_E imply C_S, for the targets of any mission."""
 
     def __init__(self, study: Study, new_manager: Callable[[], Manager]) -> None:
-        """The robots of the study start anywhere."""
+        """Build the contracts of *study*, whose robots may start in any cell."""
         self.study, self.new_manager = study, new_manager
         self.contracts = JointContracts(study)
         self._step_conjuncts = {
@@ -54,18 +51,21 @@ class JointProof:
         }
         self._runs_by_robots: dict[tuple[Robot, ...], tuple[Universe, Runs]] = {}
 
-    # -- what holds in each step ---------------------------------------------------------------
+    # -- safety --------------------------------------------------------------------------------
 
     def find_safety_failure(self) -> Counterexample | None:
-        """Return a safety conjunct that robots and environment assume of one another, or that C_S
-        guarantees, and that is not entailed; None if all are.
+        """Return an initial or safety conjunct that is not proven, or None if all are.
 
-        In a step the environment first chooses its outputs from the previous step, then targets are
-        assigned, then robots answer. Nobody waits for its own outputs, so whoever satisfies its
-        guarantees up to a step finds its assumptions satisfied in it.
+        The conjuncts are the assumptions of C_R and C_E about each other, and the guarantees of
+        C_S.
         """
+        # The assumptions may be proven from guarantees that depend on them, by induction over
+        # steps: in each step the environment first reacts to the previous step, then targets are
+        # assigned, then robots answer, so no output depends on itself within a step.
         parts = self.contracts.parts
-        assumptions = (one for part in parts for one in safety_conjuncts(part.assumptions))
+        assumptions = (
+            conjunct for part in parts for conjunct in safety_conjuncts(part.assumptions)
+        )
         for conjunct in (*assumptions, *safety_conjuncts(self.contracts.system.guarantees)):
             if not self._is_proven(conjunct):
                 return Counterexample(conjunct, self._find_violation(conjunct))
@@ -74,15 +74,13 @@ class JointProof:
     def _is_proven(self, conjunct: Conjunct) -> bool:
         if (conjunct.class_, conjunct.formula) in self._step_conjuncts:
             return True
-        is_state = conjunct.class_ is Class.SAFETY and not has_primes(conjunct.formula)
-        if is_state and all(map(self._is_proven, _induction_obligations(conjunct))):
+        is_state_predicate = conjunct.class_ is Class.SAFETY and not has_primes(conjunct.formula)
+        if is_state_predicate and all(map(self._is_proven, _induction_obligations(conjunct))):
             return True
         return self._is_entailed(conjunct)
 
     def _is_entailed(self, conjunct: Conjunct) -> bool:
-        """Return whether the guarantees about its robots entail the conjunct, in any or in any
-        reachable step.
-        """
+        """Return whether the guarantees about the robots of the conjunct entail it."""
         robots = self.contracts.robots_of(conjunct)
         if robots is None:
             return False
@@ -94,11 +92,12 @@ class JointProof:
                 return runs.system.init & violation == nothing
             if not has_primes(conjunct.formula):
                 return runs.reachable & violation == nothing
+            # Compute the reachable states only if some step, reachable or not, is a violation.
             states = runs.predecessors_by(runs.manager.true, violation)
             return states == nothing or runs.reachable & states == nothing
 
     def _runs_of(self, robots: tuple[Robot, ...]) -> tuple[Universe, Runs]:
-        """Return the runs of some robots under the guarantees about these alone."""
+        """Return the runs that satisfy the guarantees about only these robots; memoised."""
         if robots not in self._runs_by_robots:
             contract, facts = self.contracts.restrict_to(robots)
             manager = self.new_manager()
@@ -108,7 +107,7 @@ class JointProof:
         return self._runs_by_robots[robots]
 
     def _find_violation(self, conjunct: Conjunct) -> Trace | None:
-        """Return a run with recurring offers of cells nearer to the targets that violates C_S."""
+        """Return a run of all robots that satisfies the contracts but not *conjunct*."""
         for robots in self._iter_groups(conjunct):
             group = _RobotGroup(replace(self.study, robots=robots), self.new_manager())
             run = group.find_violation(conjunct)
@@ -119,13 +118,13 @@ class JointProof:
                 return extended_run
         return None
 
-    # -- what holds again and again ------------------------------------------------------------
+    # -- liveness ------------------------------------------------------------------------------
 
     def find_offer_failure(self) -> Counterexample | None:
-        """Return a violation of the assumption that a direction nearer to the target is offered
-        infinitely often, with a run in which the robot does not reach its target.
+        """Return a violation of C_R's assumption about offers; None if the assumption is entailed.
 
-        Raises UndecidedError if no such run was found, and none excluded.
+        The assumption is that a direction nearer to the target is offered infinitely often. Raises
+        UndecidedError if a violation was neither found nor excluded.
         """
         (conjunct,) = liveness_conjuncts(self.contracts.robots[0].assumptions)
         for robots in self._iter_groups(conjunct):
@@ -142,12 +141,14 @@ class JointProof:
                 )
                 if extended_run is not None:
                     return Counterexample(conjunct, extended_run)
+        # Only a search with all robots, and without an assumption about the mission, can exclude a
+        # violation.
         if run is None and group.find_run_without_offers(conjunct, ()) is None:
             return None
         raise UndecidedError(conjunct)
 
     def find_liveness_failure(self) -> Counterexample | None:
-        """Return a liveness guarantee of C_S that no robot literally guarantees."""
+        """Return a liveness guarantee of C_S that is not literally one of C_R, or None."""
         robot_guarantees = [
             guarantee
             for part in self.contracts.robots
@@ -163,7 +164,7 @@ class JointProof:
         return next(missing_guarantees, None)
 
     def _iter_groups(self, conjunct: Conjunct) -> Iterator[tuple[Robot, ...]]:
-        """Yield the robots that a conjunct is about, then with one more robot, and so on."""
+        """Yield growing groups of robots, beginning with those that the conjunct is about."""
         affected_robots = self.contracts.robots_of(conjunct) or ()
         all_robots = (
             *affected_robots,
@@ -176,8 +177,9 @@ class JointProof:
     def _extend_to_counterexample(
         self, robots: Sequence[Robot], run: Trace, broken: Conjunct
     ) -> Trace | None:
-        """Extend the run to all robots; None if it is no run of all contracts that violates the
-        conjunct.
+        """Return an extension of the run to all robots that is a counterexample, or None.
+
+        It must satisfy all contracts and violate *broken*.
         """
         extended_runs = (
             extended_run
@@ -194,7 +196,7 @@ class JointProof:
         )
 
     def _satisfies_contracts(self, run: Trace, broken: Conjunct) -> bool:
-        """Return whether robots, environment and mission satisfy their contracts in a run."""
+        """Return whether a run satisfies the contracts, apart from the assumption *broken*."""
         contracts = self.contracts
         assumptions = (
             *contracts.wiring,
@@ -208,12 +210,10 @@ class JointProof:
             satisfies_contract(run, contract) for contract in contracts.parts
         )
 
-    # -- how long it takes ---------------------------------------------------------------------
+    # -- travel time ---------------------------------------------------------------------------
 
     def find_endless_travel(self) -> Trace | None:
-        """Return steps in which a robot never reaches its target; None if its travel time is
-        bounded.
-        """
+        """Return a run in which a robot never reaches its target; None if there is none."""
         robot = self.study.robots[0]
         contract, facts = self.contracts.restrict_to((robot,))
         manager = self.new_manager()
@@ -231,14 +231,14 @@ class JointProof:
 
 
 class UndecidedError(Exception):
-    """A conjunct that was neither proven nor refuted by a run."""
+    """Reports a conjunct that was neither proven nor refuted by a run."""
 
     def __init__(self, conjunct: Conjunct) -> None:
         super().__init__(f"no run was found, and none excluded, that breaks: {conjunct.text}")
 
 
 class _RobotGroup:
-    """Some robots, the first of which is examined, with the whole environment of these."""
+    """Some robots with all contracts about them, to search for a counterexample."""
 
     def __init__(self, study: Study, manager: Manager) -> None:
         self.study, self.manager = study, manager
@@ -257,9 +257,7 @@ class _RobotGroup:
             self.universe = Universe((contract,), manager)
 
     def find_violation(self, conjunct: Conjunct) -> Trace | None:
-        """Return a violating run in which cells are offered infinitely often and robots reach their
-        targets.
-        """
+        """Return a run that violates *conjunct* and in which all liveness conjuncts hold."""
         robot_conjuncts = (
             conjunct
             for part in self.contracts.robots
@@ -274,15 +272,21 @@ class _RobotGroup:
     def find_run_without_offers(
         self, conjunct: Conjunct, additional_facts: Sequence[Conjunct]
     ) -> Trace | None:
-        """Return a run in which robots satisfy their contracts, but the offers do not recur."""
+        """Return a run in which *conjunct* (offers recur) is violated although C_R holds.
+
+        A robot without recurring offers need not reach its targets.
+        """
         facts = (*self.facts, *additional_facts)
-        parts = [Part(one.component, one, one.origin) for one in self.contracts.robots]
+        parts = [
+            Part(contract.component, contract, contract.origin)
+            for contract in self.contracts.robots
+        ]
         with self.manager.guard():
             runs = Runs(self.universe.system(facts))
             return Recurrence(runs, parts, self.universe).find_violation(conjunct)
 
 
 def _induction_obligations(conjunct: Conjunct) -> tuple[Conjunct, Conjunct]:
-    """Return that a condition holds initially, and in each next step."""
+    """Return the obligations of an induction: *conjunct* holds initially and in each next step."""
     next_formula = f.prime(conjunct.formula)
     return replace(conjunct, class_=Class.INIT), replace(conjunct, formula=next_formula)

@@ -1,7 +1,8 @@
-"""Merging of runs that reached the same state, of which one then represents all (decision 26).
+"""Merging of runs that have reached the same state (decision 26).
 
-After a few steps most robots are on their way between targets, wherever they started. The future of
-a run depends only on its state, so each state is simulated once.
+The future of a run depends only on its state, so one run per state is continued. After a few steps
+most robots are on their way between targets, wherever they started, so there are far fewer states
+than runs.
 """
 
 from collections.abc import Iterable, Iterator, Sequence
@@ -22,7 +23,7 @@ _STATE_BYTES = 3
 
 
 class _RobotState(NamedTuple):
-    """The state of one robot in one run."""
+    """The state of one robot in one run, by the fields of ``Body``."""
 
     memory: Memory | None
     command: str | None
@@ -32,18 +33,18 @@ class _RobotState(NamedTuple):
 
 
 class Batch(Struct, frozen=True):
-    """States to continue with; a bit of a run set is one state."""
+    """Distinct states to continue with; each bit of a run set stands for one state."""
 
     runs: RunSpace[int]
     state: State[int]
     origins: Sequence[int]
-    """By bit, a run that reached this state."""
+    """For each bit, the number of a run that has reached the state."""
 
 
 class StateSet:
     """The distinct states that runs have reached.
 
-    A state is a row of bytes: the state of each robot as a number, then the reached targets.
+    A state is encoded as bytes: for each robot the number of its state, then a bit for each target.
     """
 
     def __init__(self, robots: int) -> None:
@@ -56,7 +57,9 @@ class StateSet:
         return len(self._origins)
 
     def add(self, world: World[int], origins: Sequence[int]) -> None:
-        """Add the states of all runs; *origins* are the runs from which they originate."""
+        """Add the states of all runs of *world*; *origins* contains a number for each run."""
+        # A table with a row for each run and a column for each byte: bit-parallel operations fill
+        # whole columns, and the rows become the keys of the dictionary that finds equal states.
         count = world.runs.all.bit_length()
         bits = [
             bit for robot in range(len(world.bodies)) for bit in self._encode_robot(robot, world)
@@ -72,24 +75,28 @@ class StateSet:
         self._origins.update(origins_by_state)
 
     def _encode_robot(self, robot: int, world: World[int]) -> list[int]:
-        """Return the bits of the number of a robot's state; 0 marks bits that are no run."""
+        """Return for each bit of the number of the robot's state the runs in which it is set.
+
+        Numbers begin with 1; bits of a run set that are no run have the number 0.
+        """
         numbers = self._numbers[robot]
         bits = [0] * (_STATE_BYTES * _BITS_PER_BYTE)
         for robot_state, run_set in _split_by_robot_state(world.bodies[robot], world.runs.all):
             number = numbers.setdefault(robot_state, len(numbers) + 1)
-            for place in range(number.bit_length()):
-                if number >> place & 1:
-                    bits[place] |= run_set
+            for position in range(number.bit_length()):
+                if number >> position & 1:
+                    bits[position] |= run_set
         return bits
 
     def batches(self, max_states: int, model: World[int]) -> Iterator[Batch]:
-        """Yield all states in batches, for worlds like *model*, one of the added worlds."""
+        """Yield all states in batches of limited size; *model* is one of the added worlds."""
         rows = list(self._origins)
         for start in range(0, len(rows), max_states):
             batch_rows = rows[start : start + max_states]
             yield self._build_batch(batch_rows, model)
 
     def _build_batch(self, rows: Sequence[bytes], model: World[int]) -> Batch:
+        """Return the batch of some encoded states; the inverse of ``add``."""
         table, width = b"".join(rows), len(rows[0])
         columns = [table[index::width] for index in range(width)]
         bodies = []
@@ -118,17 +125,18 @@ class StateSet:
 
 
 def _split_by_robot_state(body: Body[int], every_run: int) -> Iterator[tuple[_RobotState, int]]:
-    """Yield the states of a robot, with the runs in which it has them."""
+    """Yield the states of a robot, each with the runs in which the robot has it."""
     commands, cells = _non_empty(body.commands.items()), _non_empty(enumerate(body.places))
-    sent, aside = _non_empty(enumerate(body.assigned)), _non_empty(enumerate(body.evasions))
+    targets, evasions = _non_empty(enumerate(body.assigned)), _non_empty(enumerate(body.evasions))
     for memory, memory_runs in _split_by_condition(_non_empty(body.memory.items()), every_run):
-        # A robot is in the cell that its controller expects, or in a neighbour of that cell.
+        # A robot is in the cell that its controller expects, or in a neighbour of that cell. Trying
+        # these first ends the search early.
         expected_cell = 0 if memory is None else memory.cell
         nearby_cells = sorted(cells, key=lambda pair: abs(pair[0] - expected_cell))
         for command, command_runs in _split_by_condition(commands, memory_runs):
             for cell, cell_runs in _split_by_condition(nearby_cells, command_runs):
-                for goal, target_runs in _split_by_condition(sent, cell_runs):
-                    for evasion, run_set in _split_by_condition(aside, target_runs):
+                for goal, target_runs in _split_by_condition(targets, cell_runs):
+                    for evasion, run_set in _split_by_condition(evasions, target_runs):
                         yield _RobotState(memory, command, cell, goal, evasion), run_set
 
 
@@ -139,7 +147,10 @@ def _non_empty(conditions: Iterable[tuple[_T, int]]) -> list[tuple[_T, int]]:
 def _split_by_condition(
     conditions: Sequence[tuple[_T, int]], remaining: int
 ) -> Iterator[tuple[_T | None, int]]:
-    """Split runs by the condition that holds; None where none does."""
+    """Yield the values with the part of *remaining* in which their condition holds.
+
+    At most one condition holds in a run. The runs in which none holds are yielded with None.
+    """
     for value, run_set in conditions:
         overlap = remaining & run_set
         if overlap:
@@ -152,11 +163,11 @@ def _split_by_condition(
 
 
 def _build_body(model: Body[int], robot_states: Iterable[tuple[_RobotState, int]]) -> Body[int]:
-    """Build a robot from its states; the lists have the lengths of those of *model*."""
-    places, sent, aside = (
+    """Return the body of a robot with these states; its lists are as long as those of *model*."""
+    places, assigned, evasions = (
         [0] * len(robot_state) for robot_state in (model.places, model.assigned, model.evasions)
     )
-    body: Body[int] = Body(places, sent, aside, {}, {})
+    body: Body[int] = Body(places, assigned, evasions, {}, {})
     for robot_state, run_set in robot_states:
         _add_runs(body.places, robot_state.cell, run_set)
         _add_runs(body.assigned, robot_state.assigned, run_set)
@@ -174,7 +185,8 @@ def _add_runs(run_sets: list[int], index: int | None, run_set: int) -> None:
 
 
 def _byte_column(bits: Sequence[int], count: int) -> bytes:
-    """Pack eight conditions into a byte for each run, the last run first."""
+    """Return a byte for each run, the last run first, with the bits of up to eight run sets."""
+    # Printing an integer in binary spreads its bits over bytes without a loop in Python.
     zeros = int.from_bytes(b"0" * count, "big") if any(bits) else 0
     total = 0
     for bit_number, run_set in enumerate(bits):
@@ -185,7 +197,7 @@ def _byte_column(bits: Sequence[int], count: int) -> bytes:
 
 
 def _transpose(columns: Sequence[bytes], count: int) -> Iterator[bytes]:
-    """Yield the bytes of each run as one row; an empty column consists of zeros."""
+    """Yield for each run its bytes in all columns; an empty column stands for zeros."""
     width = len(columns)
     table = bytearray(count * width)
     for index, column in enumerate(columns):
@@ -198,20 +210,22 @@ _DIGITS_BY_VALUE = [
     bytes(ord("1") if value == wanted else ord("0") for value in range(256))
     for wanted in range(256)
 ]
-"""By value, a translation of bytes to the digit whether they have that value."""
+"""For each value of a byte, the translation table that maps this value to "1", others to "0"."""
 _DIGITS_BY_BIT = [
     bytes(ord("1") if value >> bit & 1 else ord("0") for value in range(256))
     for bit in range(_BITS_PER_BYTE)
 ]
-"""By bit, a translation of bytes to the digit whether they have that bit."""
+"""For each bit, the translation table that maps bytes with this bit to "1", others to "0"."""
 
 
 def _runs_with_bit(column: bytes, bit: int) -> int:
+    """Return the set of rows whose byte has a bit; the inverse of ``_byte_column``."""
     return int(column.translate(_DIGITS_BY_BIT[bit]), 2)
 
 
 def _runs_by_number(columns: Sequence[bytes]) -> dict[int, int]:
-    """Return the rows by the number that some bytes, lowest first, encode."""
+    """Return the set of rows for each number that *columns*, lowest byte first, encode."""
+    # Minus one has all bits set: every row has the number 0 before the first byte is read.
     runs = {0: -1}
     for index, column in enumerate(columns):
         runs_by_byte = {

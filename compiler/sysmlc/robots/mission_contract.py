@@ -1,7 +1,7 @@
 """The contract of the mission, C_M (MOOD4I thesis, 4.3.4): targets, their order, and deadlines.
 
-The environment consists of robots that reach each target within their travel time; the system
-assigns targets to them. If the contract is realizable, the mission can be done.
+The environment consists of robots that reach each target within their travel time. The system
+assigns the targets to them. If the contract is realizable, the mission can be accomplished.
 """
 
 from collections.abc import Iterator
@@ -27,10 +27,9 @@ TIMER = "timer"
 
 
 def mission_contract(study: Study, travel: TravelTimes) -> Contract:
-    """Return the contract: robots travel no longer than known; all targets are reached in order and
-    in time.
+    """Return C_M: it assumes travel times, and guarantees that targets are reached in time.
 
-    Without deadlines all targets are reached eventually.
+    The order of the targets is respected. A target without a deadline is reached eventually.
     """
     return Contract(
         f"{study.component}.mission",
@@ -58,7 +57,7 @@ def _declare_variables(study: Study, travel: TravelTimes) -> Iterator[Variable]:
 
 
 def _last_deadline(study: Study) -> int:
-    """Return the last deadline, or 0 if there is none."""
+    """Return the latest deadline, or 0 if there is none."""
     deadlines = (study.deadline, *(target.deadline for target in study.targets))
     return max((deadline for deadline in deadlines if deadline is not None), default=0)
 
@@ -88,6 +87,7 @@ def _list_assumptions(study: Study, travel: TravelTimes) -> Iterator[Conjunct]:
 
 
 def _rest_without_target(robot: Robot) -> Conjunct:
+    """State that a robot without a target stays in its place."""
     text = f"Without a target '{robot.name}' stays where it is."
     place = f.var(terms.place(robot))
     stays = f.both(f.eq(f.prime(place), place), f.prime(terms.equals(terms.clock(robot), 0)))
@@ -99,7 +99,7 @@ def _rest_without_target(robot: Robot) -> Conjunct:
 def _limit_travel_time(
     study: Study, travel: TravelTimes, number: int, start_place: int, target_number: int
 ) -> Conjunct:
-    """State that a robot on its way arrives in time, or continues and counts."""
+    """State that a robot arrives at a target before its clock reaches the travel time."""
     robot, name = study.robots[number], study.targets[target_number].word
     max_steps = travel.get(number, start_place, target_number)
     origin = START_WORD if start_place == START else study.targets[start_place].word
@@ -146,6 +146,7 @@ def _list_guarantees(study: Study, travel: TravelTimes) -> Iterator[Conjunct]:
 
 
 def _target_guarantees(study: Study, number: int) -> Iterator[Conjunct]:
+    """State that a target is reached once, by one robot, which keeps it until then."""
     target = study.targets[number]
     is_done = f.var(terms.completion(target))
     arrivals = [_arrives_at(robot, target) for robot in study.robots]
@@ -170,11 +171,13 @@ def _target_guarantees(study: Study, number: int) -> Iterator[Conjunct]:
 
 
 def _arrives_at(robot: Robot, target: Target) -> Formula:
+    """Return the predicate that a robot that is sent to a target reaches it in the next step."""
     is_sent = terms.equals(terms.goal(robot), target.word)
     return f.both(is_sent, f.prime(terms.equals(terms.place(robot), target.word)))
 
 
 def _respect_orders(study: Study) -> Iterator[Conjunct]:
+    """State that a robot is sent to a target only after the targets before it were reached."""
     for order in study.orders:
         earlier, later = study.targets[order.earlier], study.targets[order.later]
         for robot in study.robots:
@@ -187,10 +190,12 @@ def _respect_orders(study: Study) -> Iterator[Conjunct]:
 
 
 def _carry(robot: Robot, earlier: Target, later: Target, origin: str) -> Iterator[Conjunct]:
+    """State that the robot that has reached the earlier target continues to the later one."""
     text = f"Who was in '{earlier.name}' goes on to '{later.name}', nobody else does."
     is_sent = f.prime(terms.equals(terms.goal(robot), later.word))
     has_arrived = f.prime(terms.equals(terms.place(robot), earlier.word))
     yield terms.safety_conjunct(f.implies(is_sent, has_arrived), origin, text)
+    # The robot may have no target for a while, but no other one than the later target.
     is_not_done = f.negate(f.prime(f.var(terms.completion(later))))
     has_no_target = f.prime(terms.equals(terms.goal(robot), NONE))
     continues = f.implies(f.both(has_arrived, is_not_done), f.either(is_sent, has_no_target))

@@ -1,6 +1,4 @@
-"""The record of one run of a mission: positions, journeys and reached targets, as text and as a
-diagram.
-"""
+"""The record of one run of a mission, and its presentation as text and as a sequence diagram."""
 
 from collections.abc import Iterator, Sequence
 
@@ -14,7 +12,7 @@ from sysmlc.support.plantuml_text import escape_line, format_label
 
 
 class Moment(Struct, frozen=True):
-    """One step of a run, by robot."""
+    """One step of a run; cells, goals and commands are listed by robot."""
 
     cells: tuple[int, ...]
     goals: tuple[int | None, ...]
@@ -31,7 +29,8 @@ def record_run(
     starts: Sequence[int],
     steps: int,
 ) -> tuple[Moment, ...]:
-    """Simulate the run from some starts for a number of steps."""
+    """Simulate and record *steps* steps from the start cells of the robots."""
+    # The simulation of many runs, here with a single one.
     cells = range(study.grid.size)
     start_sets = tuple(tuple(int(cell == start) for cell in cells) for start in starts)
     runs = RunSpace(1, 0, start_sets, difference)
@@ -76,14 +75,14 @@ def _active_targets(world: World[int], number: int) -> Iterator[int]:
 
 
 def describe_cell(study: Study, cell: int) -> str:
-    """Return a cell in the model's words: a target, or row and column."""
+    """Return the description of a cell: the name of its target, or row and column."""
     target_name = next((target.name for target in study.targets if target.cell == cell), "")
     row, column = divmod(cell, study.grid.columns)
     return f"'{target_name}'" if target_name else f"row {row}, column {column}"
 
 
 def describe_moments(study: Study, moments: Sequence[Moment], max_lines: int = 40) -> Iterator[str]:
-    """Yield a line for each step with changes."""
+    """Yield a line for each step with new or reached targets, up to *max_lines*."""
     shown = 0
     for step, moment in enumerate(moments):
         previous = moments[step - 1] if step else None
@@ -102,7 +101,7 @@ def describe_moments(study: Study, moments: Sequence[Moment], max_lines: int = 4
 def _describe_changes(
     study: Study, previous: Moment | None, moment: Moment
 ) -> Iterator[tuple[int, str]]:
-    """Yield robot and text for new targets and reached targets."""
+    """Yield robot and text for each target that a robot gets or reaches."""
     target_cells = {target.cell for target in study.targets}
     for robot, goal in enumerate(moment.goals):
         if previous is not None and goal is not None and previous.goals[robot] != goal:
@@ -113,8 +112,9 @@ def _describe_changes(
 
 
 def sequence_diagram(study: Study, moments: Sequence[Moment], title: str) -> str:
-    """Return the run as a PlantUML sequence diagram: assigned targets, evasions, reached
-    targets.
+    """Return the run as a PlantUML sequence diagram of the mission and the robots.
+
+    Messages are assigned targets, evasions (dashed) and reached targets.
     """
     lines = [
         "@startuml",
@@ -123,19 +123,20 @@ def sequence_diagram(study: Study, moments: Sequence[Moment], title: str) -> str
         'participant "mission" as m',
     ]
     lines += [
-        f'participant "{format_label(one.name)}" as r{robot_number}'
-        for robot_number, one in enumerate(study.robots)
+        f'participant "{format_label(robot.name)}" as r{number}'
+        for number, robot in enumerate(study.robots)
     ]
-    target_cells = {one.cell for one in study.targets}
+    target_cells = {target.cell for target in study.targets}
     for step, moment in enumerate(moments):
         messages: list[str] = []
-        for robot, goal in enumerate(moment.goals):
-            if step and goal is not None and moments[step - 1].goals[robot] != goal:
+        for robot_number, goal in enumerate(moment.goals):
+            if step and goal is not None and moments[step - 1].goals[robot_number] != goal:
                 arrow = "->" if goal in target_cells else "-[dashed]>"
                 place_name = describe_cell(study, goal).strip("'")
-                messages.append(f"m {arrow} r{robot} : {escape_line(place_name)}")
-        for robot, target in moment.reached:
-            messages.append(f"r{robot} --> m : {escape_line(study.targets[target].name)} reached")
+                messages.append(f"m {arrow} r{robot_number} : {escape_line(place_name)}")
+        for robot_number, target_number in moment.reached:
+            name = escape_line(study.targets[target_number].name)
+            messages.append(f"r{robot_number} --> m : {name} reached")
         if messages:
             lines += [f"== step {step} ==", *messages]
     return "\n".join((*lines, "@enduml", ""))

@@ -1,4 +1,4 @@
-"""The whole workflow of the thesis's figure 4.3: from a study to a validated mission."""
+"""The workflow of figure 4.3 of the thesis: from a study to a validated mission."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import islice
@@ -31,10 +31,10 @@ from sysmlc.robots.validation import Validation, validate_allocation
 from sysmlc.synthesis.controller_synthesis import Synthesis
 from sysmlc.synthesis.decision import Options, Place, decide
 
-MAX_TRIED = 12
-"""Allocations that are validated at most."""
+MAX_CANDIDATES = 12
+"""Number of allocations that are validated before the mission counts as failed."""
 SHARED_CELL_CLAIM = "C_E is realizable as the thesis defines it"
-"""The claim that fails unless a cell is offered to one robot only."""
+"""The claim that the thesis's C_E is realizable, which fails because robots may share a cell."""
 
 SHARED_CELL = rule(
     "SM570",
@@ -77,7 +77,7 @@ NOT_DECIDED = rule(
 
 
 class TriedAllocation(Struct, frozen=True):
-    """An allocation and the result of its simulation."""
+    """An allocation and the result of its validation."""
 
     schedule: Schedule
     validation: Validation
@@ -90,26 +90,30 @@ class Outcome(Struct, frozen=True):
     controller: Synthesis
     travel: TravelTimes
     answers: tuple[Answers, ...] = ()
-    """Memoised answers of the controller, for each robot."""
+    """For each robot, the memoised answers of the controller."""
     times: Times = field(default_factory=dict)
     """Measured travel times between all cells."""
     relations: tuple[Claim, ...] = ()
+    """Decided claims about relations between the contracts."""
     greedy: Schedule | None = None
+    """The allocation of the thesis's algorithm."""
     best: BestAllocation | None = None
+    """The allocation of branch and bound."""
     tried: tuple[TriedAllocation, ...] = ()
+    """The validated allocations; all but the last one have failed."""
     run: tuple[Moment, ...] = ()
     """A run of the successful allocation from one start, or a failing run."""
 
     @property
     def is_good(self) -> bool:
-        """Whether the mission is done from every admissible start."""
+        """Whether there is a controller, and the mission succeeds from every admissible start."""
         if self.controller.machine is None:
             return False
         return not self.study.targets or any(tried.validation.is_good for tried in self.tried)
 
     @property
     def chosen(self) -> TriedAllocation | None:
-        """The validated allocation, or the last one that was tried."""
+        """The allocation that succeeded, or the last one that failed."""
         successful = (tried for tried in self.tried if tried.validation.is_good)
         return next(successful, self.tried[-1] if self.tried else None)
 
@@ -124,7 +128,7 @@ def run_study(
 ) -> Outcome:
     """Synthesise the controller, measure travel times, decide claims, allocate and validate.
 
-    Failures are reported. A crew of this floor in the cache is reused.
+    Failures are reported. Results about the robots of this floor are reused from the cache.
     """
     known_crew = crew_cache.get(study) if crew_cache else None
     crew = known_crew or _build_crew(study, place, sink, options)
@@ -153,12 +157,13 @@ def _build_crew(study: Study, place: Place, sink: Sink, options: Options) -> Rob
 def allocate_mission(
     outcome: Outcome, place: Place, sink: Sink, study: Study | None = None
 ) -> Outcome:
-    """Allocate targets and validate the mission.
+    """Allocate the targets and validate the mission.
 
-    Another study with new targets on the same floor reuses the robots: nothing is synthesised again
-    (thesis 4.6.1).
+    *study* may contain another mission on the same floor; controller and travel times of *outcome*
+    are used for it (thesis 4.6.1).
     """
     study = study or outcome.study
+    # All robots have the same controller, so its answers serve any number of robots.
     answers = outcome.answers[:1] * len(study.robots)
     if not answers or not study.targets:
         return replace(outcome, study=study)
@@ -195,10 +200,10 @@ def _validate_candidates(
     place: Place,
     sink: Sink,
 ) -> Outcome:
-    """Simulate allocations until one succeeds, and record a run of the last one."""
+    """Validate allocations until one succeeds, and record a run of the last one."""
     study = outcome.study
     tried: list[TriedAllocation] = []
-    for schedule in islice(candidates, MAX_TRIED):
+    for schedule in islice(candidates, MAX_CANDIDATES):
         tried.append(
             TriedAllocation(schedule, validate_allocation(study, schedule.allocation, answers))
         )
@@ -218,7 +223,11 @@ def _validate_candidates(
 def _candidate_schedules(
     study: Study, travel: TravelTimes, best_schedule: Schedule, greedy_schedule: Schedule | None
 ) -> Iterator[Schedule]:
-    """Yield the best allocation, the thesis's, and neighbours of the best one by cost."""
+    """Yield distinct allocations that meet the deadlines.
+
+    First the best allocation, then that of the thesis's algorithm, then neighbours of the best one
+    by cost.
+    """
     known_allocations: set[object] = set()
     neighbours = sorted(
         neighbour_allocations(study, travel, best_schedule),
@@ -235,7 +244,7 @@ def _candidate_schedules(
 
 
 def _some_start(study: Study) -> tuple[int, ...]:
-    """Return an admissible start: given cells, else the first free cells."""
+    """Return an admissible start: robots without a start get the first free cells."""
     given_starts = {robot.start for robot in study.robots}
     free_cells = (cell for cell in study.grid.cells if cell not in given_starts)
     return tuple(next(free_cells) if robot.start is None else robot.start for robot in study.robots)
@@ -255,7 +264,7 @@ def _decide_all_claims(
 
 
 def _decide_shared_cell_claim(study: Study, options: Options) -> Claim:
-    """Decide the thesis's C_E for two of the robots; with more it is no easier."""
+    """Decide whether the thesis's C_E is realizable for two robots; more make it only harder."""
     two_robots = replace(
         study, robots=tuple(replace(robot, start=None) for robot in study.robots[:2])
     )
@@ -291,7 +300,7 @@ def _report_no_allocation(
 
 
 def print_steps(number: int) -> str:
-    """Return a number of steps as text."""
+    """Return a number of steps as text, with the noun in singular or plural."""
     return f"{number} step{'' if number == 1 else 's'}"
 
 

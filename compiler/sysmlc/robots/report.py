@@ -1,4 +1,4 @@
-"""Reports on studies for people: Markdown, a sequence diagram, the controller, the mission."""
+"""Files about a study: Markdown report, sequence diagram, controller, contract of the mission."""
 
 from collections.abc import Iterator
 
@@ -38,7 +38,7 @@ def study_files(outcome: Outcome) -> Iterator[tuple[str, str]]:
 
 
 def summarise_outcome(outcome: Outcome) -> str:
-    """Return the outcome on one line."""
+    """Return floor and outcome of a study on one line."""
     study = outcome.study
     head = f"{study.component}: {_count_noun(study.grid.size, 'cell')}, "
     head += (
@@ -91,7 +91,7 @@ def _escape_names(study: Study) -> Study:
 
 
 def _draw_floor(study: Study) -> Iterator[str]:
-    """Draw the floor as text: obstacles, letters of robots and numbers of targets."""
+    """Yield the floor as text: obstacles, letters for robots and digits for targets."""
     robot_letters = {
         item.start: chr(ord("A") + number % 26) for number, item in enumerate(study.robots)
     }
@@ -114,7 +114,7 @@ def _draw_floor(study: Study) -> Iterator[str]:
 
 
 def _describe_controller(outcome: Outcome) -> Iterator[str]:
-    """Describe the controller without times, which would make the file irreproducible."""
+    """Yield the section about the controller. CPU times would make the file irreproducible."""
     yield from ("", "## Controller of the robots", "")
     machine = outcome.controller.machine
     if machine is None:
@@ -128,10 +128,13 @@ def _describe_controller(outcome: Outcome) -> Iterator[str]:
 
 
 def _describe_travel_times(outcome: Outcome) -> Iterator[str]:
-    """Yield a table of measured steps between places; equal robots occur once."""
+    """Yield the table of travel times between places.
+
+    Rows from targets are the same for all robots and occur once.
+    """
     study = outcome.study
     yield from ("", "## Travel times", "", "Steps, measured in the simulation of one robot.", "")
-    yield f"| from | {' | '.join(robot_or_target.name for robot_or_target in study.targets)} |"
+    yield f"| from | {' | '.join(target.name for target in study.targets)} |"
     yield f"|---|{'---|' * len(study.targets)}"
     for number, robot in enumerate(study.robots):
         start = "any start" if robot.start is None else describe_cell(study, robot.start)

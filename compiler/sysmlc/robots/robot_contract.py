@@ -12,11 +12,11 @@ _ENVIRONMENT, _SYSTEM = Owner.ENVIRONMENT, Owner.SYSTEM
 
 
 def robot_contract(study: Study, robot: Robot, is_alone: bool = True) -> Contract:
-    """Return what a robot guarantees: to move only in free directions, and to reach its targets.
+    """Return C_R: a robot moves only in free directions, and reaches its targets.
 
-    With ``is_alone``, as in the thesis, all directions except those into walls and obstacles are
-    always free. Otherwise other robots may be in the way, and the contract assumes that a direction
-    that leads nearer to the target is offered infinitely often.
+    With ``is_alone``, as in the thesis, it assumes that all directions are free except those into
+    walls and obstacles. Otherwise other robots may be in the way, and it assumes that a direction
+    nearer to the target is offered infinitely often.
     """
     sensor_conjuncts = _barred_ways(study, robot) if not is_alone else _all_ways(study, robot)
     assumptions = [
@@ -52,6 +52,7 @@ def _list_guarantees(study: Study, robot: Robot) -> Iterator[Conjunct]:
     )
     yield from terms.sensor_obedience(robot)
     stays_next = f.prime(terms.equals(terms.command(robot), STAY))
+    # The step in which the robot can get its next target.
     text = f"In its target '{robot.name}' stays for a step."
     yield terms.safety_conjunct(
         f.implies(terms.is_at_target(robot), stays_next), robot.origin, text
@@ -62,6 +63,7 @@ def _list_guarantees(study: Study, robot: Robot) -> Iterator[Conjunct]:
 
 
 def _barred_ways(study: Study, robot: Robot) -> Iterator[Conjunct]:
+    """State that sensors never offer directions into walls and obstacles."""
     for way in WAYS:
         for cell in study.grid.cells:
             if study.grid.cell_after(cell, way) is None:
@@ -69,6 +71,7 @@ def _barred_ways(study: Study, robot: Robot) -> Iterator[Conjunct]:
 
 
 def _all_ways(study: Study, robot: Robot) -> Iterator[Conjunct]:
+    """State the value of each sensor in each cell, if no other robot is on the floor."""
     for way in WAYS:
         for cell in study.grid.cells:
             yield _state_sensor(robot, cell, way, study.grid.cell_after(cell, way) is not None)
@@ -106,7 +109,7 @@ def declare_counter(study: Study, robot: Robot) -> Iterator[Variable]:
 
 
 def count_steps(study: Study, robot: Robot) -> Iterator[Conjunct]:
-    """State that the step counter counts changes of position and wraps around (thesis 4.3.1)."""
+    """State that the counter counts changes of position and wraps around (thesis 4.3.1)."""
     if not study.counter_size:
         return
     position, count = f.var(terms.position(robot)), f.var(terms.steps(robot))

@@ -1,4 +1,4 @@
-"""The controller of the robots: one machine, synthesised from their contract, for all of them."""
+"""The common controller of all robots, synthesised from their contract, and its travel times."""
 
 from collections.abc import Mapping, Sequence
 
@@ -16,14 +16,14 @@ from sysmlc.synthesis.controller_synthesis import Synthesis, synthesise_controll
 from sysmlc.synthesis.decision import Options, Place
 
 ANY = Robot("robot", "robot")
-"""A robot that represents all: controllers do not depend on names and starts."""
+"""A robot that represents all robots: controllers do not depend on names and starts."""
 
 
 def controller_contract(study: Study) -> Contract:
     """Return the contract of the controller: a robot among others, from any start.
 
-    Step counters are left to the simulation, because as states of the machine they would multiply
-    them.
+    Step counters are omitted, because each value of a counter would be another state of the
+    machine.
     """
     single_robot_study = replace(study, robots=(ANY,), counter_size=0)
     contract = robot_contract(single_robot_study, ANY, is_alone=False)
@@ -31,29 +31,32 @@ def controller_contract(study: Study) -> Contract:
 
 
 def synthesise_robot(study: Study, place: Place, sink: Sink, options: Options) -> Synthesis:
-    """Synthesise the controller; failures are reported."""
+    """Synthesise the common controller of the robots; failures are reported."""
     return synthesise_controller(controller_contract(study), place, sink, options)
 
 
 def build_answers(study: Study, synthesis: Synthesis) -> tuple[Answers, ...]:
-    """Return the answers of all robots, or nothing without a controller."""
+    """Return the memoised answers for each robot, or an empty tuple without a controller."""
     if synthesis.machine is None:
         return ()
     return (Answers(synthesis.machine, ANY, study.grid),) * len(study.robots)
 
 
 Times = Mapping[int, Mapping[int, int]]
-"""By target cell, the steps from each other cell from which a robot reaches it."""
+"""For each target cell, the steps from every cell from which a robot reaches it."""
 
 
 def measure_travel_times(study: Study, answers: Sequence[Answers]) -> Times:
-    """Measure how long a robot that is alone on the floor travels between all cells."""
+    """Simulate a robot alone on the floor, and return its travel times between all cells."""
     cells = study.grid.cells if answers else ()
     return {cell: _measure_times_to(study, cell, answers[0]) for cell in cells}
 
 
 def travel_times_of(study: Study, times: Times) -> TravelTimes:
-    """Return the travel times of the robots between their starts and targets."""
+    """Return the travel times of the robots between starts and targets.
+
+    A robot that may start in several cells has the longest of their times.
+    """
     journeys: dict[tuple[int, int, int], int] = {}
     for goal, target in enumerate(study.targets):
         steps_by_start = times.get(target.cell, {})
@@ -72,12 +75,13 @@ def travel_times_of(study: Study, times: Times) -> TravelTimes:
 
 
 def simulate_travel_times(study: Study, answers: Sequence[Answers]) -> TravelTimes:
-    """Measure the travel times between starts and targets."""
+    """Simulate the controller, and return the travel times between starts and targets."""
     return travel_times_of(study, measure_travel_times(study, answers))
 
 
 def _measure_times_to(study: Study, cell: int, answers: Answers) -> dict[int, int]:
-    """Return the steps to a cell from each other cell from which a robot reaches it."""
+    """Return the steps to *cell* from every cell from which a robot reaches it."""
+    # One simulation for all cells: each run has another start.
     target = Target("", "", cell)
     single_robot_study = replace(study, robots=(ANY,), targets=(target,), orders=(), deadline=None)
     cells = study.grid.cells
@@ -87,6 +91,7 @@ def _measure_times_to(study: Study, cell: int, answers: Answers) -> dict[int, in
     runs = RunSpace((1 << len(cells)) - 1, 0, (tuple(run_sets),), difference)
     world = World(single_robot_study, ((0,),), (answers,), runs)
     times: dict[int, int] = {}
+    # Cells from which the target is unreachable never arrive.
     for time in range(1, 4 * study.grid.size):
         world.step()
         arrived = difference(world.done[0], world.wrong)

@@ -1,4 +1,4 @@
-"""Rules about floors, robots and missions as they are drawn (SM564 to SM569, SM577)."""
+"""Rules about floors, robots and missions of a model (SM564 to SM569, SM577)."""
 
 from sysmlc.diagnostics import Severity, rule
 

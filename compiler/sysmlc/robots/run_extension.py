@@ -1,7 +1,7 @@
-"""Extension of a run of some robots to a run of all, in which the others rest in nobody's way.
+"""Extension of a run of some robots to all robots, in which the others rest off all paths.
 
-Results for one or two robots become runs of the whole floor in this way. Before such a run is
-reported it is checked against the contracts of all robots, conjunct by conjunct.
+A counterexample with one or two robots becomes a run of the whole floor in this way. Callers check
+the run against the contracts of all robots, conjunct by conjunct, so it need not always succeed.
 """
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence, Set
@@ -26,12 +26,12 @@ Offers = Mapping[Robot, Set[str]]
 def extend_to_all_robots(
     study: Study, active_robots: Sequence[Robot], run: Trace, is_exact: bool = False
 ) -> Iterator[Trace]:
-    """Extend a run of a few robots to all robots: the others rest in nobody's way.
+    """Yield extensions of a run of some robots to all robots; the other robots rest.
 
-    First each of the others is always offered a cell next to it. Then the others are offered a free
-    cell in turn, in a loop that is repeated for each of them. With *is_exact* they are offered
-    every free cell. If there is no room for them, the result violates a contract
-    (``violated_conjuncts``).
+    C_E guarantees offers to resting robots, too. In the first extension each of them is always
+    offered the same unused cell; in the second they are offered free cells in turn, with the loop
+    repeated for each of them. With *is_exact* the sensors show every free cell, and there is one
+    extension. If there is no room, an extension violates a contract (``violated_conjuncts``).
     """
     grid, resting_robots = (
         study.grid,
@@ -58,7 +58,7 @@ def extend_to_all_robots(
 
 
 def _occupied_cells(grid: Grid, step: Values, robots: Iterable[Robot]) -> Iterator[int]:
-    """Yield the cells in which robots are, and the cells that are offered to them."""
+    """Yield the cells in which robots are or that are offered to them in a step."""
     for robot in robots:
         cell = int(step[terms.position(robot)])
         neighbours = grid.neighbours(cell)
@@ -69,7 +69,10 @@ def _occupied_cells(grid: Grid, step: Values, robots: Iterable[Robot]) -> Iterat
 def _choose_parking(
     grid: Grid, avoided: Set[int], robots: Iterable[Robot]
 ) -> tuple[dict[Robot, int], dict[Robot, str]]:
-    """Choose unused cells for robots, each with a direction into a cell that nobody else uses."""
+    """Return a cell for each robot to rest in, and the direction of an unused neighbour cell.
+
+    Cells in *avoided* are not chosen. If no cell is left, the choice is arbitrary.
+    """
     parking: dict[Robot, int] = {}
     free_directions: dict[Robot, str] = {}
     used_cells = set(avoided)
@@ -81,14 +84,14 @@ def _choose_parking(
             for way, neighbour in grid.neighbours(cell)
             if neighbour not in used_cells
         )
-        cell, way, door = next(choices, (grid.cells[-1], "", grid.cells[-1]))
-        used_cells |= {cell, door}
+        cell, way, offered_cell = next(choices, (grid.cells[-1], "", grid.cells[-1]))
+        used_cells |= {cell, offered_cell}
         parking[robot], free_directions[robot] = cell, way
     return parking, free_directions
 
 
 def _free_ways(grid: Grid, step: Values, parking: Mapping[Robot, int]) -> Offers:
-    """Return all free directions of resting robots."""
+    """Return all free directions of the resting robots in a step."""
     return {
         robot: {way for way, neighbour in grid.neighbours(cell) if step[terms.free(neighbour)]}
         for robot, cell in parking.items()
@@ -102,7 +105,7 @@ def _offer_in_turn(
     step: Values,
     turn: int,
 ) -> Offers:
-    """Return a free direction for one resting robot, into a cell that is offered to nobody else."""
+    """Return for the robot in turn a free direction into a cell offered to no other robot."""
     offered = set(_occupied_cells(grid, step, active_robots))
     robot = [*parking][turn]
     neighbours = grid.neighbours(parking[robot])
@@ -121,10 +124,10 @@ def _extend_run(
     offers_of_step: Callable[[Values, int], Offers],
     turns: int,
 ) -> Trace:
-    """Repeat the loop for each turn, and add the values of the resting robots to each step."""
+    """Return the run with the values of the resting robots, and with its loop once per turn."""
     loops = [(step, turn) for turn in range(turns) for step in run.steps[run.loop :]]
     steps = []
-    for values, turn in (*((robot, 0) for robot in run.steps[: run.loop]), *loops):
+    for values, turn in (*((step, 0) for step in run.steps[: run.loop]), *loops):
         extended = _rest_values(study, values, parking)
         offers = offers_of_step(extended, turn)
         extended |= {
@@ -137,6 +140,7 @@ def _extend_run(
 
 
 def _rest_values(study: Study, values: Values, parking: Mapping[Robot, int]) -> dict[str, Literal]:
+    """Return the values of a step with those of the resting robots and of all free cells."""
     extended = dict(values)
     for robot, cell in parking.items():
         extended |= {terms.position(robot): cell, terms.target(robot): cell}
@@ -147,13 +151,14 @@ def _rest_values(study: Study, values: Values, parking: Mapping[Robot, int]) -> 
 
 
 def violated_conjuncts(run: Trace, conjuncts: Iterable[Conjunct]) -> Iterator[Conjunct]:
-    """Return the conjuncts that a run violates."""
+    """Yield the conjuncts that a run violates."""
     return (rule for rule in conjuncts if find_violation(rule, run.steps, run.loop) is not None)
 
 
 def satisfies_contract(run: Trace, contract: Contract) -> bool:
-    """Return whether a run satisfies a contract; liveness is owed only if the liveness assumptions
-    hold.
+    """Return whether a run satisfies the guarantees of a contract.
+
+    Liveness guarantees need to hold only if all liveness assumptions do.
     """
     if any(violated_conjuncts(run, safety_conjuncts(contract.guarantees))):
         return False

@@ -1,10 +1,8 @@
-"""Sets of runs: many runs are simulated at once, and a condition is the set of runs in which it
-holds.
+"""Sets of runs, to simulate many runs at once: a condition is the set of runs in which it holds.
 
 A set is an integer with a bit for each run, or a decision diagram over the starts of the robots.
-Both have ``&`` and ``|``. Complements occur only after ``&``, as ``RunSpace.without``, because the
-complement of an integer is negative, and Python computes with negative numbers five times as
-slowly.
+Both have ``&`` and ``|``. Instead of complements there is ``RunSpace.without``: the complement of
+an integer is negative, and Python computes with negative numbers five times as slowly.
 """
 
 from collections.abc import Callable, Sequence
@@ -32,21 +30,21 @@ class RunSpace(Struct, Generic[P], frozen=True):
     all: P
     none: P
     starts: tuple[tuple[P, ...], ...]
-    """The sets by robot and cell."""
+    """For each robot and cell, the runs in which the robot starts in the cell."""
     without: Callable[[P, P], P]
     """Returns the runs of the first set that are not in the second one."""
 
 
 def difference(minuend: int, subtrahend: int) -> int:
-    """``RunSpace.without`` for integers."""
+    """Return the difference of two sets of runs that are integers (``RunSpace.without``)."""
     return minuend ^ (minuend & subtrahend)
 
 
 def digit_patterns(choices: Sequence[int]) -> list[list[int]]:
-    """Return for each digit and each of its values the set of numbers whose digit has this value.
+    """Return for each digit and each of its values the set of numbers with this value of the digit.
 
-    Bit n of a set represents the number n, written with the digits, the first one least
-    significant.
+    Numbers have one digit for each of *choices*, which is its base; the first digit is the least
+    significant. Bit n of a set represents the number n.
     """
     total = prod(choices)
     strides = accumulate(choices, mul, initial=1)
@@ -57,6 +55,8 @@ def digit_patterns(choices: Sequence[int]) -> list[list[int]]:
 
 
 def _digit_pattern(stride: int, choices: int, total: int) -> list[int]:
+    # The bits of a value repeat with the period of the digit; doubling fills the integer in few
+    # operations.
     patterns = []
     for value in range(choices):
         bits, length = ((1 << stride) - 1) << (value * stride), stride * choices
@@ -68,7 +68,7 @@ def _digit_pattern(stride: int, choices: int, total: int) -> list[int]:
 
 
 def starts_without_collision(starts: Sequence[Sequence[int]], every_run: int) -> int:
-    """Return the runs in which no two robots start in one cell."""
+    """Return the runs in which all robots start in different cells."""
     colliding = 0
     for cell in range(len(starts[0])):
         occupied = 0
@@ -79,7 +79,7 @@ def starts_without_collision(starts: Sequence[Sequence[int]], every_run: int) ->
 
 
 def runs_with_several(run_sets: Sequence[P], none: P) -> P:
-    """Return the runs in which two or more of the conditions hold."""
+    """Return the runs that are in two or more of the sets."""
     any_seen, several = none, none
     for run_set in run_sets:
         several = several | (any_seen & run_set)
@@ -88,8 +88,9 @@ def runs_with_several(run_sets: Sequence[P], none: P) -> P:
 
 
 def union(run_sets: Sequence[P], none: P) -> P:
-    """Return the runs in which some condition holds."""
+    """Return the runs that are in at least one of the sets."""
     result = none
+    # The union with an empty set would copy a long integer.
     for run_set in run_sets:
         if run_set != none:
             result = result | run_set

@@ -1,6 +1,4 @@
-"""Travel times of robots (thesis, 4.3.4), and schedules: when the targets of an allocation are
-reached.
-"""
+"""Travel times of robots (thesis, 4.3.4), and schedules, the times at which targets are reached."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import pairwise
@@ -11,21 +9,24 @@ from sysmlc.robots.study import Study, possible_starts
 from sysmlc.robots.world import Allocation
 
 START = -1
-"""The place of a robot that has not reached a target; other places are numbers of targets."""
+"""The place of a robot that has not reached a target yet; other places are numbers of targets."""
 REACTION = 2
-"""Steps in which a robot with a new target does not move yet: the step in which it gets the target
-and still stays in the previous one, and the step in which its first command is given."""
+"""Steps between the assignment of a target and the first move: in the first one the robot still
+stays in its previous target (C_R), in the second one it gives its first command."""
 
 
 class TravelTimes(Struct, frozen=True):
-    """Steps by robot, place and target (numbers); unreachable targets are missing."""
+    """The steps of journeys, by the numbers of robot, place and target.
+
+    Journeys to unreachable targets are missing.
+    """
 
     steps: Mapping[tuple[int, int, int], int]
     is_simulated: bool = False
     """Whether the times were measured in a simulation of synthesised controllers."""
 
     def get(self, robot: int, place: int, target: int) -> int | None:
-        """Return the steps of one journey, or None if there is no path."""
+        """Return the steps of a robot from a place to a target, or None if there is no path."""
         return self.steps.get((robot, place, target))
 
     @property
@@ -50,17 +51,17 @@ def shortest_travel_times(study: Study) -> TravelTimes:
 
 
 class Schedule(Struct, frozen=True):
-    """An allocation with the steps in which its targets are reached if no robot has to wait."""
+    """An allocation with its times, if no robot has to make way for others."""
 
     allocation: Allocation
     reached: tuple[int, ...]
-    """By target."""
+    """For each target, the step in which it is reached."""
     total: int
     """Steps that all robots travel."""
 
     @property
     def duration(self) -> int:
-        """Steps of the mission."""
+        """The step in which the last target is reached."""
         return max(self.reached, default=0)
 
     @property
@@ -70,8 +71,9 @@ class Schedule(Struct, frozen=True):
 
 
 def build_schedule(study: Study, travel: TravelTimes, allocation: Allocation) -> Schedule | None:
-    """Return the times of an allocation, or None if the order of the targets makes it
-    impossible.
+    """Return the schedule of an allocation.
+
+    None if the order of the targets makes the allocation impossible, or a target is unreachable.
     """
     if not respects_orders(study, allocation):
         return None
@@ -102,7 +104,7 @@ def build_schedule(study: Study, travel: TravelTimes, allocation: Allocation) ->
 def _ready_robots(
     study: Study, remaining: Sequence[Sequence[int]], reached: dict[int, int]
 ) -> Iterator[int]:
-    """Yield the robots whose next target waits for no other target."""
+    """Yield the robots that may depart: all targets before their next target are reached."""
     for robot, targets in enumerate(remaining):
         if targets and all(
             earlier_target in reached for earlier_target in study.earlier(targets[0])
@@ -111,7 +113,7 @@ def _ready_robots(
 
 
 def respects_orders(study: Study, allocation: Allocation) -> bool:
-    """Return whether every target is reached once and carried targets stay with one robot."""
+    """Return whether every target is allocated once, and carried targets follow their origin."""
     allocated = sorted(target for targets in allocation for target in targets)
     if allocated != list(range(len(study.targets))):
         return False

@@ -12,11 +12,12 @@ COMMANDS = (STAY, *WAYS)
 
 
 class Grid(Struct, frozen=True):
-    """Cells in rows and columns, numbered by row from 0; robots cannot enter *blocked* cells."""
+    """The cells of a floor, numbered row by row from 0."""
 
     columns: int
     rows: int
     blocked: tuple[int, ...] = ()
+    """The cells with obstacles, which robots cannot enter."""
 
     @property
     def size(self) -> int:
@@ -29,11 +30,11 @@ class Grid(Struct, frozen=True):
         return tuple(cell for cell in range(self.size) if cell not in self.blocked)
 
     def cell_after(self, cell: int, command: str) -> int | None:
-        """Return the cell to which a command leads, or None for a wall or an obstacle."""
+        """Return the cell to which a command leads, or None if it is blocked or off the floor."""
         return _neighbour_after(self, cell, command)
 
     def neighbours(self, cell: int) -> Iterator[tuple[str, int]]:
-        """Yield the possible commands with the cells to which they lead."""
+        """Yield the neighbours that a robot can enter, each with the command that leads there."""
         return iter(_neighbours(self)[cell])
 
     def distances(self, target: int) -> dict[int, int]:
@@ -41,7 +42,7 @@ class Grid(Struct, frozen=True):
         return _compute_distances(self, target)
 
     def commands_nearer(self, cell: int, target: int) -> tuple[str, ...]:
-        """Return the commands that bring a robot nearer to the target."""
+        """Return the commands that reduce the distance to the target."""
         distances = self.distances(target)
         distance = distances.get(cell, 0)
         return tuple(
@@ -63,7 +64,7 @@ def _neighbour_after(grid: Grid, cell: int, command: str) -> int | None:
 
 @lru_cache(64)
 def _neighbours(grid: Grid) -> tuple[tuple[tuple[str, int], ...], ...]:
-    """By cell the commands that lead somewhere, and where."""
+    """Return for each cell its neighbours (``Grid.neighbours``)."""
     return tuple(
         tuple(
             (way, neighbour)
@@ -88,12 +89,14 @@ def _compute_distances(grid: Grid, target: int) -> dict[int, int]:
 
 
 class Robot(Struct, frozen=True):
-    """A robot; *word* begins the names of its variables, *start* is None for any cell."""
+    """A robot of a floor."""
 
     name: str
     word: str
+    """The prefix of the names of its variables."""
     origin: str = ""
     start: int | None = None
+    """The cell in which it starts; None if that may be any cell."""
 
 
 class Target(Struct, frozen=True):
@@ -101,20 +104,20 @@ class Target(Struct, frozen=True):
 
     name: str
     word: str
+    """The value that stands for the target in contracts."""
     cell: int
     origin: str = ""
     deadline: int | None = None
 
 
 class Order(Struct, frozen=True):
-    """The order of two targets, by their numbers.
-
-    With ``is_carried`` the same robot continues from the earlier to the later target.
-    """
+    """The order of two targets, given by their numbers."""
 
     earlier: int
     later: int
     is_carried: bool = False
+    """Whether the robot that reached the earlier target must continue to the later one (it carries
+    something)."""
     origin: str = ""
 
 
@@ -128,9 +131,9 @@ class Study(Struct, frozen=True):
     targets: tuple[Target, ...] = ()
     orders: tuple[Order, ...] = ()
     deadline: int | None = None
-    """Steps within which the mission must be done."""
+    """Steps within which the mission must be accomplished."""
     within: int | None = None
-    """Steps within which a robot must reach a target after it got it."""
+    """Steps within which a robot must reach a target after its assignment."""
     counter_size: int = 0
     """Number of values of the step counters, which wrap around; 0 for no counters."""
     obstacles: tuple[str, ...] = field(default=())
@@ -141,20 +144,18 @@ class Study(Struct, frozen=True):
         return tuple(sorted({order.earlier for order in self.orders if order.later == target}))
 
     def limit(self, target: Target) -> int | None:
-        """Return the step by which a target must be reached, by its own or the mission's
-        deadline.
-        """
+        """Return the earlier one of the deadlines of the target and of the mission, if any."""
         deadlines = (self.deadline, target.deadline)
         return min((deadline for deadline in deadlines if deadline is not None), default=None)
 
     @property
     def carried_targets(self) -> dict[int, int]:
-        """The target at which the same robot must continue, by the target that it has reached."""
+        """The carried targets, by the target from which the same robot continues."""
         return {order.earlier: order.later for order in self.orders if order.is_carried}
 
 
 def possible_starts(study: Study, robot: int) -> tuple[int, ...]:
-    """Return the cells in which a robot may start."""
+    """Return the cells in which a robot may start: its start, or all cells that are free."""
     other_starts = {
         placed_robot.start for number, placed_robot in enumerate(study.robots) if number != robot
     }
@@ -168,8 +169,9 @@ def possible_starts(study: Study, robot: int) -> tuple[int, ...]:
 
 @lru_cache(1 << 14)
 def next_move(grid: Grid, cell: int, goal: int) -> tuple[str, int] | None:
-    """Return the command towards the target and the next cell; None at the target or without a
-    path.
+    """Return the first command on the shortest path to *goal*, and the cell that it leads to.
+
+    None if *cell* is the goal or there is no path.
     """
     commands = grid.commands_nearer(cell, goal)
     neighbour = grid.cell_after(cell, commands[0]) if commands else None
@@ -178,7 +180,7 @@ def next_move(grid: Grid, cell: int, goal: int) -> tuple[str, int] | None:
 
 @lru_cache(1 << 12)
 def successors_by_distance(grid: Grid, goal: int) -> tuple[tuple[int, int], ...]:
-    """Return each cell with the next one on the path to the target, the farthest first."""
+    """Return pairs of a cell and the next cell on its path to *goal*, the farthest cells first."""
     distances = grid.distances(goal)
     farthest_first = sorted(distances, key=lambda cell: -distances[cell])
     moves = ((cell, next_move(grid, cell, goal)) for cell in farthest_first)
@@ -186,7 +188,7 @@ def successors_by_distance(grid: Grid, goal: int) -> tuple[tuple[int, int], ...]
 
 
 def shortest_path(grid: Grid, cell: int, goal: int) -> tuple[int, ...]:
-    """Return all cells of the path, both ends included, or nothing if there is none."""
+    """Return the cells of the path, both ends included; empty if there is no path."""
     if cell not in grid.distances(goal):
         return ()
     path = [cell]

@@ -1,7 +1,7 @@
 """The contract of all robots together, C_S (MOOD4I thesis, 4.3.1), in three encodings.
 
-``THESIS`` has sensors and free cells as inputs. ``COMMANDS`` omits what follows from the positions.
-In ``MOVES`` a robot chooses its position: the command is the cell that it enters.
+``THESIS`` has sensors and free cells as inputs. ``COMMANDS`` omits them, as they follow from the
+positions. In ``MOVES`` a robot chooses its next position directly instead of giving a command.
 """
 
 from collections.abc import Callable, Iterator
@@ -25,7 +25,7 @@ _ENVIRONMENT, _SYSTEM = Owner.ENVIRONMENT, Owner.SYSTEM
 
 
 class Encoding(StrEnum):
-    """How commands and their effects are modelled."""
+    """Representation of commands and their effects in C_S."""
 
     THESIS = "thesis"
     COMMANDS = "commands"
@@ -35,9 +35,9 @@ class Encoding(StrEnum):
 def system_contract(study: Study, encoding: Encoding = Encoding.THESIS) -> Contract:
     """Return the contract of the whole system: all robots reach their targets and never meet.
 
-    With ``study.within`` each target is reached within so many steps after the robot got it. Taken
-    literally, the thesis's timer never restarts, so the contract either is unrealizable or blocks
-    the environment. Here the timer restarts with each target.
+    With ``study.within`` each target is reached within this number of steps after its assignment.
+    The timer of the thesis, taken literally, never restarts: the contract would be unrealizable or
+    leave the environment without a next step. Here the timer restarts with each target.
     """
     return Contract(
         study.component,
@@ -104,20 +104,21 @@ def _place_robots(study: Study) -> Iterator[Conjunct]:
 
 
 def count_timers(study: Study) -> Iterator[Conjunct]:
-    """State that timers count the steps since a robot got its target."""
+    """State that timers count the steps since the assignment of a target, if there is a limit."""
     for robot in study.robots if study.within is not None else ():
         yield from _count_timer(robot, (study.within or 0) + 1)
 
 
-def _count_timer(robot: Robot, most: int) -> Iterator[Conjunct]:
+def _count_timer(robot: Robot, max_count: int) -> Iterator[Conjunct]:
+    """State that a timer counts up to *max_count*, and restarts when the robot is in its target."""
     text = f"The timer of '{robot.name}' counts the steps since it has its target."
     count = terms.timer(robot)
     yield terms.initial_conjunct(terms.equals(count, 0), robot.origin, text)
     reset = f.implies(terms.is_at_target(robot), f.prime(terms.equals(count, 0)))
     yield terms.safety_conjunct(reset, robot.origin, text)
-    for number in range(most + 1):
+    for number in range(max_count + 1):
         before = f.both(terms.is_away_from_target(robot), terms.equals(count, number))
-        after = f.prime(terms.equals(count, min(number + 1, most)))
+        after = f.prime(terms.equals(count, min(number + 1, max_count)))
         yield terms.safety_conjunct(f.implies(before, after), robot.origin, text)
 
 
@@ -162,15 +163,16 @@ def _start_at_rest(study: Study) -> Iterator[Conjunct]:
 def _forbid_meeting(
     study: Study, make_conjunct: Callable[[Formula, str, str], Conjunct]
 ) -> Iterator[Conjunct]:
-    """State for each two robots that they are never in one cell."""
+    """State for each pair of robots that they are in different cells."""
     for first, second in combinations(study.robots, 2):
         text = f"'{first.name}' and '{second.name}' are never in one cell."
         yield make_conjunct(_are_in_different_cells(second, first), second.origin, text)
 
 
 def _are_in_different_cells(first: Robot, second: Robot, is_primed: bool = False) -> Formula:
-    """Return the predicate that two robots are in different cells; ``is_primed`` refers to the
-    first one's next cell.
+    """Return the predicate that two robots are in different cells.
+
+    With ``is_primed`` it compares the next cell of the first robot with the cell of the second.
     """
     first_position, second_position = f.var(terms.position(first)), f.var(terms.position(second))
     return f.compare(
@@ -181,7 +183,7 @@ def _are_in_different_cells(first: Robot, second: Robot, is_primed: bool = False
 def _forbid_blocked_commands(study: Study, robot: Robot) -> Iterator[Conjunct]:
     """Forbid commands into a wall, an obstacle or another robot."""
     text = f"'{robot.name}' goes only where nothing is."
-    other_robots = [condition for condition in study.robots if condition != robot]
+    other_robots = [other for other in study.robots if other != robot]
     for way in WAYS:
         for cell in study.grid.cells:
             moves = f.both(terms.equals(terms.command(robot), way), terms.is_in_cell(robot, cell))
@@ -209,7 +211,7 @@ def _move_to_neighbours(study: Study, robot: Robot) -> Iterator[Conjunct]:
 
 
 def _forbid_following(study: Study) -> Iterator[Conjunct]:
-    """Forbid that a robot enters the cell that another one is about to leave."""
+    """State that no robot enters a cell that another robot is just leaving."""
     for robot, other_robot in permutations(study.robots, 2):
         text = f"'{robot.name}' does not go where '{other_robot.name}' is."
         yield terms.safety_conjunct(

@@ -1,8 +1,9 @@
-"""Traffic rules of the compiled environment: which robots depart, and which ones make way.
+"""Traffic rules of the compiled environment: which robots depart, and which robots make way.
 
 A robot departs if its whole path is free of other robots and of the paths of other robots. The
-first robot with a target leads: while it cannot depart, nobody departs across its path, and robots
-on its path are sent aside, together with the robots that block these (docs/robots.md).
+first robot that wants to depart is the leader. While it cannot depart, no robot departs across its
+path, and idle robots on its path are sent aside, together with the robots that block these
+(docs/robots.md).
 """
 
 from dataclasses import dataclass
@@ -17,41 +18,46 @@ class Decision(Generic[P]):
     """The decisions of one step."""
 
     departures: list[list[P]]
-    """By robot and index in its list: the robot departs for that target."""
+    """For each robot and index in its list of targets, the runs in which it departs for the target.
+    """
     evasions: list[list[P]]
-    """By robot and cell: the robot is sent there to make way."""
+    """For each robot and cell, the runs in which the robot is sent there to make way."""
 
 
 class Traffic(Generic[P]):
-    """Decides for all robots in one step."""
+    """Decides in one step which robots depart and which robots make way."""
 
     def __init__(
         self,
         grid: Grid,
         runs: RunSpace[P],
         places: list[list[P]],
-        taken: list[P],
+        occupied: list[P],
         is_idle: list[P],
         goals: list[list[int]],
     ) -> None:
-        """Store the situation of the step.
+        """Store the situation before the decisions, as sets of runs.
 
-        *places* are run sets by robot and cell, *taken* by cell, *is_idle* by robot (it is in its
-        target). *goals* are the cells of each robot's targets.
+        *places* lists them by robot and cell, *occupied* by cell, *is_idle* by robot: the robot is
+        in its target. *goals* contains the cells of each robot's targets.
         """
         self.grid, self.none, self.without = grid, runs.none, runs.without
         self.places, self.is_idle = places, is_idle
         self.goals = goals
-        self.occupied = taken
+        self.occupied = occupied
         self.reserved = [runs.none] * grid.size
 
     def path_cells(self, robot: int, wanted_by_target: list[P]) -> list[P]:
-        """Return for each cell the runs in which it is on the robot's path to a wanted target."""
+        """Return for each cell the runs in which it is on the robot's path to a target.
+
+        *wanted_by_target* lists for each target of the robot the runs to consider.
+        """
         path_cells = [self.none] * self.grid.size
         for goal, run_set in zip(self.goals[robot], wanted_by_target, strict=True):
             if run_set == self.none:
                 continue
             positions = [run_set & position for position in self.places[robot]]
+            # From the farthest cell to the nearest, so that one pass completes all paths.
             for cell, next_cell in successors_by_distance(self.grid, goal):
                 if positions[cell] != self.none:
                     positions[next_cell] = positions[next_cell] | positions[cell]
@@ -63,13 +69,15 @@ class Traffic(Generic[P]):
         self.reserved = self._union_pairwise(self.reserved, cells)
 
     def _union_pairwise(self, left: list[P], right: list[P]) -> list[P]:
-        """Return the pairwise unions; adding an empty set would copy an integer."""
+        """Return the unions of corresponding sets."""
         pairs = zip(left, right, strict=True)
+        # The union with an empty set would copy a long integer.
         return [run_set if added == self.none else run_set | added for run_set, added in pairs]
 
     def send(self, open_targets: list[list[P]]) -> Decision[P]:
-        """Decide who departs and who is sent aside; *open_targets* by robot and index in its
-        list.
+        """Return which robots depart and which are sent aside.
+
+        *open_targets* contains, for each robot and target, the runs in which it could depart.
         """
         robots = range(len(self.places))
         wanting = [union(target_set, self.none) for target_set in open_targets]
@@ -81,14 +89,19 @@ class Traffic(Generic[P]):
         ]
         waiting = self.none
         decision: Decision[P] = Decision([[] for _ in robots], [])
-        for is_first in (True, False):
+        # Leaders first: the other robots must not cross the paths of those that have to wait.
+        for is_leader_round in (True, False):
             for robot in robots:
-                asking = wanting[robot] & leaders[robot]
-                asking = asking if is_first else self.without(wanting[robot], leaders[robot])
-                departing = self._can_depart(
-                    robot, asking, paths[robot], leader_path, waiting, is_first
+                candidates = (
+                    wanting[robot] & leaders[robot]
+                    if is_leader_round
+                    else self.without(wanting[robot], leaders[robot])
                 )
-                waiting = waiting | self.without(asking, departing) if is_first else waiting
+                departing = self._can_depart(
+                    robot, candidates, paths[robot], leader_path, waiting, is_leader_round
+                )
+                if is_leader_round:
+                    waiting = waiting | self.without(candidates, departing)
                 if departing != self.none:
                     self.reserve([departing & cell for cell in paths[robot]])
                 decision.departures[robot] = _union_pairwise(
@@ -100,19 +113,26 @@ class Traffic(Generic[P]):
         decision.evasions = _EvasionPlanner(self, blocked_path, leaders, open_targets).plan()
         return decision
 
-    def _find_leaders(self, wants: list[P]) -> list[P]:
+    def _find_leaders(self, wanting_by_robot: list[P]) -> list[P]:
+        """Return for each robot the runs in which it is the first that wants to depart."""
         leaders, earlier = [], self.none
-        for wanting in wants:
+        for wanting in wanting_by_robot:
             leaders.append(self.without(wanting, earlier))
             earlier = earlier | wanting
         return leaders
 
     def _can_depart(
-        self, robot: int, asking: P, path: list[P], leader_path: list[P], waiting: P, is_first: bool
+        self,
+        robot: int,
+        candidates: P,
+        path: list[P],
+        leader_path: list[P],
+        waiting: P,
+        is_leader_round: bool,
     ) -> P:
-        """Return the runs in which a robot that wants to depart may do so."""
-        if asking == self.none:
-            return asking
+        """Return the runs among *candidates* in which a robot may depart on its path."""
+        if candidates == self.none:
+            return candidates
         blocked = self.none
         for cell, on_way in enumerate(path):
             if on_way == self.none:
@@ -120,10 +140,10 @@ class Traffic(Generic[P]):
             obstacles = (
                 self.without(self.occupied[cell], self.places[robot][cell]) | self.reserved[cell]
             )
-            if not is_first:
+            if not is_leader_round:
                 obstacles = obstacles | (leader_path[cell] & waiting)
             blocked = blocked | (on_way & obstacles)
-        return self.without(asking, blocked)
+        return self.without(candidates, blocked)
 
 
 def _union_pairwise(left: list[P], right: list[P]) -> list[P]:
@@ -131,7 +151,7 @@ def _union_pairwise(left: list[P], right: list[P]) -> list[P]:
 
 
 class _EvasionPlanner(Generic[P]):
-    """Sends robots aside that stand on the path of a leader that cannot depart."""
+    """Plans evasions: idle robots leave the path of a leader that cannot depart."""
 
     def __init__(
         self,
@@ -155,8 +175,8 @@ class _EvasionPlanner(Generic[P]):
         self.evasions = [[none] * size for _ in self.robots]
 
     def plan(self) -> list[list[P]]:
-        """Return the evasions by robot and cell."""
-        none, but = self.traffic.none, self.traffic.without
+        """Return for each robot and cell the runs in which the robot is sent there."""
+        none, without = self.traffic.none, self.traffic.without
         if all(run_set == none for run_set in self.blocked_path):
             return self.evasions
         must_move = [self._standing_in(robot, self.blocked_path) for robot in self.robots]
@@ -167,11 +187,12 @@ class _EvasionPlanner(Generic[P]):
                     self._move(robot, must_move[robot])
             # Cells do not become free within a step, so a stuck robot is not asked again.
             stuck = [
-                but(run_set, moved) for run_set, moved in zip(must_move, self.moved, strict=True)
+                without(run_set, moved)
+                for run_set, moved in zip(must_move, self.moved, strict=True)
             ]
             cells_beside = self._cells_beside(stuck)
             must_move = [
-                but(self._standing_in(robot, cells_beside), asked_before[robot])
+                without(self._standing_in(robot, cells_beside), asked_before[robot])
                 for robot in self.robots
             ]
             asked_before = [
@@ -180,7 +201,7 @@ class _EvasionPlanner(Generic[P]):
         return self.evasions
 
     def _standing_in(self, robot: int, cells: list[P]) -> P:
-        """Return the runs in which an idle robot that does not lead stands in one of the cells."""
+        """Return the runs in which the robot is in one of *cells*, idle, and not the leader."""
         places = self.traffic.places[robot]
         idle_there = union(
             [position & cell for position, cell in zip(places, cells, strict=True)],
@@ -189,7 +210,7 @@ class _EvasionPlanner(Generic[P]):
         return self.traffic.without(idle_there & self.traffic.is_idle[robot], self.leaders[robot])
 
     def _cells_beside(self, stuck: list[P]) -> list[P]:
-        """Return for each cell the runs in which it is next to a robot that cannot make way."""
+        """Return for each cell the runs in which a robot in *stuck* is in a neighbour cell."""
         grid, none = self.traffic.grid, self.traffic.none
         stuck_robots = [robot for robot in self.robots if stuck[robot] != none]
         stuck_positions = [
@@ -202,8 +223,11 @@ class _EvasionPlanner(Generic[P]):
         ]
 
     def _move(self, robot: int, must_move: P) -> None:
-        """Move a robot to a free cell off the leader's path, else to one ahead on the path."""
-        traffic, none, but = self.traffic, self.traffic.none, self.traffic.without
+        """Move a robot to a free neighbour cell off the leader's path, or else ahead on the path.
+
+        *must_move* contains the runs in which the robot has to make way.
+        """
+        traffic, none, without = self.traffic, self.traffic.none, self.traffic.without
         barred_cells = [
             occupied | reserved | chosen_cells
             for occupied, reserved, chosen_cells in zip(
@@ -220,17 +244,19 @@ class _EvasionPlanner(Generic[P]):
                     robot,
                     neighbour,
                     remaining,
-                    but(but(remaining, barred_cells[neighbour]), self.blocked_path[neighbour]),
+                    without(
+                        without(remaining, barred_cells[neighbour]), self.blocked_path[neighbour]
+                    ),
                 )
             for neighbour in neighbours if remaining != none else ():
-                moving = but(remaining, barred_cells[neighbour])
+                moving = without(remaining, barred_cells[neighbour])
                 if moving != none:
                     remaining = self._move_to(
                         robot, neighbour, remaining, moving & self._is_ahead(cell, neighbour)
                     )
 
     def _move_to(self, robot: int, cell: int, remaining: P, moving: P) -> P:
-        """Move the robot to a cell, and return the runs in which it still stands."""
+        """Move the robot to a cell in the runs *moving*, and return the other remaining runs."""
         if moving == self.traffic.none:
             return remaining
         self.evasions[robot][cell] = self.evasions[robot][cell] | moving

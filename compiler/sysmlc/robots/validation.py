@@ -1,9 +1,9 @@
 """Validation of a mission: robots and environment are simulated from every admissible start.
 
-Thousands of starts are simulated in one operation (``run_sets``), and states that many of them
-reach are continued once (``merging``). The starts are sets of bits in chunks of limited size. If
-they are too many to enumerate, the same steps are computed on decision diagrams over the starts
-(MOOD4I thesis, 4.4.3).
+Thousands of starts are simulated at once as sets of bits (``run_sets``), in chunks of limited size.
+Runs that have reached the same state are continued as one (``merging``). If the starts are too many
+to enumerate, the same steps are computed on decision diagrams over the starts. (MOOD4I thesis,
+4.4.3)
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -33,47 +33,43 @@ class Validation(Struct, frozen=True):
     steps: int
     """Steps of the longest mission, or of the failed one."""
     reached: tuple[int | None, ...]
-    """By target, the latest step in which it was reached; None if it was not."""
+    """For each target, the latest step in which a run reached it; None if no run did."""
     failed: tuple[int, ...] = ()
-    """The cells in which robots start if the mission fails; empty if it never fails."""
+    """A start from which the mission fails, as a cell for each robot; empty if there is none."""
     late: int | None = None
     """The target that was not reached in time; None if robots met or had no answer."""
     is_slow: bool = False
-    """Whether a robot has the late target for longer than C_S allows."""
+    """Whether a robot had the late target for longer than C_S allows (``Study.within``)."""
 
     @property
     def is_good(self) -> bool:
-        """Whether the mission is done from every start."""
+        """Whether the mission succeeds from every start."""
         return not self.failed
 
 
 class Failure(Struct, Generic[P], frozen=True):
-    """A failure: the runs in which it occurs, and the late target."""
+    """A failure of a simulated mission."""
 
     runs: P
+    """The runs in which it occurs."""
     late: int | None = None
+    """The late target; None if robots met or had no answer."""
     is_slow: bool = False
-    """Whether a robot has that target for longer than C_S allows."""
+    """Whether a robot had that target for longer than C_S allows."""
 
 
 class Simulation(Generic[P]):
-    """Runs that are simulated together; ``reached`` is the last step in which each target was
-    reached.
-    """
+    """The simulation of many runs together, until they end or fail."""
 
     def __init__(self, world: World[P]) -> None:
-        """The world may already have been simulated for some steps."""
+        """Continue *world*, which may already have been simulated for some steps."""
         self.world = world
         self.reached: list[int | None] = [None] * len(world.done)
-        self._rested = 0
+        """For each target, the latest step in which a run reached it."""
+        self._rested_steps = 0
 
     def run(self, until: int | None = None) -> Failure[P] | None:
-        """Simulate until all is done and all robots have rested, until step *until*, or until a
-        failure.
-
-        Robots have rested if each of them was offered a cell in its turn and stayed: from then on
-        the run repeats itself forever.
-        """
+        """Simulate until all runs are over, or until step *until*. Return the first failure."""
         done_before = list(self.world.done)
         while True:
             failure = self._find_failure()
@@ -84,15 +80,17 @@ class Simulation(Generic[P]):
                 if done != done_before[number]:
                     self.reached[number], done_before[number] = self.world.time, done
             is_still = self.world.finished == self.world.runs.all
-            self._rested = self._rested + 1 if is_still else 0
+            self._rested_steps = self._rested_steps + 1 if is_still else 0
 
     @property
     def is_over(self) -> bool:
-        """Whether nothing new happens in any of the runs."""
-        return self._rested > len(self.world.bodies)
+        """Whether all runs only repeat themselves from now on."""
+        # After the mission each robot is offered a cell in its turn and stays. When all have had
+        # their turns, the same steps follow again.
+        return self._rested_steps > len(self.world.bodies)
 
     def _find_failure(self) -> Failure[P] | None:
-        """Return the present failure, if there is one."""
+        """Return a failure in the current step, or None."""
         world, runs = self.world, self.world.runs
         if world.wrong != runs.none:
             return Failure(world.wrong)
@@ -112,20 +110,20 @@ class Simulation(Generic[P]):
 
 
 MAX_EXPLICIT_STARTS = 50_000_000
-"""Starts up to which each start has its own bit."""
+"""Number of starts above which decision diagrams replace sets of bits."""
 FIRST_MERGE_STEP = 8
-"""Step after which equal states are first merged: most robots are on their way then. The distance
-to the next merge doubles each time."""
+"""Step after which runs in equal states are first merged, as most robots are on their way then.
+Each later merge takes place after twice the number of steps."""
 MIN_MERGED_STARTS = 1 << 12
-"""Starts up to which merging costs more than it saves."""
+"""Number of starts up to which runs are not merged: one merge takes as long as five steps."""
 _CHUNK_BITS = 32
-"""Bits for the place in a chunk, in the number of a start."""
+"""A start is numbered by its chunk and its bit in the chunk; these are the bits for the latter."""
 
 
 def validate_allocation(
     study: Study, allocation: Allocation, answers: Sequence[Answers]
 ) -> Validation:
-    """Simulate the mission from all admissible starts; the first failure ends the simulation."""
+    """Simulate the mission from all admissible starts until it is over or fails somewhere."""
     if count_starts(study) > MAX_EXPLICIT_STARTS:
         return validate_symbolically(study, allocation, answers)
     return _ExplicitValidation(study, partial(World, study, allocation, answers)).run()
@@ -134,7 +132,7 @@ def validate_allocation(
 def validate_symbolically(
     study: Study, allocation: Allocation, answers: Sequence[Answers]
 ) -> Validation:
-    """Validate on decision diagrams over the starts of the robots. Raises LimitError."""
+    """Validate with sets of runs as decision diagrams over the starts. Raises LimitError."""
     runs, start_count = symbolic_starts(study)
     simulation = Simulation(World(study, allocation, answers, runs))
     failure = simulation.run()
@@ -157,24 +155,25 @@ def _make_validation(
 
 
 class _RunBatch(Struct, frozen=True):
-    """Runs to simulate together, and their origins by bit."""
+    """Runs to simulate together."""
 
     world: World[int]
     origins: Sequence[int]
+    """For each bit, the number of a start that leads to the run."""
     start: Callable[[int], tuple[int, ...]]
-    """Returns the start of one of the runs."""
+    """Returns the start of one run of a set, as a cell for each robot."""
 
 
 class _ExplicitValidation:
-    """All starts with a bit each; later all states with a bit each, and so on."""
+    """The validation with a bit for each start, and after each merge a bit for each state."""
 
-    def __init__(self, study: Study, world: Callable[..., World[int]]) -> None:
-        self.study, self.world = study, world
-        self.number = 0
+    def __init__(self, study: Study, create_world: Callable[..., World[int]]) -> None:
+        self.study, self.create_world = study, create_world
+        self.start_count = 0
         self.reached: list[int | None] = [None] * len(study.targets)
 
     def run(self) -> Validation:
-        """Simulate all batches up to a step, then the states that they reached."""
+        """Simulate all batches up to a step, then merge the reached states into new batches."""
         until = FIRST_MERGE_STEP if count_starts(self.study) > MIN_MERGED_STARTS else None
         batches = self._first_batches()
         while True:
@@ -186,14 +185,16 @@ class _ExplicitValidation:
                     return failure_result
             if batch is None or not len(states) or until is None:
                 reached_steps = (step for step in self.reached if step is not None)
-                return Validation(self.number, max(reached_steps, default=0), tuple(self.reached))
+                return Validation(
+                    self.start_count, max(reached_steps, default=0), tuple(self.reached)
+                )
             batches = self._next_batches(states.batches(MAX_CHUNK_RUNS, batch.world), until)
             until *= 2
 
     def _run_batch(
         self, batch: _RunBatch, until: int | None, states: StateSet
     ) -> Validation | None:
-        """Return the failure of a batch, if any; otherwise add its unfinished states."""
+        """Simulate a batch. Return its failure, or add its unfinished runs to *states*."""
         simulation = Simulation(batch.world)
         failure = simulation.run(until)
         pairs = zip(self.reached, simulation.reached, strict=True)
@@ -210,18 +211,20 @@ class _ExplicitValidation:
 
     def _first_batches(self) -> Iterator[_RunBatch]:
         for chunk_number, runs in enumerate(iter_start_chunks(self.study, MAX_CHUNK_RUNS)):
-            self.number += runs.all.bit_count()
+            self.start_count += runs.all.bit_count()
             base = chunk_number << _CHUNK_BITS
             origins = range(base, base + runs.all.bit_length())
-            yield _RunBatch(self.world(runs), origins, partial(pick_start, runs))
+            yield _RunBatch(self.create_world(runs), origins, partial(pick_start, runs))
 
     def _next_batches(self, batches: Iterator[Batch], time: int) -> Iterator[_RunBatch]:
         for batch in batches:
             start = partial(self._find_start, batch.origins)
-            yield _RunBatch(self.world(batch.runs, batch.state, time), batch.origins, start)
+            world = self.create_world(batch.runs, batch.state, time)
+            yield _RunBatch(world, batch.origins, start)
 
     def _find_start(self, origins: Sequence[int], states: int) -> tuple[int, ...]:
-        """Return the start of a run that reached one of the states."""
+        """Return the start of a run that has reached one of *states*."""
+        # The lowest set bit of the set of states.
         origin = origins[(states & -states).bit_length() - 1]
         chunk_number = origin >> _CHUNK_BITS
         runs = next(islice(iter_start_chunks(self.study, MAX_CHUNK_RUNS), chunk_number, None))
@@ -231,7 +234,7 @@ class _ExplicitValidation:
 # -- admissible starts -------------------------------------------------------------------------
 
 MAX_CHUNK_RUNS = 1 << 17
-"""Runs in one operation: larger sets do not fit into the processor's cache."""
+"""Number of runs that are simulated at once: larger sets do not fit into the processor's cache."""
 
 
 def count_starts(study: Study) -> int:
@@ -240,10 +243,9 @@ def count_starts(study: Study) -> int:
 
 
 def iter_start_chunks(study: Study, max_runs: int = MAX_CHUNK_RUNS) -> Iterator[RunSpace[int]]:
-    """Yield all starts in chunks of limited size.
-
-    In a chunk the cells of the last robots are fixed, and the robot before them has a few cells.
-    """
+    """Yield all starts in chunks of at most about *max_runs* runs."""
+    # The first robots without a start may be in any cell within a chunk. The next one may be in a
+    # group of cells, as many as fit into the chunk, and the last ones are in fixed cells.
     cells = study.grid.cells
     fixed_cells = {
         robot: placed_robot.start
@@ -272,14 +274,14 @@ def iter_start_chunks(study: Study, max_runs: int = MAX_CHUNK_RUNS) -> Iterator[
 
 
 def _cell_groups(cells: Sequence[int], size: int) -> Iterator[Sequence[int]]:
-    """Split the cells into groups for which a chunk has room besides the enumerated robots."""
+    """Split the cells into groups of *size* cells."""
     return (cells[start : start + size] for start in range(0, len(cells), size))
 
 
 def _choose_cells(
     study: Study, robots: Sequence[int], used_cells: tuple[int, ...]
 ) -> Iterator[tuple[int, ...]]:
-    """Yield different unused cells for some robots."""
+    """Yield all combinations of different unused cells for some robots."""
     if not robots:
         yield ()
         return
@@ -292,7 +294,8 @@ def _choose_cells(
 def _build_chunk(
     study: Study, fixed_cells: Mapping[int, int], open_cells: Mapping[int, Sequence[int]]
 ) -> RunSpace[int]:
-    """Return the starts with some robots in fixed cells, and others in any of their cells."""
+    """Return the starts with some robots in fixed cells, and others in any of their open cells."""
+    # The number of a run, written in digits of different bases, gives the cells of the open robots.
     sizes = [len(cells) for cells in open_cells.values()]
     every_run = (1 << prod(sizes)) - 1
     starts = [[0] * study.grid.size for _ in study.robots]
@@ -311,7 +314,7 @@ def _build_chunk(
 
 
 def pick_start(runs: RunSpace[P], runs_of_interest: P) -> tuple[int, ...]:
-    """Return the cells in which the robots start in one of the runs."""
+    """Return the start of one run of a set, as a cell for each robot."""
     cells: list[int] = []
     remaining = runs_of_interest
     for robot in runs.starts:
@@ -326,11 +329,11 @@ def pick_start(runs: RunSpace[P], runs_of_interest: P) -> tuple[int, ...]:
 
 
 MAX_DIAGRAM_MEMORY = 4 << 30
-"""Bytes that the diagrams may take."""
+"""Memory limit for decision diagrams over starts, in bytes."""
 
 
 def symbolic_starts(study: Study, limits: Limits | None = None) -> tuple[RunSpace[Node], int]:
-    """Return all admissible starts as decision diagrams, and their number."""
+    """Return the run space of all admissible starts as decision diagrams, and their number."""
     manager = Manager(limits=limits or Limits(memory=MAX_DIAGRAM_MEMORY))
     size = study.grid.size
     width = max(1, (size - 1).bit_length())

@@ -1,8 +1,8 @@
-"""The robots and the compiled environment together, simulated step by step in many runs at once.
+"""Simulation of the robots and the compiled environment, step by step, in many runs at once.
 
-A step is a step of the contracts: the environment moves the robots by their commands, assigns
-targets and offers free cells, then the controller of each robot answers with a command (MOOD4I
-thesis, 4.4.1).
+In a step of the contracts the environment first moves the robots by their commands, assigns targets
+and offers free cells. Then the controller of each robot answers with a command (MOOD4I thesis,
+4.4.1). All values are sets of runs (``run_sets``).
 """
 
 from collections.abc import Iterator, Sequence
@@ -22,25 +22,26 @@ Allocation = tuple[tuple[int, ...], ...]
 
 @dataclass(slots=True)
 class Body(Generic[P]):
-    """A robot: run sets by cell, by index in its list of targets, by memory of its controller, by
-    command.
-    """
+    """The state of a robot in all runs; each field maps values to the runs with this value."""
 
     places: list[P]
+    """By cell: the robot is in the cell."""
     assigned: list[P]
-    """By index in its list, runs with the target assigned, until another one is."""
+    """By index in the robot's list of targets: the target is the last one that was assigned."""
     evasions: list[P]
-    """Runs in which the robot is sent to a cell to make way."""
+    """By cell: the robot is sent to the cell to make way."""
     memory: dict[Memory, P]
+    """By memory of the robot's controller."""
     commands: dict[str, P]
+    """By command; only commands that move the robot are listed."""
 
 
 class State(Struct, Generic[P], frozen=True):
-    """Everything that is known between two steps; the future of a run depends on nothing else."""
+    """The state of all runs between two steps; the future of a run depends on nothing else."""
 
     bodies: list[Body[P]]
     done: list[P]
-    """By target, the runs in which it has been reached."""
+    """For each target, the runs in which it has been reached."""
 
 
 class World(Generic[P]):
@@ -55,7 +56,7 @@ class World(Generic[P]):
         state: State[P] | None = None,
         time: int = 0,
     ) -> None:
-        """Start with robots that stay in their starts, or continue from a *state*."""
+        """Begin with the robots in their starts, or continue from *state* at step *time*."""
         self.study, self.allocation, self.answers, self.runs = study, allocation, answers, runs
         none, size = runs.none, study.grid.size
         self._without = runs.without
@@ -65,23 +66,21 @@ class World(Generic[P]):
         self.neighbours = [tuple(study.grid.neighbours(cell)) for cell in range(size)]
         self.moves_by_cell: dict[tuple[int, int], tuple[str, int] | None] = {}
         self.wrong = none
-        """Runs with an error: two robots met, an offered cell was occupied or offered to another
-        robot, a robot left its target without a new one, or a controller had no answer."""
+        """The runs with an error: two robots met, an offered cell was occupied or offered twice, a
+        robot left its target without a new one, or a controller had no answer."""
         self.exceeds_limit = [none] * len(study.targets)
-        """By target, the runs in which a robot has it for longer than C_S allows."""
+        """For each target, the runs in which a robot has it for longer than C_S allows."""
         self.occupied = self._compute_occupied()
-        """By cell, the runs in which a robot is there."""
+        """For each cell, the runs in which a robot is in it."""
         self.finished = none
-        """Runs in which all targets are reached and all robots rest."""
+        """The runs in which all targets are reached and all robots rest."""
         if state is None:
             self._answer_all()
 
     # -- one step ------------------------------------------------------------------------------
 
     def step(self) -> None:
-        """Move the robots, record reached targets, assign targets, and let the controllers
-        answer.
-        """
+        """Simulate one step: movements, reached targets, assignments, controllers' answers."""
         self.time += 1
         idle_runs = [self._runs_at_target(number) for number in range(len(self.bodies))]
         self._move()
@@ -93,22 +92,23 @@ class World(Generic[P]):
             body.evasions = [
                 self._without(runs_under_way, idle) for runs_under_way in body.evasions
             ]
-        self._note_reached()
+        self._record_reached_targets()
         self._dispatch(idle_runs)
         # A robot may get the target in which it already is.
-        self._note_reached()
+        self._record_reached_targets()
         self._answer_all()
 
     def _answer_all(self) -> None:
+        """Compute the answers of all controllers, and the finished runs."""
         self._offered = list(self.occupied)
         resting_runs = [self._runs_at_rest(number) for number in range(len(self.bodies))]
         self.finished = self._intersect((*self.done, *resting_runs))
         for number, resting in enumerate(resting_runs):
             self._update_memory(number, resting)
 
-    def _intersect(self, planes: Sequence[P]) -> P:
+    def _intersect(self, run_sets: Sequence[P]) -> P:
         result = self.runs.all
-        for run_set in planes:
+        for run_set in run_sets:
             if result == self.runs.none:
                 break
             result = result & run_set
@@ -120,6 +120,7 @@ class World(Generic[P]):
         self.occupied = self._compute_occupied()
 
     def _positions_after_commands(self, body: Body[P]) -> list[P]:
+        """Return ``places`` after the commands; entering an occupied cell is an error."""
         none, grid = self.runs.none, self.study.grid
         moving = union(list(body.commands.values()), none)
         if moving == none:
@@ -138,7 +139,7 @@ class World(Generic[P]):
         return positions
 
     def _compute_occupied(self) -> list[P]:
-        """Return the occupied runs by cell; two robots in one cell are an error."""
+        """Return for each cell the runs in which a robot is in it; two robots are an error."""
         none, occupied = self.runs.none, []
         for cell in range(self.study.grid.size):
             already_occupied = none
@@ -150,7 +151,7 @@ class World(Generic[P]):
             occupied.append(already_occupied)
         return occupied
 
-    def _note_reached(self) -> None:
+    def _record_reached_targets(self) -> None:
         for number, body in enumerate(self.bodies):
             for index, target in enumerate(self.allocation[number]):
                 cell = self.study.targets[target].cell
@@ -161,12 +162,12 @@ class World(Generic[P]):
     # -- targets -------------------------------------------------------------------------------
 
     def _runs_at_rest(self, number: int) -> P:
-        """Return the runs in which a robot has no target except its own cell."""
+        """Return the runs in which a robot rests: it has neither a target nor an evasion."""
         body, none = self.bodies[number], self.runs.none
         return self._without(self.runs.all, union([*body.assigned, *body.evasions], none))
 
     def _runs_at_target(self, number: int) -> P:
-        """Return the runs in which a robot is in its target."""
+        """Return the runs in which a robot is in its target, or rests."""
         body = self.bodies[number]
         runs = self._runs_at_rest(number)
         for index, target in enumerate(self.allocation[number]):
@@ -178,6 +179,7 @@ class World(Generic[P]):
         return runs
 
     def _dispatch(self, idle_runs: list[P]) -> None:
+        """Assign targets and evasions by the rules of ``traffic``."""
         goals = [
             [self.study.targets[target].cell for target in targets] for targets in self.allocation
         ]
@@ -191,15 +193,15 @@ class World(Generic[P]):
         ]
         decision = traffic.send(open_targets)
         if self.study.within is not None:
-            self._note_slow(decision.departures, self.study.within)
+            self._record_slow_departures(decision.departures, self.study.within)
         for number, body in enumerate(self.bodies):
             pairs = zip(body.assigned, decision.departures[number], strict=True)
             body.assigned = [target | departing for target, departing in pairs]
             evasion_pairs = zip(body.evasions, decision.evasions[number], strict=True)
             body.evasions = [target | departing for target, departing in evasion_pairs]
 
-    def _note_slow(self, departures: Sequence[Sequence[P]], within: int) -> None:
-        """Record the runs in which robots depart on paths that are too long (the timer of C_S)."""
+    def _record_slow_departures(self, departures: Sequence[Sequence[P]], within: int) -> None:
+        """Record the runs in which a robot departs on a journey that takes longer than *within*."""
         for number, targets in enumerate(self.allocation):
             for target, departing in zip(targets, departures[number], strict=True):
                 for cell, present in enumerate(self.bodies[number].places):
@@ -210,8 +212,10 @@ class World(Generic[P]):
                         self.exceeds_limit[target] = self.exceeds_limit[target] | slow_runs
 
     def _open_targets(self, number: int, idle_runs: P) -> list[P]:
-        """Return for each target in its list the runs in which the robot could depart for it
-        now.
+        """Return for each target of a robot the runs in which the robot may depart for it.
+
+        It must be idle, all targets before this one in its list must have been reached, and so must
+        all targets that precede this one in the mission.
         """
         open_targets: list[P] = []
         previous_done = idle_runs
@@ -226,7 +230,7 @@ class World(Generic[P]):
     # -- answers -------------------------------------------------------------------------------
 
     def _update_memory(self, number: int, resting_runs: P) -> None:
-        """Compute command and memory of a robot's controller in all runs."""
+        """Compute the new memory and the commands of a robot's controller in all runs."""
         body = self.bodies[number]
         previous_memory, body.memory, body.commands = body.memory, {}, {}
         for robot_memory, run_set in previous_memory.items():
@@ -239,7 +243,7 @@ class World(Generic[P]):
                     self._answer_target(number, robot_memory, goal, run_set & runs_with_target)
 
     def _possible_targets(self, number: int, cell: int, resting_runs: P) -> Iterator[tuple[int, P]]:
-        """Yield the targets that a robot in a cell can have, with the runs in which it has them."""
+        """Yield the possible target cells of a robot in *cell*, each with its runs."""
         body = self.bodies[number]
         yield cell, resting_runs
         for index, target in enumerate(self.allocation[number]):
@@ -248,6 +252,7 @@ class World(Generic[P]):
             yield neighbour, body.evasions[neighbour]
 
     def _answer_target(self, number: int, memory: Memory, goal: int, runs: P) -> None:
+        """Offer a cell on the way to *goal*, if there is one, and record the answer."""
         none = self.runs.none
         if runs == none:
             return
@@ -260,10 +265,10 @@ class World(Generic[P]):
         self._record_answer(number, memory, goal, "", runs)
 
     def _offer_in_turn(self, number: int, memory: Memory, runs: P) -> P:
-        """Offer a cell to a robot that rests after the mission, and return the runs without a free
-        cell.
+        """Offer a free cell to a robot that rests after the mission.
 
-        Each robot gets its turn infinitely often, as C_E guarantees, and stays, as C_R guarantees.
+        So each robot is offered a cell infinitely often, as C_E guarantees, and stays, as C_R
+        guarantees. Return the runs without a free cell.
         """
         for move in self.neighbours[memory.cell]:
             runs_with_free_cell = self._without(runs & self.finished, self.occupied[move[1]])
@@ -279,7 +284,7 @@ class World(Generic[P]):
         self._record_answer(number, memory, goal, move[0], runs)
 
     def _record_answer(self, number: int, memory: Memory, goal: int, way: str, runs: P) -> None:
-        """Record the controller's answer to a target and an offered direction."""
+        """Record the controller's answer to the target *goal* and the offered direction *way*."""
         none, body = self.runs.none, self.bodies[number]
         if runs == none:
             return
@@ -289,6 +294,7 @@ class World(Generic[P]):
             return
         body.memory[answer.memory] = body.memory.get(answer.memory, none) | runs
         if answer.command in WAYS:
+            # A robot in its target has to stay (C_R).
             if goal == memory.cell:
                 self.wrong = self.wrong | runs
             body.commands[answer.command] = body.commands.get(answer.command, none) | runs
@@ -300,13 +306,13 @@ class World(Generic[P]):
         return self.moves_by_cell[key]
 
     def _offer(self, cell: int, runs: P) -> None:
-        """Offer a cell, which must be free and not offered to another robot (C_E)."""
+        """Offer a cell; an occupied cell, or one offered before, is an error (C_E)."""
         self.wrong = self.wrong | (runs & self._offered[cell])
         self._offered[cell] = self._offered[cell] | runs
 
 
 def _initial_state(study: Study, allocation: Allocation, runs: RunSpace[P]) -> State[P]:
-    """Return the state with all robots in their starts, which are their targets."""
+    """Return the state in which all robots are in their starts, which count as their targets."""
     none, size = runs.none, study.grid.size
     bodies: list[Body[P]] = [
         Body(
