@@ -100,7 +100,7 @@ def test_what_is_wrong_is_told_at_its_element(code, tmp_path):
 
 
 def test_a_negative_row_and_a_text_are_no_numbers(tmp_path):
-    for value, problem in (("-1", "is negative"), ("1.5", "is no whole number")):
+    for value, problem in (("-1", "is negative"), ("1.5", "is not a whole number")):
         made = compiled(tmp_path, HALL.replace(":>> row = 1", f":>> row = {value}"))
         (found,) = (one for one in made.diagnostics if one.rule.code == "SM566")
         assert problem in found.message
