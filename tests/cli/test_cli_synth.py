@@ -115,7 +115,7 @@ def test_what_history_bits_can_say_is_decided(here):
     [
         (["none.gr1.json", "--realizable"], "cannot read 'none.gr1.json'"),
         (["plant.ir", "--realizable", "-o", "out"], "--realizable decides only"),
-        (["plant.ir", "--realizable", "--from", "cobol"], "'cobol' is no form that is read"),
+        (["plant.ir", "--realizable", "--from", "cobol"], "'cobol' is not a supported format"),
         (["plant.ir", "--realizable"], "no behaviour and no requirement that gives a contract"),
     ],
 )
