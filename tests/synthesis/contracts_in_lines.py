@@ -1,4 +1,4 @@
-"""Small contracts for tests, a line a variable or a conjunct.
+"""Small contracts for tests, with one line for each variable and each conjunct.
 
 ``env a: bool``, ``sys n: 0..3``, ``sys c: red green`` declare; ``assume always a -> a'`` and
 ``promise recurs n=3`` are conjuncts; ``at first``, ``always`` and ``recurs`` are the classes.
@@ -20,13 +20,13 @@ CLASSES = {"at first": Class.INIT, "always": Class.SAFETY, "recurs": Class.LIVEN
 SIDES = {"assume": [], "promise": []}
 
 
-def contract(text: str, name: str = "c") -> Contract:
-    """The contract of the lines."""
+def parse_contract(text: str, name: str = "c") -> Contract:
+    """Parse the lines of *text* into a contract."""
     lines = [line.strip() for line in text.strip().splitlines() if line.strip()]
-    variables = [declared(line) for line in lines if line.split()[0] in ("env", "sys")]
+    variables = [parse_variable(line) for line in lines if line.split()[0] in ("env", "sys")]
     sides = {
         side: tuple(
-            conjunct(line.removeprefix(f"{side} "), variables)
+            parse_conjunct(line.removeprefix(f"{side} "), variables)
             for line in lines
             if line.startswith(f"{side} ")
         )
@@ -35,13 +35,13 @@ def contract(text: str, name: str = "c") -> Contract:
     return Contract(name, "", tuple(variables), sides["assume"], sides["promise"])
 
 
-def declared(line: str) -> Variable:
+def parse_variable(line: str) -> Variable:
     head, _, values = line.partition(":")
     owner, name = head.split()
-    return Variable(name, Owner(owner), domain(values.strip()))
+    return Variable(name, Owner(owner), parse_domain(values.strip()))
 
 
-def domain(text: str):
+def parse_domain(text: str):
     if text == "bool":
         return BooleanDomain()
     if ".." in text:
@@ -49,10 +49,10 @@ def domain(text: str):
     return EnumerationDomain(tuple(text.split()))
 
 
-def conjunct(text: str, variables: list[Variable]) -> Conjunct:
-    known = {one.name: one.domain for one in variables}
+def parse_conjunct(text: str, variables: list[Variable]) -> Conjunct:
+    domains = {variable.name: variable.domain for variable in variables}
     for words, class_ in CLASSES.items():
         if text.startswith(f"{words} "):
             formula = text.removeprefix(f"{words} ")
-            return Conjunct(parse_formula(formula, known), class_, "", formula)
-    return Conjunct(parse_formula(text, known), Class.OTHER, "", text)
+            return Conjunct(parse_formula(formula, domains), class_, "", formula)
+    return Conjunct(parse_formula(text, domains), Class.OTHER, "", text)

@@ -1,4 +1,4 @@
-"""A solver of GR(1) games that lists every state: slow, plain, and nothing but the definitions.
+"""A GR(1) solver that enumerates all states: slow, and a direct copy of the definitions.
 
 It shares the semantics of formulas (``logic.evaluate``) with the compiler, nothing else.
 """
@@ -10,90 +10,112 @@ from sysmlc.logic.contract import Class, Contract, Owner
 from sysmlc.logic.evaluate import compile_evaluation
 
 State = tuple[int, int]
-"""Places of the inputs and of the outputs in the lists of their valuations."""
+"""Indices of the inputs and of the outputs in the lists of their valuations."""
 
 
-class Explicit:
-    """The game of a contract, listed."""
+class ExplicitGame:
+    """The game of a contract, with all states and moves in lists."""
 
     def __init__(self, contract: Contract) -> None:
-        self.inputs = valuations(contract, Owner.ENVIRONMENT)
-        self.outputs = valuations(contract, Owner.SYSTEM)
+        self.inputs = list_valuations(contract, Owner.ENVIRONMENT)
+        self.outputs = list_valuations(contract, Owner.SYSTEM)
         self.contract = contract
         self.states = list(product(range(len(self.inputs)), range(len(self.outputs))))
         self.value = {(i, o): self.inputs[i] | self.outputs[o] for i, o in self.states}
-        self.moves = {state: self.answered(state) for state in self.states}
+        self.moves = {state: self.list_answers(state) for state in self.states}
 
-    def answered(self, state: State) -> dict[int, list[State]]:
-        """Every next input that the environment may give, with the answers that are allowed."""
-        assumed = rules(self.contract.assumptions, Class.SAFETY)
-        promised = rules(self.contract.guarantees, Class.SAFETY)
-        now, found = self.value[state], {}
-        for after in range(len(self.inputs)):
-            if all(rule(now, self.inputs[after]) for rule in assumed):
-                answers = [(after, out) for out in range(len(self.outputs))]
-                found[after] = [
-                    one for one in answers if all(rule(now, self.value[one]) for rule in promised)
+    def list_answers(self, state: State) -> dict[int, list[State]]:
+        """Return the allowed answers to every next input that the environment may give."""
+        assumptions = list_evaluations(self.contract.assumptions, Class.SAFETY)
+        guarantees = list_evaluations(self.contract.guarantees, Class.SAFETY)
+        current, allowed_answers = self.value[state], {}
+        for next_input in range(len(self.inputs)):
+            if all(rule(current, self.inputs[next_input]) for rule in assumptions):
+                answers = [(next_input, output) for output in range(len(self.outputs))]
+                allowed_answers[next_input] = [
+                    answer
+                    for answer in answers
+                    if all(rule(current, self.value[answer]) for rule in guarantees)
                 ]
-        return found
+        return allowed_answers
 
-    def where(self, rule) -> set[State]:
+    def find_states(self, rule) -> set[State]:
         return {state for state in self.states if rule(self.value[state], None)}
 
-    def force(self, target: set[State]) -> set[State]:
-        """Where each next input has an answer in the target."""
+    def find_controllable_predecessors(self, target: set[State]) -> set[State]:
+        """Return the states in which each next input has an answer in *target*."""
         return {
             state
             for state in self.states
-            if all(any(one in target for one in found) for found in self.moves[state].values())
+            if all(
+                any(answer in target for answer in answers)
+                for answers in self.moves[state].values()
+            )
         }
 
-    def winning(self) -> set[State]:
-        """nu Z. for all goals: mu Y. for some fairness: nu X. ..., word for word."""
-        goals = [self.where(rule) for rule in rules(self.contract.guarantees, Class.LIVENESS)]
-        fair = [self.where(rule) for rule in rules(self.contract.assumptions, Class.LIVENESS)]
-        goals, fair, everything = goals or [set(self.states)], fair or [set(self.states)], None
+    def find_winning_states(self) -> set[State]:
+        """Compute nu Z. for all goals: mu Y. for some fairness: nu X. ..., by definition."""
+        goals = [
+            self.find_states(rule)
+            for rule in list_evaluations(self.contract.guarantees, Class.LIVENESS)
+        ]
+        fair = [
+            self.find_states(rule)
+            for rule in list_evaluations(self.contract.assumptions, Class.LIVENESS)
+        ]
+        goals, fair, previous = goals or [set(self.states)], fair or [set(self.states)], None
         z = set(self.states)
-        while z != everything:
-            everything = z
-            z = set.intersection(*(self.reach(goal, fair, everything) for goal in goals))
+        while z != previous:
+            previous = z
+            z = set.intersection(
+                *(self.find_states_reaching(goal, fair, previous) for goal in goals)
+            )
         return z
 
-    def reach(self, goal: set[State], fair: list[set[State]], z: set[State]) -> set[State]:
+    def find_states_reaching(
+        self, goal: set[State], fair: list[set[State]], z: set[State]
+    ) -> set[State]:
         y, before = set(), None
-        target = goal & self.force(z)
+        target = goal & self.find_controllable_predecessors(z)
         while y != before:
             before = y
-            start = target | self.force(before)
-            y = set.union(*(self.wait(start, set(self.states) - one) for one in fair))
+            start = target | self.find_controllable_predecessors(before)
+            y = set.union(
+                *(
+                    self.find_waiting_states(start, set(self.states) - fair_states)
+                    for fair_states in fair
+                )
+            )
         return y
 
-    def wait(self, start: set[State], unfair: set[State]) -> set[State]:
+    def find_waiting_states(self, start: set[State], unfair: set[State]) -> set[State]:
         x, before = set(self.states), None
         while x != before:
             before = x
-            x = start | (unfair & self.force(before))
+            x = start | (unfair & self.find_controllable_predecessors(before))
         return x
 
     def is_realizable(self) -> bool:
-        winning = self.winning()
-        assumed = rules(self.contract.assumptions, Class.INIT)
-        promised = rules(self.contract.guarantees, Class.INIT)
+        winning = self.find_winning_states()
+        assumptions = list_evaluations(self.contract.assumptions, Class.INIT)
+        guarantees = list_evaluations(self.contract.guarantees, Class.INIT)
         return all(
             any(
-                all(rule(self.value[i, o], None) for rule in promised) and (i, o) in winning
+                all(rule(self.value[i, o], None) for rule in guarantees) and (i, o) in winning
                 for o in range(len(self.outputs))
             )
-            for i, given in enumerate(self.inputs)
-            if all(rule(given, None) for rule in assumed)
+            for i, inputs in enumerate(self.inputs)
+            if all(rule(inputs, None) for rule in assumptions)
         )
 
 
-def valuations(contract: Contract, owner: Owner):
+def list_valuations(contract: Contract, owner: Owner):
     return list(
         domains.valuations({v.name: v.domain for v in contract.variables if v.owner is owner})
     )
 
 
-def rules(conjuncts, class_: Class):
-    return [compile_evaluation(one.formula) for one in conjuncts if one.class_ is class_]
+def list_evaluations(conjuncts, class_: Class):
+    return [
+        compile_evaluation(conjunct.formula) for conjunct in conjuncts if conjunct.class_ is class_
+    ]

@@ -1,61 +1,67 @@
-"""Fair runs over states that are all listed, with strongly connected components: the judge."""
+"""A reference for runs: fair runs over enumerated states, by strongly connected components."""
 
 import networkx as nx
-from explicit import rules
+from explicit import list_evaluations
 
 from sysmlc.logic import domains
 from sysmlc.logic.contract import Class
 from sysmlc.logic.evaluate import compile_evaluation
 
 
-class Listed:
-    """The runs in which conjuncts hold."""
+class ListedRuns:
+    """The runs in which all *conjuncts* hold, over enumerated states."""
 
     def __init__(self, variables, conjuncts) -> None:
-        self.values = list(domains.valuations({one.name: one.domain for one in variables}))
-        steps = rules(conjuncts, Class.SAFETY)
+        self.values = list(
+            domains.valuations({variable.name: variable.domain for variable in variables})
+        )
+        steps = list_evaluations(conjuncts, Class.SAFETY)
         self.graph = nx.DiGraph()
-        for one, now in enumerate(self.values):
-            for other, then in enumerate(self.values):
-                if all(rule(now, then) for rule in steps):
-                    self.graph.add_edge(one, other)
-        starts = rules(conjuncts, Class.INIT)
-        self.starts = [i for i, now in enumerate(self.values) if all(r(now, None) for r in starts)]
-        self.recurring = rules(conjuncts, Class.LIVENESS)
+        for source, current in enumerate(self.values):
+            for target, following in enumerate(self.values):
+                if all(rule(current, following) for rule in steps):
+                    self.graph.add_edge(source, target)
+        starts = list_evaluations(conjuncts, Class.INIT)
+        self.starts = [
+            i for i, current in enumerate(self.values) if all(r(current, None) for r in starts)
+        ]
+        self.recurring = list_evaluations(conjuncts, Class.LIVENESS)
 
-    def fair(self, graph) -> set[int]:
-        """States of a graph from which a fair run goes on in it."""
+    def find_fair_states(self, graph) -> set[int]:
+        """Return the states of *graph* from which a fair run continues in it."""
         cores = [
             part for part in nx.strongly_connected_components(graph) if self.is_fair(graph, part)
         ]
         core = set().union(*cores)
-        return core.union(*(nx.ancestors(graph, one) for one in core))
+        return core.union(*(nx.ancestors(graph, state) for state in core))
 
     def is_fair(self, graph, part) -> bool:
-        has_step = any(other in part for one in part for other in graph.successors(one))
+        has_step = any(successor in part for state in part for successor in graph.successors(state))
         return has_step and all(
-            any(rule(self.values[one], None) for one in part) for rule in self.recurring
+            any(rule(self.values[state], None) for state in part) for rule in self.recurring
         )
 
-    def reachable(self) -> set[int]:
-        found = set(self.starts)
-        return found.union(*(nx.descendants(self.graph, i) for i in self.starts if i in self.graph))
+    def find_reachable_states(self) -> set[int]:
+        initial = set(self.starts)
+        return initial.union(
+            *(nx.descendants(self.graph, i) for i in self.starts if i in self.graph)
+        )
 
     def is_violated(self, conjunct) -> bool:
-        """Whether the conjunct fails in some run."""
+        """Whether *conjunct* fails in some run."""
         rule, graph = compile_evaluation(conjunct.formula), self.graph
-        fair = self.fair(graph)
+        fair = self.find_fair_states(graph)
         if conjunct.class_ is Class.INIT:
-            return any(not rule(self.values[one], None) for one in self.starts if one in fair)
+            return any(not rule(self.values[state], None) for state in self.starts if state in fair)
         if conjunct.class_ is Class.SAFETY:
             return any(
-                not rule(self.values[one], self.values[other])
-                for one in self.reachable() & fair
-                for other in graph.successors(one)
-                if other in fair
+                not rule(self.values[state], self.values[successor])
+                for state in self.find_reachable_states() & fair
+                for successor in graph.successors(state)
+                if successor in fair
             )
-        left = [one for one in graph if not rule(self.values[one], None)]
-        return bool(self.fair(graph.subgraph(left)) & self.reachable())
+        violating = [state for state in graph if not rule(self.values[state], None)]
+        return bool(self.find_fair_states(graph.subgraph(violating)) & self.find_reachable_states())
 
     def is_possible(self) -> bool:
-        return any(one in self.fair(self.graph) for one in self.starts)
+        return any(one in self.find_fair_states(self.graph) for one in self.starts)

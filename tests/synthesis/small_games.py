@@ -1,12 +1,13 @@
-"""Random small contracts in GR(1), the same ones for the same seed.
+"""Random small contracts in GR(1); the seed determines the contract.
 
-``python tests/synthesis/small_games.py 2000`` compares that many with the solver that lists states.
+``python tests/synthesis/small_games.py 2000`` compares the verdicts on 2,000 contracts of each kind
+with those of the explicit solver.
 """
 
 import random
 import sys
 
-from explicit import Explicit
+from explicit import ExplicitGame
 
 from sysmlc.logic import domains
 from sysmlc.logic import formula as f
@@ -37,120 +38,144 @@ DOMAINS = (
 MOST_STATES = 24
 
 
-def contract(seed: int) -> Contract:
-    """A random contract with at most ``MOST_STATES`` states."""
+def random_contract(seed: int) -> Contract:
+    """Return a random contract with at most ``MOST_STATES`` states."""
     die = random.Random(seed)
     while True:
-        variables = [variable(die, "a", Owner.ENVIRONMENT), variable(die, "x", Owner.SYSTEM)]
+        variables = [
+            random_variable(die, "a", Owner.ENVIRONMENT),
+            random_variable(die, "x", Owner.SYSTEM),
+        ]
         if die.random() < 0.6:
-            variables.append(variable(die, "b", die.choice(list(Owner))))
-        if domains.count({one.name: one.domain for one in variables}) <= MOST_STATES:
+            variables.append(random_variable(die, "b", die.choice(list(Owner))))
+        if domains.count({variable.name: variable.domain for variable in variables}) <= MOST_STATES:
             break
     die.shuffle(variables)
-    inputs = [one for one in variables if one.owner is Owner.ENVIRONMENT]
+    inputs = [variable for variable in variables if variable.owner is Owner.ENVIRONMENT]
     assumptions = [
-        *conjuncts(die, Class.INIT, 1, inputs, []),
-        *conjuncts(die, Class.SAFETY, 3, variables, inputs),
-        *conjuncts(die, Class.LIVENESS, 2, variables, []),
+        *iter_random_conjuncts(die, Class.INIT, 1, inputs, []),
+        *iter_random_conjuncts(die, Class.SAFETY, 3, variables, inputs),
+        *iter_random_conjuncts(die, Class.LIVENESS, 2, variables, []),
     ]
     guarantees = [
-        *conjuncts(die, Class.INIT, 1, variables, []),
-        *conjuncts(die, Class.SAFETY, 3, variables, variables),
-        *conjuncts(die, Class.LIVENESS, 3, variables, []),
+        *iter_random_conjuncts(die, Class.INIT, 1, variables, []),
+        *iter_random_conjuncts(die, Class.SAFETY, 3, variables, variables),
+        *iter_random_conjuncts(die, Class.LIVENESS, 3, variables, []),
     ]
     return Contract(f"g{seed}", "", tuple(variables), tuple(assumptions), tuple(guarantees))
 
 
-def plant(seed: int) -> Contract:
-    """A random contract with a plant, an input that follows from others, and a command.
+def random_plant(seed: int) -> Contract:
+    """Return a random contract with a plant, an input determined by others, and a command.
 
-    Some have a second command, an initial value, or something that spoils the structure.
+    Some contracts have a second command, an initial value, or a rule that prevents encoding.
     """
     die = random.Random(seed)
-    a, p = Variable("a", Owner.ENVIRONMENT, BooleanDomain()), numbered("p", Owner.ENVIRONMENT)
+    a, p = (
+        Variable("a", Owner.ENVIRONMENT, BooleanDomain()),
+        number_variable("p", Owner.ENVIRONMENT),
+    )
     d = Variable("d", Owner.ENVIRONMENT, BooleanDomain())
-    x, y = variable(die, "x", Owner.SYSTEM), variable(die, "y", Owner.SYSTEM)
+    x, y = random_variable(die, "x", Owner.SYSTEM), random_variable(die, "y", Owner.SYSTEM)
     variables = [a, p, d, x, *([y] if die.random() < 0.4 else [])]
     inputs, outputs = [a, p], variables[3:]
-    known = {one.name: one.domain for one in variables}
-    meaning = truth(die, [Var("a"), Var("p")], known, 1)
+    domains_by_name = {variable.name: variable.domain for variable in variables}
+    meaning = random_condition(die, [Var("a"), Var("p")], domains_by_name, 1)
     assumptions = [
         Conjunct(f.iff(Var("d"), meaning), Class.INIT, ""),
         Conjunct(f.prime(f.iff(Var("d"), meaning)), Class.SAFETY, ""),
-        *obedient(die, p, [a, p, *outputs]),
-        *conjuncts(die, Class.SAFETY, 1, variables, [a]),
-        *conjuncts(die, Class.LIVENESS, 1, variables[:3], []),
-        *(conjuncts(die, Class.SAFETY, 1, variables, inputs) if die.random() < 0.2 else ()),
+        *iter_plant_rules(die, p, [a, p, *outputs]),
+        *iter_random_conjuncts(die, Class.SAFETY, 1, variables, [a]),
+        *iter_random_conjuncts(die, Class.LIVENESS, 1, variables[:3], []),
+        *(
+            iter_random_conjuncts(die, Class.SAFETY, 1, variables, inputs)
+            if die.random() < 0.2
+            else ()
+        ),
     ]
     guarantees = [
-        *conjuncts(die, Class.INIT, 1, variables, []),
-        *(after for one in conjuncts(die, Class.INIT, 2, variables, []) for after in [later(one)]),
-        *conjuncts(die, Class.SAFETY, 1, variables[:3], []),
-        *conjuncts(die, Class.LIVENESS, 2, variables[:3], []),
-        *(conjuncts(die, Class.SAFETY, 1, variables, variables) if die.random() < 0.3 else ()),
+        *iter_random_conjuncts(die, Class.INIT, 1, variables, []),
+        *(
+            shift_to_next_step(conjunct)
+            for conjunct in iter_random_conjuncts(die, Class.INIT, 2, variables, [])
+        ),
+        *iter_random_conjuncts(die, Class.SAFETY, 1, variables[:3], []),
+        *iter_random_conjuncts(die, Class.LIVENESS, 2, variables[:3], []),
+        *(
+            iter_random_conjuncts(die, Class.SAFETY, 1, variables, variables)
+            if die.random() < 0.3
+            else ()
+        ),
     ]
     return Contract(f"p{seed}", "", tuple(variables), tuple(assumptions), tuple(guarantees))
 
 
-def numbered(name: str, owner: Owner) -> Variable:
+def number_variable(name: str, owner: Owner) -> Variable:
     return Variable(name, owner, IntegerDomain(0, 2))
 
 
-def later(conjunct: Conjunct) -> Conjunct:
-    """The same about the next step, always."""
+def shift_to_next_step(conjunct: Conjunct) -> Conjunct:
+    """Return a safety conjunct that states *conjunct* about the next step."""
     return Conjunct(f.prime(conjunct.formula), Class.SAFETY, "")
 
 
-def obedient(die: random.Random, moved: Variable, about: list[Variable]):
-    """A next value for some conditions, for the first one that holds; mostly for all states."""
-    known = {one.name: one.domain for one in about}
-    pool = [Var(one.name) for one in about]
-    left: Formula = f.TRUE
+def iter_plant_rules(die: random.Random, moved: Variable, about: list[Variable]):
+    """Yield rules that assign a next value in each of some disjoint cases, mostly all cases."""
+    domains_by_name = {variable.name: variable.domain for variable in about}
+    pool = [Var(variable.name) for variable in about]
+    remaining: Formula = f.TRUE
     for _ in range(die.randint(1, 4)):
-        case = truth(die, pool, known, 1)
-        yield Conjunct(f.implies(f.both(left, case), step(die, moved)), Class.SAFETY, "")
-        left = f.both(left, f.negate(case))
+        case = random_condition(die, pool, domains_by_name, 1)
+        yield Conjunct(
+            f.implies(f.both(remaining, case), assign_next_value(die, moved)), Class.SAFETY, ""
+        )
+        remaining = f.both(remaining, f.negate(case))
     if die.random() < 0.9:
-        yield Conjunct(f.implies(left, step(die, moved)), Class.SAFETY, "")
+        yield Conjunct(f.implies(remaining, assign_next_value(die, moved)), Class.SAFETY, "")
 
 
-def step(die: random.Random, moved: Variable) -> Formula:
+def assign_next_value(die: random.Random, moved: Variable) -> Formula:
     return f.eq(Var(moved.name, True), Const(die.choice(domains.values(moved.domain))))
 
 
-def variable(die: random.Random, name: str, owner: Owner) -> Variable:
+def random_variable(die: random.Random, name: str, owner: Owner) -> Variable:
     return Variable(name, owner, die.choice(DOMAINS))
 
 
-def conjuncts(die, class_, most, present, after):
-    """Up to ``most`` conjuncts about this step and the next one."""
-    pool = [*(Var(one.name) for one in present), *(Var(one.name, True) for one in after)]
-    known = {one.name: one.domain for one in [*present, *after]}
+def iter_random_conjuncts(die, class_, most, present, after):
+    """Yield up to *most* conjuncts about the current and the next step."""
+    pool = [
+        *(Var(variable.name) for variable in present),
+        *(Var(variable.name, True) for variable in after),
+    ]
+    domains_by_name = {variable.name: variable.domain for variable in [*present, *after]}
     for _ in range(die.randint(0, most)):
-        yield Conjunct(truth(die, pool, known, die.randint(1, 2)), class_, "")
+        yield Conjunct(random_condition(die, pool, domains_by_name, die.randint(1, 2)), class_, "")
 
 
-def truth(die: random.Random, pool: list[Var], known, depth: int) -> Formula:
+def random_condition(die: random.Random, pool: list[Var], domains_by_name, depth: int) -> Formula:
     if depth == 0:
-        return atom(die, pool, known)
-    left, right = (truth(die, pool, known, depth - 1) for _ in range(2))
+        return random_atom(die, pool, domains_by_name)
+    left, right = (random_condition(die, pool, domains_by_name, depth - 1) for _ in range(2))
     join = die.choice([f.both, f.either, f.implies, f.implies, f.iff])
     return f.negate(join(left, right)) if die.random() < 0.1 else join(left, right)
 
 
-def atom(die: random.Random, pool: list[Var], known) -> Formula:
-    one = die.choice(pool)
-    domain = known[one.name]
+def random_atom(die: random.Random, pool: list[Var], domains_by_name) -> Formula:
+    variable = die.choice(pool)
+    domain = domains_by_name[variable.name]
     if isinstance(domain, BooleanDomain):
-        return one if die.random() < 0.7 else f.negate(one)
+        return variable if die.random() < 0.7 else f.negate(variable)
     if isinstance(domain, EnumerationDomain):
-        return compare(die.choice([Op.EQ, Op.NE]), one, Const(die.choice(domain.literals)))
+        return compare(die.choice([Op.EQ, Op.NE]), variable, Const(die.choice(domain.literals)))
     op = die.choice([Op.EQ, Op.NE, Op.LT, Op.LE, Op.GT, Op.GE])
-    return compare(op, one, number(die, pool, known))
+    return compare(op, variable, random_comparison_operand(die, pool, domains_by_name))
 
 
-def number(die: random.Random, pool: list[Var], known) -> Formula:
-    numbers = [one for one in pool if isinstance(known[one.name], IntegerDomain)]
+def random_comparison_operand(die: random.Random, pool: list[Var], domains_by_name) -> Formula:
+    numbers = [
+        operand for operand in pool if isinstance(domains_by_name[operand.name], IntegerDomain)
+    ]
     chosen = die.choice([die.choice(numbers), Const(die.randint(-1, 5))])
     if die.random() < 0.4:
         op = die.choice([Op.ADD, Op.SUB, Op.MUL, Op.DIV, Op.MOD])
@@ -158,37 +183,39 @@ def number(die: random.Random, pool: list[Var], known) -> Formula:
     return chosen
 
 
-def disagreement(seed: int, engine: str = "") -> str:
-    """What the two solvers say when they do not say the same, about any state or the verdict."""
-    made = contract(seed)
-    listed = Explicit(made)
-    game = make_game(made, Manager(engine))
+def describe_disagreement(seed: int, engine: str = "") -> str:
+    """Describe a state or verdict on which the two solvers disagree; empty if they agree."""
+    contract = random_contract(seed)
+    explicit = ExplicitGame(contract)
+    game = make_game(contract, Manager(engine))
     solution = solve(game)
-    winning = listed.winning()
-    for state in listed.states:
-        code = game.symbols.encode(listed.value[state])
+    winning = explicit.find_winning_states()
+    for state in explicit.states:
+        code = game.symbols.encode(explicit.value[state])
         if (code <= solution.winning) != (state in winning):
-            return f"game {seed}: {listed.value[state]} is {state in winning}"
-    verdict = listed.is_realizable()
+            return f"game {seed}: {explicit.value[state]} is {state in winning}"
+    verdict = explicit.is_realizable()
     return "" if solution.is_realizable == verdict else f"game {seed}: realizable is {verdict}"
 
 
-def encoded_disagreement(made: Contract, engine: str = "") -> str:
-    """What is said of the encoded game when the verdict is not the one of the listed states."""
-    arena = encoded(made, engine)
-    verdict = Explicit(made).is_realizable()
-    found = [solve_arena(arena, is_complete).is_realizable for is_complete in (True, False)]
-    return "" if found == [verdict] * 2 else f"{made.component}: realizable is {verdict}"
+def describe_encoded_disagreement(contract: Contract, engine: str = "") -> str:
+    """Describe a wrong verdict on the encoded game; empty if the explicit solver agrees."""
+    arena = encode_game(contract, engine)
+    verdict = ExplicitGame(contract).is_realizable()
+    verdicts = [solve_arena(arena, is_complete).is_realizable for is_complete in (True, False)]
+    return "" if verdicts == [verdict] * 2 else f"{contract.component}: realizable is {verdict}"
 
 
-def encoded(made: Contract, engine: str = ""):
-    return eliminate_commands(eliminate_determined_variables(make_game(made, Manager(engine))))
+def encode_game(contract: Contract, engine: str = ""):
+    return eliminate_commands(eliminate_determined_variables(make_game(contract, Manager(engine))))
 
 
 if __name__ == "__main__":
     seeds = range(int(sys.argv[1]))
-    wrong = [text for seed in seeds if (text := disagreement(seed))]
-    wrong += [text for seed in seeds if (text := encoded_disagreement(contract(seed)))]
-    wrong += [text for seed in seeds if (text := encoded_disagreement(plant(seed)))]
+    wrong = [text for seed in seeds if (text := describe_disagreement(seed))]
+    wrong += [
+        text for seed in seeds if (text := describe_encoded_disagreement(random_contract(seed)))
+    ]
+    wrong += [text for seed in seeds if (text := describe_encoded_disagreement(random_plant(seed)))]
     print(*wrong, f"{sys.argv[1]} games, {len(wrong)} disagreements", sep="\n")
     sys.exit(bool(wrong))

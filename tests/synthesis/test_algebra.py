@@ -1,12 +1,12 @@
-"""What contracts say of one another: refinement, compatibility, consistency, with runs."""
+"""Relations between contracts: refinement, compatibility and consistency, with counterexamples."""
 
 import os
 from pathlib import Path
 
 import pytest
-from contracts_in_lines import contract
-from listed_runs import Listed
-from small_games import contract as random_contract
+from contracts_in_lines import parse_contract
+from listed_runs import ListedRuns
+from small_games import random_contract
 
 from sysmlc.diagnostics import Sink
 from sysmlc.logic.contract import Class
@@ -33,73 +33,75 @@ DOOR = """
 """
 
 
-def failures(concrete, abstract):
-    found = find_refinement_failures(contract(concrete), contract(abstract), Manager())
-    return [("assumes" if one.is_assumption else "promises", one) for one in found]
+def find_failures(concrete, abstract):
+    failures = find_refinement_failures(
+        parse_contract(concrete), parse_contract(abstract), Manager()
+    )
+    return [("assumes" if failure.is_assumption else "promises", failure) for failure in failures]
 
 
-def said(found):
-    return [f"{side}: {one.conjunct.text}" for side, one in found]
+def describe_failures(failures):
+    return [f"{side}: {failure.conjunct.text}" for side, failure in failures]
 
 
 def test_a_contract_refines_itself():
-    assert failures(DOOR, DOOR) == []
+    assert find_failures(DOOR, DOOR) == []
 
 
-def test_more_is_promised_and_less_is_assumed():
+def test_a_refinement_promises_more_and_assumes_less():
     weaker = DOOR.replace("promise at first at=0\n", "")
-    assert failures(DOOR, weaker) == []
-    assert said(failures(weaker, DOOR)) == ["promises: at=0"]
+    assert find_failures(DOOR, weaker) == []
+    assert describe_failures(find_failures(weaker, DOOR)) == ["promises: at=0"]
 
 
-def test_what_is_assumed_in_addition_is_named():
+def test_an_additional_assumption_is_named():
     demanding = f"{DOOR}\n assume always open -> open'"
-    assert said(failures(demanding, DOOR)) == ["assumes: open -> open'"]
+    assert describe_failures(find_failures(demanding, DOOR)) == ["assumes: open -> open'"]
 
 
-def test_what_follows_need_not_be_written():
-    assert failures(DOOR, f"{DOOR}\n promise always at'<3 -> at<3") == []
+def test_an_implied_guarantee_need_not_be_written():
+    assert find_failures(DOOR, f"{DOOR}\n promise always at'<3 -> at<3") == []
 
 
 def test_the_run_shows_where_a_promise_fails():
-    ((_, failure),) = failures(DOOR, f"{DOOR}\n promise always at<2 -> at'=at+1")
-    now, then = failure.trace.steps[:2]
-    assert (now["open"], now["at"], then["at"]) == (False, 0, 0)
+    ((_, failure),) = find_failures(DOOR, f"{DOOR}\n promise always at<2 -> at'=at+1")
+    first, second = failure.trace.steps[:2]
+    assert (first["open"], first["at"], second["at"]) == (False, 0, 0)
 
 
 def test_a_recurring_promise_fails_in_a_loop():
     lazy = DOOR.replace("    promise recurs at=3\n", "").replace("    assume recurs open\n", "")
-    ((_, failure),) = failures(lazy, f"{lazy}\n promise recurs at=3")
+    ((_, failure),) = find_failures(lazy, f"{lazy}\n promise recurs at=3")
     loop = failure.trace.steps[failure.trace.loop :]
-    assert all(one["at"] < 3 for one in loop)
+    assert all(step["at"] < 3 for step in loop)
 
 
 def test_a_contract_without_runs_is_not_consistent():
-    assert find_contract_run(contract(DOOR), Manager()) is not None
-    assert find_contract_run(contract(f"{DOOR}\n promise always at'=0"), Manager()) is None
+    assert find_contract_run(parse_contract(DOOR), Manager()) is not None
+    assert find_contract_run(parse_contract(f"{DOOR}\n promise always at'=0"), Manager()) is None
 
 
-def test_an_environment_that_cannot_exist():
-    assert find_environment_run(contract(DOOR), Manager()) is not None
-    assert find_environment_run(contract(f"{DOOR}\n assume always !open'"), Manager()) is None
+def test_contradictory_assumptions_have_no_environment_run():
+    assert find_environment_run(parse_contract(DOOR), Manager()) is not None
+    assert find_environment_run(parse_contract(f"{DOOR}\n assume always !open'"), Manager()) is None
 
 
 def test_variables_of_one_name_must_have_the_same_values():
     with pytest.raises(DomainError, match="'at'"):
-        failures(DOOR, DOOR.replace("0..3", "0..4"))
+        find_failures(DOOR, DOOR.replace("0..3", "0..4"))
 
 
-def entailments(seed):
-    """A random contract's conjuncts, each asked of all the others."""
-    made = random_contract(seed)
-    every = (*made.assumptions, *made.guarantees)
-    for wanted in every:
-        given = tuple(one for one in every if one is not wanted)
-        universe = Universe((made,), Manager())
-        yield made, given, wanted, Entailment(universe, universe.system(given))
+def iter_entailments(seed):
+    """Yield each conjunct of a random contract, the others, and their entailment."""
+    contract = random_contract(seed)
+    conjuncts = (*contract.assumptions, *contract.guarantees)
+    for conclusion in conjuncts:
+        premises = tuple(conjunct for conjunct in conjuncts if conjunct is not conclusion)
+        universe = Universe((contract,), Manager())
+        yield contract, premises, conclusion, Entailment(universe, universe.system(premises))
 
 
-def holds(conjunct, trace):
+def evaluate_on_trace(conjunct, trace):
     column = evaluate_on_lasso(conjunct.formula, trace.steps, trace.loop)
     match conjunct.class_:
         case Class.INIT:
@@ -113,58 +115,68 @@ def holds(conjunct, trace):
 @pytest.mark.parametrize("start", range(0, 200, 20))
 def test_answers_and_runs_agree_with_listed_states(start):
     for seed in range(start, start + 20):
-        for made, given, wanted, asked in entailments(seed):
-            listed = Listed(made.variables, given)
-            trace = asked.find_violation(wanted)
-            assert (trace is not None) == listed.is_violated(wanted), (seed, wanted)
-            assert asked.is_possible == listed.is_possible(), (seed, wanted)
+        for contract, premises, conclusion, entailment in iter_entailments(seed):
+            runs = ListedRuns(contract.variables, premises)
+            trace = entailment.find_violation(conclusion)
+            assert (trace is not None) == runs.is_violated(conclusion), (seed, conclusion)
+            assert entailment.is_possible == runs.is_possible(), (seed, conclusion)
             if trace is not None:
-                assert all(holds(one, trace) for one in given), (seed, wanted)
-                assert not holds(wanted, trace), (seed, wanted)
+                assert all(evaluate_on_trace(premise, trace) for premise in premises), (
+                    seed,
+                    conclusion,
+                )
+                assert not evaluate_on_trace(conclusion, trace), (seed, conclusion)
 
 
-def test_the_random_questions_have_both_answers():
+def test_random_entailments_have_both_answers_for_each_class():
     answers = {
-        (w.class_, a.find_violation(w) is None) for s in range(60) for _, _, w, a in entailments(s)
+        (w.class_, a.find_violation(w) is None)
+        for s in range(60)
+        for _, _, w, a in iter_entailments(s)
     }
     assert answers == {(c, t) for c in (Class.INIT, Class.SAFETY, Class.LIVENESS) for t in (0, 1)}
 
 
-def asked(lines):
-    """What is asked of all runs in which the conjuncts of a contract in lines hold."""
-    made = contract(lines)
-    universe = Universe((made,), Manager())
-    return Entailment(universe, universe.system((*made.assumptions, *made.guarantees)))
+def build_entailment(lines):
+    """Build the entailment whose premises are all conjuncts of the contract in *lines*."""
+    contract = parse_contract(lines)
+    universe = Universe((contract,), Manager())
+    return Entailment(universe, universe.system((*contract.assumptions, *contract.guarantees)))
 
 
-def wanted(lines):
-    (found,) = contract(lines).guarantees
-    return found
+def parse_guarantee(lines):
+    (guarantee,) = parse_contract(lines).guarantees
+    return guarantee
 
 
-def test_what_is_wanted_at_first_is_looked_for_at_first_only():
-    turns = asked("sys x: 0..1\npromise at first x=0\npromise always x'=1-x")
-    assert turns.find_violation(wanted("sys x: 0..1\npromise at first x=0")) is None
-    assert turns.find_violation(wanted("sys x: 0..1\npromise at first x=1")) is not None
+def test_an_initial_condition_is_checked_in_the_first_step_only():
+    turns = build_entailment("sys x: 0..1\npromise at first x=0\npromise always x'=1-x")
+    assert turns.find_violation(parse_guarantee("sys x: 0..1\npromise at first x=0")) is None
+    assert turns.find_violation(parse_guarantee("sys x: 0..1\npromise at first x=1")) is not None
 
 
 DEAD_END = "sys a: bool\nsys b: bool\npromise always a & a'"
-"""Without ``a`` no run begins, though nothing is said about the start."""
+"""No run begins without ``a``, although no conjunct restricts the start."""
 
 
-def test_an_example_begins_where_a_run_goes_on():
-    found = asked(DEAD_END).find_example()
-    assert all(one["a"] for one in found.steps)
+def test_an_example_begins_in_a_state_with_a_successor():
+    example = build_entailment(DEAD_END).find_example()
+    assert all(step["a"] for step in example.steps)
 
 
-def test_a_way_that_no_run_goes_on_from_is_no_violation():
-    never = asked(DEAD_END)
-    assert never.find_violation(wanted("sys a: bool\nsys b: bool\npromise at first a")) is None
-    assert never.find_violation(wanted("sys a: bool\nsys b: bool\npromise always a'")) is None
+def test_a_finite_path_that_no_run_continues_is_no_violation():
+    never = build_entailment(DEAD_END)
+    assert (
+        never.find_violation(parse_guarantee("sys a: bool\nsys b: bool\npromise at first a"))
+        is None
+    )
+    assert (
+        never.find_violation(parse_guarantee("sys a: bool\nsys b: bool\npromise always a'")) is None
+    )
 
 
-def test_from_what_has_no_run_none_is_shown():
-    runs = asked(DEAD_END).runs
+def test_no_lasso_is_built_from_a_state_without_fair_run():
+    runs = build_entailment(DEAD_END).runs
     with pytest.raises(ValueError, match="no fair run"):
         build_lasso(runs, [pick_state(runs, runs.system.init & ~runs.fair)], runs.fair)
 
@@ -192,24 +204,26 @@ def test_actions_of_din_8580_refine_their_variants_or_not(pair):
     (concrete,), (abstract,) = (
         read((folder / f"{name}.json").read_text(), name, Sink()) for name in pair
     )
-    found = find_refinement_failures(concrete, abstract, Manager())
-    assert [print_formula(one.conjunct.formula) for one in found] == PAIRS[pair]
+    failures = find_refinement_failures(concrete, abstract, Manager())
+    assert [print_formula(failure.conjunct.formula) for failure in failures] == PAIRS[pair]
 
 
-def test_ranges_are_given():
+def test_ranges_are_premises():
     narrow = "sys n: 0..2\npromise always n'=n"
-    assert failures(narrow, f"{narrow}\npromise always n<3") == []
+    assert find_failures(narrow, f"{narrow}\npromise always n<3") == []
 
 
-def test_what_is_outside_gr1_is_observed():
+def test_a_conjunct_outside_gr1_is_reduced_with_an_observer():
     short = "env go: bool\nsys on: bool\npromise always on' <-> go'"
-    asked = "promise G (go -> F on)"
-    assert said(failures(short, f"{short}\n{asked}")) == ["promises: G (go -> F on)"]
-    held = f"{short}\nassume always go -> go'"
-    assert failures(held, f"{held}\n{asked}") == []
+    response = "promise G (go -> F on)"
+    assert describe_failures(find_failures(short, f"{short}\n{response}")) == [
+        "promises: G (go -> F on)"
+    ]
+    persistent = f"{short}\nassume always go -> go'"
+    assert find_failures(persistent, f"{persistent}\n{response}") == []
 
 
-def test_what_no_reduction_is_known_for_is_named():
-    with pytest.raises(OutsideGr1Error) as caught:
-        failures("sys on: bool", "sys on: bool\npromise G (F G on -> F on)")
-    assert caught.value.conjunct.text == "G (F G on -> F on)"
+def test_a_conjunct_without_reduction_is_named():
+    with pytest.raises(OutsideGr1Error) as raised:
+        find_failures("sys on: bool", "sys on: bool\npromise G (F G on -> F on)")
+    assert raised.value.conjunct.text == "G (F G on -> F on)"

@@ -13,47 +13,49 @@ from sysmlc.synthesis.decision import Options
 CODES = ("SM560", "SM561", "SM562")
 
 
-def checked(text):
+def check_model(text):
     graph, sink = parse_text(text), Sink()
     pipeline.run(graph, sink, verify_each=True)
     sink = Sink()
-    made = graph.derived(Contract)
+    contracts = graph.derived(Contract)
     results = check_contracts(
-        made, made, lambda origin: graph.subject(graph[origin]), sink, Options()
+        contracts, contracts, lambda origin: graph.subject(graph[origin]), sink, Options()
     )
-    return {one.verdict.component: one for one in results}, list(sink)
+    return {result.verdict.component: result for result in results}, list(sink)
 
 
 @pytest.mark.parametrize("code", CODES)
 def test_rule_reports_its_wrong_model_and_not_its_right_one(code):
     rule = catalogue()[code]
-    assert code in [one.rule.code for one in checked(rule.read_page().wrong)[1]]
-    assert code not in [one.rule.code for one in checked(rule.read_page().right)[1]]
+    assert code in [diagnostic.rule.code for diagnostic in check_model(rule.read_page().wrong)[1]]
+    assert code not in [
+        diagnostic.rule.code for diagnostic in check_model(rule.read_page().right)[1]
+    ]
 
 
-def test_a_behaviour_keeps_its_requirements_or_a_run_shows_where_not():
-    results, _ = checked(BREAKS.read_page().right)
+def test_a_violated_requirement_is_reported_with_a_run():
+    results, _ = check_model(BREAKS.read_page().right)
     assert results["Plant::Gate"].is_implemented is True
-    results, found = checked(BREAKS.read_page().wrong)
+    results, diagnostics = check_model(BREAKS.read_page().wrong)
     assert results["Plant::Gate"].is_implemented is False
     assert results["Plant::Gate.requirements"].is_implemented is None
-    (broken,) = [one for one in found if one.rule is BREAKS]
-    assert broken.message == (
+    (violation,) = [diagnostic for diagnostic in diagnostics if diagnostic.rule is BREAKS]
+    assert violation.message == (
         "the behaviour of 'Plant::Gate' violates 'state=B -> state'=B' ('Stays on' demands it)"
     )
-    assert broken.subject.name == "Plant::Stays on::<Constraint>"
-    assert broken.notes[0] == "step 1: event=start, state=A"
-    assert broken.notes[1] == "step 2: event=stop, state=B"
-    assert "state=A" in broken.notes[2]
+    assert violation.subject.name == "Plant::Stays on::<Constraint>"
+    assert violation.notes[0] == "step 1: event=start, state=A"
+    assert violation.notes[1] == "step 2: event=stop, state=B"
+    assert "state=A" in violation.notes[2]
 
 
-def test_questions_that_take_too_long_are_told(monkeypatch):
+def test_checks_that_reach_a_limit_are_reported(monkeypatch):
     def give_up(*_):
         raise LimitError("of CPU time", "1 s")
 
     monkeypatch.setattr("sysmlc.synthesis.contract_checks.lint", give_up)
-    results, found = checked(BREAKS.read_page().right)
+    results, diagnostics = check_model(BREAKS.read_page().right)
     assert results["Plant::Gate"].verdict.is_realizable
-    assert next(one.message for one in found if one.rule.code == "SM563") == (
-        "the checks of 'Plant::Gate' are incomplete: the limit of 1 s of CPU time was reached"
-    )
+    assert next(
+        diagnostic.message for diagnostic in diagnostics if diagnostic.rule.code == "SM563"
+    ) == ("the checks of 'Plant::Gate' are incomplete: the limit of 1 s of CPU time was reached")

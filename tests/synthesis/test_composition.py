@@ -1,7 +1,7 @@
-"""Parts that run together: what they rely on is discharged by the others, or a run tells why."""
+"""Composition of parts: other parts discharge their assumptions, or a run shows why not."""
 
 import pytest
-from contracts_in_lines import contract
+from contracts_in_lines import parse_contract
 
 from sysmlc.logic.contract import Composite, Part
 from sysmlc.synthesis import Manager
@@ -27,88 +27,92 @@ PICKER = """
 OTHERS = {"feeder": FEEDER, "picker": PICKER}
 
 
-def composed(whole="", **parts):
-    made = tuple(Part(name, contract(text, name), name) for name, text in parts.items())
-    stated = contract(whole) if whole else None
-    return compose_parts(Composite("Cell", "", made, (), stated), Manager())
+def compose(whole="", **parts):
+    composed_parts = tuple(
+        Part(name, parse_contract(text, name), name) for name, text in parts.items()
+    )
+    stated_contract = parse_contract(whole) if whole else None
+    return compose_parts(Composite("Cell", "", composed_parts, (), stated_contract), Manager())
 
 
-def open_ones(found):
-    return [f"{one.part.name}: {one.conjunct.text}" for one in found.open]
+def list_open_assumptions(composition):
+    return [
+        f"{assumption.part.name}: {assumption.conjunct.text}" for assumption in composition.open
+    ]
 
 
-def broken(found):
-    return [one.conjunct.text for one in found.failures]
+def list_failures(composition):
+    return [failure.conjunct.text for failure in composition.failures]
 
 
-def test_what_one_part_promises_another_may_assume():
-    found = composed("sys taken: bool\npromise recurs taken", **OTHERS)
-    assert open_ones(found) == []
-    assert broken(found) == []
+def test_a_guarantee_of_one_part_discharges_an_assumption_of_another():
+    composition = compose("sys taken: bool\npromise recurs taken", **OTHERS)
+    assert list_open_assumptions(composition) == []
+    assert list_failures(composition) == []
 
 
-def test_what_no_part_promises_stays_open_and_a_run_shows_it():
+def test_an_assumption_that_no_part_guarantees_stays_open_with_a_run():
     lazy = FEEDER.replace("promise recurs ready", "")
-    found = composed("sys taken: bool\npromise recurs taken", feeder=lazy, picker=PICKER)
-    assert open_ones(found) == ["picker: ready"]
-    ((only),) = found.open
-    assert all(not one["ready"] for one in only.trace.steps[only.trace.loop :])
-    assert broken(found) == ["taken"]
+    composition = compose("sys taken: bool\npromise recurs taken", feeder=lazy, picker=PICKER)
+    assert list_open_assumptions(composition) == ["picker: ready"]
+    ((assumption),) = composition.open
+    assert all(not step["ready"] for step in assumption.trace.steps[assumption.trace.loop :])
+    assert list_failures(composition) == ["taken"]
 
 
-def test_a_part_that_waits_for_something_to_recur_keeps_its_steps_meanwhile():
+def test_a_part_with_an_open_liveness_assumption_keeps_its_safety_guarantees():
     lazy = FEEDER.replace("promise recurs ready", "")
-    found = composed("sys taken: bool\npromise at first !taken", feeder=lazy, picker=PICKER)
-    assert broken(found) == []
+    composition = compose("sys taken: bool\npromise at first !taken", feeder=lazy, picker=PICKER)
+    assert list_failures(composition) == []
 
 
 def test_a_part_that_is_not_established_is_not_relied_upon():
     fragile = PICKER + "assume always ready'"
-    found = composed("sys taken: bool\npromise at first !taken", feeder=FEEDER, picker=fragile)
-    assert open_ones(found) == ["picker: ready'"]
-    assert broken(found) == ["!taken"]
+    composition = compose("sys taken: bool\npromise at first !taken", feeder=FEEDER, picker=fragile)
+    assert list_open_assumptions(composition) == ["picker: ready'"]
+    assert list_failures(composition) == ["!taken"]
 
 
-def test_liveness_is_never_taken_in_a_circle():
-    one = "env b: bool\nsys a: bool\nassume recurs b\npromise recurs a"
-    other = "env a: bool\nsys b: bool\nassume recurs a\npromise recurs b"
-    found = composed(one=one, other=other)
-    assert open_ones(found) == ["one: b", "other: a"]
-    first, _ = found.open
+def test_liveness_is_not_discharged_in_a_circle():
+    first_part = "env b: bool\nsys a: bool\nassume recurs b\npromise recurs a"
+    second_part = "env a: bool\nsys b: bool\nassume recurs a\npromise recurs b"
+    composition = compose(one=first_part, other=second_part)
+    assert list_open_assumptions(composition) == ["one: b", "other: a"]
+    first, _ = composition.open
     assert first.is_circular
     assert all(not (step["a"] or step["b"]) for step in first.trace.steps)
 
 
-def test_what_recurs_may_be_waited_for_by_both_when_one_of_them_has_to_begin():
-    """Whoever has the token gives it; one of them always has it, and waits only for the other."""
-    one = """
+def test_mutual_recurrence_is_discharged_when_one_part_has_to_begin():
+    """Each part passes on a token; one part always has it and waits only for the other."""
+    first_part = """
         env taken: bool
         sys given: bool
         assume recurs !given | taken
         promise recurs given
     """
-    other = """
+    second_part = """
         env given: bool
         sys taken: bool
         assume recurs given
         promise recurs !given | taken
     """
-    assert open_ones(composed(one=one, other=other)) == []
+    assert list_open_assumptions(compose(one=first_part, other=second_part)) == []
 
 
-def test_what_follows_once_the_one_thing_that_is_open_is_promised_is_not_told():
-    one = """
+def test_only_the_cause_of_dependent_open_assumptions_is_reported():
+    first_part = """
         env power: bool
         sys a: bool
         assume always power'
         promise recurs a
     """
-    other = "env a: bool\nsys b: bool\nassume recurs a\npromise recurs b"
-    last = "env b: bool\nsys c: bool\nassume recurs b\npromise recurs c"
+    second_part = "env a: bool\nsys b: bool\nassume recurs a\npromise recurs b"
+    last_part = "env b: bool\nsys c: bool\nassume recurs b\npromise recurs c"
     whole = "env power: bool\nsys c: bool\npromise recurs c"
-    found = composed(whole, one=one, other=other, last=last)
-    assert open_ones(found) == ["one: power'"]
-    assert broken(found) == ["c"]
+    composition = compose(whole, one=first_part, other=second_part, last=last_part)
+    assert list_open_assumptions(composition) == ["one: power'"]
+    assert list_failures(composition) == ["c"]
 
 
 SAFE = """
@@ -121,44 +125,50 @@ SAFE = """
 """
 
 
-def test_safety_is_taken_in_a_circle_step_by_step():
-    found = composed(one=SAFE.format(me="a", it="b"), other=SAFE.format(me="b", it="a"))
-    assert open_ones(found) == []
+def test_safety_is_discharged_in_a_circle_step_by_step():
+    composition = compose(one=SAFE.format(me="a", it="b"), other=SAFE.format(me="b", it="a"))
+    assert list_open_assumptions(composition) == []
 
 
-def test_not_when_both_read_in_the_step_what_the_other_writes():
+def test_safety_is_not_discharged_in_a_circle_of_instantaneous_dependencies():
     copy = SAFE + "\n promise always {me}' <-> {it}'\n promise at first {me} <-> {it}"
     parts = {"1": copy.format(me="a", it="b"), "2": copy.format(me="b", it="a")}
-    assert open_ones(composed(**parts)) == ["1: !b", "1: !b'", "2: !a", "2: !a'"]
+    assert list_open_assumptions(compose(**parts)) == ["1: !b", "1: !b'", "2: !a", "2: !a'"]
 
 
-def read_at_once(text):
-    """The inputs that have a say in the outputs of each step after the first one."""
-    made = contract(text)
-    found = find_dependencies(made, Universe((made,), Manager()))
-    return [(sorted(one.outputs), sorted(one.inputs)) for one in found if not one.is_first]
+def list_instantaneous_dependencies(text):
+    """List the outputs and the inputs that they depend on within a step after the first one."""
+    contract = parse_contract(text)
+    dependencies = find_dependencies(contract, Universe((contract,), Manager()))
+    return [
+        (sorted(dependency.outputs), sorted(dependency.inputs))
+        for dependency in dependencies
+        if not dependency.is_first
+    ]
 
 
-def test_what_ties_an_output_to_an_input_of_the_same_step_is_reading_at_once():
-    """That ``me`` follows ``it`` in the same step is said without a prime, or by two promises."""
+def test_a_relation_of_output_and_input_in_one_step_is_an_instantaneous_dependency():
+    """A guarantee without primes, or two guarantees together, make ``me`` depend on ``it``."""
     twice = "promise always it=1 & me -> me'\npromise always it=1 & me -> !me'"
     for tie in ("promise always me <-> it=1", twice):
-        assert read_at_once(f"env it: 0..2\nsys me: bool\n{tie}") == [(["me"], ["it"])]
+        assert list_instantaneous_dependencies(f"env it: 0..2\nsys me: bool\n{tie}") == [
+            (["me"], ["it"])
+        ]
 
 
-def test_what_is_answered_in_the_next_step_is_not_read_at_once():
+def test_an_answer_in_the_next_step_is_no_instantaneous_dependency():
     text = "env it: 0..2\nsys me: 0..4\npromise always me=1 & it=2 -> me'=3"
-    assert read_at_once(text) == [(["me"], [])]
+    assert list_instantaneous_dependencies(text) == [(["me"], [])]
 
 
-def test_outputs_that_no_promise_joins_read_apart():
+def test_unrelated_outputs_have_separate_dependencies():
     text = (
         "env a: bool\nsys x: bool\nsys y: bool\npromise always x' <-> a'\npromise always y' <-> x"
     )
-    assert read_at_once(text) == [(["x"], ["a"]), (["y"], [])]
+    assert list_instantaneous_dependencies(text) == [(["x"], ["a"]), (["y"], [])]
 
 
-def test_parts_that_read_one_another_in_different_outputs_wait_for_nobody():
+def test_mutual_dependencies_of_different_outputs_are_no_circle():
     hand = """
         env {other}_done: bool
         sys {me}_done: bool
@@ -169,71 +179,79 @@ def test_parts_that_read_one_another_in_different_outputs_wait_for_nobody():
         assume always !{other}_done'
         promise always !{me}_done'
     """
-    found = composed(pick=hand.format(me="p", other="q"), place=hand.format(me="q", other="p"))
-    assert open_ones(found) == []
+    composition = compose(pick=hand.format(me="p", other="q"), place=hand.format(me="q", other="p"))
+    assert list_open_assumptions(composition) == []
 
 
 def test_a_chain_within_a_step_is_no_circle():
     copy = SAFE + "\n promise always {me}' <-> {it}'"
-    found = composed(one=SAFE.format(me="a", it="b"), other=copy.format(me="b", it="a"))
-    assert open_ones(found) == []
+    composition = compose(one=SAFE.format(me="a", it="b"), other=copy.format(me="b", it="a"))
+    assert list_open_assumptions(composition) == []
 
 
-def test_what_a_part_assumes_of_the_outside_the_composition_assumes():
+def test_the_composition_inherits_assumptions_about_the_outside():
     needing = PICKER.replace("env ready: bool", "env ready: bool\nenv power: bool")
     needing += "assume always power"
-    found = composed(feeder=FEEDER, picker=needing)
-    assert open_ones(found) == []
-    assert [one.text for one in found.contract.assumptions] == ["power"]
+    composition = compose(feeder=FEEDER, picker=needing)
+    assert list_open_assumptions(composition) == []
+    assert [assumption.text for assumption in composition.contract.assumptions] == ["power"]
     whole = "env power: bool\nsys taken: bool\npromise recurs taken"
-    assert open_ones(composed(whole, feeder=FEEDER, picker=needing)) == ["picker: power"]
+    assert list_open_assumptions(compose(whole, feeder=FEEDER, picker=needing)) == ["picker: power"]
 
 
-def test_what_the_outside_does_when_a_part_asks_the_composition_assumes():
+def test_the_composition_inherits_assumptions_about_outputs_and_outside():
     asking = PICKER.replace("env ready: bool", "env ready: bool\nenv done: bool")
     asking += "assume recurs !taken | done"
-    found = composed(feeder=FEEDER, picker=asking)
-    assert [one.text for one in found.contract.assumptions] == ["!taken | done"]
+    composition = compose(feeder=FEEDER, picker=asking)
+    assert [assumption.text for assumption in composition.contract.assumptions] == ["!taken | done"]
     waiting = asking.replace("!taken | done", "!ready | done")
-    assert open_ones(composed(feeder=FEEDER, picker=waiting)) == ["picker: !ready | done"]
+    assert list_open_assumptions(compose(feeder=FEEDER, picker=waiting)) == [
+        "picker: !ready | done"
+    ]
 
 
-def test_what_is_outside_gr1_is_observed_on_both_sides():
+def test_conjuncts_outside_gr1_are_reduced_on_both_sides():
     answering = "env ask: bool\nsys done: bool\npromise G (ask -> F done)"
     asking = "env done: bool\nsys ask: bool\nassume G (ask -> F done)\npromise recurs !ask"
-    found = composed(server=answering, client=asking)
-    assert open_ones(found) == []
+    composition = compose(server=answering, client=asking)
+    assert list_open_assumptions(composition) == []
 
 
-def test_parts_that_contradict_one_another_are_told_by_what_contradicts():
+def test_contradicting_parts_are_reported_with_the_conflicting_conjuncts():
     never = FEEDER.replace("promise recurs ready", "promise always !ready'")
-    found = composed(feeder=never, picker=PICKER)
-    assert [one.text for one in found.conflict] == ["!ready'", "taken' -> ready", "taken"]
-    assert (found.open, found.failures) == ((), ())
-    assert composed(**OTHERS).conflict == ()
+    composition = compose(feeder=never, picker=PICKER)
+    assert [conjunct.text for conjunct in composition.conflict] == [
+        "!ready'",
+        "taken' -> ready",
+        "taken",
+    ]
+    assert (composition.open, composition.failures) == ((), ())
+    assert compose(**OTHERS).conflict == ()
 
 
 def test_a_variable_is_decided_by_one_part():
     with pytest.raises(DriverError, match="'a' is decided by one and other"):
-        composed(one="sys a: bool\npromise always a", other="sys a: bool\npromise recurs a")
+        compose(one="sys a: bool\npromise always a", other="sys a: bool\npromise recurs a")
 
 
-def test_variables_of_the_composition_are_the_parts():
-    found = composed(**OTHERS)
-    assert {one.name: str(one.owner) for one in found.contract.variables} == {
+def test_the_composition_has_the_variables_of_its_parts():
+    composition = compose(**OTHERS)
+    assert {variable.name: str(variable.owner) for variable in composition.contract.variables} == {
         "taken": "sys",
         "ready": "sys",
     }
 
 
-def test_what_a_part_promises_of_its_inputs_does_not_prove_what_it_assumes_of_them():
-    one = "sys x: bool\nenv y: bool\nassume at first y"
-    other = "sys y: bool\nenv x: bool\nassume at first x\npromise at first !y\npromise always x | y"
-    assert "other: x" in open_ones(composed(one=one, other=other))
+def test_guarantees_about_inputs_do_not_discharge_assumptions_about_them():
+    first_part = "sys x: bool\nenv y: bool\nassume at first y"
+    second_part = (
+        "sys y: bool\nenv x: bool\nassume at first x\npromise at first !y\npromise always x | y"
+    )
+    assert "other: x" in list_open_assumptions(compose(one=first_part, other=second_part))
 
 
-def test_what_a_part_says_before_it_sees_its_inputs_it_says_as_promised():
-    """The server drops its work when the client is told; the client holds on until it is."""
+def test_outputs_that_precede_the_inputs_of_a_step_are_guaranteed():
+    """The server drops its work when it answers; the client holds its request until then."""
     server = (
         "sys told: bool\nsys busy: bool\nenv asked: bool\nassume always busy -> !asked' | told'"
     )
@@ -241,4 +259,4 @@ def test_what_a_part_says_before_it_sees_its_inputs_it_says_as_promised():
     server += "\npromise always busy' <-> asked & !busy"
     client = "sys asked: bool\nenv told: bool\npromise at first !asked"
     client += "\npromise always told' -> !asked'"
-    assert open_ones(composed(server=server, client=client)) == []
+    assert list_open_assumptions(compose(server=server, client=client)) == []

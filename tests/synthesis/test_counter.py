@@ -1,12 +1,12 @@
-"""How the environment wins: ranks, its strategy, the machine, the game, the drawings."""
+"""Counterstrategies: ranks, the environment's strategy, its machine, the game and the diagrams."""
 
 import random
 from itertools import pairwise
 
 import pytest
-from contracts_in_lines import contract
-from explicit import Explicit, rules, valuations
-from small_games import contract as random_contract
+from contracts_in_lines import parse_contract
+from explicit import ExplicitGame, list_evaluations, list_valuations
+from small_games import random_contract
 
 from sysmlc.logic.contract import Class, Owner
 from sysmlc.logic.evaluate import compile_evaluation
@@ -43,19 +43,22 @@ STUCK = """
 """
 
 
-def environment(text):
+def build_environment(text):
     return EnvironmentStrategy(find_ranks(make_game(reduce_contract(text).contract, Manager())))
 
 
-def defeated(text):
-    made = contract(text)
-    return build_counterstrategy(environment(made), made)
+def build_counter_machine(text):
+    contract = parse_contract(text)
+    return build_counterstrategy(build_environment(contract), contract)
 
 
-def test_what_never_comes_is_prevented_for_ever():
-    found = defeated(LAMP)
-    assert [(one.inputs, len(one.moves)) for one in found.states] == [((False,), 1), ((True,), 1)]
-    assert list(describe_run(example_run(found))) == [
+def test_the_environment_prevents_a_goal_for_ever():
+    machine = build_counter_machine(LAMP)
+    assert [(state.inputs, len(state.moves)) for state in machine.states] == [
+        ((False,), 1),
+        ((True,), 1),
+    ]
+    assert list(describe_run(example_run(machine))) == [
         "step 1: go=false, at=0",
         "step 2: go=true",
         "then again from step 2",
@@ -63,133 +66,143 @@ def test_what_never_comes_is_prevented_for_ever():
 
 
 def test_a_component_without_an_answer_ends_the_run():
-    found = defeated(STUCK)
-    assert list(describe_run(example_run(found)))[-1] == "then there is no answer"
-    assert [one.inputs for one in found.states if not one.moves] == [(True,)]
+    machine = build_counter_machine(STUCK)
+    assert list(describe_run(example_run(machine)))[-1] == "then there is no answer"
+    assert [state.inputs for state in machine.states if not state.moves] == [(True,)]
 
 
-def test_the_environment_prevents_what_it_can_and_does_not_wait_for_other_goals():
-    busy = contract(f"sys n: 0..1\nsys m: 0..1\n{LAMP}\npromise recurs n=1\npromise recurs m=1")
-    found = build_counterstrategy(find_environment_strategy(busy, Options()), busy)
-    assert len(found.states) == 2
-    assert "go=true" in list(describe_run(example_run(found)))[1]
+def test_the_environment_prevents_a_goal_without_waiting_for_others():
+    busy = parse_contract(
+        f"sys n: 0..1\nsys m: 0..1\n{LAMP}\npromise recurs n=1\npromise recurs m=1"
+    )
+    machine = build_counterstrategy(find_environment_strategy(busy, Options()), busy)
+    assert len(machine.states) == 2
+    assert "go=true" in list(describe_run(example_run(machine)))[1]
 
 
-def test_a_contract_that_can_be_kept_is_not_defeated():
+def test_a_realizable_contract_has_no_counterstrategy():
     with pytest.raises(NotLostError):
-        defeated(f"{LAMP}\nassume recurs !go\npromise recurs go | !go")
+        build_counter_machine(f"{LAMP}\nassume recurs !go\npromise recurs go | !go")
 
 
-def test_what_is_assumed_is_kept_by_the_environment():
+def test_the_environment_satisfies_the_assumptions():
     polite = LAMP.replace("always go ->", "always ->").replace(
         "promise always ->", "promise always"
     )
     polite = f"{LAMP}\nassume recurs !go\npromise always !go' -> at'=0"
-    found = defeated(polite)
-    trace = example_run(found)
-    assert any(not one["go"] for one in trace.steps[trace.loop :])
+    machine = build_counter_machine(polite)
+    trace = example_run(machine)
+    assert any(not step["go"] for step in trace.steps[trace.loop :])
 
 
-def losing(seed):
-    """A random play in which a random component is defeated by the environment's strategy."""
-    made, die = random_contract(seed), random.Random(seed)
+def play_and_lose(seed):
+    """Play random answers against the environment's strategy.
+
+    Return the contract and the play as steps and start of the loop, or None if it is realizable.
+    """
+    contract, die = random_contract(seed), random.Random(seed)
     try:
-        playing = environment(made)
+        strategy = build_environment(contract)
     except NotLostError:
-        return made, None
-    state, fair, given, steps, marks = None, 0, playing.first, [], {}
-    decode = playing.lost_game.arena.symbols.decode
+        return contract, None
+    state, fair, inputs, steps, visits = None, 0, strategy.first, [], {}
+    decode = strategy.lost_game.arena.symbols.decode
     while True:
-        answers = list(playing.iter_answers(state, given))
+        answers = list(strategy.iter_answers(state, inputs))
         if not answers:
-            return made, ([*steps, decode(given)], None)
-        state = {**given, **die.choice(answers)}
+            return contract, ([*steps, decode(inputs)], None)
+        state = {**inputs, **die.choice(answers)}
         steps.append(decode(state))
         key = tuple(state.values()), fair
-        if key in marks and len(steps) > 60:
-            return made, (steps, marks[key])
-        marks[key] = len(steps)
-        given, fair = playing.next_inputs(state, fair)
+        if key in visits and len(steps) > 60:
+            return contract, (steps, visits[key])
+        visits[key] = len(steps)
+        inputs, fair = strategy.next_inputs(state, fair)
 
 
 @pytest.mark.parametrize("start", range(0, 300, 50))
-def test_random_contracts_are_defeated_exactly_when_they_cannot_be_kept(start):
+def test_random_contracts_lose_exactly_if_they_are_unrealizable(start):
     for seed in range(start, start + 50):
-        made, play = losing(seed)
-        assert (play is None) == Explicit(made).is_realizable(), seed
+        contract, play = play_and_lose(seed)
+        assert (play is None) == ExplicitGame(contract).is_realizable(), seed
         if play is not None:
-            check_defeat(made, *play, seed)
+            check_defeat(contract, *play, seed)
 
 
-def check_defeat(made, steps, loop, seed):
-    """The environment keeps what is assumed; the component is stuck, or a goal does not recur."""
-    inputs = {one.name for one in made.variables if one.owner is Owner.ENVIRONMENT}
-    assumed, first = rules(made.assumptions, Class.SAFETY), rules(made.assumptions, Class.INIT)
-    assert all(rule(steps[0], None) for rule in first), seed
-    for now, then in pairwise(steps):
-        given = {name: value for name, value in then.items() if name in inputs}
-        assert all(rule(now, given) for rule in assumed), seed
+def check_defeat(contract, steps, loop, seed):
+    """Check that the play satisfies the assumptions and, if it is finite, has no allowed answer."""
+    inputs = {
+        variable.name for variable in contract.variables if variable.owner is Owner.ENVIRONMENT
+    }
+    assumptions, initial_assumptions = (
+        list_evaluations(contract.assumptions, Class.SAFETY),
+        list_evaluations(contract.assumptions, Class.INIT),
+    )
+    assert all(rule(steps[0], None) for rule in initial_assumptions), seed
+    for current, following in pairwise(steps):
+        next_inputs = {name: value for name, value in following.items() if name in inputs}
+        assert all(rule(current, next_inputs) for rule in assumptions), seed
     if loop is None:
         before = steps[-2] if len(steps) > 1 else None
-        assert not list(allowed(made, before, steps[-1])), seed
+        assert not list(iter_allowed_outputs(contract, before, steps[-1])), seed
 
 
-def allowed(made, before, given):
-    """The answers that what is promised allows."""
-    promised = rules(made.guarantees, Class.SAFETY if before else Class.INIT)
-    for out in valuations(made, Owner.SYSTEM):
-        now = {**given, **out}
-        if all(rule(before, now) if before else rule(now, None) for rule in promised):
-            yield out
+def iter_allowed_outputs(contract, before, inputs):
+    """Yield the outputs that the guarantees allow."""
+    guarantees = list_evaluations(contract.guarantees, Class.SAFETY if before else Class.INIT)
+    for outputs in list_valuations(contract, Owner.SYSTEM):
+        step = {**inputs, **outputs}
+        if all(rule(before, step) if before else rule(step, None) for rule in guarantees):
+            yield outputs
 
 
 @pytest.mark.parametrize("start", range(0, 300, 50))
 def test_in_every_loop_of_the_machine_all_assumptions_recur_and_one_goal_does_not(start):
     for seed in range(start, start + 50):
-        made = random_contract(seed)
+        contract = random_contract(seed)
         try:
-            found = build_counterstrategy(environment(made), made)
+            machine = build_counterstrategy(build_environment(contract), contract)
         except NotLostError:
             continue
-        trace = example_run(found)
+        trace = example_run(machine)
         loop = trace.steps[trace.loop :]
         if not loop:
             continue
         fair = [
-            compile_evaluation(one.formula)
-            for one in made.assumptions
-            if one.class_ is Class.LIVENESS
+            compile_evaluation(conjunct.formula)
+            for conjunct in contract.assumptions
+            if conjunct.class_ is Class.LIVENESS
         ]
         goals = [
-            compile_evaluation(one.formula)
-            for one in made.guarantees
-            if one.class_ is Class.LIVENESS
+            compile_evaluation(conjunct.formula)
+            for conjunct in contract.guarantees
+            if conjunct.class_ is Class.LIVENESS
         ]
         assert all(any(rule(step, None) for step in loop) for rule in fair), seed
         assert any(not any(rule(step, None) for step in loop) for rule in goals), seed
 
 
-def test_a_machine_beyond_the_limit_is_none():
-    made = contract(LAMP)
+def test_a_machine_beyond_the_limit_raises():
+    contract = parse_contract(LAMP)
     with pytest.raises(LimitError, match="answers of the system"):
-        build_counterstrategy(environment(made), made, max_moves=0)
+        build_counterstrategy(build_environment(contract), contract, max_moves=0)
 
 
-def played(text, *answers):
-    made, said, left = contract(text, "Lamp"), [], list(answers)
+def play_lines(text, *answers):
+    contract, output, remaining = parse_contract(text, "Lamp"), [], list(answers)
 
     def read(_):
-        if not left:
+        if not remaining:
             raise EOFError
-        return left.pop(0)
+        return remaining.pop(0)
 
-    return Player(environment(made), made, read, said.append).play(), said
+    return Player(build_environment(contract), contract, read, output.append).play(), output
 
 
-def test_the_game_says_what_an_answer_breaks_and_how_it_ends():
-    has_ended, said = played(LAMP, "at=1", "at=0", "options", "at=5", "up=1", "at=1", "", "")
+def test_the_game_reports_violated_guarantees_and_its_end():
+    has_ended, output = play_lines(LAMP, "at=1", "at=0", "options", "at=5", "up=1", "at=1", "", "")
     assert has_ended
-    assert said[1:] == [
+    assert output[1:] == [
         "step 1: go=false",
         "That breaks 'at=0'.",
         "     at=0",
@@ -206,61 +219,65 @@ def test_the_game_says_what_an_answer_breaks_and_how_it_ends():
     ]
 
 
-def test_the_game_ends_where_there_is_no_answer_or_the_reader_gives_up():
-    has_ended, said = played(STUCK, "", "", "", "")
+def test_the_game_ends_without_answers_or_when_the_player_quits():
+    has_ended, output = play_lines(STUCK, "", "", "", "")
     assert has_ended
-    assert said[-1] == "You have no answer: each one breaks what you promise. You have lost."
-    assert played(STUCK)[0] is False
-    assert played(STUCK, "quit")[0] is False
+    assert output[-1] == "You have no answer: each one breaks what you promise. You have lost."
+    assert play_lines(STUCK)[0] is False
+    assert play_lines(STUCK, "quit")[0] is False
 
 
-def test_the_game_names_what_an_answer_has_broken_at_once():
+def test_the_game_names_the_guarantee_that_the_last_answer_violates():
     text = "env go: bool\nsys at: 0..1\npromise always !go -> at=0\npromise recurs at=1"
-    _, said = played(text, "at=1", "", "")
-    assert said[1:3] == ["step 1: go=false", "     at=1"]
-    assert said[-1] == "Your last answer breaks '!go -> at=0'. You have lost."
+    _, output = play_lines(text, "at=1", "", "")
+    assert output[1:3] == ["step 1: go=false", "     at=1"]
+    assert output[-1] == "Your last answer breaks '!go -> at=0'. You have lost."
 
 
 def test_the_game_shows_a_formula_as_it_was_written():
-    _, said = played("env go: bool\nsys at: 0..1\npromise G (go -> F at=1)\n" + STAY, *[""] * 9)
-    assert said[-1].endswith("'G (go -> F at=1)' is not kept. You have lost.")
+    _, output = play_lines(
+        "env go: bool\nsys at: 0..1\npromise G (go -> F at=1)\n" + STAY, *[""] * 9
+    )
+    assert output[-1].endswith("'G (go -> F at=1)' is not kept. You have lost.")
 
 
 STAY = "promise at first at=0\npromise always at'=at"
 
 
-def test_history_bits_are_nobodys_business():
-    made = "env ask: bool\nsys done: bool\npromise always !done'\npromise G (ask -> F done)"
-    found = defeated(made)
-    assert [one.name for one in found.outputs] == ["done"]
+def test_history_bits_are_no_outputs_of_the_machine():
+    text = "env ask: bool\nsys done: bool\npromise always !done'\npromise G (ask -> F done)"
+    machine = build_counter_machine(text)
+    assert [variable.name for variable in machine.outputs] == ["done"]
 
 
 def test_files_of_a_counter_strategy():
-    made = contract(STUCK, "Plant::Lamp")
-    found = dict(
+    contract = parse_contract(STUCK, "Plant::Lamp")
+    files = dict(
         counterstrategy_files(
-            [(build_counterstrategy(environment(made), made), made)], lambda origin: origin
+            [(build_counterstrategy(build_environment(contract), contract), contract)],
+            lambda origin: origin,
         )
     )
-    assert list(found) == [
+    assert list(files) == [
         "Plant.Lamp.counter.puml",
         "Plant.Lamp.counter-run.puml",
         "Plant.Lamp.counter.sysml",
     ]
-    assert "note over p1 : no answer is left" in found["Plant.Lamp.counter-run.puml"]
-    assert "<b>no answer is left</b>" in found["Plant.Lamp.counter.puml"]
+    assert "note over p1 : no answer is left" in files["Plant.Lamp.counter-run.puml"]
+    assert "<b>no answer is left</b>" in files["Plant.Lamp.counter.puml"]
 
 
 @pytest.mark.plantuml
-def test_plantuml_draws_them(plantuml):
-    made = contract(STUCK, "Plant::Lamp")
-    found = dict(
+def test_plantuml_draws_counterstrategies(plantuml):
+    contract = parse_contract(STUCK, "Plant::Lamp")
+    files = dict(
         counterstrategy_files(
-            [(build_counterstrategy(environment(made), made), made)], lambda origin: origin
+            [(build_counterstrategy(build_environment(contract), contract), contract)],
+            lambda origin: origin,
         )
     )
-    texts = {name: text for name, text in found.items() if name.endswith(".puml")}
-    drawn = plantuml.render(texts)
+    texts = {name: text for name, text in files.items() if name.endswith(".puml")}
+    drawings = plantuml.render(texts)
     assert all(
-        b"no answer is left" in picture.replace(b"&#160;", b" ") for picture in drawn.values()
+        b"no answer is left" in picture.replace(b"&#160;", b" ") for picture in drawings.values()
     )

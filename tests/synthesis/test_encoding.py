@@ -1,8 +1,8 @@
-"""Encodings of a game: what leaves it, and that the verdict stays."""
+"""Encodings of a game: eliminated variables and commands, with an unchanged verdict."""
 
 import pytest
 import small_games
-from contracts_in_lines import contract
+from contracts_in_lines import parse_contract
 
 from long_runs import quick_first
 from sysmlc.logic.contract import Owner
@@ -34,44 +34,48 @@ ROBOT = """
 
 
 @pytest.mark.parametrize("start", quick_first(range(0, SUITE, 100)))
-@pytest.mark.parametrize("kind", [small_games.contract, small_games.plant])
+@pytest.mark.parametrize("kind", [small_games.random_contract, small_games.random_plant])
 def test_the_verdict_is_that_of_listed_states(kind, start):
-    found = [small_games.encoded_disagreement(kind(seed)) for seed in range(start, start + 100)]
-    assert [text for text in found if text] == []
+    disagreements = [
+        small_games.describe_encoded_disagreement(kind(seed)) for seed in range(start, start + 100)
+    ]
+    assert [text for text in disagreements if text] == []
 
 
 def test_without_cudd_the_verdict_is_the_same():
-    plants = [small_games.plant(seed) for seed in range(20)]
-    found = [small_games.encoded_disagreement(one, "autoref") for one in plants]
-    assert [text for text in found if text] == []
+    plants = [small_games.random_plant(seed) for seed in range(20)]
+    disagreements = [
+        small_games.describe_encoded_disagreement(plant, "autoref") for plant in plants
+    ]
+    assert [text for text in disagreements if text] == []
 
 
 def test_random_plants_are_encoded():
-    arenas = [small_games.encoded(small_games.plant(seed)) for seed in range(40)]
-    assert sum(moved(arena, "p") for arena in arenas) > 20
-    assert sum(not moves(arena, "d") for arena in arenas) > 10
+    arenas = [small_games.encode_game(small_games.random_plant(seed)) for seed in range(40)]
+    assert sum(is_assigned_by_system(arena, "p") for arena in arenas) > 20
+    assert sum(not is_assigned(arena, "d") for arena in arenas) > 10
 
 
-def moves(arena, name: str) -> bool:
-    """Whether somebody gives the variable its next value."""
+def is_assigned(arena, name: str) -> bool:
+    """Whether some turn assigns the next value of the variable."""
     return any(f"{name}.0'" in turn.bits for turn in arena.turns)
 
 
-def moved(arena, name: str) -> bool:
-    """Whether it is the system that gives the variable its next value."""
+def is_assigned_by_system(arena, name: str) -> bool:
+    """Whether a turn of the system assigns the next value of the variable."""
     return any(f"{name}.0'" in turn.bits for turn in arena.turns if turn.owner is Owner.SYSTEM)
 
 
-def test_inputs_that_follow_from_others_leave_the_game():
-    game = eliminate_determined_variables(make_game(contract(ROBOT), Manager()))
+def test_determined_inputs_are_eliminated():
+    game = eliminate_determined_variables(make_game(parse_contract(ROBOT), Manager()))
     assert game.names(Owner.ENVIRONMENT) == ("pos", "target")
-    left = game.definitions["left"]["left.0"]
-    assert all((game.symbols.encode({"pos": pos}) <= left) == (pos != 0) for pos in range(3))
+    definition = game.definitions["left"]["left.0"]
+    assert all((game.symbols.encode({"pos": pos}) <= definition) == (pos != 0) for pos in range(3))
 
 
-def test_the_command_is_the_chosen_step():
+def test_a_command_is_replaced_by_a_turn_of_the_system():
     arena = eliminate_commands(
-        eliminate_determined_variables(make_game(contract(ROBOT), Manager()))
+        eliminate_determined_variables(make_game(parse_contract(ROBOT), Manager()))
     )
     assert [(turn.owner.value, turn.bits) for turn in arena.turns] == [
         ("sys", ("pos.0'", "pos.1'")),
@@ -90,7 +94,7 @@ def test_the_command_is_the_chosen_step():
     ],
 )
 def test_a_command_stays_in_the_state_when(line, why):
-    arena = eliminate_commands(make_game(contract(f"{ROBOT}\n{line}"), Manager()))
+    arena = eliminate_commands(make_game(parse_contract(f"{ROBOT}\n{line}"), Manager()))
     assert len(arena.turns) == 2, why
 
 
@@ -104,12 +108,14 @@ def test_a_command_stays_in_the_state_when(line, why):
 )
 def test_an_input_with_a_choice_stays(old, new):
     text = ROBOT.replace(f"assume {old}", f"assume {new}").replace(old, new)
-    assert "left" in eliminate_determined_variables(make_game(contract(text), Manager())).names(
-        Owner.ENVIRONMENT
-    )
+    assert "left" in eliminate_determined_variables(
+        make_game(parse_contract(text), Manager())
+    ).names(Owner.ENVIRONMENT)
 
 
 def test_a_plant_with_a_choice_stays_with_the_environment():
     text = ROBOT.replace("command=stay -> pos'=pos", "command=stay -> pos'<=pos")
-    arena = eliminate_commands(eliminate_determined_variables(make_game(contract(text), Manager())))
-    assert not moved(arena, "pos")
+    arena = eliminate_commands(
+        eliminate_determined_variables(make_game(parse_contract(text), Manager()))
+    )
+    assert not is_assigned_by_system(arena, "pos")

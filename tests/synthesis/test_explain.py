@@ -1,4 +1,4 @@
-"""Smallest conflicts among many things."""
+"""Minimal conflicts among many items."""
 
 from itertools import combinations
 
@@ -11,19 +11,19 @@ CONFLICTS = st.lists(st.frozensets(st.integers(0, 9), min_size=1, max_size=4), m
 
 
 @given(CONFLICTS)
-def test_what_is_found_conflicts_and_nothing_of_it_can_be_left_out(known):
-    def is_conflict(some):
-        return any(one <= set(some) for one in known)
+def test_a_minimal_conflict_conflicts_and_none_of_its_subsets_does(conflicts):
+    def is_conflict(items):
+        return any(conflict <= set(items) for conflict in conflicts)
 
-    found = minimal_conflict(range(10), is_conflict)
-    assert is_conflict(found)
-    assert not any(is_conflict(fewer) for fewer in combinations(found, len(found) - 1))
-    assert list(found) == sorted(found)
+    smallest = minimal_conflict(range(10), is_conflict)
+    assert is_conflict(smallest)
+    assert not any(is_conflict(fewer) for fewer in combinations(smallest, len(smallest) - 1))
+    assert list(smallest) == sorted(smallest)
 
 
 @given(CONFLICTS, st.integers(0, 5))
-def test_with_few_questions_what_is_found_still_conflicts(known, most):
-    def is_conflict(some):
-        return any(one <= set(some) for one in known)
+def test_a_limited_search_still_returns_a_conflict(conflicts, max_checks):
+    def is_conflict(items):
+        return any(conflict <= set(items) for conflict in conflicts)
 
-    assert is_conflict(minimal_conflict(range(10), is_conflict, most))
+    assert is_conflict(minimal_conflict(range(10), is_conflict, max_checks))

@@ -1,6 +1,6 @@
-"""Robots on a grid are decided within so many nodes, whatever the clock and the hash seed say.
+"""Robots on a grid are decided within a limit of nodes, independent of time and hash seeds.
 
-An order of bits that is bad for these games makes them endless, which a limit of nodes shows.
+A bad order of bits makes these games run for hours; the limit of nodes detects it.
 """
 
 import json
@@ -18,20 +18,20 @@ from sysmlc.synthesis.bdd import manager
 from sysmlc.synthesis.decision import Options, decide
 
 BENCHMARKS = Path(__file__).parents[2] / "benchmarks"
-MOST = {3: 60_000, 4: 130_000}
-"""Nodes for so many robots on five by five cells, a seventh more than are needed."""
-SHOWN = """
-from test_gr1_grids import decided
+MAX_NODES = {3: 60_000, 4: 130_000}
+"""Limits of nodes by the number of robots on five by five cells: a seventh above the need."""
+PROGRAM = """
+from test_gr1_grids import decide_grid
 from gr1_grid import holistic
-found = decided(holistic(5, 3), 3).figures
-print(found.rounds, found.steps, found.nodes)
+figures = decide_grid(holistic(5, 3), 3).figures
+print(figures.rounds, figures.steps, figures.nodes)
 """
 
 
-def decided(grid, robots):
-    """The verdict on a grid; none when that needs too many nodes."""
+def decide_grid(grid, robots):
+    """Decide a grid; the verdict is None if it needs too many nodes."""
     (contract,) = formats.read(json.dumps(grid), "grid.gr1.json", Sink())
-    limits = Limits(nodes=MOST[robots])
+    limits = Limits(nodes=MAX_NODES[robots])
     return decide(contract, lambda origin: Subject(), Sink(), Options("cudd", limits))
 
 
@@ -43,20 +43,18 @@ def holistic(monkeypatch):
     return holistic
 
 
-@pytest.mark.parametrize(("robots", "early"), [(3, manager.REORDER_AT), (4, 1_000)])
-def test_a_grid_is_decided_in_the_order_that_its_variables_give(
-    holistic, monkeypatch, robots, early
-):
-    monkeypatch.setattr(manager, "REORDER_AT", early)
-    assert decided(holistic(5, robots), robots).is_realizable is True
+@pytest.mark.parametrize(("robots", "reorder_at"), [(3, manager.REORDER_AT), (4, 1_000)])
+def test_a_grid_is_decided_in_the_initial_order_of_bits(holistic, monkeypatch, robots, reorder_at):
+    monkeypatch.setattr(manager, "REORDER_AT", reorder_at)
+    assert decide_grid(holistic(5, robots), robots).is_realizable is True
 
 
 @pytest.mark.long
-def test_what_is_computed_does_not_depend_on_hash_seeds():
+def test_the_figures_do_not_depend_on_hash_seeds():
     path = os.pathsep.join([str(BENCHMARKS), str(Path(__file__).parent)])
-    found = {
+    outputs = {
         subprocess.run(
-            [sys.executable, "-c", SHOWN],
+            [sys.executable, "-c", PROGRAM],
             env={**os.environ, "PYTHONHASHSEED": seed, "PYTHONPATH": path},
             capture_output=True,
             text=True,
@@ -64,4 +62,4 @@ def test_what_is_computed_does_not_depend_on_hash_seeds():
         ).stdout
         for seed in "123"
     }
-    assert len(found) == 1
+    assert len(outputs) == 1

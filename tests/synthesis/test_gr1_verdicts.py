@@ -1,6 +1,6 @@
-"""Verdicts on the specifications of the corpus: those that their authors or other solvers gave.
+"""Verdicts on the specifications of the corpus, compared with those of authors and other solvers.
 
-Where nobody recorded one (corpus/gr1/README.md) the table has ours: it would show a change.
+Where no verdict is recorded (corpus/gr1/README.md) the table has ours, to detect changes.
 """
 
 import json
@@ -39,28 +39,28 @@ UNREALIZABLE = {
     "test_1.ltl test_1.C2": "ours",
     "test_2.ltl test_1.C2": "ours",
 }
-"""Outside the folders that say so; whose verdict it is."""
+"""Unrealizable contracts outside the folders of that name, with the source of the verdict."""
 SLOW = ("ColorSort", "amba", "env_9x3", "hol_16x2")
-"""How the names of contracts begin that take most of the time."""
+"""Prefixes of the names of slow contracts."""
 OUTSIDE = {
     "HumanoidLTL_713_Humanoid_unrealizable.spectra",
     "HumanoidLTL_NotRealizable2_879_Humanoid_unrealizable.spectra",
     "HumanoidLTL_NotRealizable2_884_Humanoid_unrealizable.spectra",
 }
-"""They assume something of ``next_head'``, which the system gives: it could break that itself."""
+"""Their assumptions refer to ``next_head'``, an output: the system could violate them itself."""
 pytestmark = [
     pytest.mark.corpus,
     pytest.mark.skipif(not CORPUS, reason="SYSMLC_CORPUS names no folder"),
 ]
 
 
-def files(folder: str) -> list[Path]:
-    """The specifications right in a folder of the corpus."""
-    below = sorted(Path(CORPUS, "gr1", folder).iterdir()) if CORPUS else []
-    return [path for path in below if path.suffix in SUFFIXES]
+def list_specifications(folder: str) -> list[Path]:
+    """Return the specifications directly in a folder of the corpus."""
+    paths = sorted(Path(CORPUS, "gr1", folder).iterdir()) if CORPUS else []
+    return [path for path in paths if path.suffix in SUFFIXES]
 
 
-def recorded(path: Path, text: str, contract: Contract) -> bool:
+def is_recorded_realizable(path: Path, text: str, contract: Contract) -> bool:
     """Whether the contract is realizable."""
     if path.suffix == ".json":
         return str(json.loads(text)["status"]) == "realizable"
@@ -68,14 +68,19 @@ def recorded(path: Path, text: str, contract: Contract) -> bool:
     return path.parent.name != "unrealizable" and names.isdisjoint(UNREALIZABLE)
 
 
-def decided(path: Path) -> Iterator[tuple[str, bool | None, bool, list[str]]]:
-    """For each contract its name, the verdict, the recorded one, and codes of what is reported."""
+def decide_contracts(path: Path) -> Iterator[tuple[str, bool | None, bool, list[str]]]:
+    """Yield for each contract its name, verdict, recorded verdict and codes of diagnostics."""
     text = path.read_text(encoding="utf-8")
     for contract in formats.read(text, path.name, Sink()):
         sink = Sink()
         verdict = decide(contract, lambda origin: Subject(), sink, Options(limits=LIMITS))
-        codes = [one.rule.code for one in sink]
-        yield contract.component, verdict.is_realizable, recorded(path, text, contract), codes
+        codes = [diagnostic.rule.code for diagnostic in sink]
+        yield (
+            contract.component,
+            verdict.is_realizable,
+            is_recorded_realizable(path, text, contract),
+            codes,
+        )
 
 
 @pytest.mark.parametrize(
@@ -83,28 +88,28 @@ def decided(path: Path) -> Iterator[tuple[str, bool | None, bool, list[str]]]:
     [
         pytest.param(path, marks=pytest.mark.long if path.name.startswith(SLOW) else ())
         for folder in COUNTS
-        for path in files(folder)
+        for path in list_specifications(folder)
     ],
     ids=lambda path: path.name,
 )
 def test_the_verdict_is_the_recorded_one(path):
-    found = list(decided(path))
-    assert found
+    results = list(decide_contracts(path))
+    assert results
     if path.name in OUTSIDE:
-        assert [(verdict, codes) for _, verdict, _, codes in found] == [(None, ["SM530"])]
+        assert [(verdict, codes) for _, verdict, _, codes in results] == [(None, ["SM530"])]
     else:
-        assert [one for one in found if one[1] is not one[2]] == []
+        assert [result for result in results if result[1] is not result[2]] == []
 
 
 @pytest.mark.parametrize("folder", COUNTS)
-def test_every_specification_is_there(folder):
-    assert len(files(folder)) == COUNTS[folder]
+def test_every_specification_is_present(folder):
+    assert len(list_specifications(folder)) == COUNTS[folder]
 
 
 def test_the_syntax_error_of_a_published_contract_is_located():
     path, sink = Path(CORPUS or "", "gr1", "chase", "robotic_arm.ltl"), Sink()
     formats.read(path.read_text(encoding="utf-8"), path.name, sink)
-    places = [(one.rule.code, one.subject.place) for one in sink]
+    places = [(diagnostic.rule.code, diagnostic.subject.place) for diagnostic in sink]
     assert [(code, place and (place.line, place.column)) for code, place in places] == [
         ("SM583", (15, 20))
     ]

@@ -1,4 +1,4 @@
-"""Limits hold within an operation on diagrams too, not only between two of them."""
+"""Limits are checked within operations on decision diagrams, not only between them."""
 
 import gc
 import signal
@@ -32,8 +32,7 @@ RUNAWAY = """{
   "assumptions": {"init": [], "safety": [], "liveness": []},
   "guarantees": {"init": [], "safety": ["a*b = c*c + 1"], "liveness": ["c = a"]}
 }"""
-"""One conjunct whose diagram no computer can hold: nothing comes between its operations and the end
-but what is looked at within them."""
+"""One conjunct whose diagram exceeds any memory: only checks within an operation can end it."""
 FOLLOWER = """{
   "name": "follower",
   "variables": {
@@ -65,21 +64,21 @@ def file(tmp_path: Path) -> Path:
         (("--memory-limit", "0.04"), "the limit of 0.04 GiB of memory was reached"),
     ],
 )
-def test_a_limit_ends_what_runs_and_says_what_was_reached(
+def test_a_reached_limit_ends_the_run_and_is_reported(
     file: Path, tmp_path: Path, option: tuple[str, str], reached: str
 ) -> None:
     out = tmp_path / "out"
 
-    done = CliRunner().invoke(sysmlc, ["synth", str(file), *option, "-o", str(out)])
+    result = CliRunner().invoke(sysmlc, ["synth", str(file), *option, "-o", str(out)])
 
-    assert done.exit_code == 2
-    assert "SM531" in done.output
-    assert reached in done.output
-    assert "translating the contract" in done.output
+    assert result.exit_code == 2
+    assert "SM531" in result.output
+    assert reached in result.output
+    assert "translating the contract" in result.output
     assert not out.exists()
 
 
-def test_a_game_that_is_over_before_the_first_look_at_the_clock_keeps_to_its_nodes(
+def test_a_game_shorter_than_the_first_clock_check_obeys_the_limit_of_nodes(
     tmp_path: Path,
 ) -> None:
     file = tmp_path / "follower.gr1.json"
@@ -92,31 +91,31 @@ def test_a_game_that_is_over_before_the_first_look_at_the_clock_keeps_to_its_nod
     assert many.exit_code == 0, many.output
 
 
-def test_comparing_contracts_keeps_limits_too() -> None:
-    other = runaway()
-    weaker = Contract(other.component, other.origin, other.variables, (), ())
+def test_refinement_obeys_limits() -> None:
+    contract = runaway()
+    weaker = Contract(contract.component, contract.origin, contract.variables, (), ())
 
     with pytest.raises(LimitError, match="CPU time"):
-        list(find_refinement_failures(weaker, other, Manager("cudd", Limits(seconds=0.3))))
+        list(find_refinement_failures(weaker, contract, Manager("cudd", Limits(seconds=0.3))))
 
 
 @pytest.fixture
-def pressed_soon() -> Iterator[None]:
-    """Ctrl-C after some CPU time, wherever the program then is, however the tests were started.
+def press_ctrl_c_soon() -> Iterator[None]:
+    """Press Ctrl-C after some CPU time, even if the tests run in the background.
 
-    Who starts them in the background may have had Ctrl-C ignored. It is pressed again now and then:
-    one that comes while the collector runs is lost.
+    A shell may ignore Ctrl-C for background processes. The timer repeats, because an interrupt
+    during a garbage collection is lost.
     """
-    heard = signal.signal(signal.SIGINT, signal.default_int_handler)
-    before = signal.signal(signal.SIGVTALRM, lambda number, frame: signal.raise_signal(2))
+    previous_interrupt = signal.signal(signal.SIGINT, signal.default_int_handler)
+    previous_alarm = signal.signal(signal.SIGVTALRM, lambda number, frame: signal.raise_signal(2))
     signal.setitimer(signal.ITIMER_VIRTUAL, 0.3, 3.0)
     yield
     signal.setitimer(signal.ITIMER_VIRTUAL, 0)
-    signal.signal(signal.SIGVTALRM, before)
-    signal.signal(signal.SIGINT, heard)
+    signal.signal(signal.SIGVTALRM, previous_alarm)
+    signal.signal(signal.SIGINT, previous_interrupt)
 
 
-@pytest.mark.usefixtures("pressed_soon")
+@pytest.mark.usefixtures("press_ctrl_c_soon")
 def test_ctrl_c_ends_an_operation() -> None:
     handler = signal.getsignal(signal.SIGINT)
 
@@ -126,7 +125,7 @@ def test_ctrl_c_ends_an_operation() -> None:
     assert signal.getsignal(signal.SIGINT) is handler
 
 
-@pytest.mark.usefixtures("pressed_soon")
+@pytest.mark.usefixtures("press_ctrl_c_soon")
 def test_ctrl_c_is_neither_a_verdict_nor_a_failure(file: Path) -> None:
     assert CliRunner().invoke(sysmlc, ["synth", str(file), "--realizable"]).exit_code == 130
 
@@ -134,15 +133,15 @@ def test_ctrl_c_is_neither_a_verdict_nor_a_failure(file: Path) -> None:
 def test_diagrams_that_outlive_their_manager_still_work() -> None:
     manager = Manager("cudd", Limits(seconds=0.001))
     manager.declare(["a", "b"])
-    both = manager.var("a") & manager.var("b")
+    conjunction = manager.var("a") & manager.var("b")
     del manager
     gc.collect()
 
-    assert both & ~both == both & ~both
-    assert len(both) == 3
+    assert conjunction & ~conjunction == conjunction & ~conjunction
+    assert len(conjunction) == 3
 
 
-def test_an_unknown_library_is_left_alone() -> None:
+def test_no_callback_is_installed_in_an_unknown_library() -> None:
     class Other:
         vars: tuple[str, ...] = ()
 
@@ -154,21 +153,21 @@ def test_an_unknown_library_is_left_alone() -> None:
     assert not inside.install_termination_callback(library, Other(), Other())  # type: ignore[arg-type]
 
 
-def test_what_was_given_up_leaves_no_circle_behind(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A circle is left to the collector, which may take the manager away before its diagrams."""
-    made: list[weakref.ref[Manager]] = []
+def test_an_abandoned_decision_leaves_no_reference_cycle(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The collector of a reference cycle may free the manager before its diagrams."""
+    managers: list[weakref.ref[Manager]] = []
 
-    def noted(engine: str, limits: Limits, progress: Progress) -> Manager:
+    def create_manager(engine: str, limits: Limits, progress: Progress) -> Manager:
         manager = Manager(engine, limits, progress)
-        made.append(weakref.ref(manager))
+        managers.append(weakref.ref(manager))
         return manager
 
-    monkeypatch.setattr(deciding, "Manager", noted)
+    monkeypatch.setattr(deciding, "Manager", create_manager)
     gc.disable()
     try:
         options = Options("cudd", Limits(nodes=50_000))
         verdict = decide(runaway(), lambda origin: Subject(), Sink(), options)
         assert verdict.is_realizable is None
-        assert [one() for one in made] == [None]
+        assert [reference() for reference in managers] == [None]
     finally:
         gc.enable()

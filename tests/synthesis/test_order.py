@@ -1,19 +1,19 @@
-"""The order of bits follows the structure: what is alike is interleaved."""
+"""The order of bits follows the structure of the contract: equal ranges are interleaved."""
 
-from contracts_in_lines import contract
+from contracts_in_lines import parse_contract
 
 from sysmlc.synthesis import Manager, Symbols, make_game, solve
 from sysmlc.synthesis.bdd.variable_order import order_by_force
 
 
-def order(text: str) -> list[str]:
-    bits = Symbols(Manager(), contract(text).variables).manager.bits
+def list_bits(text: str) -> list[str]:
+    bits = Symbols(Manager(), parse_contract(text).variables).manager.bits
     return [bit for bit in bits if not bit.endswith("'")]
 
 
 def test_many_numbers_of_one_range_are_interleaved():
     alike = "\n".join(f"sys n{number}: 0..3" for number in range(5))
-    assert order(f"{alike}\nenv go: bool") == [
+    assert list_bits(f"{alike}\nenv go: bool") == [
         *(f"n{number}.0" for number in range(5)),
         *(f"n{number}.1" for number in range(5)),
         "go.0",
@@ -22,34 +22,34 @@ def test_many_numbers_of_one_range_are_interleaved():
 
 def test_few_numbers_and_other_variables_stay_as_declared():
     text = "env a: 0..3\nenv go: bool\nsys b: 0..3\nsys c: 0..4"
-    assert order(text) == ["a.0", "a.1", "b.0", "b.1", "go.0", "c.0", "c.1", "c.2"]
+    assert list_bits(text) == ["a.0", "a.1", "b.0", "b.1", "go.0", "c.0", "c.1", "c.2"]
 
 
-def test_in_a_crowd_what_is_spoken_of_together_is_close():
+def test_related_names_are_adjacent_among_many():
     names = [f"{kind}{number}" for kind in ("run", "done") for number in range(30)]
     pairs = [(f"run{number}", f"done{number}") for number in range(30)]
-    found = order_by_force(names, pairs)
-    assert all(abs(found.index(one) - found.index(other)) == 1 for one, other in pairs)
+    ordered = order_by_force(names, pairs)
+    assert all(abs(ordered.index(first) - ordered.index(second)) == 1 for first, second in pairs)
 
 
-def test_what_nothing_is_said_of_stays_where_it_is():
+def test_unrelated_names_stay_in_place():
     assert order_by_force(["a", "b", "c"], []) == ("a", "b", "c")
 
 
-def test_the_order_of_a_crowd_is_that_of_its_conjuncts():
+def test_the_order_of_many_variables_follows_the_conjuncts():
     text = "\n".join(f"env {kind}{number}: bool" for kind in "ab" for number in range(25))
     rules = "\n".join(f"assume always a{number} -> b{number}'" for number in range(25))
-    bits = make_game(contract(f"{text}\n{rules}"), Manager()).manager.bits
+    bits = make_game(parse_contract(f"{text}\n{rules}"), Manager()).manager.bits
     places = {bit: place for place, bit in enumerate(bits)}
     assert all(abs(places[f"a{n}.0"] - places[f"b{n}.0"]) == 2 for n in range(25))
 
 
 def test_wide_numbers_are_interleaved_whatever_their_ranges():
-    assert order("env y: 0..127\nsys on: bool\nsys x: 0..200")[-3:] == ["y.6", "x.7", "on.0"]
+    assert list_bits("env y: 0..127\nsys on: bool\nsys x: 0..200")[-3:] == ["y.6", "x.7", "on.0"]
 
 
 def test_wide_numbers_are_decided_as_fast_as_narrow_ones():
     manager = Manager()
     wide = "env y: 0..1000000000\nsys x: 0..1000000001\npromise always x'=y'+1"
-    assert solve(make_game(contract(wide), manager)).is_realizable
+    assert solve(make_game(parse_contract(wide), manager)).is_realizable
     assert manager.usage().peak < 5_000

@@ -1,9 +1,9 @@
-"""States that plays come to: what a verdict looks at when they are few, and that it stays."""
+"""Restriction of a game to its reachable states, which leaves the verdict unchanged."""
 
 import pytest
 import small_games
-from contracts_in_lines import contract
-from explicit import Explicit
+from contracts_in_lines import parse_contract
+from explicit import ExplicitGame
 
 from sysmlc.synthesis import Manager, make_game
 from sysmlc.synthesis.games import search_reductions as reach
@@ -13,8 +13,8 @@ from sysmlc.synthesis.games.solver import solve_arena
 GAMES = 200
 
 
-def tokens(count: int, more: str = "") -> str:
-    """A ring of places with one token, which goes on when the environment says so."""
+def describe_token_ring(count: int, more: str = "") -> str:
+    """Return a ring of places with one token, which moves when the environment signals it."""
     places = "\n".join(
         f"sys at{n}: bool\npromise at first {'' if n == 0 else '!'}at{n}" for n in range(count)
     )
@@ -27,56 +27,65 @@ def tokens(count: int, more: str = "") -> str:
     )
 
 
-def arena(text: str):
-    return build_plain_arena(make_game(contract(text), Manager()))
+def build_arena(text: str):
+    return build_plain_arena(make_game(parse_contract(text), Manager()))
 
 
 def test_the_token_is_in_one_place():
-    found = arena(tokens(60))
-    reached = reach.find_reachable_states(found)
-    assert found.manager.count(reached, (*found.symbols.all_bits(found.symbols.variables),)) == 120
+    arena = build_arena(describe_token_ring(60))
+    reachable = reach.find_reachable_states(arena)
+    assert (
+        arena.manager.count(reachable, (*arena.symbols.all_bits(arena.symbols.variables),)) == 120
+    )
 
 
 def test_a_ring_of_many_places_is_decided():
-    found = solve_arena(arena(tokens(60)), is_complete=False)
-    assert [found.is_realizable, found.is_complete] == [True, True]
-    lost = solve_arena(arena(tokens(60, "promise always !at30")), is_complete=False)
+    solution = solve_arena(build_arena(describe_token_ring(60)), is_complete=False)
+    assert [solution.is_realizable, solution.is_complete] == [True, True]
+    lost = solve_arena(
+        build_arena(describe_token_ring(60, "promise always !at30")), is_complete=False
+    )
     assert not lost.is_realizable
 
 
 def test_small_games_are_not_searched():
-    assert reach.find_reachable_states(arena(tokens(20))) is None
+    assert reach.find_reachable_states(build_arena(describe_token_ring(20))) is None
 
 
-def test_what_is_reached_in_too_many_steps_is_left(monkeypatch):
+def test_the_search_stops_after_too_many_steps(monkeypatch):
     monkeypatch.setattr(reach, "MAX_STEPS", 10)
-    assert reach.find_reachable_states(arena(tokens(60))) is None
+    assert reach.find_reachable_states(build_arena(describe_token_ring(60))) is None
 
 
-@pytest.mark.parametrize("kind", [small_games.contract, small_games.plant])
+@pytest.mark.parametrize("kind", [small_games.random_contract, small_games.random_plant])
 def test_the_verdict_within_reached_states_is_that_of_listed_states(kind, monkeypatch):
     monkeypatch.setattr(reach, "MIN_STATE_BITS", 0)
-    found = [small_games.encoded_disagreement(kind(seed)) for seed in range(GAMES)]
-    assert [text for text in found if text] == []
+    disagreements = [small_games.describe_encoded_disagreement(kind(seed)) for seed in range(GAMES)]
+    assert [text for text in disagreements if text] == []
 
 
 def test_no_turn_leads_out_of_the_reached_states(monkeypatch):
     monkeypatch.setattr(reach, "MIN_STATE_BITS", 0)
     for seed in range(60):
-        listed = Explicit(small_games.contract(seed))
-        game = make_game(small_games.contract(seed), Manager())
-        reached = reach.find_reachable_states(build_plain_arena(game))
-        inside = {s for s in listed.states if game.symbols.encode(listed.value[s]) <= reached}
-        after = {one for s in inside for found in listed.moves[s].values() for one in found}
-        assert after <= inside
+        explicit = ExplicitGame(small_games.random_contract(seed))
+        game = make_game(small_games.random_contract(seed), Manager())
+        reachable = reach.find_reachable_states(build_plain_arena(game))
+        inside = {s for s in explicit.states if game.symbols.encode(explicit.value[s]) <= reachable}
+        successors = {
+            successor
+            for s in inside
+            for answers in explicit.moves[s].values()
+            for successor in answers
+        }
+        assert successors <= inside
 
 
-def test_steps_within_states_are_right_in_them():
-    found = arena(tokens(50))
-    reached = reach.find_reachable_states(found)
-    goal = found.goals[0] & reached
-    inside, everywhere = PredecessorOperator(found, reached), PredecessorOperator(found)
+def test_restricted_predecessors_are_exact_in_reachable_states():
+    arena = build_arena(describe_token_ring(50))
+    reachable = reach.find_reachable_states(arena)
+    goal = arena.goals[0] & reachable
+    inside, everywhere = PredecessorOperator(arena, reachable), PredecessorOperator(arena)
     assert (
-        inside.controllable_predecessors(goal) & reached
-        == everywhere.controllable_predecessors(goal) & reached
+        inside.controllable_predecessors(goal) & reachable
+        == everywhere.controllable_predecessors(goal) & reachable
     )

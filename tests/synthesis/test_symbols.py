@@ -1,9 +1,9 @@
-"""Formulas as diagrams: the values that satisfy them are those that evaluation gives."""
+"""Formulas as decision diagrams: they agree with evaluation on all values."""
 
 from itertools import product
 
 import pytest
-from contracts_in_lines import contract
+from contracts_in_lines import parse_contract
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -16,24 +16,24 @@ from sysmlc.logic.formula import Apply, Const, Op, Var
 from sysmlc.logic.infix import parse_formula
 from sysmlc.synthesis import Manager, SymbolError, Symbols
 
-VARIABLES = contract("""
+VARIABLES = parse_contract("""
     env go: bool
     sys n: -2..4
     sys m: 3..6
     env lamp: red amber green
 """).variables
-DOMAINS = {one.name: one.domain for one in VARIABLES}
+DOMAINS = {variable.name: variable.domain for variable in VARIABLES}
 
 
-def symbols(engine: str = "") -> Symbols:
+def make_symbols(engine: str = "") -> Symbols:
     return Symbols(Manager(engine), VARIABLES)
 
 
-def agrees(found: Symbols, formula) -> None:
-    """The diagram says what evaluation says, for all values of the four variables."""
-    node = found.bdd(formula)
+def assert_agreement(symbols: Symbols, formula) -> None:
+    """Assert that the diagram and the evaluation of a formula agree on all values."""
+    node = symbols.bdd(formula)
     for values in domains.valuations(DOMAINS):
-        assert (found.encode(values) <= node) == is_true(formula, values), values
+        assert (symbols.encode(values) <= node) == is_true(formula, values), values
 
 
 ATOMS = st.sampled_from([Var("n"), Var("m"), *(Const(value) for value in range(-3, 6))])
@@ -53,7 +53,7 @@ COMPARISONS = st.sampled_from([Op.EQ, Op.NE, Op.LT, Op.LE, Op.GT, Op.GE])
 @settings(max_examples=examples(60))
 @given(COMPARISONS, NUMBERS, NUMBERS)
 def test_arithmetic_is_that_of_whole_numbers(op, left, right):
-    agrees(symbols(), f.compare(op, left, right))
+    assert_agreement(make_symbols(), f.compare(op, left, right))
 
 
 @pytest.mark.parametrize(
@@ -62,89 +62,91 @@ def test_arithmetic_is_that_of_whole_numbers(op, left, right):
 )
 @pytest.mark.parametrize("engine", ["cudd", "autoref"])
 def test_literals_booleans_and_numbers(engine, text):
-    agrees(symbols(engine), parse_formula(text, DOMAINS))
+    assert_agreement(make_symbols(engine), parse_formula(text, DOMAINS))
 
 
 def test_a_prime_is_the_next_value():
-    found = symbols()
-    assert found.bdd(parse_formula("n'=m'", DOMAINS)) == found.prime(
-        found.bdd(parse_formula("n=m", DOMAINS))
+    symbols = make_symbols()
+    assert symbols.bdd(parse_formula("n'=m'", DOMAINS)) == symbols.prime(
+        symbols.bdd(parse_formula("n=m", DOMAINS))
     )
-    assert found.unprime(found.bdd(parse_formula("go'", DOMAINS))) == found.bdd(Var("go"))
+    assert symbols.unprime(symbols.bdd(parse_formula("go'", DOMAINS))) == symbols.bdd(Var("go"))
 
 
 def test_values_are_coded_and_decoded():
-    found = symbols()
+    symbols = make_symbols()
     for values in domains.valuations(DOMAINS):
-        code = {bit: on for name in values for bit, on in found.code(name, values[name]).items()}
-        assert found.decode(code) == values
+        code = {bit: on for name in values for bit, on in symbols.code(name, values[name]).items()}
+        assert symbols.decode(code) == values
     with pytest.raises(SymbolError, match="no value with the code 7"):
-        found.decode({"n.0": True, "n.1": True, "n.2": True})
+        symbols.decode({"n.0": True, "n.1": True, "n.2": True})
     with pytest.raises(SymbolError, match="n cannot be 5"):
-        found.encode({"n": 5})
+        symbols.encode({"n": 5})
 
 
-def test_the_range_is_the_codes_that_stand_for_values():
-    found = symbols()
+def test_the_domain_consists_of_the_codes_of_values():
+    symbols = make_symbols()
     for name, domain in DOMAINS.items():
-        codes = found.manager.count(found.domain(name), found.bits(name))
+        codes = symbols.manager.count(symbols.domain(name), symbols.bits(name))
         assert codes == domains.size(domain), name
-    assert found.domain("m") == found.manager.true
+    assert symbols.domain("m") == symbols.manager.true
 
 
-def test_bits_stand_beside_their_next_values():
-    assert symbols().manager.bits[:6] == ("go.0", "go.0'", "n.0", "n.0'", "n.1", "n.1'")
+def test_bits_are_next_to_their_primed_copies():
+    assert make_symbols().manager.bits[:6] == ("go.0", "go.0'", "n.0", "n.0'", "n.1", "n.1'")
 
 
 @pytest.mark.parametrize(
     ("formula", "why"),
     [
         (Var("n"), "n is not Boolean"),
-        (Var("gone"), "gone is no variable"),
+        (Var("gone"), "gone is not a variable of the contract"),
         (f.eq(Var("go"), Const(1)), "1 is not Boolean"),
         (f.compare(Op.LT, Var("lamp"), Const("red")), "< compares numbers"),
-        (f.eq(Var("lamp"), Var("n")), "compared with what is none"),
+        (f.eq(Var("lamp"), Var("n")), "compared with a value that is not a literal"),
         (f.always(Var("go")), "G gives no Boolean of one step"),
     ],
 )
-def test_what_has_no_value_is_said(formula, why):
+def test_a_formula_without_value_raises(formula, why):
     with pytest.raises(SymbolError, match=why):
-        symbols().bdd(formula)
+        make_symbols().bdd(formula)
 
 
 def test_numbers_may_be_large():
     wide = Variable("w", Owner.SYSTEM, IntegerDomain(-5_000, 60_000))
-    found = Symbols(Manager(), [wide])
-    node = found.bdd(parse_formula("w * 3 = 29997", {"w": wide.domain}))
-    assert found.encode({"w": 9_999}) == node
+    symbols = Symbols(Manager(), [wide])
+    node = symbols.bdd(parse_formula("w * 3 = 29997", {"w": wide.domain}))
+    assert symbols.encode({"w": 9_999}) == node
 
 
-def test_a_variable_with_one_value_can_be_seen():
-    one = Variable("one", Owner.SYSTEM, IntegerDomain(7, 7))
-    found = Symbols(Manager(), [one])
-    assert [len(found.bits("one")), found.decode({"one.0": False})] == [1, {"one": 7}]
+def test_a_variable_with_one_value_has_a_bit():
+    constant = Variable("one", Owner.SYSTEM, IntegerDomain(7, 7))
+    symbols = Symbols(Manager(), [constant])
+    assert [len(symbols.bits("one")), symbols.decode({"one.0": False})] == [1, {"one": 7}]
 
 
 def test_names_of_a_diagram_are_its_variables():
-    found = symbols()
-    node = found.bdd(parse_formula("go -> n'=1", DOMAINS))
-    assert [found.names(node), found.names(node, primed=True)] == [("go",), ("n",)]
+    symbols = make_symbols()
+    node = symbols.bdd(parse_formula("go -> n'=1", DOMAINS))
+    assert [symbols.names(node), symbols.names(node, primed=True)] == [("go",), ("n",)]
 
 
 def test_every_pair_of_small_numbers_is_divided_towards_zero():
-    found = symbols()
+    symbols = make_symbols()
     for left, right in product(range(-4, 5), repeat=2):
         for op in (Op.DIV, Op.MOD):
             apply = Apply(op, (Const(left), Const(right)))
             expected = [n for n in range(-9, 10) if is_true(f.eq(apply, Const(n)), {})]
             truths = [
-                n for n in range(-9, 10) if found.bdd(f.eq(apply, Const(n))) == found.manager.true
+                n
+                for n in range(-9, 10)
+                if symbols.bdd(f.eq(apply, Const(n))) == symbols.manager.true
             ]
             assert truths == expected, (op, left, right)
 
 
 @pytest.mark.parametrize("engine", ["cudd", "autoref"])
-def test_values_are_picked_in_the_order_of_declaration_whatever_the_order_of_the_diagrams(engine):
+def test_picked_values_do_not_depend_on_the_order_of_the_diagrams(engine):
     manager = Manager(engine)
     manager.declare(["a", "b", "c", "d"])
     a, b, c = map(manager.var, "abc")
@@ -152,5 +154,5 @@ def test_values_are_picked_in_the_order_of_declaration_whatever_the_order_of_the
     for order in ("abcd", "dcba"):
         manager._bdd.reorder({bit: level for level, bit in enumerate(order)})
         assert manager.bits == tuple(order)
-        found = manager.pick((a & ~b) | (b & c) | (a & b & ~c), ["a", "b", "c", "d"])
-        assert found == {"a": False, "b": True, "c": True, "d": False}
+        values = manager.pick((a & ~b) | (b & c) | (a & b & ~c), ["a", "b", "c", "d"])
+        assert values == {"a": False, "b": True, "c": True, "d": False}

@@ -1,11 +1,11 @@
-"""Goals that are alike: found where variables can be exchanged, and the verdict stays."""
+"""Symmetric goals: found where variables can be exchanged, with an unchanged verdict."""
 
 import random
 
 import pytest
 import small_games
-from contracts_in_lines import contract
-from explicit import Explicit
+from contracts_in_lines import parse_contract
+from explicit import ExplicitGame
 
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import BooleanDomain, Class, Conjunct, Contract, Owner, Variable
@@ -31,14 +31,14 @@ TWINS = """
 NAMES = {"a": "b", "b": "a", "x": "y", "y": "x"}
 
 
-def kinds(text: str) -> list[int]:
-    """How many goals there are of each kind."""
-    arena = build_plain_arena(make_game(contract(text), Manager()))
+def count_goals_by_kind(text: str) -> list[int]:
+    """Count the goals in each class of symmetric goals."""
+    arena = build_plain_arena(make_game(parse_contract(text), Manager()))
     return [1 + len(exchanges) for exchanges in group_symmetric_goals(arena).values()]
 
 
-def test_twins_are_alike():
-    assert kinds(TWINS) == [2]
+def test_twins_have_symmetric_goals():
+    assert count_goals_by_kind(TWINS) == [2]
 
 
 @pytest.mark.parametrize(
@@ -50,60 +50,71 @@ def test_twins_are_alike():
         "promise recurs x=1",
     ],
 )
-def test_what_is_said_of_one_only_tells_them_apart(line):
-    assert set(kinds(f"{TWINS}\n{line}")) == {1}
+def test_a_conjunct_about_one_twin_breaks_the_symmetry(line):
+    assert set(count_goals_by_kind(f"{TWINS}\n{line}")) == {1}
 
 
-def test_a_range_tells_them_apart():
-    assert kinds(TWINS.replace("env b: 0..2", "env b: 0..3")) == [1, 1]
+def test_different_ranges_break_the_symmetry():
+    assert count_goals_by_kind(TWINS.replace("env b: 0..2", "env b: 0..3")) == [1, 1]
 
 
-def exchanged(formula: Formula) -> Formula:
+def exchange_names(formula: Formula) -> Formula:
     match formula:
         case Var(name, primed):
             return Var(NAMES[name], primed)
         case Apply(op, args):
-            return Apply(op, tuple(exchanged(arg) for arg in args))
+            return Apply(op, tuple(exchange_names(arg) for arg in args))
         case _:
             return formula
 
 
-def twins(seed: int) -> Contract:
-    """A random contract that says of b and y what it says of a and x."""
+def random_twins(seed: int) -> Contract:
+    """Return a random contract that is symmetric in (a, x) and (b, y)."""
     die = random.Random(seed)
-    one = [Variable("a", Owner.ENVIRONMENT, BooleanDomain())]
-    one.append(Variable("x", Owner.SYSTEM, BooleanDomain()))
-    other = [Variable(NAMES[v.name], v.owner, v.domain) for v in one]
-    every = [*one, *other]
+    variables = [Variable("a", Owner.ENVIRONMENT, BooleanDomain())]
+    variables.append(Variable("x", Owner.SYSTEM, BooleanDomain()))
+    twin_variables = [Variable(NAMES[v.name], v.owner, v.domain) for v in variables]
+    all_variables = [*variables, *twin_variables]
     goal = Conjunct(
-        small_games.truth(die, [Var("a"), Var("x")], dict.fromkeys("ax", BooleanDomain()), 1),
+        small_games.random_condition(
+            die, [Var("a"), Var("x")], dict.fromkeys("ax", BooleanDomain()), 1
+        ),
         Class.LIVENESS,
         "",
     )
-    assumed = [
-        *small_games.conjuncts(die, Class.SAFETY, 2, every, [one[0]]),
-        *small_games.conjuncts(die, Class.LIVENESS, 1, every, []),
+    assumptions = [
+        *small_games.iter_random_conjuncts(die, Class.SAFETY, 2, all_variables, [variables[0]]),
+        *small_games.iter_random_conjuncts(die, Class.LIVENESS, 1, all_variables, []),
     ]
-    promised = [goal, *small_games.conjuncts(die, Class.SAFETY, 2, every, every)]
-    return Contract(f"t{seed}", "", tuple(every), both(assumed), both(promised))
+    guarantees = [
+        goal,
+        *small_games.iter_random_conjuncts(die, Class.SAFETY, 2, all_variables, all_variables),
+    ]
+    return Contract(
+        f"t{seed}", "", tuple(all_variables), add_exchanged(assumptions), add_exchanged(guarantees)
+    )
 
 
-def both(conjuncts) -> tuple[Conjunct, ...]:
-    twins = [Conjunct(exchanged(one.formula), one.class_, "") for one in conjuncts]
-    return (*conjuncts, *twins)
+def add_exchanged(conjuncts) -> tuple[Conjunct, ...]:
+    counterparts = [
+        Conjunct(exchange_names(conjunct.formula), conjunct.class_, "") for conjunct in conjuncts
+    ]
+    return (*conjuncts, *counterparts)
 
 
 def test_the_verdict_on_random_twins_is_that_of_listed_states():
-    wrong, alike = [], 0
+    wrong, symmetric = [], 0
     for seed in range(150):
-        made = twins(seed)
-        arena = build_plain_arena(make_game(made, Manager()))
-        alike += any(group_symmetric_goals(arena).values())
+        contract = random_twins(seed)
+        arena = build_plain_arena(make_game(contract, Manager()))
+        symmetric += any(group_symmetric_goals(arena).values())
         verdict = solve_arena(arena, is_complete=False).is_realizable
-        if verdict != Explicit(made).is_realizable():
+        if verdict != ExplicitGame(contract).is_realizable():
             wrong.append(seed)
-    assert [wrong, alike > 100] == [[], True]
+    assert [wrong, symmetric > 100] == [[], True]
 
 
 def test_formulas_of_the_twins_are_exchanged():
-    assert exchanged(f.implies(Var("a"), Var("x", True))) == f.implies(Var("b"), Var("y", True))
+    assert exchange_names(f.implies(Var("a"), Var("x", True))) == f.implies(
+        Var("b"), Var("y", True)
+    )

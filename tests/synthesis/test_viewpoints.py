@@ -1,8 +1,8 @@
-"""Conjunction of viewpoints: each is owed its promises where its own assumptions hold."""
+"""Conjunction of viewpoints: the guarantees of each hold under its own assumptions."""
 
 import pytest
-from contracts_in_lines import contract
-from explicit import Explicit
+from contracts_in_lines import parse_contract
+from explicit import ExplicitGame
 from msgspec.structs import replace
 
 from sysmlc.logic.contract import Contract
@@ -15,63 +15,70 @@ POWERED = "assume always power'\nassume at first power\npromise always lit' -> p
 SHINES = "promise always door' -> lit'"
 
 
-def together(**sides):
-    """One contract of several viewpoints."""
-    made = {name: contract(VARIABLES + text) for name, text in sides.items()}
+def merge_viewpoints(**sides):
+    """Return one contract that consists of several viewpoints."""
+    contracts = {name: parse_contract(VARIABLES + text) for name, text in sides.items()}
 
-    def said(name, side):
-        return [replace(one, viewpoint=name) for one in getattr(made[name], side)]
+    def list_conjuncts(name, side):
+        return [replace(conjunct, viewpoint=name) for conjunct in getattr(contracts[name], side)]
 
     return Contract(
         "Lamp",
         "",
-        next(iter(made.values())).variables,
-        tuple(one for name in made for one in said(name, "assumptions")),
-        tuple(one for name in made for one in said(name, "guarantees")),
+        next(iter(contracts.values())).variables,
+        tuple(conjunct for name in contracts for conjunct in list_conjuncts(name, "assumptions")),
+        tuple(conjunct for name in contracts for conjunct in list_conjuncts(name, "guarantees")),
     )
 
 
-def alone(whole, name):
-    """The contract of one viewpoint."""
-    view = next(one for one in list_viewpoints(whole) if one.name == name)
+def select_viewpoint(whole, name):
+    """Return the contract of one viewpoint."""
+    view = next(viewpoint for viewpoint in list_viewpoints(whole) if viewpoint.name == name)
     return replace(whole, assumptions=view.assumptions, guarantees=view.guarantees)
 
 
 def test_a_conjunction_refines_every_viewpoint():
-    whole = together(powered=POWERED, shines=SHINES)
-    made = conjoin_viewpoints(whole)
+    whole = merge_viewpoints(powered=POWERED, shines=SHINES)
+    conjunction = conjoin_viewpoints(whole)
     for name in ("powered", "shines"):
-        assert list(find_refinement_failures(made, alone(whole, name), Manager())) == []
+        assert (
+            list(find_refinement_failures(conjunction, select_viewpoint(whole, name), Manager()))
+            == []
+        )
 
 
-def test_all_together_need_not_keep_one_alone():
-    whole = together(powered=POWERED, shines=SHINES)
-    failures = list(find_refinement_failures(whole, alone(whole, "shines"), Manager()))
-    assert {one.is_assumption for one in failures} == {True}
+def test_the_union_of_viewpoints_need_not_refine_each_viewpoint():
+    whole = merge_viewpoints(powered=POWERED, shines=SHINES)
+    failures = list(find_refinement_failures(whole, select_viewpoint(whole, "shines"), Manager()))
+    assert {failure.is_assumption for failure in failures} == {True}
 
 
-def test_what_only_holds_with_the_assumptions_of_another_cannot_be_kept_in_conjunction():
+def test_a_viewpoint_that_needs_the_assumptions_of_another_is_unrealizable_in_conjunction():
     strict = f"promise always lit' -> power'\n{SHINES}"
-    whole = together(powered=POWERED, shines=strict)
-    assert Explicit(whole).is_realizable()
-    assert not Explicit(conjoin_viewpoints(whole)).is_realizable()
-    assert Explicit(conjoin_viewpoints(together(powered=POWERED, shines=SHINES))).is_realizable()
+    whole = merge_viewpoints(powered=POWERED, shines=strict)
+    assert ExplicitGame(whole).is_realizable()
+    assert not ExplicitGame(conjoin_viewpoints(whole)).is_realizable()
+    assert ExplicitGame(
+        conjoin_viewpoints(merge_viewpoints(powered=POWERED, shines=SHINES))
+    ).is_realizable()
 
 
-def test_viewpoints_that_assume_the_same_are_one_contract():
-    whole = together(powered=POWERED, again=POWERED)
+def test_viewpoints_with_equal_assumptions_are_one_contract():
+    whole = merge_viewpoints(powered=POWERED, again=POWERED)
     assert conjoin_viewpoints(whole) is whole
 
 
 def test_what_recurs_for_one_viewpoint_recurs_in_the_conjunction():
-    whole = together(powered=f"{POWERED}\nassume recurs door\npromise recurs lit", shines=SHINES)
-    made = conjoin_viewpoints(whole)
-    assert [one.text for one in made.assumptions] == ["door"]
-    assert [one.name for one in made.variables][-1] == "broken"
+    whole = merge_viewpoints(
+        powered=f"{POWERED}\nassume recurs door\npromise recurs lit", shines=SHINES
+    )
+    conjunction = conjoin_viewpoints(whole)
+    assert [assumption.text for assumption in conjunction.assumptions] == ["door"]
+    assert [variable.name for variable in conjunction.variables][-1] == "broken"
 
 
-def test_different_recurrences_are_more_than_gr1():
-    whole = together(
+def test_different_recurrences_are_outside_gr1():
+    whole = merge_viewpoints(
         powered="assume recurs power\npromise recurs lit",
         shines="assume recurs door\npromise recurs !lit",
     )

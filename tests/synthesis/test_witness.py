@@ -1,15 +1,15 @@
-"""Runs for people: lines that say what changes, diagrams that PlantUML draws."""
+"""Runs as text that shows changes, and as sequence diagrams for PlantUML."""
 
 import pytest
-from contracts_in_lines import contract
+from contracts_in_lines import parse_contract
 
 from sysmlc.logic.contract import BooleanDomain, Class, Conjunct
 from sysmlc.logic.infix import parse_formula
 from sysmlc.synthesis.algebra.fair_systems import Trace
 from sysmlc.synthesis.witnesses import Party, Witness, describe_run, witness_diagram, witness_files
 
-FEEDER = contract("env power: bool\nsys ready: bool")
-PICKER = contract("env ready: bool\nsys arm: 0..3")
+FEEDER = parse_contract("env power: bool\nsys ready: bool")
+PICKER = parse_contract("env ready: bool\nsys arm: 0..3")
 RUN = Trace(
     (
         {"power": True, "ready": False, "arm": 0},
@@ -22,7 +22,7 @@ BROKEN = Conjunct(parse_formula("!ready", {"ready": BooleanDomain()}), Class.LIV
 WITNESS = Witness("Line::Cell", BROKEN, RUN, (Party("feeder", FEEDER), Party("picker", PICKER)))
 
 
-def test_a_run_shows_only_what_changes_and_where_it_goes_on():
+def test_a_run_shows_only_changes_and_where_the_loop_begins():
     assert list(describe_run(RUN)) == [
         "step 1: power=true, ready=false, arm=0",
         "step 2: ready=true, arm=1",
@@ -31,19 +31,19 @@ def test_a_run_shows_only_what_changes_and_where_it_goes_on():
     ]
 
 
-def test_what_never_changes_is_told_only_when_it_is_spoken_of():
+def test_constant_values_are_shown_only_if_the_conjunct_refers_to_them():
     assert next(describe_run(RUN, BROKEN)) == "step 1: ready=false, arm=0"
     about = Conjunct(parse_formula("power", {"power": BooleanDomain()}), Class.LIVENESS, "")
     assert next(describe_run(RUN, about)) == "step 1: power=true, ready=false, arm=0"
 
 
 def test_a_long_run_is_cut():
-    shown = list(describe_run(Trace(tuple({"n": number} for number in range(30)), 0)))
-    assert shown[-2:] == ["and 18 more", "then again from step 1"]
-    assert len(shown) == 14
+    lines = list(describe_run(Trace(tuple({"n": number} for number in range(30)), 0)))
+    assert lines[-2:] == ["and 18 more", "then again from step 1"]
+    assert len(lines) == 14
 
 
-def test_inputs_are_messages_and_what_nobody_reads_is_an_invariant():
+def test_inputs_are_messages_and_other_values_are_notes():
     assert witness_diagram(WITNESS).splitlines() == [
         "@startuml",
         "title Line::Cell\\nnot kept: G F (!ready)",
@@ -74,6 +74,6 @@ def test_the_runs_of_a_component_are_numbered():
 
 
 @pytest.mark.plantuml
-def test_plantuml_draws_them(plantuml):
-    drawn = plantuml.render({"run": witness_diagram(WITNESS)})["run"]
-    assert all(name in drawn for name in (b"environment", b"feeder", b"picker", b"arm=1"))
+def test_plantuml_draws_runs(plantuml):
+    picture = plantuml.render({"run": witness_diagram(WITNESS)})["run"]
+    assert all(name in picture for name in (b"environment", b"feeder", b"picker", b"arm=1"))
