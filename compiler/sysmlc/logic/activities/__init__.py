@@ -1,1 +1,1 @@
-"""Activities as token graphs: played, and derived to contracts."""
+"""Activities as token graphs: their analyses, their interpreter and their contracts."""

@@ -1,8 +1,8 @@
-"""Assumptions of an activity's contract: actions end, guards open, loops are left.
+"""Assumptions of an activity's contract: actions end, guards open, and loops are left.
 
 A loop whose exit depends on the environment gets the assumption
-``GF(!inside | at the decision & exit guard)``. The plain ``GF(exit guard)`` would not do: the guard
-could be true only while the token is elsewhere in the loop.
+``GF(!inside | at the decision & exit guard)``. The plain ``GF(exit guard)`` is too weak, because
+the guard could be true only while the token is elsewhere in the loop (docs/decisions/0011).
 """
 
 from collections.abc import Collection, Iterator
@@ -44,9 +44,7 @@ def find_loops(graph: TokenGraph) -> list[Loop]:
 
 
 def find_endless_entries(graph: TokenGraph) -> list[TokenNode]:
-    """Return the nodes at which loops without exits are entered; the token passes them
-    infinitely often.
-    """
+    """Return one entry node of each loop without exits; a run passes it infinitely often."""
     heads = (
         _find_endless_entry(graph, component)
         for component in _find_components(graph, [node.id for node in graph.nodes])
@@ -98,8 +96,9 @@ def _find_components(graph: TokenGraph, nodes: Collection[str]) -> list[tuple[st
 
 
 def _structured_edges(graph: TokenGraph) -> Iterator[tuple[str, str]]:
-    """Yield arcs from a structured node to the first nodes inside, because flows may leave it
-    from there.
+    """Yield an arc from each structured node to each node at which its content starts.
+
+    Flows may leave a structured node from its content, so that a loop may lead through both.
     """
     for edge in graph.edges:
         if edge.marked and edge.region != ACTIVITY_REGION:
@@ -113,9 +112,7 @@ def _is_exit(graph: TokenGraph, edge: TokenEdge, component: Collection[str]) -> 
 
 
 def _is_decided_outside(graph: TokenGraph, edge: TokenEdge) -> bool:
-    """Return whether the environment opens the branch, by its guard or the guards of its
-    siblings.
-    """
+    """Return whether inputs decide if the branch is open, for else by the other guards."""
     guard = edge.guard
     if guard is None or isinstance(guard.condition, Const):
         return False
@@ -133,11 +130,10 @@ def _is_decided_outside(graph: TokenGraph, edge: TokenEdge) -> bool:
 
 
 def derive_assumptions(formulas: StepFormulas) -> Iterator[Conjunct]:
-    """Yield that actions end, that some guard holds where a token waits for one, and that loops
-    are left.
-    """
+    """Yield the assumptions that actions end, that decisions open a branch, and that loops end."""
     for node in formulas.graph.workers():
         if node.kind is NodeKind.ACTION and node.duration is Duration.TIMED and node.done:
+            # The contract cannot assume anything of variables that the activity itself assigns.
             if formulas.graph.is_decided_inside(node.done):
                 continue
             ended = f.either(f.negate(f.var(node.run)), node.done)
@@ -150,7 +146,10 @@ def derive_assumptions(formulas: StepFormulas) -> Iterator[Conjunct]:
 
 
 def _decision_assumption(formulas: StepFormulas, node: TokenNode) -> Iterator[Conjunct]:
-    """Yield that some branch opens where a token waits at a decision that can have none open."""
+    """Yield the assumption that a waiting token finally finds an open branch.
+
+    A decision whose guards are exhaustive, or read no input, has no such assumption.
+    """
     branches = formulas.graph.outgoing(node)
     if node.firing is not Firing.CHOICE or not branches or node.exhaustive:
         return
@@ -163,7 +162,7 @@ def _decision_assumption(formulas: StepFormulas, node: TokenNode) -> Iterator[Co
 
 
 def _loop_assumption(formulas: StepFormulas, loop: Loop) -> Iterator[Conjunct]:
-    """Yield that the loop is left."""
+    """Yield the assumption that the environment finally opens an exit of the loop."""
     graph = formulas.graph
     exit = f.either(
         *(

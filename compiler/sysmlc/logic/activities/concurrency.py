@@ -22,10 +22,11 @@ from sysmlc.logic.activities.token_graph import (
 
 
 class Move(Struct, frozen=True, eq=False):
-    """A node takes tokens and gives tokens; places are ids of edges and of running nodes.
+    """A step of one node, which moves tokens from the places ``takes`` to the places ``gives``.
 
-    ``branch`` is the edge that a decision chooses; ``is_end`` is true if a running node is done.
-    ``clears`` are the places of a region that ends with the move.
+    Places are ids of edges and of running nodes. ``branch`` is the edge that a decision selects.
+    ``is_end`` is true if the move ends a running node. ``clears`` are the places of a region that
+    ends with the move.
     """
 
     node: TokenNode
@@ -37,8 +38,10 @@ class Move(Struct, frozen=True, eq=False):
 
 
 def consumed_place(node: TokenNode) -> str:
-    """Return the place that stands for tokens which the node takes and gives to no edge of its
-    region.
+    """Return the artificial place for tokens that leave the node's region at this node.
+
+    The place is marked after the node has taken a token without giving one to an edge of its
+    region. It records that the region may be at rest.
     """
     return f"{node.id} gone"
 
@@ -57,9 +60,9 @@ class ConcurrencyRelation:
         """List the edges that hold a token when a region starts."""
         return [edge.id for edge in self.graph.inside(region)[0] if edge.marked]
 
-    def are_concurrent(self, one: str, other: str) -> bool:
+    def are_concurrent(self, left: str, right: str) -> bool:
         """Return whether both places may hold a token at the same time."""
-        return bool(self._concurrent[one] & self._bits[other])
+        return bool(self._concurrent[left] & self._bits[right])
 
     @cached_property
     def is_sequential(self) -> bool:
@@ -67,7 +70,7 @@ class ConcurrencyRelation:
         return not any(self._concurrent.values())
 
     def list_concurrent_places(self, place: str) -> Iterator[str]:
-        """Yield the places that may hold a token while this one does."""
+        """Yield the places that may hold a token at the same time as *place*."""
         mask = self._concurrent[place]
         return (other for other, bit in self._bits.items() if bit & mask)
 
@@ -118,7 +121,7 @@ class ConcurrencyRelation:
         return places if stays_in_region else [*places, consumed_place(node)]
 
     def _listening_places(self, taken: list[TokenEdge]) -> list[str]:
-        """List the listening edges that get a token when these edges are taken."""
+        """List the listening edges that get a token when a node takes tokens from these edges."""
         return [edge.id for edge in self._listening if self._is_heard(edge, taken)]
 
     def _is_heard(self, edge: TokenEdge, taken: list[TokenEdge]) -> bool:
@@ -144,29 +147,34 @@ class ConcurrencyRelation:
 
     @cached_property
     def _concurrent(self) -> dict[str, int]:
-        """For each place the places that may be marked with it, as a bit mask."""
+        """The concurrency relation: a bit mask of concurrent places for each place."""
         return _PairSearch(
             self._bits, self.moves, self.list_start_edges(ACTIVITY_REGION)
         ).concurrent
 
 
 class _PairSearch:
-    """A worklist search for pairs: a move is tried again when its input places gain partners."""
+    """Fixpoint of the relation by a worklist of moves.
+
+    A move is applied again when one of the places that it takes from gets new concurrent places.
+    """
 
     def __init__(self, bits: dict[str, int], moves: list[Move], marked: list[str]) -> None:
         self._bits, self._names = bits, list(bits)
         self._reached = self._mask_of(marked)
         self.concurrent = {place: self._reached & ~bits[place] for place in marked}
         self.concurrent = {place: self.concurrent.get(place, 0) for place in bits}
-        self._takers = index_takers(moves)
-        self._waiting = dict.fromkeys(move for place in marked for move in self._takers(place))
-        while self._waiting:
-            move = next(iter(self._waiting))
-            del self._waiting[move]
+        self._moves_by_place = index_moves_by_place(moves)
+        self._worklist = dict.fromkeys(
+            move for place in marked for move in self._moves_by_place(place)
+        )
+        while self._worklist:
+            move = next(iter(self._worklist))
+            del self._worklist[move]
             self._apply_move(move)
 
     def _apply_move(self, move: Move) -> None:
-        """Record what the places that a move marks are marked with, if the move is possible."""
+        """Add the pairs that a move marks, if all places that it takes from are concurrent."""
         takes = self._mask_of(move.takes)
         remaining = self._reached & ~takes & ~self._mask_of(move.clears)
         for place in move.takes:
@@ -174,6 +182,7 @@ class _PairSearch:
             if takes & ~(concurrent & self._reached):
                 return
             remaining &= concurrent
+        # What was concurrent to all taken places stays marked beside the given places.
         gives = self._mask_of(move.gives)
         for place in move.gives:
             self._mark_place(place, (remaining | gives) & ~self._bits[place])
@@ -185,10 +194,10 @@ class _PairSearch:
             return
         self._reached |= bit
         self.concurrent[place] |= added
-        self._waiting.update(dict.fromkeys(self._takers(place)))
+        self._worklist.update(dict.fromkeys(self._moves_by_place(place)))
         for other in _places(added, self._names):
             self.concurrent[other] |= bit
-            self._waiting.update(dict.fromkeys(self._takers(other)))
+            self._worklist.update(dict.fromkeys(self._moves_by_place(other)))
 
     def _mask_of(self, places: Iterable[str]) -> int:
         mask = 0
@@ -197,13 +206,13 @@ class _PairSearch:
         return mask
 
 
-def index_takers(moves: Iterable[Move]) -> Callable[[str], list[Move]]:
+def index_moves_by_place(moves: Iterable[Move]) -> Callable[[str], list[Move]]:
     """Return a function that lists the moves which take a token from a place."""
-    takers_by_place: dict[str, list[Move]] = {}
+    moves_by_place: dict[str, list[Move]] = {}
     for move in moves:
         for place in move.takes:
-            takers_by_place.setdefault(place, []).append(move)
-    return lambda place: takers_by_place.get(place, [])
+            moves_by_place.setdefault(place, []).append(move)
+    return lambda place: moves_by_place.get(place, [])
 
 
 def _edge_ids(edges: list[TokenEdge]) -> tuple[str, ...]:
@@ -211,7 +220,8 @@ def _edge_ids(edges: list[TokenEdge]) -> tuple[str, ...]:
 
 
 def _places(mask: int, names: list[str]) -> Iterator[str]:
+    """Yield the places of a mask, the lowest bit first."""
     while mask:
-        low = mask & -mask
+        low = mask & -mask  # the lowest bit: far fewer steps than testing every place
         yield names[low.bit_length() - 1]
         mask ^= low

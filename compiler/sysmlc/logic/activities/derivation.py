@@ -35,16 +35,16 @@ from sysmlc.logic.contract import (
 from sysmlc.logic.formula import Const, Formula
 from sysmlc.logic.printing import print_formula, print_literal
 
-_REMEMBERED = 256
-"""Contracts that are kept: a process that compiles again finds those of what was not edited."""
+_CACHE_SIZE = 256
+"""Cache size: a process that compiles again reuses contracts of activities without edits."""
 
 
-@lru_cache(_REMEMBERED)
+@lru_cache(_CACHE_SIZE)
 def derive_contract(graph: TokenGraph) -> Contract:
     """Return the contract of an activity.
 
-    As long as the environment ends the actions that it performs, the tokens move as drawn and the
-    activity finishes again and again.
+    It guarantees that the tokens move as drawn and, if the environment keeps the assumptions, that
+    the activity finishes again and again.
     """
     formulas = StepFormulas(graph)
     return Contract(
@@ -78,8 +78,10 @@ def derive_contract(graph: TokenGraph) -> Contract:
 
 
 def list_variables(graph: TokenGraph) -> tuple[Variable, ...]:
-    """List the variables of an activity: inputs, written variables, running actions, tokens,
-    complete regions.
+    """List the variables of an activity.
+
+    These are inputs, written variables, and Booleans for running nodes, tokens and complete
+    regions.
     """
     run_variables = [(node.run, node.origin) for node in graph.workers()]
     token_variables = [(edge.variable, edge.origin) for edge in graph.edges]
@@ -118,10 +120,12 @@ def _describe_start(graph: TokenGraph, edge: TokenEdge, is_marked: bool) -> str:
 
 
 def _derive_edge_update(formulas: StepFormulas, edge: TokenEdge) -> Conjunct:
-    """Return the conjunct that says when the edge holds a token in the next step."""
+    """Return the conjunct that determines whether the edge holds a token in the next step."""
     moves = f.both(
         f.either(
-            formulas.given_formula(edge), formulas.kept_formula(edge), formulas.heard_formula(edge)
+            formulas.given_formula(edge),
+            formulas.kept_formula(edge),
+            formulas.listening_formula(edge),
         ),
         f.negate(formulas.cleared_formula(edge.region, {edge.source, edge.target})),
     )
@@ -170,8 +174,9 @@ def _describe_edge(formulas: StepFormulas, edge: TokenEdge) -> str:
 
 
 def _describe_listening(formulas: StepFormulas, edge: TokenEdge) -> str:
-    """Describe the edge of an accept action without incoming flows, which no flow of the diagram
-    shows.
+    """Describe the self-loop of an accept action without incoming flows.
+
+    The diagram has no flow for it, so that the text must not speak of one.
     """
     node = formulas.graph.node(edge.target)
     text = f"{_capitalize(node.label)} begins to listen again when it has accepted an event"
@@ -191,8 +196,9 @@ def _describe_guard(guard: Guard) -> str:
 
 
 def _derive_choice(formulas: StepFormulas, node: TokenNode) -> Iterator[Conjunct]:
-    """Yield that each branch follows its guard, and that one token goes to exactly one open
-    branch.
+    """Yield the conjuncts for a decision with several open branches.
+
+    Each branch gets a token only if its guard holds, and exactly one open branch gets it.
     """
     branches = formulas.graph.outgoing(node)
     for edge in branches:
@@ -220,12 +226,13 @@ def _derive_choice(formulas: StepFormulas, node: TokenNode) -> Iterator[Conjunct
 
 
 def _interruption_of_edge(formulas: StepFormulas, edge: TokenEdge) -> Formula:
-    """Return the condition that a token which the edge gets in this step is lost at once."""
+    """Return the condition that an interruption removes the token that the edge gets now."""
     return f.either(*formulas.interruption_formulas(edge.region, {edge.source, edge.target}))
 
 
 def _derive_branch_update(formulas: StepFormulas, edge: TokenEdge) -> Iterator[Conjunct]:
-    """Yield when a branch may, and when it must, hold a token in the next step."""
+    """Yield the conditions under which a branch may and must hold a token in the next step."""
+    # The choice between open branches is free, so that no equivalence determines a branch.
     next_token, cleared = (
         f.prime(token_at(edge)),
         formulas.cleared_formula(edge.region, {edge.source, edge.target}),
@@ -259,7 +266,7 @@ def _capitalize(text: str) -> str:
 
 
 def _derive_progress(formulas: StepFormulas) -> Iterator[Conjunct]:
-    """Yield that the activity finishes, or that each endless loop is passed, again and again."""
+    """Yield the liveness guarantees: the activity finishes, or passes its loops, repeatedly."""
     graph = formulas.graph
     if graph.finishes:
         text = f"{_capitalize(graph.label)} finishes again and again."
@@ -282,7 +289,7 @@ def derive_initial_value(store: Store) -> Iterator[Conjunct]:
 
 
 def derive_store_updates(formulas: StepFormulas, store: Store) -> Iterator[Conjunct]:
-    """Yield the conjuncts of each write, of a restart of the activity, and the frame condition."""
+    """Yield the conjuncts for the writes of a variable, its reset at a restart, and its frame."""
     restart = (
         formulas.begin_formula(ACTIVITY_REGION)
         if store.local and store.first is not None
@@ -344,7 +351,7 @@ def _describe_value(write: Write, value: Formula) -> str:
 
 
 def _write_formulas(formulas: StepFormulas, store: Store, write: Write) -> Iterator[Formula]:
-    """Yield, for each value, that the write happens in this step and gives the value."""
+    """Yield, for each value, the formula that the write happens now and assigns the value."""
     write_formula = formulas.finish_formula(formulas.graph.node(write.node))
     for condition, value in write.values:
         yield f.both(write_formula, condition, _equality(store, value, is_next=True))

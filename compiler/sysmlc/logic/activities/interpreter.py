@@ -1,8 +1,8 @@
-"""Reference interpreter of token graphs; it executes the diagram and reads no derived formulas.
+"""Reference interpreter of token graphs, independent of the derived formulas.
 
-A step first ends the regions that are complete; nodes in them do nothing more. All other nodes then
-move the tokens that they can move, interrupted nodes lose their tokens, and regions that start get
-their first ones.
+A step first ends the complete regions, whose nodes do nothing more. All other nodes then move the
+tokens that they can move. After that, interrupted nodes lose their tokens, and started regions get
+the tokens of their marked edges.
 
 Tests compare the contracts of ``derivation`` with the interpreter: every conjunct must hold in each
 of its runs, and must fail in a run that was changed.
@@ -31,10 +31,10 @@ _T = TypeVar("_T")
 
 
 class Choose(Protocol):
-    """Selects one of several branches of a node, or one of the writes of a variable in one step."""
+    """Decides where the token game leaves a choice: open branches, or writes in one step."""
 
     def __call__(self, node: TokenNode, options: Sequence[_T], /) -> _T:
-        """One of the options."""
+        """Return one of the options."""
 
 
 class NotSafeError(RuntimeError):
@@ -58,9 +58,7 @@ def choose_first(node: TokenNode, options: Sequence[_T]) -> _T:
 
 
 def initial_state(graph: TokenGraph) -> State:
-    """Return the state in which the activity starts; a variable without an initial value has its
-    least value.
-    """
+    """Return the first state. A variable without an initial value has its least value."""
     stored = (
         (
             store.variable.name,
@@ -83,7 +81,7 @@ def _restarted_state(graph: TokenGraph, state_before: State) -> State:
 
 
 def values_of(graph: TokenGraph, state: State) -> dict[str, Literal]:
-    """Return the value of every variable that the state decides."""
+    """Return the values of all variables of the system in a state."""
     runs: dict[str, Literal] = {node.run: node.id in state.running for node in graph.workers()}
     quiet = {name: is_complete(graph, state, region) for region, name in graph.quiets}
     tokens = {edge.variable: edge.id in state.tokens for edge in graph.edges}
@@ -91,7 +89,7 @@ def values_of(graph: TokenGraph, state: State) -> dict[str, Literal]:
 
 
 def state_of(graph: TokenGraph, valuation: Inputs) -> State:
-    """Return the state that decides these values, the inverse of ``values_of``."""
+    """Return the state with these values of variables, the inverse of ``values_of``."""
     return State(
         frozenset(edge.id for edge in graph.edges if valuation[edge.variable]),
         frozenset(node.id for node in graph.workers() if valuation[node.run]),
@@ -119,8 +117,9 @@ def is_finished(graph: TokenGraph, state: State) -> bool:
 
 
 def is_complete(graph: TokenGraph, state: State, region: str) -> bool:
-    """Return whether a token is at a final node of the region, or nothing in the region can
-    move.
+    """Return whether a region is complete.
+
+    Then a token is at one of its final nodes, or nothing in it can move.
     """
     if any(edge.id in state.tokens for edge in graph.ends(region)):
         return True
@@ -128,7 +127,10 @@ def is_complete(graph: TokenGraph, state: State, region: str) -> bool:
 
 
 def _is_active(graph: TokenGraph, state: State, node: TokenNode) -> bool:
-    """Return whether the node runs or has all tokens that it can get from inside its region."""
+    """Return whether the node prevents the completion of its region.
+
+    It does if it runs, or has all tokens that it can get from inside its region.
+    """
     if node.id in state.running:
         return True
     if node.firing is Firing.NEVER:
@@ -144,7 +146,7 @@ def _marked_edges(graph: TokenGraph, region: str) -> list[str]:
 
 
 class _Step:
-    """One step: all reads use ``old``; ``tokens`` and ``running`` become the new state."""
+    """One step of all nodes at once: it reads the state ``old`` and changes copies of its sets."""
 
     def __init__(
         self,
@@ -188,8 +190,9 @@ class _Step:
         return State(frozenset(self.tokens), frozenset(self.running), tuple(self._stored_values()))
 
     def _is_listening_triggered(self, edge: TokenEdge) -> bool:
-        """Return whether a token enters the region to which the edge listens while its target is
-        idle.
+        """Return whether a listening edge gets a token.
+
+        A token enters the region to which it listens, and its target neither waits nor runs.
         """
         target = self.graph.node(edge.target)
         is_waiting = edge.id in self.old.tokens or edge.target in self.old.running
@@ -245,7 +248,7 @@ class _Step:
     def _check_single(
         self, node: TokenNode, ready: list[TokenEdge], outgoing: list[TokenEdge]
     ) -> None:
-        # Of several flows that interrupt one region at once, UML lets one pass.
+        # Of several flows that interrupt one region in the same step, UML lets only one pass.
         sources = {edge.interrupts or edge.id for edge in ready}
         if len(sources) > 1 and any(not edge.keeps for edge in outgoing):
             raise NotSafeError(f"two tokens reach {node.label} at once")

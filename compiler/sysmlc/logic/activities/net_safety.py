@@ -1,9 +1,9 @@
-"""Check that a region is 1-safe whatever the order in which its nodes move.
+"""Check that a region is 1-safe for every order in which its nodes may move.
 
 A region without forks and joins has one token, and a walk along its flows suffices. For any other
 region the markings of its Petri net are searched, after reductions if there are many. Guards are
-ignored: every branch may be taken. A structured node is checked by itself and counts as one action
-outside.
+ignored: every branch may be taken. The content of a structured node is checked separately; in its
+own region the node counts as an action.
 
 A region that passes is 1-safe in the token game too, where all nodes move at once. The converse
 does not hold: a region that is safe only because of the synchronous steps fails here and is left to
@@ -16,7 +16,7 @@ from sysmlc.logic.activities.petri_net import Net, Safety, build_net, reduce_net
 from sysmlc.logic.activities.token_graph import Firing, TokenEdge, TokenGraph, TokenNode
 
 _MAX_MARKINGS_UNREDUCED = 2_000
-"""Most markings searched without reductions: some milliseconds."""
+"""Limit of markings without reductions: the search takes some milliseconds."""
 
 
 def check_safety(graph: TokenGraph, region: str, limit: int) -> Safety:
@@ -31,6 +31,7 @@ def check_safety(graph: TokenGraph, region: str, limit: int) -> Safety:
         return single_token
     net = build_net(graph, region)
     unreduced = search_markings(net, min(limit, _MAX_MARKINGS_UNREDUCED))
+    # The reductions do not preserve the effect of interruptions, which reset places.
     if unreduced.is_complete or any(move.resets for move in net.moves):
         return unreduced if unreduced.is_complete else search_markings(net, limit)
     reduce_net(net)
@@ -59,6 +60,7 @@ def search_markings(net: Net, limit: int) -> Safety:
     visited, worklist = {initial}, [initial]
     busy = _mask_of(net.busy, bits)
     fired, finishes, rests = set(net.alive), False, False
+    # Markings are bit masks, so that a transition is tested and fired by a few integer operations.
     for marking in worklist:
         ended = [transition for takes, transition in ends if marking & takes]
         fired.update(node for transition in ended for node in transition.nodes)
@@ -95,9 +97,9 @@ def _first_place(mask: int, bits: dict[str, int]) -> str:
 
 
 def check_single_token(graph: TokenGraph, region: str) -> Safety | None:
-    """Return the result for a region in which one token moves; None if there may be more tokens.
+    """Return the result for a region with a single token, or None if there may be more tokens.
 
-    No flow may cross the border of the region or interrupt one.
+    Precondition: no flow crosses the border of the region, and none interrupts a region.
     """
     starts = [edge for edge in graph.inside(region)[0] if edge.marked]
     members = graph.members(region)
@@ -130,7 +132,7 @@ def _preserves_token_count(graph: TokenGraph, node: TokenNode) -> bool:
 
 
 def _reachable_edges(graph: TokenGraph, start: TokenEdge) -> Iterator[TokenEdge]:
-    """Yield the edges that the token reaches; it stops where the region ends."""
+    """Yield the edges that the single token reaches until the region ends."""
     visited = {start.id}
     worklist = [start]
     for edge in worklist:
@@ -145,7 +147,7 @@ def _reachable_edges(graph: TokenGraph, start: TokenEdge) -> Iterator[TokenEdge]
 
 
 def _can_fire(graph: TokenGraph, node: TokenNode) -> bool:
-    """Return whether the node has tokens to move; a sink only takes them."""
+    """Return whether the node is to be reported if it never moves a token; sinks are not."""
     is_sink = node.firing is Firing.ANY and not graph.outgoing(node)
     return bool(graph.incoming(node)) and node.firing is not _NEVER and not is_sink
 

@@ -15,7 +15,11 @@ from sysmlc.logic.activities.token_graph import Firing, TokenEdge, TokenGraph, T
 
 @dataclass(slots=True)
 class NetTransition:
-    """A transition of the net; ``nodes`` are the nodes of the graph that fire with it."""
+    """A transition of the net.
+
+    ``nodes`` are the ids of the graph's nodes that fire with it. ``resets`` are places that lose
+    their tokens when it fires. ``is_end`` is true if it ends the region.
+    """
 
     takes: set[str]
     gives: set[str]
@@ -26,10 +30,11 @@ class NetTransition:
 
 @dataclass(slots=True)
 class Net:
-    """Places (ids of edges and running nodes), transitions, and the initially marked places.
+    """The Petri net of a region: places (ids of edges and running nodes) and transitions.
 
-    ``nodes`` are all nodes that a transition stands for, ``alive`` those known to fire. A token on
-    a ``busy`` place can move forever.
+    ``marked`` are the initially marked places. ``nodes`` are the nodes of the graph that fire with
+    some transition, ``alive`` those that reductions have shown to fire. A token on a ``busy`` place
+    can move forever, by a self-loop that a reduction removed.
     """
 
     places: dict[str, None]
@@ -88,9 +93,10 @@ def build_net(graph: TokenGraph, region: str) -> Net:
 
 
 def _merge_conflicts(graph: TokenGraph, region: str, drains: set[str]) -> Iterator[NetTransition]:
-    """Yield transitions that expose two tokens reaching a merge before a sink at once.
+    """Yield transitions that detect two tokens at a merge whose outgoing edge leads to a sink.
 
-    Such a transition marks a place that is marked already, so that the search finds a second token.
+    ``build_net`` omits the places before sinks. Such a transition marks a place that is marked
+    already, so that the search finds the second token.
     """
     for node in graph.nodes:
         leaving = {edge.id for edge in graph.outgoing(node)}
@@ -155,9 +161,7 @@ def reduce_net(net: Net) -> None:
 
 
 def _insert_end_places(net: Net) -> None:
-    """Let a token reach a final node one transition later, so that the places before it can be
-    fused.
-    """
+    """Add a place and a transition before each final node, so that earlier places can be fused."""
     for move in [move for move in net.moves if move.is_end]:
         (place,) = move.takes
         end = f"{place}$end"
@@ -183,7 +187,7 @@ def _index_consumers(net: Net) -> dict[str, list[NetTransition]]:
 
 
 def _mark_fired(net: Net, place: str, nodes: set[str], producers: Iterable[NetTransition]) -> None:
-    """Record that *nodes* fire whenever the place is marked."""
+    """Record that *nodes* fire after a transition marks the place, or always if it is marked."""
     if place in net.marked:
         net.alive |= nodes
     for producer in producers:
@@ -191,7 +195,7 @@ def _mark_fired(net: Net, place: str, nodes: set[str], producers: Iterable[NetTr
 
 
 def _drop_self_loops(net: Net) -> bool:
-    """Drop transitions that give back exactly the one token that they take."""
+    """Remove transitions that return exactly the one token that they take."""
     loops = [
         loop
         for loop in net.moves
@@ -207,6 +211,7 @@ def _drop_self_loops(net: Net) -> bool:
 
 
 def _merge_parallel_transitions(net: Net) -> bool:
+    """Merge transitions that take from the same places and give to the same places."""
     merged: dict[tuple[frozenset[str], frozenset[str], bool], NetTransition] = {}
     for move in net.moves:
         key = (frozenset(move.takes), frozenset(move.gives), move.is_end)
@@ -217,6 +222,7 @@ def _merge_parallel_transitions(net: Net) -> bool:
 
 
 def _merge_parallel_places(net: Net) -> bool:
+    """Merge places with the same producers, consumers and initial marking."""
     producers, consumers = _index_producers(net), _index_consumers(net)
     representatives: dict[tuple[object, ...], str] = {}
     duplicates = []
@@ -246,6 +252,7 @@ def _remove_place(net: Net, place: str) -> None:
 def _fuse_series_places(net: Net) -> bool:
     """Fuse the places of p -> transition -> q if p has no other consumer."""
     producers, consumers = _index_producers(net), _index_consumers(net)
+    # The indexes are not updated, so that a place takes part in one fusion for each call.
     touched: set[str] = set()
     fused: list[NetTransition] = []
     for move in net.moves:
@@ -274,8 +281,9 @@ def _fuse_series_places(net: Net) -> bool:
 
 
 def _fuse_series_transitions(net: Net) -> bool:
-    """Fuse transition -> p -> transition if p has one producer and one consumer, which takes
-    nothing else.
+    """Fuse transition -> p -> transition if p has one producer and one consumer.
+
+    The consumer must take from p only.
     """
     producers, consumers = _index_producers(net), _index_consumers(net)
     touched: list[NetTransition] = []

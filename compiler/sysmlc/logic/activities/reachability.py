@@ -1,8 +1,8 @@
-"""1-safety of a token graph in its own game: a search of all reachable states.
+"""1-safety of a token graph under synchronous steps: a search of all reachable states.
 
-All nodes that can move do so in one step, as in ``interpreter``; every decision of the environment
-(when actions end, which branches are open) is tried. States are bit sets with one bit for each edge
-and each running node.
+All nodes that can move do so in one step, as in ``interpreter``. The search tries all decisions of
+the environment: when actions end, and which branches are open. States are bit sets with one bit for
+each edge and each running node.
 """
 
 from collections.abc import Iterator
@@ -22,7 +22,7 @@ from sysmlc.logic.activities.token_graph import (
 )
 
 _STEPS_PER_STATE = 16
-"""Steps that are tried for each allowed state before the search gives up."""
+"""Limit of steps for each allowed state; above it the search gives up."""
 
 
 class UnsafeError(Exception):
@@ -70,9 +70,11 @@ def explore_states(graph: TokenGraph, limit: int) -> ReachabilityResult:
 
 
 class _BitNode(Struct, frozen=True):
-    """A node as bit masks; ``triggers`` are the edges that prevent completion of its region.
+    """A node with bit masks for its edges.
 
-    ``incoming_groups`` are the incoming edges, grouped by the region that they interrupt.
+    ``run`` is the bit that it runs. ``triggers`` are the edges that prevent the completion of its
+    region while all of them hold a token. ``around`` are the regions around it. ``incoming_groups``
+    are its incoming edges, grouped by the region that they interrupt.
     """
 
     node: TokenNode
@@ -88,7 +90,7 @@ class _BitNode(Struct, frozen=True):
 
 
 class _Change(Struct, frozen=True):
-    """What a node does in a step: bits that are cleared and bits that are set."""
+    """The effect of a node in one step: edges that lose or get a token, and nodes that start."""
 
     takes: int = 0
     gives: int = 0
@@ -96,18 +98,18 @@ class _Change(Struct, frozen=True):
 
 
 class _BitGraph:
-    """The graph as bit masks."""
+    """A token graph with bit masks for its nodes, regions and interruptions."""
 
     def __init__(self, graph: TokenGraph) -> None:
         self.graph = graph
         names = [*(edge.id for edge in graph.edges), *(f"{n.id} runs" for n in graph.workers())]
         self.bits = {name: 1 << number for number, name in enumerate(names)}
         self.keeps = self._edge_mask(edge for edge in graph.edges if edge.keeps)
-        self.parts = [
+        self.bit_nodes = [
             self._encode_node(node) for node in graph.nodes if node.firing is not Firing.NEVER
         ]
         self.members = {
-            region: [part for part in self.parts if part.node.region == region]
+            region: [bit_node for bit_node in self.bit_nodes if bit_node.node.region == region]
             for region in graph.regions()
         }
         self.ends = {region: self._edge_mask(graph.ends(region)) for region in graph.regions()}
@@ -116,11 +118,11 @@ class _BitGraph:
             for region in graph.regions()
         }
         self.content = {region: self._content_mask(region) for region in graph.regions()}
-        self.structured = [p for p in self.parts if p.node.kind is NodeKind.STRUCTURED]
+        self.structured = [p for p in self.bit_nodes if p.node.kind is NodeKind.STRUCTURED]
         lost = {
             region.id: self._lost_mask(frozenset(region.nodes)) for region in graph.interruptibles
         }
-        self.hearing = [
+        self.listening_edges = [
             (
                 self.bits[edge.id],
                 self._run_bit(graph.node(edge.target)),
@@ -129,13 +131,15 @@ class _BitGraph:
             for edge in graph.edges
             if edge.listens
         ]
-        self.losses = [
+        self.interruptions = [
             (self.bits[edge.id], lost[edge.interrupts]) for edge in graph.edges if edge.interrupts
         ]
 
     def _encode_listening(self, edge: TokenEdge) -> tuple[int, int, frozenset[str]]:
-        """Return the edges that trigger a listening edge, and the regions that must run around
-        it.
+        """Return what a listening edge depends on.
+
+        These are the mask of edges that trigger it, and the mask and ids of the regions around it,
+        which must run.
         """
         regions = list(self.graph.regions_around(edge.region))
         runs = sum(map(self._run_bit, regions))
@@ -174,7 +178,7 @@ class _BitGraph:
         return tuple(groups.values())
 
     def _content_mask(self, region: str) -> int:
-        """Return the edges and running nodes in a region and in the regions inside it."""
+        """Return the mask of the edges and running nodes in a region and in regions inside it."""
         edges, workers = self.graph.inside(region)
         structured = [node for node in workers if node.kind is NodeKind.STRUCTURED]
         mask = self._edge_mask(edges) | sum(map(self._run_bit, workers))
@@ -208,10 +212,11 @@ class _BitGraph:
         runs = {node.node.id for node in self.structured if state & node.run} - ended
         options = [
             changes
-            for node in self.parts
+            for node in self.bit_nodes
             if all(region in runs for region in node.around)
             and (changes := list(self._list_changes(node, state, ended, reached)))
         ]
+        # All nodes move in the same step, so that the successors are all combinations.
         for combination in product(*options):
             yield self._apply_changes(state, combination, ended)
 
@@ -231,7 +236,7 @@ class _BitGraph:
     def _list_changes(
         self, node: _BitNode, state: int, ended: set[str], reached: ReachabilityResult
     ) -> Iterator[_Change]:
-        """Yield the ways in which a node may move; none if it has no tokens."""
+        """Yield the alternative effects of a node in a step; none if it cannot move."""
         ready = state & node.takes
         has_all = bool(node.takes) and ready == node.takes
         if node.firing is Firing.WORK:
@@ -285,14 +290,14 @@ class _BitGraph:
         remaining = state & ~(takes & ~self.keeps)
         if remaining & gives & ~self.keeps:
             raise UnsafeError(self._name_of(remaining & gives & ~self.keeps))
-        for listening, run, entering, region_runs, regions in self.hearing:
+        for listening, run, entering, region_runs, regions in self.listening_edges:
             is_alive = state & region_runs == region_runs and not regions & ended
             if takes & entering and not state & (listening | run) and is_alive:
                 gives |= listening
         after = remaining | gives | starts
         for region in sorted(ended):
             after &= ~self.content[region]
-        for entered, lost_bits in self.losses:
+        for entered, lost_bits in self.interruptions:
             if gives & entered:
                 after &= ~lost_bits
         for node in self.structured:

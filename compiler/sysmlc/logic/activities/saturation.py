@@ -1,9 +1,9 @@
 """Writes of an activity that saturate: their value can leave the range of the variable.
 
-An analysis of the values along the flows decides most writes. For the others, all reachable states
-are searched, with every decision of the environment, unless there are too many. The search tracks
-only the relevant variables: those that guards and ends of actions read, the written ones, and those
-from which their values are computed. A variable without an initial value starts with each value of
+A data-flow analysis (``value_analysis``) decides most writes. For the others, all reachable states
+are searched with every decision of the environment, up to a limit. The search tracks only the
+relevant variables: those of the writes, those that guards and ends of actions read, and those from
+which their values are computed. A variable without an initial value may start with each value of
 its domain.
 """
 
@@ -28,20 +28,20 @@ from sysmlc.logic.simplify import is_satisfiable, substitute
 
 _T = TypeVar("_T")
 _MAX_MOVES = 100_000
-"""Most nodes and flows visited in all steps: a tenth of a second."""
+"""Limit of nodes and flows visited in all steps: a tenth of a second."""
 _MAX_INPUTS = 64
-"""Most valuations of the inputs that written values depend on."""
+"""Limit of valuations of the inputs that written values read."""
 
 
 class SearchResult(Struct, frozen=True):
-    """Writes that saturate in some run; the others never do if the search is complete."""
+    """Writes that saturate in some run. If the search is complete, the others never saturate."""
 
     writes: list[Write]
     is_complete: bool
 
 
 def search_saturating_writes(graph: TokenGraph, writes: Iterable[Write]) -> SearchResult:
-    """Search until each of the writes has saturated, or all states or too many were visited."""
+    """Search until each write has saturated, all states are visited, or the limit is reached."""
     open_writes = list(writes)
     return _Search(reduce_to_relevant(graph, open_writes), open_writes).run()
 
@@ -57,7 +57,7 @@ def reduce_to_relevant(graph: TokenGraph, relevant_writes: Sequence[Write]) -> T
         if any(write in relevant_writes for write in store.writes)
     }
     while True:
-        stores = tuple(formula for formula in graph.stores if formula.variable.name in names)
+        stores = tuple(store for store in graph.stores if store.variable.name in names)
         added = _variable_names(
             part
             for store in stores
@@ -75,20 +75,22 @@ def _variable_names(formulas: Iterable[Formula]) -> set[str]:
 
 
 class _Search:
-    def __init__(self, graph: TokenGraph, wanted: list[Write]) -> None:
-        self._graph, self._game = graph, StepFormulas(graph)
-        self._open = list(wanted)
+    def __init__(self, graph: TokenGraph, writes_to_decide: list[Write]) -> None:
+        self._graph, self._formulas = graph, StepFormulas(graph)
+        self._open_writes = list(writes_to_decide)
         self._domains = {variable.name: variable.domain for variable in graph.inputs}
         self._steps = _MAX_MOVES // (len(graph.nodes) + len(graph.edges))
         values = (part for s in graph.stores for w in s.writes for p in w.values for part in p)
         read = _variable_names(values) & self._domains.keys()
-        self._given_places = {name: self._domains[name] for name in sorted(read)}
+        self._input_domains = {name: self._domains[name] for name in sorted(read)}
 
     def run(self) -> SearchResult:
         """Return the writes that saturate."""
-        all_writes = list(self._open)
+        all_writes = list(self._open_writes)
         is_complete = self._search_states()
-        return SearchResult([write for write in all_writes if write not in self._open], is_complete)
+        return SearchResult(
+            [write for write in all_writes if write not in self._open_writes], is_complete
+        )
 
     def _search_states(self) -> bool:
         unset = {
@@ -97,13 +99,15 @@ class _Search:
             if store.first is None
         }
         starts = domains.count(unset)
-        if starts > self._steps or domains.count(self._given_places) > _MAX_INPUTS:
+        if starts > self._steps or domains.count(self._input_domains) > _MAX_INPUTS:
             return False
         worklist = list(_initial_states(self._graph, unset))
         visited = set(worklist)
         for state in worklist:
-            self._open = [write for write in self._open if not self._can_saturate(write, state)]
-            if not self._open:
+            self._open_writes = [
+                write for write in self._open_writes if not self._can_saturate(write, state)
+            ]
+            if not self._open_writes:
                 return True
             for successor in self._successors(state):
                 self._steps -= 1
@@ -115,18 +119,18 @@ class _Search:
         return True
 
     def _can_saturate(self, write: Write, state: token_game.State) -> bool:
-        """Return whether the node may be done in this step with a value that saturates."""
+        """Return whether the node may end in this state and assign a saturated value."""
         if write.node not in state.running or token_game.is_finished(self._graph, state):
             return False
         node, values = self._graph.node(write.node), token_game.values_of(self._graph, state)
         constants = {name: Const(value) for name, value in values.items()}
         condition = substitute(
-            f.both(self._game.finish_formula(node), f.either(*write.stops)), constants
+            f.both(self._formulas.finish_formula(node), f.either(*write.stops)), constants
         )
         return is_satisfiable(condition, self._domains)
 
     def _successors(self, state: token_game.State) -> Iterator[token_game.State]:
-        for inputs in domains.valuations(self._given_places):
+        for inputs in domains.valuations(self._input_domains):
             plans: list[list[int]] = [[]]
             while plans:
                 oracle = _PlannedChoices(inputs, self._domains, plans.pop())
@@ -142,21 +146,21 @@ def _initial_states(graph: TokenGraph, unset: Mapping[str, Domain]) -> Iterator[
 
 
 class _PlannedChoices:
-    """Decisions of the environment: first as planned, then the first alternative each; it
-    records the alternatives.
+    """Decisions of the environment in one step, for an exhaustive search by backtracking.
+
+    The first decisions follow the plan, all later ones take the first alternative. The number of
+    alternatives of each decision is recorded, so that the search can plan the others.
     """
 
     def __init__(
-        self, inputs: Mapping[str, Literal], known: Mapping[str, Domain], plan: list[int]
+        self, inputs: Mapping[str, Literal], variable_domains: Mapping[str, Domain], plan: list[int]
     ) -> None:
-        self._inputs, self._known, self._plan = inputs, known, plan
+        self._inputs, self._domains, self._plan = inputs, variable_domains, plan
         self._counts: list[int] = []
         self._answers: dict[Formula, bool] = {}
 
     def holds(self, formula: Formula, values: Mapping[str, Literal]) -> bool:
-        """Return whether a condition holds; the plan decides conditions that depend on the
-        environment.
-        """
+        """Return whether a condition holds; the plan decides conditions over unknown inputs."""
         if all(variable.name in values for variable in f.variables(formula)):
             return evaluate.is_true(formula, values)
         if formula not in self._answers:
@@ -165,9 +169,10 @@ class _PlannedChoices:
         return self._answers[formula]
 
     def _choose_answer(self, formula: Formula) -> bool:
+        # A condition that is constant under the known values is no decision of the environment.
         ways = (
-            (True, is_satisfiable(formula, self._known)),
-            (False, is_satisfiable(f.negate(formula), self._known)),
+            (True, is_satisfiable(formula, self._domains)),
+            (False, is_satisfiable(f.negate(formula), self._domains)),
         )
         possible = [answer for answer, can_be in ways if can_be]
         return possible[self._next_choice(len(possible))]
@@ -178,19 +183,19 @@ class _PlannedChoices:
         return options[self._next_choice(len(options))]
 
     def _next_choice(self, count: int) -> int:
-        place = len(self._counts)
+        index = len(self._counts)
         self._counts.append(count)
-        return self._plan[place] if place < len(self._plan) else 0
+        return self._plan[index] if index < len(self._plan) else 0
 
     def list_alternatives(self) -> Iterator[list[int]]:
-        """Yield the plans that differ from this one at one decision after the planned ones."""
+        """Yield the plans for the other alternatives of the decisions after the planned ones."""
         taken = [*self._plan, *[0] * (len(self._counts) - len(self._plan))]
-        for place in range(len(self._plan), len(self._counts)):
-            for other in range(1, self._counts[place]):
-                yield [*taken[:place], other]
+        for index in range(len(self._plan), len(self._counts)):
+            for other in range(1, self._counts[index]):
+                yield [*taken[:index], other]
 
 
-_CACHED_RESULTS = 256
+_CACHE_SIZE = 256
 """Cache size: a process that compiles again reuses results of activities that did not change."""
 
 
@@ -202,9 +207,9 @@ class Possibility(StrEnum):
     PERHAPS = "may (it has too many states to tell)"
 
 
-@lru_cache(_CACHED_RESULTS)
+@lru_cache(_CACHE_SIZE)
 def find_saturating_writes(tokens: TokenGraph) -> tuple[tuple[Store, Write, Possibility], ...]:
-    """Return each write that can be clamped according to its range, and whether that happens."""
+    """Return each write that may leave its range, and whether that happens in some run."""
     candidates = [
         (store, write) for store in tokens.stores for write in store.writes if write.stops
     ]
@@ -231,7 +236,7 @@ def find_saturating_writes(tokens: TokenGraph) -> tuple[tuple[Store, Write, Poss
 def _analyse_values(
     tokens: TokenGraph, concurrency: ConcurrencyRelation, store: Store, write: Write
 ) -> Possibility:
-    """Return what the analysis of values along the flows proves."""
+    """Return the result of the data-flow analysis for a write."""
     if domains.size(store.variable.domain) > MAX_VALUES:
         return Possibility.PERHAPS
     analysis = ValueAnalysis(reduce_to_relevant(tokens, [write]), concurrency, store)

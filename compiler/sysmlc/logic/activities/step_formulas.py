@@ -33,7 +33,10 @@ def is_else(edge: TokenEdge) -> bool:
 
 
 class StepFormulas:
-    """Formulas of one token graph; the formulas of regions are built once."""
+    """Formulas of one token graph. The docstring of each method states what its formula means.
+
+    The formulas of regions are cached, because many other formulas contain them.
+    """
 
     def __init__(self, graph: TokenGraph) -> None:
         self.graph = graph
@@ -55,7 +58,7 @@ class StepFormulas:
         return f.both(*map(token_at, incoming)) if incoming else f.FALSE
 
     def start_formula(self, node: TokenNode) -> Formula:
-        """The node takes its tokens, unless its region ends."""
+        """The node can take its tokens; the formula does not exclude that its region ends now."""
         return f.both(
             self.waiting_formula(node), self.idle_formula(node), self.region_runs_formula(node)
         )
@@ -88,7 +91,7 @@ class StepFormulas:
         return [n for n in self.graph.nodes if _can_choose(self.graph.outgoing(n), n)]
 
     def is_chosen(self, edge: TokenEdge) -> bool:
-        """Return whether the edge is a branch of such a decision."""
+        """Return whether the edge leaves a decision with several branches open at the same time."""
         source = self.graph.node(edge.source)
         return _can_choose(self.graph.outgoing(source), source)
 
@@ -124,7 +127,7 @@ class StepFormulas:
             yield f.var(node.run)
 
     def _region_end_formula(self, inner: str, outer: str) -> Formula:
-        """A region ends from *inner* up to, not including, *outer*."""
+        """A region from *inner* outwards ends, not counting *outer* and the regions around it."""
         if inner == outer:
             return f.FALSE
         return f.either(*map(self._node_end_formula, self.graph.nodes_between(inner, outer)))
@@ -147,7 +150,7 @@ class StepFormulas:
         return f.both(*(f.negate(self.guard_formula(s)) for s in siblings if not is_else(s)))
 
     def given_formula(self, edge: TokenEdge) -> Formula:
-        """The source gives the edge a token, or may give it if the decision has a choice."""
+        """The source gives the edge a token, or may do so if it can choose between branches."""
         source = self.graph.node(edge.source)
         alive = f.negate(self._region_end_formula(source.region, edge.region))
         return f.both(self._source_formula(source, edge), self.region_runs_formula(source), alive)
@@ -185,7 +188,7 @@ class StepFormulas:
                 return f.both(self._other_tokens(edge), self.idle_formula(target))
 
     def decision_formula(self, node: TokenNode) -> Formula:
-        """Some branch of the decision is open; true if one always is."""
+        """Some branch of the decision is open; the constant true for exhaustive guards."""
         branches = self.graph.outgoing(node)
         if node.exhaustive or not branches:
             return f.TRUE
@@ -196,10 +199,8 @@ class StepFormulas:
         incoming = self.graph.incoming(self.graph.node(edge.target))
         return f.both(*(token_at(sibling) for sibling in incoming if sibling is not edge))
 
-    def heard_formula(self, edge: TokenEdge) -> Formula:
-        """A token enters the region to which the edge listens, and the target neither waits nor
-        runs.
-        """
+    def listening_formula(self, edge: TokenEdge) -> Formula:
+        """A token enters the region of a listening edge, whose target neither waits nor runs."""
         if not edge.listens:
             return f.FALSE
         target = self.graph.node(edge.target)
@@ -218,9 +219,7 @@ class StepFormulas:
         return f.both(token_at(edge), f.negate(self.taken_formula(edge)))
 
     def arrival_formula(self, edge: TokenEdge) -> Formula:
-        """The edge gets a token; for a branch that is chosen this becomes visible in the next
-        step.
-        """
+        """The edge gets a token. For a branch of a choice, the formula reads the next state."""
         if not self.is_chosen(edge):
             return self.given_formula(edge)
         return f.both(
@@ -241,9 +240,7 @@ class StepFormulas:
         return self._endings[region]
 
     def interruption_formulas(self, region: str, members: set[str]) -> Iterator[Formula]:
-        """Yield the interruptions of an interruptible region that contains *members* of
-        *region*.
-        """
+        """Yield the interruptions that remove tokens of *members*, which belong to *region*."""
         if not self.graph.interruptibles:
             return
         around = {node.id for node in self.graph.regions_around(region)}
@@ -271,6 +268,7 @@ class StepFormulas:
 
 def _can_choose(branches: list[TokenEdge], node: TokenNode) -> bool:
     """Return whether several branches of the node can be open at the same time."""
+    # Several else branches are open together, although UML allows only one.
     if node.firing is not Firing.CHOICE:
         return False
     else_branches = [branch for branch in branches if is_else(branch)]

@@ -22,7 +22,7 @@ from sysmlc.logic.contract import Variable
 from sysmlc.logic.formula import Formula, Literal, variables
 
 ACTIVITY_REGION = ""
-"""The region of what no structured node owns."""
+"""The region of nodes and edges that are in no structured node."""
 
 
 class NodeKind(StrEnum):
@@ -62,11 +62,11 @@ class Duration(StrEnum):
     """How long an action runs."""
 
     TIMED = "timed"
-    """Until the environment says that it is done."""
+    """Until the environment ends it."""
     PULSE = "pulse"
-    """One step: what it does is seen from outside (a signal is sent, a value is written)."""
+    """One step, because its effect is visible outside: it sends a signal or writes a value."""
     SILENT = "silent"
-    """No time, and nothing to be seen: it reads or computes a value."""
+    """No time, because it has no visible effect: it reads or computes a value."""
 
 
 FIRING: dict[NodeKind, Firing] = {
@@ -228,13 +228,11 @@ class TokenGraph(Struct, frozen=True, dict=True):
         return frozenset(store.variable.name for store in self.stores)
 
     def is_decided_outside(self, formula: Formula) -> bool:
-        """Return whether the condition depends on the environment."""
+        """Return whether the condition reads an input."""
         return any(variable.name not in self.written_variables for variable in variables(formula))
 
     def is_decided_inside(self, formula: Formula) -> bool:
-        """Return whether the condition depends on variables that nodes write, and on nothing
-        else.
-        """
+        """Return whether the condition reads variables, all of which the activity writes."""
         return bool(variables(formula)) and not self.is_decided_outside(formula)
 
     @cached_property
@@ -290,9 +288,7 @@ class TokenGraph(Struct, frozen=True, dict=True):
         yield from (node.id for node in self.nodes if node.kind is NodeKind.STRUCTURED)
 
     def entering(self, interruptible: str) -> list[TokenEdge]:
-        """Return the edges that bring tokens into an interruptible region, from outside or at
-        its start.
-        """
+        """Return the edges by which tokens enter an interruptible region, also from its start."""
         region = next(region for region in self.interruptibles if region.id == interruptible)
         members = frozenset(region.nodes)
         return [
@@ -312,11 +308,10 @@ class TokenGraph(Struct, frozen=True, dict=True):
         return any(map(self.enters, self._incoming[node.id]))
 
     def triggers(self, node: TokenNode) -> list[TokenEdge]:
-        """Return the edges that prevent the completion of the node's region while all of them hold
-        a token.
+        """Return the edges that prevent the completion of the region while all hold a token.
 
-        A node with all tokens from inside its region waits for those from outside, so these do not
-        count.
+        These are the edges from inside the region, if the node has any: it then waits for the
+        tokens from outside (docs/decisions/0013).
         """
         incoming = self._incoming[node.id]
         return [edge for edge in incoming if edge.region == node.region] or incoming

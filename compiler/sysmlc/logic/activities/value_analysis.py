@@ -1,7 +1,7 @@
-"""Values that a variable may have wherever an activity has a token (a data-flow analysis).
+"""Data-flow analysis: the values that a variable may have while a place holds a token.
 
-One variable is followed along the flows; all others may have any value at any time. The result
-covers every run, however many states there are, but may contain values that never occur. Sets of
+The analysis propagates the values of one variable along the flows; all other variables may have any
+value at any time. The result covers every run, but may contain values that never occur. Sets of
 values are bit masks in the order of the domain.
 """
 
@@ -13,7 +13,7 @@ from sysmlc.logic.activities.concurrency import (
     ConcurrencyRelation,
     Move,
     consumed_place,
-    index_takers,
+    index_moves_by_place,
 )
 from sysmlc.logic.activities.step_formulas import StepFormulas
 from sysmlc.logic.activities.token_graph import (
@@ -30,7 +30,7 @@ from sysmlc.logic.evaluate import Evaluation, compile_evaluation
 from sysmlc.logic.formula import Formula, Literal
 
 MAX_VALUES = 4_096
-"""Largest domain of a variable that is followed."""
+"""Limit of the domain of the analysed variable."""
 _MAX_VALUATIONS = 20_000
 """Above this number of valuations, a condition counts as true for every value."""
 
@@ -38,43 +38,46 @@ _MAX_VALUATIONS = 20_000
 class ValueAnalysis:
     """The values of one variable at each place; its domain has at most ``MAX_VALUES`` values."""
 
-    def __init__(self, graph: TokenGraph, together: ConcurrencyRelation, store: Store) -> None:
-        self._graph, self._together, self._store = graph, together, store
-        self._game = StepFormulas(graph)
+    def __init__(self, graph: TokenGraph, relation: ConcurrencyRelation, store: Store) -> None:
+        self._graph, self._relation, self._store = graph, relation, store
+        self._formulas = StepFormulas(graph)
         variables = (*graph.inputs, *(other.variable for other in graph.stores))
         domains = {variable.name: variable.domain for variable in variables}
-        self._image = _ValueSets(store, domains)
+        self._value_sets = _ValueSets(store, domains)
         self._writes = {write.node: write for write in store.writes}
-        self._takers = index_takers(together.moves)
+        self._moves_by_place = index_moves_by_place(relation.moves)
         self._values_at: dict[str, int] = {}
         self._applied: dict[Move, int] = {}
-        self._waiting: dict[Move, None] = {}
+        self._worklist: dict[Move, None] = {}
         self._propagate()
 
     @property
     def is_exact(self) -> bool:
-        """Whether every value of the result occurs: there is one token, and one variable
-        decides.
+        """Whether every value of the result occurs in some run.
+
+        This holds with a single token and a single written variable, without interruptions.
         """
-        is_alone = self._together.is_sequential and len(self._graph.stores) == 1
-        return is_alone and not self._graph.interruptibles and not self._image.gave_up
+        is_alone = self._relation.is_sequential and len(self._graph.stores) == 1
+        return is_alone and not self._graph.interruptibles and not self._value_sets.has_given_up
 
     def may_stop(self, write: Write) -> bool:
-        """Return whether the write can be clamped when its node is done."""
+        """Return whether the write may saturate."""
         values = self._values_at.get(write.node, 0)
-        values &= self._image.filter_values(self._game.done_formula(self._graph.node(write.node)))
-        return any(values & self._image.filter_values(stop) for stop in write.stops)
+        values &= self._value_sets.filter_values(
+            self._formulas.done_formula(self._graph.node(write.node))
+        )
+        return any(values & self._value_sets.filter_values(stop) for stop in write.stops)
 
     def _propagate(self) -> None:
-        start_edges = self._together.list_start_edges(ACTIVITY_REGION)
-        region_moves = [move for move in self._together.moves if move.clears]
+        start_edges = self._relation.list_start_edges(ACTIVITY_REGION)
+        region_moves = [move for move in self._relation.moves if move.clears]
         self._add_values(start_edges, self._initial_values())
         previous: dict[str, int] = {}
         while previous != self._values_at:
             previous = dict(self._values_at)
-            while self._waiting:
-                move = next(iter(self._waiting))
-                del self._waiting[move]
+            while self._worklist:
+                move = next(iter(self._worklist))
+                del self._worklist[move]
                 self._apply_move(move)
             for move in region_moves:
                 self._apply_move(move)
@@ -82,10 +85,10 @@ class ValueAnalysis:
 
     def _initial_values(self) -> int:
         first = self._store.first
-        return self._image.every if first is None else self._image.single(first)
+        return self._value_sets.every if first is None else self._value_sets.single(first)
 
     def _restart_values(self) -> int:
-        """Return the values with which the activity restarts."""
+        """Return the values that the variable retains when the activity restarts."""
         if self._store.local and self._store.first is not None:
             return 0
         return self._values_at_completion(ACTIVITY_REGION)
@@ -95,7 +98,7 @@ class ValueAnalysis:
             present = self._values_at.get(place, 0)
             if values & ~present:
                 self._values_at[place] = present | values
-                self._waiting.update(dict.fromkeys(self._takers(place)))
+                self._worklist.update(dict.fromkeys(self._moves_by_place(place)))
 
     def _apply_move(self, move: Move) -> None:
         values = self._values_before(move) & ~self._applied.get(move, 0)
@@ -106,20 +109,21 @@ class ValueAnalysis:
         if write is None:
             self._add_values(move.gives, values)
             return
-        written = self._image.written_values(write, values)
-        self._add_values((*move.gives, *self._together.list_concurrent_places(write.node)), written)
+        # The new value is also seen by the tokens that other places hold at the same time.
+        written = self._value_sets.written_values(write, values)
+        self._add_values((*move.gives, *self._relation.list_concurrent_places(write.node)), written)
 
     def _values_before(self, move: Move) -> int:
-        """Return the values with which a move is possible."""
-        values = self._image.every
+        """Return the values of the variable under which a move is possible."""
+        values = self._value_sets.every
         for place in move.takes:
             values &= self._values_at.get(place, 0)
         if move.branch is not None:
-            values &= self._image.filter_values(self._game.guard_formula(move.branch))
+            values &= self._value_sets.filter_values(self._formulas.guard_formula(move.branch))
         if move.is_end and move.node.kind is NodeKind.STRUCTURED:
             return values & self._values_at_completion(move.node.id)
         return (
-            values & self._image.filter_values(self._game.done_formula(move.node))
+            values & self._value_sets.filter_values(self._formulas.done_formula(move.node))
             if move.is_end
             else values
         )
@@ -127,9 +131,9 @@ class ValueAnalysis:
     # -- ends of regions -----------------------------------------------------------------------
 
     def _values_at_completion(self, region: str) -> int:
-        """Return the values with which a region may be complete."""
-        if self._graph.interruptibles or not self._together.list_start_edges(region):
-            return self._image.every
+        """Return the values of the variable under which a region may be complete."""
+        if self._graph.interruptibles or not self._relation.list_start_edges(region):
+            return self._value_sets.every
         final_edges = [edge.id for edge in self._graph.ends(region)]
         resting = self._list_resting_places(region) if self._graph.can_rest(region) else ()
         values = 0
@@ -138,7 +142,7 @@ class ValueAnalysis:
         return values
 
     def _list_resting_places(self, region: str) -> Iterator[str]:
-        """Yield the places of tokens when nothing in a region can move."""
+        """Yield the places that may hold tokens while nothing in a region can move."""
         yield from map(consumed_place, self._graph.members(region))
         edges, _ = self._graph.inside(region)
         yield from (edge.id for edge in edges if self._is_stuck(edge))
@@ -154,11 +158,11 @@ class ValueAnalysis:
 class _ValueSets:
     """Sets of values of one variable under conditions and assignments."""
 
-    def __init__(self, store: Store, known: Mapping[str, Domain]) -> None:
-        self._name, self._known = store.variable.name, known
+    def __init__(self, store: Store, variable_domains: Mapping[str, Domain]) -> None:
+        self._name, self._domains = store.variable.name, variable_domains
         self._values = domains.values(store.variable.domain)
         self._bits = {value: 1 << place for place, value in enumerate(self._values)}
-        self.gave_up = False
+        self.has_given_up = False
         """Whether a condition or an expression had too many valuations."""
         self.every = (1 << len(self._values)) - 1
         self._filter_cache: dict[Formula, int] = {}
@@ -169,7 +173,7 @@ class _ValueSets:
         return self._bits.get(value, self.every)
 
     def filter_values(self, condition: Formula) -> int:
-        """Return the values with which the condition may hold."""
+        """Return the values of the variable under which the condition may hold."""
         if condition not in self._filter_cache:
             self._filter_cache[condition] = self._satisfying_values(condition)
         return self._filter_cache[condition]
@@ -189,12 +193,12 @@ class _ValueSets:
         names = {variable.name for formula in formulas for variable in f.variables(formula)} - {
             self._name
         }
-        other_domains = {name: self._known[name] for name in sorted(names & self._known.keys())}
+        other_domains = {name: self._domains[name] for name in sorted(names & self._domains.keys())}
         if (
             len(other_domains) < len(names)
             or self._count_valuations(other_domains) > _MAX_VALUATIONS
         ):
-            self.gave_up = True
+            self.has_given_up = True
             return None
         return list(domains.valuations(other_domains))
 
@@ -202,7 +206,7 @@ class _ValueSets:
         return domains.count(others) * len(self._values)
 
     def written_values(self, write: Write, before: int) -> int:
-        """Return the values that the write gives."""
+        """Return the values that the write may assign, given the values *before*."""
         image = 0
         for condition, expression in write.values:
             values = before & self.filter_values(condition)

@@ -1,1 +1,1 @@
-"""Blocks with parts: what connectors, bindings and flows make of the contracts of their parts."""
+"""Composition of the contracts of parts by connectors, bindings and flows of their block."""

@@ -1,7 +1,7 @@
 """Composites: for each block with parts, the contracts of its members in shared variables.
 
-The direction of ports decides who owns a variable, connectors rename; an output of a sender is the
-input of a receiver (SysML 1.6 clause 9.3.2).
+The direction of a port decides which member owns its variable. Connectors make an output of the
+sender and the input of the receiver one variable (SysML 1.6 clause 9.3.2).
 """
 
 from collections.abc import Iterable, Iterator, Mapping
@@ -56,10 +56,10 @@ UNCLEAR_FLOW = rule(
 def compose_blocks(graph: Graph, contracts: Iterable[Contract], sink: Sink) -> Iterator[Composite]:
     """Yield a composite for each block whose parts have contracts that can be compared.
 
-    A block is a member of its own composition with a behaviour, and with requirements whose outputs
-    its parts only read (a controller, a coordinator). Outputs that its parts decide are what the
-    parts must establish together. *contracts* are those that the pass ``contracts`` derives from
-    the graph; composites are in the order of their components.
+    A block may have contracts of its own. A contract whose outputs the parts only read is a further
+    member (a controller, a coordinator). A contract whose outputs the parts decide is the
+    specification of the composition. *contracts* are those that the pass ``contracts`` derives from
+    the graph. The composites are in the order of their components.
     """
     by_origin = {contract.origin: contract for contract in contracts}
     open_steps: list[OpenStep] = []
@@ -127,9 +127,11 @@ def _make_composite(block: Block, whole: Member | None, sink: Sink) -> Composite
 
 
 def _add_own_contracts(block: Block) -> Member | None:
-    """Add the block's own contracts to its members; return the contract that the parts must
-    establish.
+    """Add the block's own contracts to its members, and return the one that is a specification.
+
+    The result is None if the block has no contract whose outputs the parts decide.
     """
+    # docs/decisions/0031: the directions of features tell a controller from a specification.
     requirement, behaviour_member = (
         _as_member(block, find(block, block.element))
         for find in (find_required_contract, find_behaviour_contract)
@@ -156,12 +158,12 @@ def _as_member(block: Block, contract: Contract | None) -> Member | None:
 
 
 def _has_decided_outputs(block: Block, member: Member, parts: Iterable[Member]) -> bool:
-    """Return whether parts decide some of the member's outputs."""
+    """Return whether some output of the member is joined to an output of a part."""
     return _shares_outputs(block, member, parts, Owner.SYSTEM)
 
 
 def _has_read_outputs(block: Block, member: Member, parts: Iterable[Member]) -> bool:
-    """Return whether parts have some of the member's outputs as inputs."""
+    """Return whether some output of the member is joined to an input of a part."""
     return _shares_outputs(block, member, parts, Owner.ENVIRONMENT)
 
 
@@ -170,15 +172,13 @@ def _shares_outputs(block: Block, member: Member, parts: Iterable[Member], owner
     return any(block.features.find(slot) in outputs for part in parts for slot in part.slots(owner))
 
 
-# -- what stands against it ----------------------------------------------------------------------
+# -- faults --------------------------------------------------------------------------------------
 
 
 def _report_faults(
     block: Block, whole: Member | None, wires: Iterable[Wire], sink: Sink
 ) -> Iterator[str]:
-    """Report joined features of different types or with several drivers. Yield the names of
-    their wires.
-    """
+    """Report wires between different types or with several drivers, and yield their names."""
     subject, name = block.graph.subject(block.element), block.element.name
     for wire in wires:
         drivers = [left_member.name for left_member in wire.drivers if left_member is not whole]
@@ -242,8 +242,9 @@ OPEN_STEP = rule(
 
 
 class OpenStep(Struct, frozen=True):
-    """A step of an operation (path from a block) that calls an operation whose end is not
-    observable.
+    """A step of an operation that calls an action whose end is not observable.
+
+    ``operation`` is the path of the operation from the block.
     """
 
     block: Element
@@ -260,7 +261,7 @@ def find_open_steps(block: Block) -> Iterator[OpenStep]:
 
 
 def report_open_steps(graph: Graph, open_steps: Iterable[OpenStep], sink: Sink) -> None:
-    """Report each step once: at the block that has its operation, not at the blocks around it."""
+    """Report each step once, at the innermost block that contains its operation."""
     nearest: dict[str, OpenStep] = {}
     for open_step in open_steps:
         nearest_step = nearest.setdefault(open_step.step.id, open_step)

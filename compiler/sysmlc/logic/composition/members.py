@@ -26,12 +26,13 @@ from sysmlc.support.disjoint_sets import DisjointSets
 
 _ACTIONS = (Kind.OPERATION, Kind.ACTIVITY)
 Slot = tuple[str, str]
-"""A feature (dotted name) of a usage (path)."""
+"""The path of a usage, and the dotted name of one of its features."""
 
 
 class Member(Struct, frozen=True):
-    """A contract that takes part in a composition; ``features`` maps dotted names to its
-    variables.
+    """A member of a composition: a usage of the block, or the block itself, with its contract.
+
+    ``features`` maps dotted names of features to variables of the contract.
     """
 
     path: str
@@ -47,7 +48,7 @@ class Member(Struct, frozen=True):
         )
 
     def slots(self, *owners: Owner) -> Iterator[Slot]:
-        """Yield the features in its contract that one of the owners decides."""
+        """Yield the slots of the member's features whose variables belong to one of *owners*."""
         for name, variable in self.features.items():
             if self.owner(variable) in owners:
                 yield self.path, name
@@ -97,22 +98,21 @@ def _open_usage(block: Block, element: Element, path: str, enclosing: set[str]) 
         for left in left_ends:
             for right in right_ends:
                 _join_ends(block, left, right)
+    # A binding states which action performs a step; otherwise the only suitable action does.
     for step, action in iter_performed_steps(block.graph, element, path):
         if not block.features.has_merged((step.path, step.feature)):
             _join_ends(block, step, action)
 
 
 def find_contract(block: Block, usage: Usage) -> Contract | None:
-    """Return the contract of a usage: that of the requirements of its type, else of its
-    behaviour.
-    """
+    """Return the contract for the requirements of a usage's type, or else for its behaviour."""
     if usage.element.kind in _ACTIONS:
         return block.contracts.get(usage.element.id) or block.contracts.get(usage.type_.id)
     return find_required_contract(block, usage.type_) or find_behaviour_contract(block, usage.type_)
 
 
 def find_required_contract(block: Block, type_: Element) -> Contract | None:
-    """Return the contract that requirements state for a type or for what it specialises."""
+    """Return the contract for the requirements of a type or of its nearest general with any."""
     family = (type_, *query.generals(block.graph, type_))
     return next(
         (contract for relative in family if (contract := block.contracts.get(relative.id))), None
@@ -153,7 +153,7 @@ def _make_member(
 
 
 def _share_block_features(block: Block, owner: Element, path: str, member: Member) -> Member:
-    """Join the features of the block that an action drawn in it reads with those of the block."""
+    """Join the features of *owner* that an action in it reads with the features of the block."""
     graph = block.graph
     activity = definition_of(graph, graph[member.contract.origin])
     if activity.kind is not Kind.ACTIVITY:
@@ -187,9 +187,7 @@ def _join_ends(block: Block, left: End, right: End) -> None:
 
 
 def _resolve_step_end(block: Block, end: End, opposite: End) -> End:
-    """Return the feature that reports the end, if one end is a step and the other the action
-    that performs it.
-    """
+    """Return *end*, or the feature that reports the end of a step if it is bound to an action."""
     for step in (end, opposite):
         step_end = End(step.path, join_path(step.feature, EXECUTED))
         if step.feature and (step.path, step_end.feature) in block.steps:

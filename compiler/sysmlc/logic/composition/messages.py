@@ -1,9 +1,9 @@
-"""Signals and calls between members: what one member sends occurs at the members joined to it.
+"""Messages between members: a signal or call of one member occurs at the members joined to it.
 
-An output states that something is sent, an event of the receiver that it occurs; both are visible
-in the same step. If several things are sent to one receiver in one step, one of them occurs,
-because a step of a state machine has one event (UML 2.5.1 clause 14.2.3.9.1 takes events from a
-pool one by one).
+An output of the sender states that a message is sent, and an event of the receiver states that it
+occurs, both in the same step. If several messages are sent to one receiver in one step, only one of
+them occurs, because a step of a state machine has one event (by UML 2.5.1 clause 14.2.3.9.1, events
+are taken from the pool one by one).
 """
 
 from collections.abc import Iterable, Iterator, Sequence
@@ -32,7 +32,7 @@ _EVENT = "event"
 
 
 class Receipt(Struct, frozen=True):
-    """A message that can occur at a member: its name, and the formula that it occurs."""
+    """A message that a member can receive; ``occurs`` is true in the step in which it occurs."""
 
     member: Member
     message: str
@@ -50,7 +50,7 @@ class Sending(Struct, frozen=True):
 def derive_wiring(
     block: Block, members: Sequence[Member], wires: Iterable[Wire]
 ) -> Iterator[Conjunct]:
-    """Yield the occurrences that messages cause, for each member that receives from others."""
+    """Yield the conjuncts that relate sent messages to their occurrences at the receivers."""
     for member, receipts in _iter_listeners(block, members, tuple(wires)):
         yield from _derive_occurrences(member, receipts, _is_reachable_from_outside(block, member))
 
@@ -58,9 +58,9 @@ def derive_wiring(
 def derive_exclusions(
     block: Block, members: Sequence[Member], wires: Iterable[Wire]
 ) -> Iterator[Conjunct]:
-    """Yield that no two messages are sent to one member in one step, so that nothing is lost.
+    """Yield the conjuncts that no two messages are sent to one member in the same step.
 
-    No member guarantees this: a component sends what its contract demands.
+    Otherwise a message is lost. No contract of a member guarantees this, so that it is checked.
     """
     for member, receipts in _iter_listeners(block, members, tuple(wires)):
         sent = [
@@ -90,7 +90,7 @@ _Receipts = Sequence[tuple[Receipt, list[Sending]]]
 def _iter_listeners(
     block: Block, members: Sequence[Member], wires: tuple[Wire, ...]
 ) -> Iterator[tuple[Member, _Receipts]]:
-    """Yield the members to which others send something, with the receipts and their senders."""
+    """Yield each member that receives messages of others, with its receipts and their senders."""
     for member in members:
         receipts = [
             (receipt, sendings)
@@ -102,9 +102,7 @@ def _iter_listeners(
 
 
 def _is_reachable_from_outside(block: Block, member: Member) -> bool:
-    """Return whether a port of the block leads to the member, so that outsiders can send to it
-    too.
-    """
+    """Return whether a port of the block leads to the member, so that others can send to it."""
     ends = {block.channels.find(end) for end in _iter_ends(block, member)}
     ports = query.ports(block.graph, block.element)
     block_channels = {block.channels.find((ITSELF, port.name)) for port in ports}
@@ -112,7 +110,7 @@ def _is_reachable_from_outside(block: Block, member: Member) -> bool:
 
 
 def _derive_occurrences(member: Member, receipts: _Receipts, is_open: bool) -> Iterator[Conjunct]:
-    """Yield that a message occurs only if it is sent, and that a sent message occurs."""
+    """Yield the conjuncts that messages occur only if they are sent, and that sent ones occur."""
     sent_formulas = [
         f.either(*(sending.is_sent for sending in sendings)) for _, sendings in receipts
     ]
@@ -131,8 +129,9 @@ def _derive_occurrences(member: Member, receipts: _Receipts, is_open: bool) -> I
 def _group_receipts(
     member: Member, receipts: _Receipts, sent_formulas: Sequence[Formula]
 ) -> Iterator[tuple[list[tuple[Receipt, Formula]], str]]:
-    """Yield groups of receipts that exclude one another as values of one event; other receipts
-    are alone.
+    """Yield groups of receipts with a text for their conjunct.
+
+    Receipts that are values of the same event exclude each other and form one group.
     """
     pairs = [
         (receipt, is_sent) for (receipt, _), is_sent in zip(receipts, sent_formulas, strict=True)
@@ -146,7 +145,7 @@ def _group_receipts(
             yield [pair], f"'{pair[0].message}' occurs at '{member.name}' when it is sent."
 
 
-# -- what members send and take ------------------------------------------------------------------
+# -- outputs and events of members ---------------------------------------------------------------
 
 
 def _iter_receipts(graph: Graph, member: Member, wires: tuple[Wire, ...]) -> Iterator[Receipt]:
@@ -211,7 +210,7 @@ def _type_of(block: Block, member: Member) -> Element:
 
 
 def _iter_outputs(graph: Graph, member: Member) -> Iterator[tuple[str, str]]:
-    """Yield what a member sends or calls, by name, with the output that states it."""
+    """Yield each message that a member can send, with the name of its output variable."""
     for variable in member.contract.variables:
         is_output = variable.owner is Owner.SYSTEM and isinstance(variable.domain, BooleanDomain)
         if is_output and variable.name not in member.features.values():
@@ -219,7 +218,7 @@ def _iter_outputs(graph: Graph, member: Member) -> Iterator[tuple[str, str]]:
 
 
 def _message_name(graph: Graph, output: Variable) -> str:
-    """Return the name of the signal or operation behind an output, else the name of the output."""
+    """Return the name of the signal or operation that an output sends, or else its own name."""
     element = graph.get(output.origin)
     if element is not None and element.kind is Kind.ACTION:
         target = graph.target(element, Edge.CALLS)

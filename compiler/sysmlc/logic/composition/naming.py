@@ -1,4 +1,4 @@
-"""Variables of a composite: joined features are one variable, all others belong to one member."""
+"""Variables of a composite: joined features share a variable, others have one of their own."""
 
 from collections.abc import Iterable, Iterator, Mapping
 
@@ -24,7 +24,7 @@ from sysmlc.logic.formula import Apply, Const, Formula, Op, Var
 
 
 class Wire(Struct, frozen=True):
-    """One variable that several members share, with each member's own variable."""
+    """A shared variable of the composite, and the variables of members that it replaces."""
 
     name: str
     ends: tuple[tuple[Member, Variable], ...]
@@ -36,10 +36,10 @@ class Wire(Struct, frozen=True):
 
 
 def find_wires(block: Block, members: Iterable[Member]) -> list[Wire]:
-    """Return the sets of joined features of members, each with one name.
+    """Return a wire for each set of joined features that occur in several contracts.
 
-    The name is that of the block's feature if the set has one, else that of the member that decides
-    the variable.
+    A wire is named after the feature of the block in the set, or else after the variable of the
+    member that decides it.
     """
     by_path: dict[str, list[Member]] = {}
     for member in members:
@@ -73,7 +73,7 @@ def _wire_name(block_feature: str, ends: list[tuple[Member, Variable]]) -> str:
 
 
 def has_single_type(wire: Wire) -> bool:
-    """Return whether all members of the wire use values of the same kind."""
+    """Return whether the domains of all ends have the same type and, for texts, are equal."""
     domains = [domain.domain for _, domain in wire.ends]
     has_texts = any(isinstance(domain, EnumerationDomain) and domain.texts for domain in domains)
     return len(set(domains) if has_texts else {type(domain) for domain in domains}) == 1
@@ -82,9 +82,9 @@ def has_single_type(wire: Wire) -> bool:
 def rename_contract(member: Member, wires: Iterable[Wire]) -> Contract:
     """Return the contract of a member in the variables of the composite.
 
-    A variable to which members give different ranges gets the range that contains all of them. The
-    member that decides it then guarantees its own range, and a member that reads it assumes its
-    own.
+    If the ends of a wire have different ranges, its variable has the range that contains all of
+    them. A member that decides the variable then guarantees its own range, and a member that reads
+    the variable assumes its own range.
     """
     wire_by_variable: dict[str, Wire] = {}
     for wire in wires:
@@ -127,7 +127,7 @@ def rename_contract(member: Member, wires: Iterable[Wire]) -> Contract:
 
 
 def _drop_duplicates(variables: Iterable[Variable]) -> Iterable[Variable]:
-    """Return each variable once; an input joined to an output of the same member is that output."""
+    """Return each variable once; of an input and an output with the same name, the output."""
     by_name: dict[str, Variable] = {}
     for variable in variables:
         if variable.name not in by_name or variable.owner is Owner.SYSTEM:
@@ -188,7 +188,7 @@ def _common_domain(variable: Variable, wire: Wire | None) -> Domain:
 
 
 def _range_conjuncts(variable: Variable, name: str, domain: Domain) -> Iterator[Conjunct]:
-    """Yield that a variable stays in the member's range, if the common range is wider."""
+    """Yield the conjuncts that a variable stays in the member's range if the wire's is wider."""
     in_range = f.both(*_range_bounds(variable, f.var(name), domain))
     if in_range == f.TRUE:
         return

@@ -1,9 +1,9 @@
-"""Structure of a block: its usages, the features that connectors, bindings and flows join, and the
-steps of its operations.
+"""Structure of a block: its usages, its joined features, and the steps of its operations.
 
-A step of an operation ends when the action that performs it reports that it is executed. A binding
-names that action, or the value that reports the end. Without a binding it is the only action of the
-block that specialises the action which the step calls.
+Connectors, bindings and flows join features. A step of an operation ends when the action that
+performs it reports that it is executed. A binding names this action, or the value that reports the
+end. Without a binding, the action is the only one of the block that is, or specialises, the action
+that the step calls.
 """
 
 from collections.abc import Iterator
@@ -36,9 +36,7 @@ class End(Struct, frozen=True):
 
 
 def iter_usages(graph: Graph, block: Element, path: str = ITSELF) -> Iterator[Usage]:
-    """Yield the parts of a block and the actions that it performs; each copy of a part is a
-    usage.
-    """
+    """Yield a usage for each copy of each part of a block, and for each action that it performs."""
     visited: set[str] = set()
     for feature in (*query.features(graph, block), *graph.owned(block)):
         is_action = feature.kind is Kind.ACTIVITY
@@ -63,23 +61,19 @@ def _type_of_usage(graph: Graph, feature: Element) -> Element | None:
 
 
 def _is_plain_usage(graph: Graph, action: Element) -> bool:
-    """Return whether an action has no steps of its own beyond what it specialises."""
+    """Return whether an action specialises another one and has no steps of its own."""
     return bool(graph.targets(action, Edge.SPECIALIZES)) and not _is_drawn(graph, action)
 
 
 def _is_own_action(graph: Graph, action: Element) -> bool:
-    """Return whether a drawn action is performed by the block itself, and not used by another
-    element.
-    """
+    """Return whether an action with steps is used by no other element than its owner."""
     edges = (Edge.CLASSIFIER_BEHAVIOR, Edge.METHOD, Edge.CALLS)
     is_used = any(True for edge in edges for _ in graph.sources(action, edge))
     return _is_drawn(graph, action) and not is_used
 
 
 def find_drawn_activity(graph: Graph, action: Element) -> Element:
-    """Return the activity that has the steps of an action: itself, else the nearest activity
-    that it specialises.
-    """
+    """Return the activity with the steps of an action: itself or its nearest general."""
     family = (action, *query.generals(graph, action))
     return next((relative for relative in family if _is_drawn(graph, relative)), action)
 
@@ -104,7 +98,7 @@ def join_path(path: str, name: str) -> str:
 
 
 Link = tuple[list[End], list[End]]
-"""The joined ends on either side, several where a side leads to a part with copies."""
+"""The ends at both sides of a connection. A side that leads to copies of a part has several."""
 
 
 def iter_links(graph: Graph, block: Element, path: str = ITSELF) -> Iterator[Link]:
@@ -129,7 +123,7 @@ def _connector_ends(graph: Graph, block: Element, end: Element, path: str) -> It
 
 
 def _follow_path(graph: Graph, block: Element, features: list[Element], path: str) -> Iterator[End]:
-    """Yield the ends to which a sequence of features leads, parts first."""
+    """Yield the ends to which a path of features leads; parts at its start become the usage."""
     if features and _type_of_usage(graph, features[0]) is not None:
         for name in _copy_names(features[0]):
             yield from _follow_path(graph, block, features[1:], join_path(path, name))
@@ -165,8 +159,9 @@ def _find_holders(graph: Graph, block: Element, feature: Element, path: str) -> 
 
 
 def find_unclear_flows(graph: Graph, block: Element) -> Iterator[tuple[Element, Element, int]]:
-    """Yield each flow whose parts are ambiguous, with the feature that several usages have, and
-    their number.
+    """Yield each flow whose parts are ambiguous.
+
+    Each has the feature at its end and the number of usages that have the feature.
     """
     for owner in (block, *query.generals(graph, block)):
         for flow in graph.owned(owner):
@@ -188,9 +183,7 @@ EXECUTED = "executed"
 
 
 def list_step_ends(graph: Graph, contract: Contract) -> dict[str, str]:
-    """Return the inputs of an operation that report the end of a step, by the name of the step's
-    feature.
-    """
+    """Return the inputs of an operation that report ends of steps, by ``step.executed``."""
     ends = {}
     for variable in contract.variables:
         step = graph.get(variable.origin)
@@ -204,8 +197,9 @@ def list_step_ends(graph: Graph, contract: Contract) -> dict[str, str]:
 
 
 def iter_performed_steps(graph: Graph, block: Element, path: str) -> Iterator[tuple[End, End]]:
-    """Yield, for each step of the block's operations, its end and the end of the one action that
-    performs it.
+    """Yield each step of the block's operations that exactly one action of the block can perform.
+
+    The result has the feature that reports the end of the step, and that of the action.
     """
     actions = [
         action for action in iter_usages(graph, block, path) if action.element.kind in _ACTIONS

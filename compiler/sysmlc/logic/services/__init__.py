@@ -1,1 +1,1 @@
-"""Services: operations and actions by what they need before and promise after."""
+"""Services: operations and actions with preconditions and postconditions."""

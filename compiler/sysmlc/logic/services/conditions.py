@@ -35,7 +35,7 @@ _LANGUAGES = ("", "kerml", "sysml", "ocl", "alf")
 
 
 class Condition(Struct, frozen=True):
-    """A condition that must hold before a service, or holds after it."""
+    """A precondition (``is_before``) or postcondition of a service."""
 
     constraint: Element
     formula: Formula
@@ -50,7 +50,7 @@ class Service(Struct, frozen=True):
     conditions: tuple[Condition, ...]
 
     def feature(self, variable: str) -> Feature:
-        """Return the parameter or feature behind a variable."""
+        """Return the parameter or feature that a variable represents."""
         return next(
             feature for feature in self.context.features.values() if feature.variable == variable
         )
@@ -87,8 +87,9 @@ def _is_condition(constraint: Element) -> bool:
 def _performed_services(graph: Graph, owner: Element) -> Iterator[Element]:
     """Yield the services to which the conditions of *owner* apply.
 
-    These are the operation and those that redefine it, the operations of a method or of what
-    specialises it, else the action itself.
+    Conditions of an operation apply to it and to operations that redefine it. Conditions of an
+    action apply to the operations whose method it, or a special of it, is. Without such operations
+    they apply to the action itself.
     """
     edges = {Kind.OPERATION: Edge.REDEFINES, Kind.ACTIVITY: Edge.SPECIALIZES}
     worklist = [owner] if owner.kind in edges else []
@@ -189,9 +190,7 @@ def _read_formula(context: Context, constraint: Element) -> Formula:
 
 
 def _is_single_bound(expression: Expression, formula: Formula) -> bool:
-    """Return whether the expression is a single bound (``h > 0``), which narrows values but is
-    no range.
-    """
+    """Return whether the expression is a single bound such as ``h > 0``, which is no range."""
     return (
         isinstance(expression, Binary)
         and expression.op in _ORDERS
@@ -228,7 +227,7 @@ def _is_precondition(context: Context, formula: Formula) -> bool:
 
 
 def is_input(feature: Feature) -> bool:
-    """Return whether the caller decides the feature: it is an input parameter."""
+    """Return whether the feature is an input parameter, whose value the caller decides."""
     direction = feature.direction or "in"
     return feature.element.kind is Kind.PARAMETER and direction == "in"
 

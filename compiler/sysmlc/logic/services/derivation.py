@@ -1,8 +1,8 @@
-"""Contracts of services: the caller meets the preconditions, the service the postconditions.
+"""Contracts of services: assumed preconditions and guaranteed postconditions.
 
-In the thesis machines offer services and recipes request them (3.5.2); UML 2.5.1 clause 9.6.3
-defines the conditions of an operation. In a step the environment may call the service (``call``);
-the service runs until it is done (``done``), one step later at the earliest.
+In the thesis machines offer services and recipes request them (3.5.2). UML 2.5.1 clause 9.6.3
+defines the conditions of an operation. In each step the environment may call the service
+(``call``). The service runs until it is done (``done``), one step later at the earliest.
 """
 
 from collections.abc import Iterable, Iterator
@@ -43,7 +43,7 @@ class _ServiceCall(Struct, frozen=True):
         return f.either(self.call, self.busy)
 
     def conditions(self, is_before: bool) -> Iterator[Condition]:
-        """Yield the preconditions, or the postconditions."""
+        """Yield the preconditions if *is_before* is true, or else the postconditions."""
         return (
             condition for condition in self.service.conditions if condition.is_before is is_before
         )
