@@ -112,7 +112,10 @@ def _is_exit(graph: TokenGraph, edge: TokenEdge, component: Collection[str]) -> 
 
 
 def _is_decided_outside(graph: TokenGraph, edge: TokenEdge) -> bool:
-    """Return whether inputs decide if the branch is open, for else by the other guards."""
+    """Return whether the guard of the branch reads an input.
+
+    An else branch is decided by the guards of the other branches.
+    """
     guard = edge.guard
     if guard is None or isinstance(guard.condition, Const):
         return False

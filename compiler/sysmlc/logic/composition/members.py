@@ -153,7 +153,7 @@ def _make_member(
 
 
 def _share_block_features(block: Block, owner: Element, path: str, member: Member) -> Member:
-    """Join the features of *owner* that an action in it reads with the features of the block."""
+    """Return an action of *owner* as a member that reads features of *owner*, joined with these."""
     graph = block.graph
     activity = definition_of(graph, graph[member.contract.origin])
     if activity.kind is not Kind.ACTIVITY:
@@ -187,7 +187,11 @@ def _join_ends(block: Block, left: End, right: End) -> None:
 
 
 def _resolve_step_end(block: Block, end: End, opposite: End) -> End:
-    """Return *end*, or the feature that reports the end of a step if it is bound to an action."""
+    """Return the end to join with *opposite*.
+
+    If one of the two is a step and the other the action that performs it, this is the feature
+    ``executed`` of the end. Otherwise it is *end*.
+    """
     for step in (end, opposite):
         step_end = End(step.path, join_path(step.feature, EXECUTED))
         if step.feature and (step.path, step_end.feature) in block.steps:

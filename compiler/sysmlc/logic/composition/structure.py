@@ -183,7 +183,7 @@ EXECUTED = "executed"
 
 
 def list_step_ends(graph: Graph, contract: Contract) -> dict[str, str]:
-    """Return the inputs of an operation that report ends of steps, by ``step.executed``."""
+    """Map ``<step>.executed`` to the input of an operation that reports the end of the step."""
     ends = {}
     for variable in contract.variables:
         step = graph.get(variable.origin)

@@ -88,8 +88,8 @@ def _performed_services(graph: Graph, owner: Element) -> Iterator[Element]:
     """Yield the services to which the conditions of *owner* apply.
 
     Conditions of an operation apply to it and to operations that redefine it. Conditions of an
-    action apply to the operations whose method it, or a special of it, is. Without such operations
-    they apply to the action itself.
+    action apply to the operations that have the action, or a special of it, as their method.
+    Without such operations they apply to the action itself.
     """
     edges = {Kind.OPERATION: Edge.REDEFINES, Kind.ACTIVITY: Edge.SPECIALIZES}
     worklist = [owner] if owner.kind in edges else []
