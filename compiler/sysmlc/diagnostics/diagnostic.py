@@ -10,7 +10,7 @@ class Place(Struct, frozen=True):
 
     An XML element is found by ``ordinal``, the number of its start tag in document order from 0,
     because parsers' line numbers stop at 65,535. A position in text is found by ``offset``, in
-    bytes from 0; elements that a text (an overlay) defines have it as their ordinal. Line and
+    bytes from 0; an element that a text (an overlay) defines has its offset as ordinal. Line and
     column count characters from 1 and may be known already. -1 and 0 mean unknown.
     """
 

@@ -1,4 +1,4 @@
-"""Reader of overlays: from YAML to entries, in an order that does not depend on the file."""
+"""Converts YAML to the entries of an overlay, in an order that does not depend on the file."""
 
 from collections.abc import Iterator
 

@@ -32,7 +32,7 @@ _REAL = re.compile(r"[-+]?(\.[0-9]+|[0-9]+(\.[0-9]*)?)([eE][-+]?[0-9]{1,3})?")
 
 
 class TreeError(Exception):
-    """The text is not readable YAML; ``spot`` is the position of the fault."""
+    """The text is not valid YAML, or uses a part that is not read; ``spot`` is the position."""
 
     def __init__(self, problem: str, spot: Spot) -> None:
         super().__init__(problem)

@@ -1,1 +1,1 @@
-"""Small helpers without a subject of their own: file names, escapes, suggestions, resources."""
+"""Helpers for all layers: output files, cache, escapes, suggestions, resources, TOML."""

@@ -54,7 +54,7 @@ class RenderingProcess:
         return answer["text"]
 
     def _exchange(self, request: str) -> dict[str, str] | None:
-        """Send a line and read the answer; None if the process ended."""
+        """Send a request and return the answer; None if the process ended."""
         requests, answers = self._process.stdin, self._process.stdout
         assert requests is not None
         assert answers is not None

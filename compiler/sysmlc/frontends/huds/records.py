@@ -16,7 +16,7 @@ _Part = tuple[str, str]
 
 
 class Record(NamedTuple):
-    """One element of the model."""
+    """The entry ``<data>`` of one element of the model."""
 
     ordinal: int
     type: str
