@@ -92,7 +92,7 @@ def test_a_right_example_can_be_written_as_interchange(rule, tmp_path):
 TESTED_AS = {
     "SM188": "test_of_many_violations_the_first_are_told_and_the_others_counted",
     "SM700": "import BAD_TEMPLATE",
-    "SM717": "rules.BAD_TEMPLATE",
+    "SM717": "reqtable.backend import BAD_TEMPLATE",
     **dict.fromkeys([r.code for r in RULES if "SM320" <= r.code <= "SM340"], "range(320, 341)"),
 }
 """What stands in the test of a rule that does not name it so, or that tests several alike."""
