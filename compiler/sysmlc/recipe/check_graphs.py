@@ -66,7 +66,7 @@ def _iter_path_problems(graph: FlowGraph) -> Iterator[tuple[str, str]]:
 
 
 def _select_causes(nodes: list[Node], pairs: list[tuple[str, str]]) -> list[Node]:
-    """Return the nodes without an edge to another one of *nodes*; they cause the others."""
+    """Return the nodes without an edge to another of *nodes*: the causes of their predecessors."""
     ids = {node.id for node in nodes}
     sources = {source for source, target in pairs if source != target and target in ids}
     return [node for node in nodes if node.id not in sources] or nodes[:1]

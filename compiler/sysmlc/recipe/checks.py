@@ -1,4 +1,4 @@
-"""Findings of the checks of recipe models, and what the checks share."""
+"""Findings of the checks of recipe models, and functions that several checks use."""
 
 from collections.abc import Callable, Iterator, Mapping
 

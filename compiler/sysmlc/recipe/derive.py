@@ -86,7 +86,7 @@ def _derive_task(task: Task, tables: Tables) -> Derived | None:
 
 
 def _list_sub_tasks(task: Task, graph: FlowGraph, tables: Tables) -> tuple[SubTask, ...]:
-    """Return the service nodes with their alternatives and the nearest service nodes before."""
+    """Return the sub-tasks of the service nodes, with their alternatives and predecessors."""
     allowed = {machine for mode in task.equipment for machine in mode.machines}
     edges = forward_edges(graph)
     nodes = [node for node in graph.nodes if tables.service(node) is not None]
@@ -114,7 +114,7 @@ def _list_alternatives(node: Node, allowed: set[str], tables: Tables) -> tuple[M
 def _find_predecessors(
     node: str, steps: set[str], edges: Iterable[tuple[str, str]]
 ) -> tuple[str, ...]:
-    """Return the nearest steps with a path to *node*."""
+    """Return the steps from which *node* is reachable without a step between."""
     backwards = [(b, a) for a, b in edges if b == node or b not in steps]
     return tuple(sorted((find_reachable([node], backwards) & steps) - {node}))
 
@@ -167,7 +167,7 @@ def _collect_functions(graph_id: str, tables: Tables, visited: set[str]) -> list
 
 
 def find_modes(node: Node, resource: str, tables: Tables) -> set[str]:
-    """Return how the service of a node uses a resource, as seen from outside the service.
+    """Return the modes in which the service of a node uses a resource, for other services.
 
     A service that acquires and releases a resource only uses it.
     """
@@ -179,7 +179,7 @@ def find_modes(node: Node, resource: str, tables: Tables) -> set[str]:
 def _iter_groups(
     graph: FlowGraph, tables: Tables, resource: str
 ) -> Iterator[tuple[list[str], list[str]]]:
-    """Iterate over the groups, one for each node that acquires the resource: nodes and reasons."""
+    """Yield a group of nodes, with its reasons, for each node that acquires the resource."""
     modes_by_node = {node.id: find_modes(node, resource, tables) for node in graph.nodes}
     edges = [(edge.source, edge.target) for edge in graph.edges]
     releasing = {id for id, modes in modes_by_node.items() if "release" in modes}
@@ -223,7 +223,7 @@ def node_range(node: Node, tables: Tables, machines: tuple[str, ...] = ()) -> Ra
 
 
 def service_range(service: Service, tables: Tables, machines: tuple[str, ...] = ()) -> Range | None:
-    """Return the duration of a service: by its providers, else its own, else by its functions."""
+    """Return the duration that the providers, or else the service, or else its functions state."""
     providers = [provider for provider in service.providers if provider.machine in machines]
     providers = providers or list(service.providers)
     known = [provider.duration for provider in providers if provider.duration is not None]

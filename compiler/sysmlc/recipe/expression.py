@@ -27,7 +27,7 @@ from sysmlc.recipe.model import EnumType, Scalar, ValueType
 
 @dataclass(frozen=True, slots=True)
 class Opaque(Name):
-    """Text outside the expression grammar, for people; executors cannot evaluate it."""
+    """Text outside the expression grammar, for human readers; executors cannot evaluate it."""
 
 
 def make_variable(name: str) -> Name:

@@ -64,7 +64,7 @@ def find_cycles(nodes: Iterable[str], edges: Iterable[tuple[str, str]]) -> list[
 
 
 def forward_edges(graph: FlowGraph) -> list[tuple[str, str]]:
-    """Return the edges without back edges, those that lead to the entry of a cycle."""
+    """Return the edges without back edges. A back edge leads to the entry of its cycle."""
     nodes = [node.id for node in graph.nodes]
     edges = list(dict.fromkeys((e.source, e.target) for e in graph.edges))
     # Without the back edges of a cycle the cycles inside it are components of their own.
@@ -148,7 +148,7 @@ class _Clock(Struct, frozen=True):
     def _run_cycle(
         self, head: str, cycle: list[str], edges: _Edges, start: _Span
     ) -> dict[str, _Span]:
-        """Return the spans in a cycle entered at *head*: full rounds, then one to the exit."""
+        """Return the spans of the nodes of a cycle entered at *head*, with all its rounds."""
         inside = set(cycle)
         inner = [(a, b) for a, b in edges if a in inside and b in inside and b != head]
         one_round = self.run(cycle, inner, [head])
@@ -195,7 +195,7 @@ def _iter_components(ids: Iterable[str], edges: _Edges) -> Iterator[tuple[list[s
 
 
 def _combine(node: Node, arrivals: list[_Span]) -> _Span:
-    """Return the span in which a node begins: after all arrivals, or after the first one."""
+    """Return the span in which a node begins: after all incoming edges, or after the first."""
     is_waiting = node.kind == "join" or node.kind in STEPS
     choose = max if is_waiting else min
     return _Span(choose(a.earliest for a in arrivals), _maximum(a.latest for a in arrivals))
@@ -304,7 +304,7 @@ def _make_loop_node(
 
 
 def _repeat_condition(outgoing: list[FlowEdge]) -> Expression:
-    """Return the condition of another round, from the guards of the body edges or of the exits."""
+    """Return the condition of another round: a body guard holds, or else no exit guard does."""
     body = [edge for edge in outgoing if edge.role == "body"]
     if any(edge.is_else or edge.guard is None for edge in body):
         exits = [edge.guard for edge in outgoing if edge.role == "exit" and edge.guard is not None]

@@ -206,7 +206,7 @@ class Provider(Struct, frozen=True):
 
 
 class Service(Struct, frozen=True):
-    """A machine service or an infrastructure service (thesis 3.5.2)."""
+    """A service of a machine or of the infrastructure, such as a database (thesis 3.5.2)."""
 
     id: str
     kind: OneOf["machine", "infrastructure"]

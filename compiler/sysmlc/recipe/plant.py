@@ -121,7 +121,7 @@ class Plant:
         return {_normalise_id(id): item for id, item in self.elements.items()}
 
     def class_ids(self, block: Element) -> frozenset[str]:
-        """Return the ids of ``classes`` of a block."""
+        """Return the ids of a block, its generals, and the role classes that these realise."""
         if block.id not in self._class_ids:
             self._class_ids[block.id] = frozenset(item.id for item in self.classes(block))
         return self._class_ids[block.id]
@@ -153,7 +153,7 @@ class Plant:
             element = self.graph.owner(element)
 
     def _find_owner(self, element: Element) -> PlantElement | None:
-        """Return the InternalElement that *element* represents, or whose own class it is."""
+        """Return the InternalElement that *element* represents, also as its own class, or None."""
         candidates = self._by_graph_id.get(element.id, [])
         if not candidates and element.subkind == "internal-element":
             candidates = [
