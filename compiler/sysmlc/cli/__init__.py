@@ -1,4 +1,4 @@
-"""The command line: one module a command, no logic; heavy imports inside the commands."""
+"""The command line: one module for each command, which imports what it needs when it runs."""
 
 import gc
 import sys
@@ -10,24 +10,20 @@ if TYPE_CHECKING:
     from sysmlc.cli.supervisor import SharedState
 
 _NEW_OBJECTS = 200_000
-"""New objects before the garbage collector looks for cycles: a compilation makes hardly any."""
+"""New objects that start the garbage collector; a compilation creates hardly any cycles."""
 
 
 def main() -> None:
-    """Run the command ``sysmlc`` in a child process, which ends when it reaches a limit.
-
-    The fork comes before the imports, which would make it slow.
-    """
+    """Run the command ``sysmlc`` in a child process, which ends when it reaches a limit."""
+    # The fork comes before the imports: forking a large process takes longer.
     if can_supervise():
         supervise(_run)
     _run(None)
 
 
 def _run(shared: "SharedState | None") -> NoReturn:
-    """Run the command line in this process, with limits if a parent process shares memory.
-
-    Imports make objects too, so the threshold of the garbage collector is set before them.
-    """
+    """Run the command line in this process, with limits if a parent process shares memory."""
+    # Set before the imports, which create objects too.
     gc.set_threshold(_NEW_OBJECTS)
     from sysmlc.cli.group import main as run
     from sysmlc.cli.limits import LIMITS

@@ -1,4 +1,4 @@
-"""``sysmlc backends``: what can be emitted."""
+"""``sysmlc backends``: list the back ends."""
 
 import click
 

@@ -54,7 +54,7 @@ def command(
     output: Path | None,
     check_only: bool,
     is_forced: bool,
-    **given: Any,  # noqa: ANN401 - the fields of Settings
+    **setting_values: Any,  # noqa: ANN401 - the fields of Settings
 ) -> None:
     """Compile MODEL... (files or folders) and write what changed to the output folder.
 
@@ -66,7 +66,7 @@ def command(
     from sysmlc.driver import publish
 
     _check_command_word(models)
-    settings = session.Settings(**given)
+    settings = session.Settings(**setting_values)
     config = session.load_config(models, settings)
     units = open_units(models, config, settings, output)
     outcomes = session.compile_units(units, settings)
@@ -93,7 +93,7 @@ def command(
 
 
 def _check_command_word(models: tuple[Path, ...]) -> None:
-    """``sysmlc chekc plant.uml``: no file was meant."""
+    """Suggest a command if the first model looks like a misspelt one, as in ``sysmlc chekc``."""
     from sysmlc.cli.group import COMMANDS
 
     word = str(models[0]) if models else ""
@@ -133,7 +133,7 @@ def _summarise(outcome: "Outcome", folder: Path, changed: int) -> str:
 
 
 def _report_leftovers(units: "Sequence[Unit]") -> int:
-    """Mention output folders that no unit has any more, and return 1 if there are some, else 0."""
+    """Print output folders that no longer belong to a unit; return 1 if there are any, else 0."""
     from sysmlc.cli.units import find_leftover_outputs
 
     folders = find_leftover_outputs(units)

@@ -1,4 +1,4 @@
-"""``sysmlc check``: the findings, and nothing written."""
+"""``sysmlc check``: print the findings about models; write nothing."""
 
 from pathlib import Path
 from typing import Any
@@ -27,17 +27,17 @@ def command(
     ctx: click.Context,
     /,
     models: tuple[Path, ...],
-    **given: Any,  # noqa: ANN401 - the fields of Settings
+    **setting_values: Any,  # noqa: ANN401 - the fields of Settings
 ) -> None:
     """Compile MODEL... in memory and report what is wrong, as 'build' would."""
     from sysmlc.cli import reports, session
     from sysmlc.cli.units import open_units
 
-    settings = session.Settings(**given, uses_shipped_templates=True)
+    settings = session.Settings(**setting_values, uses_shipped_templates=True)
     config = session.load_config(models, settings)
     units = open_units(models, config, settings, None)
-    made = session.compile_units(units, settings, has_files=False)
-    reports.report_outcomes(made, settings)
-    if settings.form == "text" and not any(outcome.findings for outcome in made):
+    outcomes = session.compile_units(units, settings, has_files=False)
+    reports.report_outcomes(outcomes, settings)
+    if settings.form == "text" and not any(outcome.findings for outcome in outcomes):
         click.echo("no findings", err=True)
-    ctx.exit(reports.exit_code_of_all(units, made, settings))
+    ctx.exit(reports.exit_code_of_all(units, outcomes, settings))

@@ -1,4 +1,4 @@
-"""Contracts of a file: a model, one of our contract files, or a specification of another tool."""
+"""Read contracts: of a model, a contract file, or a specification of another tool."""
 
 import re
 from pathlib import Path
@@ -25,7 +25,7 @@ _PLACE = re.compile(r"(?P<file>.*):(?P<line>\d+):(?P<column>\d+)")
 
 
 class ContractFile(Struct, frozen=True):
-    """The contracts of a file, with a function that locates diagnostics about them."""
+    """The contracts of a file; ``place`` returns the location of an origin for diagnostics."""
 
     contracts: "tuple[Contract, ...]"
     composites: "tuple[Composite, ...]"
@@ -131,7 +131,10 @@ def _read_specification(file: Path, language: str, config: "Config") -> Contract
 
 
 def _read_part_file(file: Path, formula: bytes) -> str:
-    """Return the variables in the ``.part`` file beside a formula that lists none itself."""
+    """Return the text of the ``.part`` file that declares the variables of an ``.ltl`` file.
+
+    The result is empty if the formula declares its variables itself.
+    """
     from sysmlc.config import find_project_root
     from sysmlc.sources import Roots
     from sysmlc.sources.files import read_whole
@@ -140,6 +143,7 @@ def _read_part_file(file: Path, formula: bytes) -> str:
     parts = file.with_suffix(".part")
     if file.suffix != ".ltl" or re.search(rb"^\s*\.(in|out)puts\b", formula, re.MULTILINE):
         return ""
+    # A link in an untrusted project must not lead to a file outside of it.
     if not parts.is_file() or not Roots((find_project_root(file),)).allows(parts):
         return ""
     content = read_whole(parts, parts.as_posix(), DOCUMENT_LIMITS)

@@ -49,7 +49,7 @@ def check_command(
     output: Path | None,
     language: str,
     seconds: float,
-    **given: Any,  # noqa: ANN401 - the fields of Settings
+    **setting_values: Any,  # noqa: ANN401 - the fields of Settings
 ) -> None:
     """Check the contracts in FILE, a model or a contract.
 
@@ -64,13 +64,15 @@ def check_command(
     from sysmlc.synthesis import Limits
     from sysmlc.synthesis.decision import Options
 
-    settings = session.Settings(**given)
+    settings = session.Settings(**setting_values)
     config = session.load_config((file,), settings)
     progress = Progress(settings.verbose)
-    read = read_contracts(file, language, config, settings)
+    contract_file = read_contracts(file, language, config, settings)
     limits = Limits(seconds=seconds)
     try:
-        ctx.exit(_check(read, component, settings, Options("", limits, progress.note), output))
+        ctx.exit(
+            _check(contract_file, component, settings, Options("", limits, progress.note), output)
+        )
     except ImportError as problem:
         session.fail(f"the library of decision diagrams cannot be loaded: {problem}")
     finally:
@@ -78,7 +80,7 @@ def check_command(
 
 
 def _check(
-    read: "ContractFile",
+    contract_file: "ContractFile",
     component: str,
     settings: "Settings",
     options: "Options",
@@ -92,11 +94,21 @@ def _check(
     from sysmlc.synthesis.witnesses import witness_files
 
     contracts = (
-        select_contracts(read.contracts, component, read.composites) if read.contracts else ()
+        select_contracts(contract_file.contracts, component, contract_file.composites)
+        if contract_file.contracts
+        else ()
     )
-    composites = [contract for contract in read.composites if component in ("", contract.component)]
-    alone = list(check_contracts(contracts, read.contracts, read.place, read.sink, options))
-    together = list(check_compositions(composites, read.place, read.sink, options))
+    composites = [
+        contract for contract in contract_file.composites if component in ("", contract.component)
+    ]
+    alone = list(
+        check_contracts(
+            contracts, contract_file.contracts, contract_file.place, contract_file.sink, options
+        )
+    )
+    together = list(
+        check_compositions(composites, contract_file.place, contract_file.sink, options)
+    )
     if output is not None:
         runs = [
             *(contract.witnesses for contract in alone),
@@ -104,12 +116,14 @@ def _check(
         ]
         write_files(witness_files(run for some in runs for run in some), output)
     show_results(
-        read, settings, (*map(_format_line, alone), *(result.text() for result in together))
+        contract_file,
+        settings,
+        (*map(_format_line, alone), *(result.text() for result in together)),
     )
     is_undecided = any(result.verdict.is_realizable is None for result in alone)
-    diagnostics = (*read.sink, *(finding.diagnostic for finding in read.findings))
+    diagnostics = (*contract_file.sink, *(finding.diagnostic for finding in contract_file.findings))
     has_errors = any(diagnostic.severity is Severity.ERROR for diagnostic in diagnostics)
-    is_done = read.is_whole and not is_undecided and bool(alone or together)
+    is_done = contract_file.is_whole and not is_undecided and bool(alone or together)
     return int(has_errors) if is_done else 2
 
 

@@ -1,4 +1,4 @@
-"""``sysmlc coverage``: what became of every element of the models."""
+"""``sysmlc coverage``: count which elements of the models are read."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -74,12 +74,12 @@ def command(
 
 
 def _report_errors(coverage: "UnitCoverage") -> int:
-    """Print the errors of reading, and return the exit code."""
+    """Print the errors found while reading; return the exit code."""
     from sysmlc.cli import reports, session
     from sysmlc.diagnostics.renderers import make_report
     from sysmlc.driver import faults
 
-    errors = [errors_found for errors_found in coverage.diagnostics if errors_found.is_error]
+    errors = [diagnostic for diagnostic in coverage.diagnostics if diagnostic.is_error]
     if errors:
         shown = reports.localize(coverage.root, make_report(errors, coverage.sources).findings)
         reports.print_findings(shown, session.Settings())
@@ -105,6 +105,7 @@ def _print(files: "Sequence[FileReport]", form: str, every: bool) -> None:
         text = coverage.render_text(files, color=has_color(sys.stdout), with_all_losses=every)
     else:
         text = coverage.FORMATS[form](files)
+    # has_color has decided; without color=True click would decide again.
     click.echo(text, nl=False, color=True)
 
 

@@ -1,4 +1,4 @@
-"""``sysmlc diff``: what changed between two models."""
+"""``sysmlc diff``: list the differences between two models."""
 
 import os
 import sys
@@ -46,7 +46,7 @@ def command(
     new: Path,
     ignore: tuple[str, ...],
     form: str,
-    **given: Any,  # noqa: ANN401 - the fields of Settings
+    **setting_values: Any,  # noqa: ANN401 - the fields of Settings
 ) -> None:
     """Compare OLD and NEW (files or folders, of any format) as they are written.
 
@@ -59,7 +59,7 @@ def command(
     from sysmlc.ir import Graph
     from sysmlc.ir.compare import compare
 
-    settings = session.Settings(**given)
+    settings = session.Settings(**setting_values)
     sides = [_read(path, settings) for path in (old, new)]
     compilations = [compilation for side in sides for compilation in side.values()]
     unread = [compilation for compilation in compilations if _is_unread(compilation)]
@@ -80,7 +80,7 @@ def command(
 
 
 def _read(path: Path, settings: "Settings") -> "dict[str, Compilation]":
-    """Read the units of a model by the path of their first file below *path*."""
+    """Read the compile units of a model; the key is the path of their first file below *path*."""
     from sysmlc.cli import session
     from sysmlc.cli.units import open_named_units
 
@@ -97,13 +97,14 @@ def _pair_units(
     old: "dict[str, Compilation]", new: "dict[str, Compilation]"
 ) -> "list[tuple[Compilation | None, Compilation | None]]":
     """Pair the units of both sides; a unit without a counterpart was added or removed."""
+    # Two single units are compared whatever their files are called.
     if len(old) == len(new) == 1:
         return list(zip(old.values(), new.values(), strict=True))
     return [(old.get(path), new.get(path)) for path in sorted(old.keys() | new.keys())]
 
 
 def _is_unread(compilation: "Compilation") -> bool:
-    """Whether an input gave no element at all; errors inside a file do not prevent a comparison."""
+    """Whether an input yielded no element; other errors in a file do not prevent a comparison."""
     read = {element.source.partition("!")[0] for element in compilation.graph}
     return not compilation.is_complete and not (
         compilation.inputs and all(i.path in read for i in compilation.inputs)
@@ -111,7 +112,7 @@ def _is_unread(compilation: "Compilation") -> bool:
 
 
 def _check_ignored(ignore: tuple[str, ...], compilations: "list[Compilation]") -> None:
-    """Refuse words that match no element or attribute of any model; they are probably misspelt."""
+    """Raise BadParameter for a word that names nothing in the models: it is probably misspelt."""
     from sysmlc.ir.compare.content import ignorable_words
     from sysmlc.support.suggestions import did_you_mean
 
@@ -149,7 +150,7 @@ def _text(changes: "list[Change]", form: str, sides: "list[dict[str, Compilation
 def _locate(
     changes: "Iterable[Change]", sides: "list[dict[str, Compilation]]", side: int
 ) -> "Mapping[Place, Place]":
-    """Return lines and columns of the changes, in the old or in the new model."""
+    """Return the lines and columns of the changes in the model at index *side*."""
     from sysmlc.diagnostics import Place
     from sysmlc.driver.locations import Locator
 

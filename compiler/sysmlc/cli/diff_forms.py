@@ -1,4 +1,4 @@
-"""The forms of ``sysmlc diff``: text, Markdown, JSON."""
+"""Output formats of ``sysmlc diff``: text, Markdown, JSON."""
 
 import json
 import re
@@ -15,13 +15,13 @@ from sysmlc.support.escapes import escape_invisible, escape_markdown
 
 _SIGNS = {What.ADDED: "+", What.REMOVED: "-"}
 _COLORS = {"+": "green", "-": "red", "~": "yellow"}
-_WIDEST = 160
-_BEFORE = 40
-_NOWHERE = "(model)"
+_MAX_LENGTH = 160
+_CONTEXT_LENGTH = 40
+_NO_OWNER = "(model)"
 
 
 def format_text(changes: Sequence[Change], *, color: bool = False) -> str:
-    """Return a block for each owner, and then the number of changes of each kind."""
+    """Return a block of changes for each owner, and the number of changes of each kind."""
     blocks = [
         "\n".join([_paint(owner, color, bold=True), *_format_change(group, color=color)])
         for owner, group in _group_by_owner(changes)
@@ -31,7 +31,7 @@ def format_text(changes: Sequence[Change], *, color: bool = False) -> str:
 
 def _group_by_owner(changes: Iterable[Change]) -> Iterator[tuple[str, list[Change]]]:
     for owner, group in groupby(changes, key=lambda change: change.owner):
-        yield owner or _NOWHERE, list(group)
+        yield owner or _NO_OWNER, list(group)
 
 
 def _format_change(changes: Iterable[Change], *, color: bool) -> Iterator[str]:
@@ -53,7 +53,7 @@ def _phrase(change: Change) -> str:
     if change.what is What.RENAMED:
         return f"renamed, was {before or '(none)'}"
     if change.what is What.MOVED:
-        return f"moved, was in {before or _NOWHERE}"
+        return f"moved, was in {before or _NO_OWNER}"
     phrase = f"{before or '(none)'} => {after or '(none)'}"
     if change.what is What.REORDERED:
         return f"reordered, {phrase}"
@@ -66,18 +66,18 @@ def _list_contents(change: Change, phrase: str) -> str:
 
 
 def excerpt_pair(before: str, after: str) -> tuple[str, str]:
-    """Return both texts, or if they are long only the surroundings of their first difference."""
-    if max(len(before), len(after)) <= _WIDEST:
+    """Return both texts; if one is long, return excerpts around their first difference."""
+    if max(len(before), len(after)) <= _MAX_LENGTH:
         return before, after
     same = next((i for i, (a, b) in enumerate(zip(before, after, strict=False)) if a != b), 0)
-    start = max(0, same - _BEFORE)
+    start = max(0, same - _CONTEXT_LENGTH)
     return _cut(before, start), _cut(after, start)
 
 
 def _cut(whole: str, start: int) -> str:
     head = "..." if start and whole else ""
-    tail = "..." if len(whole) > start + _WIDEST else ""
-    return f"{head}{whole[start : start + _WIDEST]}{tail}"
+    tail = "..." if len(whole) > start + _MAX_LENGTH else ""
+    return f"{head}{whole[start : start + _MAX_LENGTH]}{tail}"
 
 
 def count_changes(changes: Sequence[Change]) -> str:
@@ -93,7 +93,7 @@ def count_changes(changes: Sequence[Change]) -> str:
 
 
 def format_markdown(changes: Sequence[Change]) -> str:
-    """Return a summary, and a table for each owner."""
+    """Return a summary and a table of changes for each owner, in Markdown."""
     blocks = [f"**{count_changes(changes)}**"]
     for owner, group in _group_by_owner(changes):
         rows = [f"| {' | '.join(_format_cells(change))} |" for change in group]
@@ -166,11 +166,11 @@ def _row(
 def _ref(ref: Ref | None, places: Mapping[Place, Place]) -> dict[str, object] | None:
     if ref is None:
         return None
-    at = places.get(Place(ref.file, ref.ordinal))
+    place = places.get(Place(ref.file, ref.ordinal))
     return {
         "id": ref.id,
         "qualified_name": ref.qualified_name,
         "file": ref.file,
-        "line": at.line if at else 0,
-        "column": at.column if at else 0,
+        "line": place.line if place else 0,
+        "column": place.column if place else 0,
     }

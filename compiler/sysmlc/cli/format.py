@@ -1,4 +1,4 @@
-"""``sysmlc format``: files in KerML and SysML v2 in canonical layout."""
+"""``sysmlc format``: rewrite files in KerML and SysML v2 in canonical layout."""
 
 import difflib
 import os
@@ -20,9 +20,9 @@ _WRITABLE = 0o222
 
 
 class _Text(Struct, frozen=True):
-    """A file, or standard input (no path), with its text and its formatted text.
+    """The text of a file before and after formatting.
 
-    The formatted text is None if the text has syntax errors.
+    ``path`` is None for standard input, ``after`` is None if the text has syntax errors.
     """
 
     name: str
@@ -99,7 +99,7 @@ def _expand(files: tuple[Path, ...]) -> Iterator[Path]:
 def _list_folder(folder: Path) -> list[Path]:
     """Return the files in *folder* to lay out, sorted; hidden folders are skipped.
 
-    Links out of the folder are skipped too: they would rewrite a file that nobody named.
+    Links out of the folder are skipped too, so that no file outside of the folder is rewritten.
     """
     from sysmlc.cli.session import fail
     from sysmlc.sources import Roots
@@ -123,6 +123,7 @@ def _read(path: Path, language: str | None) -> _Text:
     try:
         if name == "-":
             limit = DEFAULT_LIMITS.file_size
+            # One byte above the limit shows that the input is too long.
             content = sys.stdin.buffer.read(limit + 1)
             if len(content) > limit:
                 fail(f"standard input has more than {limit} bytes")
@@ -146,7 +147,7 @@ def _find_language(path: Path, language: str | None) -> str:
 
 
 def _format(name: str, path: Path | None, data: bytes, language: str) -> _Text:
-    """Return the formatted text, or the findings of the parser."""
+    """Format a text; the result has the findings of the parser if there are syntax errors."""
     from sysmlc.diagnostics import Sink
     from sysmlc.diagnostics.renderers import make_report
     from sysmlc.language.formatter import format_text
@@ -187,12 +188,13 @@ def _write(texts: list[_Text]) -> None:
 
 
 def _replace(target: Path, name: str, content: str) -> None:
-    """Write a file with the permissions that it has; a read-only file is an error."""
+    """Replace the content of a file and preserve its permissions; exit if it is read-only."""
     from sysmlc.cli.session import fail
     from sysmlc.support.atomic_files import write
 
     try:
         mode = target.stat().st_mode
+        # Replacing the file would succeed, because it needs permissions of the folder only.
         if not mode & _WRITABLE:
             fail(f"{name} is read-only")
         write(target, content.encode())

@@ -1,4 +1,4 @@
-"""The command ``sysmlc``: finds the command word, or compiles when there is none."""
+"""The command ``sysmlc``: run the named command, or ``build`` if none is named."""
 
 import sys
 from collections.abc import Callable
@@ -35,7 +35,7 @@ _T = TypeVar("_T")
 
 
 class _Commands(click.Group):
-    """Commands that are imported when they are called; ``build`` when none is named."""
+    """Commands that are imported when they are called; ``build`` is the default command."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         return list(COMMANDS)
@@ -53,10 +53,11 @@ class _Commands(click.Group):
         return super().parse_args(ctx, args)
 
     def invoke(self, ctx: click.Context) -> object:
-        """Ctrl-C is neither a wrong model (1) nor our failure (2)."""
+        """Run the command; exit with code 130 after Ctrl-C."""
         try:
             return super().invoke(ctx)
         except KeyboardInterrupt:
+            # 128 + SIGINT, as in shells: neither an error in the model (1) nor a failure (2).
             ctx.exit(130)
 
 
@@ -82,11 +83,13 @@ def sysmlc() -> None:
 
 
 def main() -> None:
-    """Run the command line; a fault of our own is one sentence and exit code 2."""
+    """Run the command line; an internal fault is reported in one sentence, with exit code 2."""
     terminal.open_streams()
     try:
         run_guarded(sysmlc, prog_name="sysmlc")
     except SystemExit as end:
+        # Profilers and coverage tools save their data when the interpreter ends, which
+        # ``terminal.leave`` skips.
         is_measured = sys.gettrace() or sys.getprofile()
         if isinstance(end.code, int) and (not is_measured or terminal.find_stream_problems()):
             terminal.leave(end.code)
@@ -94,12 +97,13 @@ def main() -> None:
 
 
 def run_guarded(run: Callable[_P, _T], *args: _P.args, **kwargs: _P.kwargs) -> _T:
-    """Run a command; end an internal fault with one sentence and exit code 2."""
+    """Run a command; report an internal fault in one sentence and exit with code 2."""
     try:
         return run(*args, **kwargs)
     except RecursionError:
         fault = "the model is nested too deeply"
     except MemoryError:
+        # The report allocates memory, which would fail again under the limit.
         LIMITS.release_memory()
         report_memory_limit(LIMITS.gibibytes)
         sys.exit(OUT_OF_MEMORY if LIMITS.is_enforced else 2)

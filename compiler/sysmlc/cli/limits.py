@@ -17,13 +17,14 @@ import click
 from sysmlc.cli.supervisor import SharedState
 
 DEFAULT_SECONDS = 300.0
+# As much as CUDD had by default (decision 41).
 DEFAULT_GIBIBYTES = 8.0
 _GIBIBYTE = 1 << 30
 _OWN_MEMORY = 256 << 20
-"""Bytes that the interpreter and the libraries take in any command; the limit comes on top."""
-_HIGHEST = 1_000_000_000
-_SHORTEST = 0.001
-"""A timer of 0 s would be no timer."""
+"""Bytes that the interpreter and libraries need in any command; the limit excludes them."""
+_MAX_AMOUNT = 1_000_000_000
+_MIN_SECONDS = 0.001
+"""The shortest timer in seconds: setitimer with 0 would switch the timer off."""
 
 
 class Limits:
@@ -39,11 +40,11 @@ class Limits:
 
     @property
     def is_enforced(self) -> bool:
-        """Whether a parent process reports that this process has reached a limit."""
+        """Whether a parent process enforces the limits and reports that one was reached."""
         return self._shared is not None
 
     def enforce(self, shared: SharedState) -> None:
-        """Enforce limits in this process from now on; *shared* is read by the parent process."""
+        """Enforce the limits in this process from now on; the parent process reads *shared*."""
         self._shared = shared
         self._start = time.monotonic()
         # A parent process may have left SIGALRM ignored or blocked.
@@ -62,16 +63,19 @@ class Limits:
         self._set(*self._options)
 
     def lower(self, seconds: float, gibibytes: float) -> None:
-        """Lower the limits to those of a configuration, which cannot raise them; 0 is no limit."""
+        """Lower the limits to those of a configuration; 0 is no limit.
+
+        A configuration cannot raise the limits of the command line, because it may be untrusted.
+        """
         self._set(_lower(self.seconds, seconds), _lower(self.gibibytes, gibibytes))
 
     def stop_timer(self) -> None:
-        """End the time limit: from now on the command waits for its user."""
+        """Stop the timer; from now on the command waits for its user."""
         self._is_timed = False
         self._set(self.seconds, self.gibibytes)
 
     def has_ended_build(self, input_digest: int) -> bool:
-        """Return whether a limit has ended a build of inputs in this state, in an earlier child."""
+        """Return whether an earlier child process reached a limit with the same inputs."""
         return self._shared is not None and self._shared.input_digest == input_digest
 
     @contextmanager
@@ -87,7 +91,10 @@ class Limits:
 
     @contextmanager
     def apply_to_block(self) -> Iterator[None]:
-        """Apply the limits to the work of the block, which may read configurations anew."""
+        """Apply the limits to the block, starting from the limits of the command line.
+
+        The block may read the configuration again and lower the limits.
+        """
         self._start, self._is_timed = time.monotonic(), True
         self._set(*self._options)
         try:
@@ -100,7 +107,7 @@ class Limits:
         if self._shared is None:
             return
         self._shared.time_limit = seconds
-        remaining = max(seconds - (time.monotonic() - self._start), _SHORTEST)
+        remaining = max(seconds - (time.monotonic() - self._start), _MIN_SECONDS)
         is_limited = self._is_timed and seconds
         signal.setitimer(signal.ITIMER_REAL, remaining if is_limited else 0)
         _set_memory_limit(int(gibibytes * _GIBIBYTE) + _OWN_MEMORY if gibibytes else None)
@@ -112,12 +119,12 @@ class Limits:
 
 
 def _lower(limit: float, other: float) -> float:
-    """Return the lower of two limits, of which 0 is none."""
+    """Return the lower of two limits; 0 is no limit."""
     return min(limit, other) if limit and other else limit or other
 
 
 LIMITS = Limits()
-"""Limits concern the whole process, hence one object for it."""
+"""The limits of this process; the operating system has one timer and one limit for each."""
 
 
 def list_missing_limits() -> list[str]:
@@ -154,8 +161,8 @@ def add_limit_options(command: click.Command) -> None:
 
 def check_amount(_ctx: click.Context, _param: click.Parameter, value: float) -> float:
     """Return *value*, seconds or GiB, if it is a finite number from 0 on; 0 is no limit."""
-    if not 0 <= value <= _HIGHEST:
-        raise click.BadParameter(f"{value} is not from 0 to {_HIGHEST:,}")
+    if not 0 <= value <= _MAX_AMOUNT:
+        raise click.BadParameter(f"{value} is not from 0 to {_MAX_AMOUNT:,}")
     return value
 
 

@@ -15,7 +15,7 @@ _F = TypeVar("_F", bound=Callable[..., object])
 def split_names(
     _ctx: click.Context, _param: click.Parameter, values: tuple[str, ...]
 ) -> tuple[str, ...]:
-    """Return the names that a repeated option lists, separated by commas in each of its values."""
+    """Return the names in the values of a repeated option; commas separate the names."""
     return tuple(part.strip() for value in values for part in value.split(",") if part.strip())
 
 
@@ -27,7 +27,7 @@ def models(required: bool = False) -> Callable[[_F], _F]:
 
 
 def folder(help: str) -> Callable[[_F], _F]:
-    """The option ``-o``: the folder for what a command writes besides its report."""
+    """The option ``-o``: the folder for files that a command writes besides its report."""
     return click.option(
         "-o",
         "--output",
@@ -52,7 +52,7 @@ def question_limit(default: float) -> Callable[[_F], _F]:
 
 
 def _note_missing_limits(_ctx: click.Context, _param: click.Parameter, value: bool) -> bool:
-    """Print which limits this system does not enforce if *value*, the option ``-v``, is given."""
+    """With the option ``-v`` (*value*), print the limits that this system does not enforce."""
     missing = list_missing_limits()
     if value and missing:
         click.echo(f"note: this system does not enforce {' and '.join(missing)}", err=True)
@@ -60,6 +60,7 @@ def _note_missing_limits(_ctx: click.Context, _param: click.Parameter, value: bo
 
 
 def _apply(options: list[Callable[[_F], _F]], function: _F) -> _F:
+    # Decorators are applied from the last to the first; ``--help`` lists the options in order.
     for option in reversed(options):
         function = option(function)
     return function
@@ -86,7 +87,7 @@ def configuration(function: _F) -> _F:
 
 
 def reading(function: _F) -> _F:
-    """Options on how models are read and refined."""
+    """Options for reading and refining models."""
     return _apply(
         [
             configuration,
@@ -132,7 +133,7 @@ def reading(function: _F) -> _F:
 
 
 def reporting(function: _F) -> _F:
-    """Options on how findings are shown and counted."""
+    """Options for printing findings and for the exit code."""
     return _apply(
         [
             click.option(
@@ -146,7 +147,7 @@ def reporting(function: _F) -> _F:
             click.option("--strict", is_flag=True, help="Warnings make the exit code 1 too."),
             click.option(
                 "--max-diagnostics",
-                "most",
+                "max_diagnostics",
                 type=click.IntRange(min=0),
                 metavar="N",
                 help="Show at most N findings, the worst; 0 shows all."
@@ -158,7 +159,7 @@ def reporting(function: _F) -> _F:
 
 
 def emitting(function: _F) -> _F:
-    """Options on what is made."""
+    """Options that select the outputs."""
     return _apply(
         [
             click.option(
@@ -181,7 +182,7 @@ def emitting(function: _F) -> _F:
 
 
 def templates(function: _F) -> _F:
-    """The option ``--templates``; ``check`` has none, for it uses the shipped templates only."""
+    """The option ``--templates``; ``check`` lacks it, because it uses shipped templates only."""
     return click.option(
         "--templates",
         type=click.Path(path_type=Path, file_okay=False),

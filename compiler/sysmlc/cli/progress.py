@@ -1,4 +1,4 @@
-"""The progress of a compilation, shown on terminals when it takes more than a second."""
+"""Progress of a compilation, shown on terminals if the compilation takes over a second."""
 
 import sys
 import time
@@ -13,13 +13,13 @@ from sysmlc.driver import Observer
 if TYPE_CHECKING:
     from sysmlc.ir import Graph
 
-_PATIENCE = 1.0
-"""Seconds without a bar."""
-_WIDTH = 24
+_DELAY = 1.0
+"""Seconds before the bar appears."""
+_BAR_WIDTH = 24
 
 
 class Progress(Observer):
-    """Draws a bar on standard error, prints the graphs of ``--print-after``, stores tracebacks."""
+    """Draws a bar on standard error; prints the graphs of ``--print-after`` and tracebacks."""
 
     def __init__(
         self,
@@ -35,20 +35,20 @@ class Progress(Observer):
         self._drawn = False
 
     def step(self, description: str, number: int, total: int) -> None:
-        """Draw the bar, or with ``-v`` print the step."""
+        """Draw the bar; with ``-v``, print the step instead."""
         passed = self._clock() - self._start
         if self._verbose:
             terminal.echo(f"{passed:7.2f} s  {description}", err=True)
-        elif self._on_terminal and passed > _PATIENCE:
-            filled = _WIDTH * number // max(total, 1)
-            bar = "#" * filled + "-" * (_WIDTH - filled)
+        elif self._on_terminal and passed > _DELAY:
+            filled = _BAR_WIDTH * number // max(total, 1)
+            bar = "#" * filled + "-" * (_BAR_WIDTH - filled)
             click.echo(f"\r[{bar}] {description:<30}", nl=False, err=True)
             self._drawn = True
 
     def note(self, description: str) -> None:
-        """Show a step of work of unknown length."""
+        """Show a step whose share of the work is unknown."""
         passed = self._clock() - self._start
-        if self._on_terminal and passed > _PATIENCE:
+        if self._on_terminal and passed > _DELAY:
             click.echo(f"\r{passed:7.0f} s  {description:<50}", nl=False, err=True)
             self._drawn = True
 
@@ -78,5 +78,6 @@ class Progress(Observer):
     def clear(self) -> None:
         """Remove the bar before other text is printed."""
         if self._drawn:
+            # Return to the start of the line and erase it (ECMA-48, EL).
             click.echo("\r\x1b[K", nl=False, err=True)
             self._drawn = False

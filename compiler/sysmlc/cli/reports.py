@@ -20,16 +20,16 @@ if TYPE_CHECKING:
 
 
 _DEFAULT_LIMIT = 1_000
-"""Findings that a reader is shown unless all are asked for: nobody reads more at once."""
+"""The largest number of findings that are printed for people by default."""
 _FORMS_ON_STDOUT = frozenset({"json", "sarif", "github"})
 
 
 def report_outcomes(
     outcomes: "Iterable[Outcome]", settings: "Settings", publications: "Iterable[Publication]" = ()
 ) -> None:
-    """Print the findings of all outcomes, and those about their output folders, as one report.
+    """Print the findings about all units and their output folders as one report.
 
-    A finding about a library is printed once, although several units use the library.
+    A finding about a library that several units use is printed once.
     """
     from sysmlc.diagnostics.renderers import make_report
 
@@ -42,7 +42,7 @@ def report_outcomes(
 
 
 def list_findings(compilation: "Compilation", only_errors: bool = False) -> "list[Finding]":
-    """Return the findings of a compilation, with file names as the user knows them."""
+    """Return the findings of a compilation, with file names relative to the working folder."""
     from sysmlc.diagnostics.renderers import make_report
 
     diagnostics = [d for d in compilation.diagnostics if d.is_error or not only_errors]
@@ -50,7 +50,7 @@ def list_findings(compilation: "Compilation", only_errors: bool = False) -> "lis
 
 
 def localize(root: Path, findings: "Iterable[Finding]") -> "list[Finding]":
-    """Return findings whose files are named relative to the working folder."""
+    """Return the findings with file names relative to the working folder."""
     findings = list(findings)
     files = {finding.file for finding in findings if finding.file}
     names = {file: localize_name(root, file) for file in files} | {"": ""}
@@ -63,7 +63,7 @@ def localize(root: Path, findings: "Iterable[Finding]") -> "list[Finding]":
 
 
 def localize_name(root: Path, name: str) -> str:
-    """Return the name of an input relative to the working folder, if the input lies below it."""
+    """Return the name of an input relative to the working folder if it is inside that folder."""
     path, here = root / name, Path.cwd()
     if not path.is_relative_to(here):
         return name
@@ -83,6 +83,7 @@ def print_findings(findings: "Iterable[Finding]", settings: "Settings") -> None:
         )
         report = replace(report, findings=without_xpath)
     text = render(report, settings.form, color=has_color(stream))
+    # has_color has decided; without color=True click would decide again.
     click.echo(text, nl=False, err=not on_stdout, color=True)
     if report.hidden:
         click.echo(
@@ -92,25 +93,25 @@ def print_findings(findings: "Iterable[Finding]", settings: "Settings") -> None:
 
 def _find_limit(settings: "Settings") -> int:
     """Return the largest number of findings to print; 0 means all, the default for programs."""
-    if settings.most is None:
+    if settings.max_diagnostics is None:
         return 0 if settings.form in ("json", "sarif") else _DEFAULT_LIMIT
-    return settings.most
+    return settings.max_diagnostics
 
 
 def allows_sentences(settings: "Settings") -> bool:
-    """Whether sentences may be printed on standard output beside the findings."""
+    """Whether standard output may have text besides the findings, which JSON does not allow."""
     return settings.form not in ("json", "sarif")
 
 
 def exit_code_of(outcome: "Outcome | Compilation", config: "Config", settings: "Settings") -> int:
-    """Return the exit code of an outcome, with ``--strict`` or ``strict`` of the configuration."""
+    """Return the exit code of an outcome; ``--strict`` or the configuration may make it strict."""
     return outcome.exit_code(settings.strict or config.strict)
 
 
 def exit_code_of_all(
     units: "Sequence[Unit]", outcomes: "Sequence[Outcome]", settings: "Settings"
 ) -> int:
-    """Return the highest exit code; each unit is judged by the configuration of its project."""
+    """Return the highest exit code; each unit has the strictness of its own project."""
     pairs = zip(units, outcomes, strict=True)
     return max(exit_code_of(outcome, unit.config, settings) for unit, outcome in pairs)
 
@@ -125,9 +126,7 @@ def has_color(stream: object) -> bool:
 
 
 def write_files(files: Iterable[tuple[str, str]], folder: Path) -> None:
-    """Write files, each a path in *folder* and a text. Exits with code 2 if one cannot be
-    written.
-    """
+    """Write pairs of path in *folder* and text; exit with code 2 if one cannot be written."""
     from sysmlc.cli.session import fail
     from sysmlc.support.atomic_files import write_if_changed
     from sysmlc.support.output import OutputPathError, find_obstacle

@@ -1,4 +1,4 @@
-"""``sysmlc robots``: robots on a floor, from a model to a mission that is validated."""
+"""``sysmlc robots``: plan missions of robots on a floor, and validate them."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -49,7 +49,7 @@ def command(
     output: Path | None,
     has_relations: bool,
     seconds: float,
-    **given: Any,  # noqa: ANN401 - the fields of Settings
+    **setting_values: Any,  # noqa: ANN401 - the fields of Settings
 ) -> None:
     """Plan the mission of robots on a floor that specialises Floors::Floor in MODEL.
 
@@ -64,28 +64,38 @@ def command(
     from sysmlc.synthesis import Limits
     from sysmlc.synthesis.decision import Options
 
-    settings = session.Settings(**given)
+    settings = session.Settings(**setting_values)
     config = session.load_config(models, settings)
     compilation = session.compile_unit(models, config, settings)
     progress = Progress(settings.verbose)
-    chosen = Options("", Limits(seconds=seconds), progress.note, is_explained=True)
+    decision_options = Options("", Limits(seconds=seconds), progress.note, is_explained=True)
     try:
-        keeper = _open_keeper(models, config) if settings.has_cache else None
-        ctx.exit(_study(compilation, config.rules, settings, output, has_relations, chosen, keeper))
+        crew_cache = _open_crew_cache(models, config) if settings.has_cache else None
+        ctx.exit(
+            _run_studies(
+                compilation,
+                config.rules,
+                settings,
+                output,
+                has_relations,
+                decision_options,
+                crew_cache,
+            )
+        )
     except ImportError as problem:
         session.fail(f"the library of decision diagrams cannot be loaded: {problem}")
     finally:
         progress.clear()
 
 
-def _study(
+def _run_studies(
     compilation: "Compilation",
     rules: Any,  # noqa: ANN401 - as the configuration has them
     settings: Any,  # noqa: ANN401 - Settings
     output: Path | None,
     has_relations: bool,
-    chosen: "Options",
-    keeper: "CrewCache | None",
+    decision_options: "Options",
+    crew_cache: "CrewCache | None",
 ) -> int:
     from sysmlc.cli import reports, session
     from sysmlc.cli.reports import write_files
@@ -103,7 +113,10 @@ def _study(
     studies = compilation.graph.derived(Study) if code < 2 else ()
     if not studies and not code:
         session.fail("the model has no floor with robots: nothing specialises 'Floors::Floor'")
-    outcomes = [run_study(study, place, sink, chosen, has_relations, keeper) for study in studies]
+    outcomes = [
+        run_study(study, place, sink, decision_options, has_relations, crew_cache)
+        for study in studies
+    ]
     if output is not None:
         write_files([file for outcome in outcomes for file in study_files(outcome)], output)
     of_model = reports.list_findings(compilation, only_errors=not settings.verbose)
@@ -115,8 +128,8 @@ def _study(
     return max(code, _compute_exit_code(outcomes, has_errors))
 
 
-def _open_keeper(models: "Sequence[Path]", config: "Config") -> "CrewCache | None":
-    """Return the store of controllers and travel times in the user's cache, if there is a cache."""
+def _open_crew_cache(models: "Sequence[Path]", config: "Config") -> "CrewCache | None":
+    """Return the cache of controllers and travel times, or None if the user has no cache."""
     from sysmlc.cli import session
     from sysmlc.driver.outcome_cache import compute_tool_digest
     from sysmlc.robots.crew_cache import CrewCache
@@ -126,7 +139,7 @@ def _open_keeper(models: "Sequence[Path]", config: "Config") -> "CrewCache | Non
 
 
 def _compute_exit_code(outcomes: "Sequence[Outcome]", has_errors: bool) -> int:
-    """Return 0 if every mission is accomplished, 1 if one is not, 2 without a controller."""
+    """Return 0 if every mission is accomplished, 1 if one fails, 2 if one was not decided."""
     if any(outcome.controller.verdict.is_realizable is None for outcome in outcomes):
         return 2
     return int(has_errors or not all(outcome.is_good for outcome in outcomes))

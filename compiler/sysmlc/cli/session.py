@@ -21,8 +21,8 @@ if TYPE_CHECKING:
     from sysmlc.sources.user_schemas import Schemas
     from sysmlc.support.cache import Cache
 
-_AS_WRITTEN = frozenset({"resolve", "kept"})
-"""Passes that add nothing to what the authors wrote."""
+_READING_PASSES = frozenset({"resolve", "kept"})
+"""Passes that only resolve references and preserve what the authors wrote."""
 
 
 class Settings(Struct, frozen=True):
@@ -36,7 +36,7 @@ class Settings(Struct, frozen=True):
     print_after: tuple[str, ...] = ()
     verbose: bool = False
     form: str = "text"
-    most: int | None = None
+    max_diagnostics: int | None = None
     strict: bool = False
     emit: tuple[str, ...] = ()
     templates: Path | None = None
@@ -49,8 +49,9 @@ class Settings(Struct, frozen=True):
 
     @property
     def is_plain(self) -> bool:
-        """Whether a cached outcome can answer the command: no option needs a compilation that
-        really runs.
+        """Whether a cached outcome can answer the command.
+
+        Options such as ``--print-after`` have effects during the compilation.
         """
         if self.schema is not None:
             return False
@@ -58,7 +59,7 @@ class Settings(Struct, frozen=True):
 
 
 def fail(message: str, *details: str) -> NoReturn:
-    """End with a sentence, each detail on a line below it, and exit code 2."""
+    """Print a message, with each detail on a line of its own, and exit with code 2."""
     terminal.echo(f"sysmlc: {message}", err=True)
     for detail in details:
         terminal.echo(f"  {detail}", err=True)
@@ -89,6 +90,7 @@ def load_config(models: Sequence[Path], settings: Settings) -> "Config":
     except config.ConfigError as problem:
         fail(str(problem))
     chosen = [*loaded.rules, *(entry.rule for entry in loaded.suppress)]
+    # The catalogue imports every module that defines rules, so it is loaded only if needed.
     if chosen:
         rules = load_rules().values()
         rule_names = {rule.code for rule in rules} | {rule.name for rule in rules}
@@ -114,7 +116,7 @@ def compile_unit(
 ) -> "Compilation":
     """Compile files, which must be one unit, with the back ends of *emit* (None for no back end).
 
-    Findings about the configuration are dropped unless the files are the whole project.
+    Findings about the project are dropped if the files are only a part of the project.
     """
     from sysmlc.cli.units import open_single_unit
     from sysmlc.driver.project_findings import select_project_findings, without_project_findings
@@ -136,8 +138,8 @@ def compile_opened(
 
 
 def read_as_written(unit: "Unit", settings: Settings) -> "Compilation":
-    """Read a unit as its authors wrote it: references are resolved, nothing is refined."""
-    passes = tuple(step for step in unit.request.load_passes() if step.name in _AS_WRITTEN)
+    """Read a unit and resolve its references without refining the graph."""
+    passes = tuple(step for step in unit.request.load_passes() if step.name in _READING_PASSES)
     return _compile(replace(unit.request, passes=passes), settings, unit.opened)
 
 
@@ -146,8 +148,8 @@ def compile_units(
 ) -> "list[Outcome]":
     """Return the outcome of each unit, from the cache if nothing has changed since it was stored.
 
-    Findings about the configuration are judged for all units together. Without *has_files* the
-    outcomes hold diagnostics only.
+    A finding about the project remains if all units have it. Without *has_files* the outcomes have
+    diagnostics only.
     """
     from sysmlc.driver.project_findings import judge_project_findings
 
@@ -164,7 +166,7 @@ def compile_units(
 
 
 def open_cache(inputs: Iterable[Path], config: "Config") -> "Cache | None":
-    """Return the user's cache, or None. A folder that cannot be trusted is reported once."""
+    """Return the user's cache; print a warning and return None if its folder cannot be trusted."""
     from sysmlc.config import find_project_root
     from sysmlc.support import cache
 
@@ -189,7 +191,7 @@ def _reuse_outcome(cache: "Cache", unit: "Unit", settings: Settings, has_files: 
 
 
 def compute_outcome(unit: "Unit", settings: Settings, has_files: bool = True) -> "Outcome":
-    """Compile the unit in this process and return the outcome; the cache is not used."""
+    """Compile the unit and return the outcome, without the cache."""
     from sysmlc.driver import summarize
 
     return summarize(compile_opened(unit, settings, unit.emit), has_files)
@@ -265,10 +267,10 @@ def _find_templates(config: "Config", settings: Settings) -> Path | None:
     return folder
 
 
-def _check_pass_names(names: Sequence[str], asked: Iterable[str]) -> None:
+def _check_pass_names(names: Sequence[str], print_after: Iterable[str]) -> None:
     from sysmlc.support.suggestions import did_you_mean
 
-    for name in asked:
+    for name in print_after:
         if name not in ("read", *names):
             fail(f"unknown pass '{name}'; {did_you_mean(name, ['read', *names])}")
 

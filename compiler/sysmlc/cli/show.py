@@ -1,4 +1,4 @@
-"""``sysmlc show``: the refined graph, or one element of it."""
+"""``sysmlc show``: print the refined graph, or one element of it."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -29,13 +29,13 @@ def command(
     /,
     models: tuple[Path, ...],
     element: str | None,
-    **given: Any,  # noqa: ANN401 - the fields of Settings
+    **setting_values: Any,  # noqa: ANN401 - the fields of Settings
 ) -> None:
     """Print the graph of MODEL... after all passes, in the text form of docs/ir.md."""
     from sysmlc.cli import reports, session
     from sysmlc.ir.text import print_text
 
-    settings = session.Settings(**given)
+    settings = session.Settings(**setting_values)
     config = session.load_config(models, settings)
     compilation = session.compile_unit(models, config, settings)
     reports.print_findings(

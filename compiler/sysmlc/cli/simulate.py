@@ -40,7 +40,7 @@ def command(
     scenario: Path,
     junit: Path | None,
     output: Path | None,
-    **given: Any,  # noqa: ANN401 - the fields of Settings
+    **setting_values: Any,  # noqa: ANN401 - the fields of Settings
 ) -> None:
     """Run the steps of a scenario and compare the trace with the expected one.
 
@@ -52,7 +52,7 @@ def command(
     from sysmlc.diagnostics.renderers import make_report
     from sysmlc.simulation import run_scenarios
 
-    settings = session.Settings(**given)
+    settings = session.Settings(**setting_values)
     config = session.load_config(models, settings)
     compilation = session.compile_unit(models, config, settings)
     source = _read(scenario)

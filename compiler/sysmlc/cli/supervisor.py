@@ -1,8 +1,9 @@
-"""The parent process of a command: it reports a command that a limit, or a crash, has ended.
+"""The parent process of a command: it reports why its child process ended early.
 
 The command runs in a forked child, in which the operating system enforces the limits (limits.py).
-Python code cannot do that: while a C library parses or computes, no signal handler and no thread
-runs. A signal without a handler ends the child at once, and the parent is left to say why.
+Python code cannot enforce them: while a C library parses or computes, no signal handler and no
+thread runs. A signal without a handler ends the child at once, and the parent reports the reason
+(decision 41).
 """
 
 import os
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
     from sysmlc.diagnostics import Rule
 
 
-_SENT_BY_USERS = [
+_USER_SIGNALS = [
     getattr(signal, name)
     for name in ("SIGINT", "SIGTERM", "SIGHUP", "SIGQUIT")
     if hasattr(signal, name)
@@ -30,16 +31,18 @@ OUT_OF_MEMORY = 75
 
 
 class SharedState:
-    """What a command tells the parent process, and a later child, in memory that they share."""
+    """Memory that a command shares with its parent process and with later child processes."""
 
+    # Time limit in seconds, whether the command watches files, digest of the inputs.
     _LAYOUT = struct.Struct("d?I")
 
     def __init__(self) -> None:
+        # Anonymous memory that a forked child shares.
         self._memory = mmap(-1, self._LAYOUT.size)
 
     @property
     def time_limit(self) -> float:
-        """Seconds after which the child ends; the parent names them in its report."""
+        """Seconds after which the child ends; the parent prints them in its report."""
         return float(self._read()[0])
 
     @time_limit.setter
@@ -48,23 +51,24 @@ class SharedState:
 
     @property
     def is_watching(self) -> bool:
-        """Whether the child watches files: the command goes on in a new child after a limit.
+        """Whether the child watches files, so that a new child replaces it after a limit.
 
-        It does not if a limit is reached before, which would happen again and again.
+        A child that reaches a limit before it watches is not replaced: a new child would reach the
+        limit again.
         """
         return bool(self._read()[1])
 
     @property
     def input_digest(self) -> int:
-        """The state of the inputs that were compiled last."""
+        """A digest of the inputs of the last build."""
         return int(self._read()[2])
 
     def start_build(self, input_digest: int) -> None:
-        """Note that the command watches files and now compiles them in the state of the digest."""
+        """Record that the command watches files and starts to build inputs with this digest."""
         self._LAYOUT.pack_into(self._memory, 0, self.time_limit, True, input_digest)
 
     def start_child(self) -> None:
-        """Note that a new child has not yet come to watch files."""
+        """Record that a new child starts and does not watch files yet."""
         self._LAYOUT.pack_into(self._memory, 0, self.time_limit, False, self.input_digest)
 
     def _read(self) -> tuple[Any, ...]:
@@ -79,15 +83,16 @@ Run = Callable[[SharedState], NoReturn]
 def can_supervise() -> bool:
     """Return whether commands can run in a child process.
 
-    A tracer or profiler that was started with this process would not see a child.
+    They cannot without fork, and under a tracer or profiler, which would not see a child.
     """
     return hasattr(os, "fork") and not (sys.gettrace() or sys.getprofile())
 
 
 def supervise(run: Run) -> NoReturn:
-    """Run a command in a child process and end as it ends; report a limit or a crash (code 2).
+    """Run a command in a child process and end this process in the same way.
 
-    A command that watches files goes on in a new child after a limit or a crash.
+    A limit or a crash is reported, with exit code 2. A command that watches files then continues in
+    a new child.
     """
     shared = SharedState()
     handlers = _find_forwarded_signals()
@@ -97,7 +102,7 @@ def supervise(run: Run) -> NoReturn:
         _forward_signals(handlers, child)
         code = _wait_for(child)
         is_over = code >= 0 and code != OUT_OF_MEMORY
-        if is_over or -code in _SENT_BY_USERS:
+        if is_over or -code in _USER_SIGNALS:
             _end_as(code)
         _report_end(code, shared)
         if not shared.is_watching:
@@ -105,7 +110,10 @@ def supervise(run: Run) -> NoReturn:
 
 
 def _fork(run: Run, shared: SharedState, handlers: Mapping[int, "_Handler"]) -> int:
-    """Start a child process that runs the command with the signal *handlers*; return its id."""
+    """Start a child process that runs the command; return its id.
+
+    *handlers* are the signal handlers from before the supervision.
+    """
     lifeline, held_end = os.pipe()
     parent = os.getpid()
     child = os.fork()
@@ -137,7 +145,7 @@ def _end_with_parent(lifeline: int, parent: int) -> None:
 
 
 def _find_forwarded_signals() -> "dict[int, _Handler]":
-    """Return the signals that are passed on, with their handlers; ignored ones are not."""
+    """Return the signals to forward, with their handlers; ignored signals remain ignored."""
     numbers = [getattr(signal, name) for name in _FORWARDED]
     handlers = {number: signal.getsignal(number) for number in numbers}
     return {
@@ -146,7 +154,7 @@ def _find_forwarded_signals() -> "dict[int, _Handler]":
 
 
 def _forward_signals(numbers: Iterable[int], child: int) -> None:
-    """Pass signals on to the child; a key press such as Ctrl-C reaches the child by itself."""
+    """Forward signals to the child, except those that the keyboard sends to both processes."""
 
     def forward(number: int, _frame: FrameType | None) -> None:
         if number not in (signal.SIGINT, signal.SIGQUIT) or not _is_in_foreground():
@@ -159,7 +167,7 @@ def _forward_signals(numbers: Iterable[int], child: int) -> None:
 
 
 def _is_in_foreground() -> bool:
-    """Return whether this process gets the signals of the keyboard of its terminal."""
+    """Return whether the terminal sends signals of the keyboard to this process."""
     try:
         with open("/dev/tty", "rb", buffering=0) as terminal:  # noqa: PTH123
             return os.tcgetpgrp(terminal.fileno()) == os.getpgrp()
@@ -168,7 +176,7 @@ def _is_in_foreground() -> bool:
 
 
 def _wait_for(child: int) -> int:
-    """Return the exit code of *child*; the negative number of the signal that ended it."""
+    """Wait for *child*; return its exit code, or minus the number of the signal that ended it."""
     _, status = os.waitpid(child, 0)
     return os.waitstatus_to_exitcode(status)
 
@@ -183,7 +191,7 @@ def _end_as(code: int) -> NoReturn:
 
 
 def _report_end(code: int, shared: SharedState) -> None:
-    """Report why a child has ended early, unless it has done so itself."""
+    """Report why a child ended early; a child reports its memory limit itself."""
     if -code == signal.SIGALRM:
         report_time_limit(shared.time_limit)
     elif code < 0:

@@ -1,4 +1,4 @@
-"""``sysmlc synth``: whether a contract is realizable, and a controller that satisfies it."""
+"""``sysmlc synth``: decide whether contracts are realizable, and synthesise controllers."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -91,7 +91,7 @@ def command(
     engine: str | None,
     seconds: float,
     nodes: int,
-    **given: Any,  # noqa: ANN401 - the fields of Settings
+    **setting_values: Any,  # noqa: ANN401 - the fields of Settings
 ) -> None:
     """Decide whether the contracts in FILE are realizable, and synthesise controllers.
 
@@ -111,39 +111,50 @@ def command(
     if (is_decided_only or timers) and output is not None:
         word = "--deadline" if timers else "--realizable"
         session.fail(f"{word} decides only: nothing can be written to a folder")
-    settings = session.Settings(**given)
+    settings = session.Settings(**setting_values)
     config = session.load_config((file,), settings)
     progress = Progress(settings.verbose)
     limits = Limits(nodes, int(LIMITS.gibibytes * _GIBIBYTE), seconds or LIMITS.seconds)
-    read = read_contracts(file, language, config, settings)
-    read = replace(read, contracts=tuple(map(rename_ambiguous_literals, read.contracts)))
+    contract_file = read_contracts(file, language, config, settings)
+    contract_file = replace(
+        contract_file, contracts=tuple(map(rename_ambiguous_literals, contract_file.contracts))
+    )
     options = Options(engine or "", limits, progress.note, is_explained=not is_decided_only)
     try:
         if is_played:
-            ctx.exit(_play(read, component, options))
+            ctx.exit(_play(contract_file, component, options))
         if timers:
-            ctx.exit(_find_deadlines(read, component, timers, settings, options))
+            ctx.exit(_find_deadlines(contract_file, component, timers, settings, options))
         if is_decided_only:
-            ctx.exit(_decide(read, component, settings, options))
-        ctx.exit(_synthesize(read, component, settings, options, output, machine_form))
+            ctx.exit(_decide(contract_file, component, settings, options))
+        ctx.exit(_synthesize(contract_file, component, settings, options, output, machine_form))
     except ImportError as problem:
         session.fail(f"the library of decision diagrams cannot be loaded: {problem}")
     finally:
         progress.clear()
 
 
-def _decide(read: "ContractFile", component: str, settings: "Settings", options: "Options") -> int:
+def _decide(
+    contract_file: "ContractFile", component: str, settings: "Settings", options: "Options"
+) -> int:
     from sysmlc.cli.contract_files import select_contracts
     from sysmlc.synthesis.decision import decide
 
-    contracts = select_contracts(read.contracts, component) if read.contracts else ()
+    contracts = (
+        select_contracts(contract_file.contracts, component) if contract_file.contracts else ()
+    )
     return _report(
-        read, settings, [decide(contract, read.place, read.sink, options) for contract in contracts]
+        contract_file,
+        settings,
+        [
+            decide(contract, contract_file.place, contract_file.sink, options)
+            for contract in contracts
+        ],
     )
 
 
 def _find_deadlines(
-    read: "ContractFile",
+    contract_file: "ContractFile",
     component: str,
     timers: tuple[str, ...],
     settings: "Settings",
@@ -152,13 +163,18 @@ def _find_deadlines(
     from sysmlc.cli.contract_files import select_contracts
     from sysmlc.synthesis.decision import find_deadline
 
-    contracts = select_contracts(read.contracts, component) if read.contracts else ()
-    results = [find_deadline(c, timers, read.place, read.sink, options) for c in contracts]
-    return _report(read, settings, results)
+    contracts = (
+        select_contracts(contract_file.contracts, component) if contract_file.contracts else ()
+    )
+    results = [
+        find_deadline(c, timers, contract_file.place, contract_file.sink, options)
+        for c in contracts
+    ]
+    return _report(contract_file, settings, results)
 
 
 def _synthesize(
-    read: "ContractFile",
+    contract_file: "ContractFile",
     component: str,
     settings: "Settings",
     options: "Options",
@@ -170,32 +186,40 @@ def _synthesize(
     from sysmlc.synthesis.controller_files import TABLE, write_controllers
     from sysmlc.synthesis.controller_synthesis import Form, synthesise_controller
 
-    contracts = select_contracts(read.contracts, component) if read.contracts else ()
+    contracts = (
+        select_contracts(contract_file.contracts, component) if contract_file.contracts else ()
+    )
     kind = Form.TABLE if form == TABLE else Form.ANY
     controllers = [
-        synthesise_controller(contract, read.place, read.sink, options, kind)
+        synthesise_controller(contract, contract_file.place, contract_file.sink, options, kind)
         for contract in contracts
     ]
-    written = write_controllers(controllers, read.place, read.sink, form)
+    written = write_controllers(controllers, contract_file.place, contract_file.sink, form)
     if output is not None:
-        write_files((*written.files, *_find_counter_strategies(read, controllers, options)), output)
-    return _report(read, settings, written.results)
+        write_files(
+            (*written.files, *_find_counter_strategies(contract_file, controllers, options)), output
+        )
+    return _report(contract_file, settings, written.results)
 
 
 def _find_counter_strategies(
-    read: "ContractFile", counters: "Sequence[Synthesis]", options: "Options"
+    contract_file: "ContractFile", counters: "Sequence[Synthesis]", options: "Options"
 ) -> "Iterable[tuple[str, str]]":
-    """Return counter-strategies for the unrealizable contracts, except those beyond the limits."""
+    """Return files with counter-strategies of the unrealizable contracts.
+
+    Contracts whose counter-strategy exceeds a limit have none.
+    """
     from sysmlc.synthesis.counterstrategy.counter_files import counterstrategy_files
     from sysmlc.synthesis.counterstrategy.counter_machine import find_counterstrategies
 
     lost = [contract.contract for contract in counters if contract.verdict.is_realizable is False]
     return counterstrategy_files(
-        find_counterstrategies(lost, read.place, read.sink, options), lambda id: read.place(id).name
+        find_counterstrategies(lost, contract_file.place, contract_file.sink, options),
+        lambda id: contract_file.place(id).name,
     )
 
 
-def _play(read: "ContractFile", component: str, options: "Options") -> int:
+def _play(contract_file: "ContractFile", component: str, options: "Options") -> int:
     """Let the user play against the counter-strategy of the selected contract."""
     from sysmlc.cli.contract_files import select_contracts
     from sysmlc.cli.session import fail
@@ -205,7 +229,7 @@ def _play(read: "ContractFile", component: str, options: "Options") -> int:
     from sysmlc.synthesis.counterstrategy.play import Player
     from sysmlc.synthesis.games.game import OutsideGr1Error
 
-    contracts = select_contracts(read.contracts, component)
+    contracts = select_contracts(contract_file.contracts, component)
     if len(contracts) != 1:
         fail(f"{len(contracts)} contracts are in the file: choose one with -c")
     try:
@@ -215,18 +239,21 @@ def _play(read: "ContractFile", component: str, options: "Options") -> int:
         return 0
     except (LimitError, OutsideGr1Error) as problem:
         fail(str(problem))
+    # The time in which the user thinks does not count (decision 41).
     LIMITS.stop_timer()
     Player(environment, contracts[0], input, terminal.echo_text).play()
     return 1
 
 
 def _report(
-    read: "ContractFile", settings: "Settings", verdicts: "Sequence[Verdict | Synthesis | Deadline]"
+    contract_file: "ContractFile",
+    settings: "Settings",
+    verdicts: "Sequence[Verdict | Synthesis | Deadline]",
 ) -> int:
     """Print findings and verdicts; return the exit code."""
     from sysmlc.cli.contract_files import show_results
 
-    show_results(read, settings, (verdict.text() for verdict in verdicts))
+    show_results(contract_file, settings, (verdict.text() for verdict in verdicts))
     code = max((verdict.exit_code for verdict in verdicts), default=2)
-    has_errors = any(finding.diagnostic.is_error for finding in read.findings)
-    return max(code, int(has_errors)) if read.is_whole else 2
+    has_errors = any(finding.diagnostic.is_error for finding in contract_file.findings)
+    return max(code, int(has_errors)) if contract_file.is_whole else 2

@@ -1,4 +1,4 @@
-"""Standard output and standard error: closed, full, and text of models that is printed on them."""
+"""Standard output and standard error: escape text of models, handle closed and full streams."""
 
 import io
 import os
@@ -27,12 +27,18 @@ def echo(line: str, *, err: bool = False) -> None:
 
 
 def echo_text(text: str, *, err: bool = False, nl: bool = True) -> None:
-    """Print text of several lines, whose names have no line ends; escape as ``echo`` does."""
+    """Print text of several lines; escape invisible characters except tabs and line ends.
+
+    The caller ensures that names in the text have no line ends.
+    """
     click.echo(escape_invisible(text, "\n\t"), err=err, nl=nl)
 
 
 class _RecordingStream(io.RawIOBase):
-    """A standard stream that records the first fault: the layers above drop the text and forget."""
+    """A raw standard stream that records its first fault.
+
+    The text and buffer layers above it discard the text after a fault, without a record of it.
+    """
 
     def __init__(self, raw: io.RawIOBase) -> None:
         self._raw = raw
@@ -56,14 +62,14 @@ class _RecordingStream(io.RawIOBase):
 
 
 _streams: list[tuple[str, TextIO, _RecordingStream]] = []
-"""The standard streams of a process that runs ``sysmlc``; empty where a test calls a command."""
+"""The standard streams of the process; empty if a test calls a command directly."""
 
 
 def open_streams() -> None:
     """Prepare standard output and standard error; end with exit code 2 if one is closed.
 
-    Nobody could read the diagnostics, and a file that is opened later would get the number of the
-    closed stream, so that messages would be written into it.
+    Otherwise a file that is opened later would get the file descriptor of the closed stream, and
+    diagnostics would be written into that file.
     """
     if sys.stdout is None or sys.stderr is None:
         name = _NAMES[0] if sys.stdout is None else _NAMES[1]
@@ -81,6 +87,7 @@ def _record(name: str, stream: TextIO) -> TextIO:
     wrapper = io.TextIOWrapper(
         io.BufferedWriter(raw),
         encoding=stream.encoding,
+        # A character that the encoding of the terminal lacks must not end the command.
         errors="backslashreplace",
         line_buffering=stream.line_buffering,  # type: ignore[arg-type]
     )
@@ -91,8 +98,8 @@ def _record(name: str, stream: TextIO) -> TextIO:
 def leave(code: int) -> NoReturn:
     """End the process with *code*, or with 2 if a standard stream did not take all text.
 
-    Python's own way out would take the compilation apart first, which costs a fortieth of it, and
-    would report a broken stream in lines of its own.
+    Python's own exit would first free all objects, which takes a fortieth of a compilation, and it
+    would print a report of its own about a broken stream.
     """
     problems = find_stream_problems()
     for name, problem in problems.items():
@@ -103,7 +110,7 @@ def leave(code: int) -> NoReturn:
 
 
 def find_stream_problems() -> dict[str, OSError]:
-    """Write what is still buffered and return the first fault of each broken stream."""
+    """Flush the standard streams; return the first fault of each broken stream."""
     for _, stream, _ in _streams:
         with suppress(OSError):
             stream.flush()
@@ -111,6 +118,6 @@ def find_stream_problems() -> dict[str, OSError]:
 
 
 def _write_last_words(message: str) -> None:
-    """Write to the descriptor of standard error, as far as it takes anything."""
+    """Write to the file descriptor of standard error; ignore faults."""
     with suppress(OSError):
         os.write(2, f"sysmlc: {message}\n".encode(errors="backslashreplace"))

@@ -1,4 +1,4 @@
-"""From what the user named to the compile units of a run, and where the outputs of each go.
+"""Compile units of a run and their output folders.
 
 The files to compile are those that the command line names, or those of every ``[[model]]``.
 """
@@ -21,9 +21,9 @@ if TYPE_CHECKING:
 
 
 class Selection(Struct, frozen=True):
-    """Files and folders that were named, or a ``[[model]]``, and where their outputs go.
+    """Files of a ``[[model]]``, or files and folders of the command line, with their output folder.
 
-    ``name`` is that of the ``[[model]]``; without one the files may be several compile units.
+    ``name`` is the name of the ``[[model]]``. Files without it may be several compile units.
     Nothing is written outside ``boundary``: the project root, or what ``find_boundary`` returns for
     a folder that the user named.
     """
@@ -38,10 +38,10 @@ class Selection(Struct, frozen=True):
 def select(
     models: Sequence[Path], config: "Config", output: Path | None, emit: tuple[str, ...]
 ) -> list[Selection]:
-    """Return what was named, or every ``[[model]]``.
+    """Return the selected models, or every ``[[model]]`` if no model is named.
 
-    A named file that a ``[[model]]`` lists brings the whole unit with it, and so does a named
-    folder that such a file lies in. What else was named comes last.
+    A ``[[model]]`` is selected if one of its files is named, or is in a named folder. One more
+    selection at the end has the other files and folders.
     """
     from sysmlc.config import find_boundary
 
@@ -59,7 +59,7 @@ def select(
         if not models or any(_contains(model, file) for model in models for file in files)
     ]
     listed = [file for unit in chosen for file in unit.files]
-    rest = tuple(m for m in models if not any(_same(m, file) for file in listed))
+    rest = tuple(m for m in models if not any(_is_same_file(m, file) for file in listed))
     if rest:
         plain = output or (folder / config.output if config.folder else Path(config.output))
         boundary = find_boundary(output) if output else config.root or Path.cwd()
@@ -70,7 +70,7 @@ def select(
 
 
 def _expand(config: "Config", patterns: Iterable[str]) -> list[Path]:
-    """Return the files of a ``[[model]]``; ends with exit code 2 when one leads out of the root."""
+    """Return the files of a ``[[model]]``; exit with code 2 if one is outside the project root."""
     from sysmlc.config import ConfigError, expand_files
 
     try:
@@ -80,22 +80,22 @@ def _expand(config: "Config", patterns: Iterable[str]) -> list[Path]:
 
 
 def _contains(model: Path, file: Path) -> bool:
-    """Whether *model* is the file, or a folder that the file lies in."""
+    """Whether *model* is the file itself or a folder that contains it."""
     return Path(os.path.realpath(file)).is_relative_to(os.path.realpath(model))
 
 
-def _same(left: Path, right: Path) -> bool:
+def _is_same_file(left: Path, right: Path) -> bool:
     return os.path.realpath(left) == os.path.realpath(right)
 
 
 # -- compile units -----------------------------------------------------------------------------
 
-_LISTED = 10
-"""Units that a message lists."""
+_MAX_LISTED_UNITS = 10
+"""The largest number of units that a message lists."""
 
 
 class Unit(Struct, frozen=True):
-    """A compile unit whose files have been read, and where its outputs go.
+    """A compile unit whose files have been read, with its output folder.
 
     ``name`` is unique in the run and safe as a folder name. Nothing is written outside
     ``boundary``: the project root, or what ``find_boundary`` returns for a named folder.
@@ -110,7 +110,7 @@ class Unit(Struct, frozen=True):
 
     @property
     def config(self) -> "Config":
-        """The configuration of the project that the unit belongs to."""
+        """The configuration of the unit's project."""
         return self.request.config
 
 
@@ -131,17 +131,16 @@ def open_units(
         return units
     boundary = find_boundary(output)
     if len(units) == 1:
-        # The unit may be that of a project below the named folder.
-        # The unit may be that of a project below the named folder.
+        # The unit may belong to a project below the named folder, with an output folder of its own.
         is_placed = units[0].boundary == boundary
         return units if is_placed else [replace(units[0], output=output, boundary=boundary)]
     return [replace(unit, output=output / unit.name, boundary=boundary) for unit in units]
 
 
 def find_leftover_outputs(units: Sequence[Unit]) -> list[Path]:
-    """Return output folders of earlier runs, beside those of *units*, that no unit has now.
+    """Return the output folders of earlier runs that belong to none of *units*.
 
-    A model that was renamed or deleted leaves one behind, and so does a folder that was one unit.
+    They are left by models that were renamed or deleted, and by a folder that was one unit.
     """
     from sysmlc.driver.ownership import is_output_folder
 
@@ -164,24 +163,25 @@ def find_leftover_outputs(units: Sequence[Unit]) -> list[Path]:
 
 
 def open_named_units(models: Sequence[Path], config: "Config", settings: "Settings") -> list[Unit]:
-    """Read the compile units of the files and folders that were named, whatever ``[[model]]`` says.
+    """Read the compile units of the named files and folders, and ignore ``[[model]]``.
 
-    For commands that write no output folder.
+    Commands that write no output folder use this function.
     """
-
     selection = Selection(tuple(models), Path(), (), Path())
     return list(_open_selection(selection, config, settings, ()))
 
 
 def open_single_unit(models: Sequence[Path], config: "Config", settings: "Settings") -> Unit:
-    """Read the files that were named, which must be one compile unit, else exit with code 2."""
+    """Read the named files; exit with code 2 if they are several compile units."""
     from sysmlc.cli.reports import localize_name
     from sysmlc.cli.session import fail
 
     units = open_named_units(models, config, settings)
     if len(units) > 1:
         files = [localize_name(unit.opened.root, unit.opened.first_file()) for unit in units]
-        listed = ", ".join(files[:_LISTED]) + (", ..." if len(files) > _LISTED else "")
+        listed = ", ".join(files[:_MAX_LISTED_UNITS]) + (
+            ", ..." if len(files) > _MAX_LISTED_UNITS else ""
+        )
         fail(f"the models are {len(units)} compile units; name the files of one, such as {listed}")
     return units[0]
 
@@ -189,7 +189,10 @@ def open_single_unit(models: Sequence[Path], config: "Config", settings: "Settin
 def _open_project(
     models: Sequence[Path], config: "Config", settings: "Settings", output: Path | None
 ) -> list[Unit]:
-    """Open the declared units first: the files that they read are no units of their own."""
+    """Open the units of a project, those of ``[[model]]`` first.
+
+    Files that these read are excluded from the other units.
+    """
     from sysmlc.cli.session import make_request
     from sysmlc.driver import open_unit
 
@@ -227,12 +230,13 @@ def _open_selection(
     settings: "Settings",
     excluded: Sequence[Path],
 ) -> Iterator[Unit]:
-    """Yield the units of one selection, and those of the projects below its folders."""
+    """Yield the units of one selection, and the units of projects below its folders."""
     from sysmlc.cli.session import make_request
     from sysmlc.driver import open_units
     from sysmlc.driver.inputs import find_projects
 
     folders = [path.resolve() for path in selection.files if path.is_dir()]
+    # A configuration of the command line holds for all files, so others are not looked for.
     ignores_others = settings.isolated or settings.config is not None
     projects = [] if ignores_others else [p for f in folders for p in find_projects(f)]
     request = replace(
@@ -250,7 +254,7 @@ def _open_selection(
 
 
 def _open_nested(project: Path, settings: "Settings", root: Path) -> Iterator[Unit]:
-    """Open the units of a project below a named folder; their names begin with its path."""
+    """Open the units of a project below a named folder; their names start with its path."""
     from sysmlc.cli.session import load_config
     from sysmlc.support.output import assign_file_names
 
@@ -262,7 +266,7 @@ def _open_nested(project: Path, settings: "Settings", root: Path) -> Iterator[Un
 
 
 def _give_unique_names(units: Sequence[Unit]) -> list[Unit]:
-    """Number the names that differ in case only; file systems may not tell them apart."""
+    """Number names that differ in case only, because some file systems ignore case."""
     counts: dict[str, int] = {}
     named: list[Unit] = []
     for unit in units:

@@ -1,4 +1,4 @@
-"""``sysmlc watch``: compile again at every save."""
+"""``sysmlc watch``: compile models after each save."""
 
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -12,10 +12,10 @@ from sysmlc.cli.limits import LIMITS
 if TYPE_CHECKING:
     from sysmlc.cli.session import Settings
 
-_LOOK = 1000
-"""Milliseconds after which files are looked at though the system reported no change."""
-_STEP = 20
-"""Milliseconds without a further change after which changes are told."""
+_POLL_MILLISECONDS = 1000
+"""Milliseconds after which files are checked even if the system has reported no change."""
+_QUIET_MILLISECONDS = 20
+"""Milliseconds without a further change after which changes are reported."""
 
 
 @click.command(
@@ -50,7 +50,7 @@ def command(
     output: Path | None,
     settle: int,
     keep_going: bool,
-    **given: Any,  # noqa: ANN401 - the fields of Settings
+    **setting_values: Any,  # noqa: ANN401 - the fields of Settings
 ) -> None:
     """Compile MODEL... now and at every save; keep the last good outputs.
 
@@ -61,8 +61,9 @@ def command(
     from sysmlc.cli import session
     from sysmlc.cli.watching import Watch
 
-    watched = Watch(models, output, session.Settings(**given), settle / 1000, keep_going)
+    watched = Watch(models, output, session.Settings(**setting_values), settle / 1000, keep_going)
     saves = _iter_saves(watched.list_folders())
+    # The limits hold for each build, not for the time between saves (decision 41).
     LIMITS.stop_timer()
     watched.start()
     for saved in saves:
@@ -70,9 +71,7 @@ def command(
 
 
 def rebuild(models: tuple[Path, ...], output: Path | None, settings: "Settings") -> bool:
-    """Compile each unit once and write the units without errors; return whether all were
-    written.
-    """
+    """Compile each unit once and write units without errors; return whether all were written."""
     from sysmlc.cli.watching import compile_all, publish
 
     written = [publish(result, settings) for result in compile_all(models, output, settings)]
@@ -80,8 +79,9 @@ def rebuild(models: tuple[Path, ...], output: Path | None, settings: "Settings")
 
 
 def _iter_saves(folders: Sequence[Path]) -> Iterator[list[Path]]:
-    """Yield the files of each group of changes; None now and then, for systems without
-    notifications.
+    """Yield the files of each group of changes.
+
+    The list is empty after a time without changes, because some file systems report none.
     """
     from watchfiles import watch
 
@@ -89,15 +89,15 @@ def _iter_saves(folders: Sequence[Path]) -> Iterator[list[Path]]:
         *folders,
         watch_filter=_is_input,
         raise_interrupt=False,
-        step=_STEP,
-        rust_timeout=_LOOK,
+        step=_QUIET_MILLISECONDS,
+        rust_timeout=_POLL_MILLISECONDS,
         yield_on_timeout=True,
     )
     return (sorted(Path(path).absolute() for _, path in change) for change in changes)
 
 
 def _is_input(_change: object, path: str) -> bool:
-    """Whether a saved file may be an input; our own outputs must not start the next build."""
+    """Whether a saved file may be an input; written outputs must not start another build."""
     from sysmlc.config import FILE_NAME
     from sysmlc.driver.inputs import SUFFIXES
     from sysmlc.overlay import SUFFIX
