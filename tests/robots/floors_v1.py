@@ -1,4 +1,4 @@
-"""Writes the library of floors for SysML v1 anew: ``python tests/robots/floors_v1.py``.
+"""Write the library of floors for SysML v1: ``python tests/robots/floors_v1.py``.
 
 It is metamodels/Floors.sysml in the other notation; only the example in its text is another one.
 """
@@ -21,8 +21,8 @@ _WORDS = """columns are counted from 0 in the upper left corner.
 """
 
 
-def library() -> bytes:
-    """The library as XMI."""
+def convert_library() -> bytes:
+    """Compile the library of floors for SysML v2 and return it as XMI."""
     text = (FOLDER / "Floors.sysml").read_text(encoding="utf-8")
     text, count = _EXAMPLE.subn(_WORDS, text)
     assert count == 1
@@ -31,10 +31,12 @@ def library() -> bytes:
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "Floors.sysml"
         path.write_text(text, encoding="utf-8")
-        made = compile_model(Request((path,), backends=tuple(select_backends(["uml"]))))
-        (found,) = (one.text for one in made.list_published() if one.path.endswith(".uml"))
-    return found.replace('name="Library"', 'name="Floors"').encode()
+        result = compile_model(Request((path,), backends=tuple(select_backends(["uml"]))))
+        (text,) = (
+            output.text for output in result.list_published() if output.path.endswith(".uml")
+        )
+    return text.replace('name="Library"', 'name="Floors"').encode()
 
 
 if __name__ == "__main__":
-    (FOLDER / "Floors.uml").write_bytes(library())
+    (FOLDER / "Floors.uml").write_bytes(convert_library())

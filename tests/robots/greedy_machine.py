@@ -1,4 +1,4 @@
-"""A machine of a robot written by hand: to a way that leads nearer and is shown, else it stays."""
+"""A hand-written machine of a robot: it takes an offered way that leads nearer, or stays."""
 
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import Owner
@@ -12,10 +12,13 @@ from sysmlc.synthesis.controllers.forms import Machine, Move
 def greedy_machine(study):
     """State 1 is for a robot that was not in its target in the step before."""
     contract = controller_contract(study)
-    sides = [tuple(one for one in contract.variables if one.owner is owner) for owner in Owner]
-    here, goal = (f.prime(f.var(name(ANY))) for name in (terms.position, terms.target))
-    is_home = f.eq(here, goal)
-    moves = [_move(is_home, STAY, 0), *_going(study), _move(f.TRUE, STAY, 1)]
+    sides = [
+        tuple(variable for variable in contract.variables if variable.owner is owner)
+        for owner in Owner
+    ]
+    position, goal = (f.prime(f.var(name(ANY))) for name in (terms.position, terms.target))
+    is_home = f.eq(position, goal)
+    moves = [_move(is_home, STAY, 0), *_iter_travel_moves(study), _move(f.TRUE, STAY, 1)]
     resting = (_move(is_home, STAY, 0), _move(f.TRUE, STAY, 1))
     return Machine(*sides, (), (resting, tuple(moves)))
 
@@ -24,7 +27,7 @@ def _move(when, command, state):
     return Move(when, (f.const(command),), state)
 
 
-def _going(study):
+def _iter_travel_moves(study):
     grid = study.grid
     for way in WAYS:
         for goal in grid.cells:
@@ -37,6 +40,6 @@ def _going(study):
 
 
 def greedy_answers(study):
-    """Its answers for all robots of a floor."""
+    """Return the answers of the greedy machine for all robots of a floor."""
     machine = greedy_machine(study)
     return (Answers(machine, ANY, study.grid),) * len(study.robots)

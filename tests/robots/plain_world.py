@@ -1,10 +1,10 @@
-"""The rules of docs/robots.md for one run, written plainly: what many runs at once are held to."""
+"""The rules of docs/robots.md for a single run: the reference for simulations of many runs."""
 
 from sysmlc.robots.study import WAYS, shortest_path
 
 
-class Plain:
-    """Robots on a floor, one start; the greedy machine in words instead of formulas."""
+class PlainWorld:
+    """Robots on a floor from one start, with the greedy machine as code instead of formulas."""
 
     def __init__(self, study, allocation, starts):
         self.study, self.allocation, self.grid = study, allocation, study.grid
@@ -25,28 +25,28 @@ class Plain:
         for r in self.robots:
             if home[r]:
                 self.targets[r], self.goals[r] = None, self.cells[r]
-        self._note()
+        self._record_reached_targets()
         self._dispatch(home)
-        self._note()
+        self._record_reached_targets()
         for r in self.robots:
             self.commands[r] = self._command(r, home[r])
 
-    def _note(self):
+    def _record_reached_targets(self):
         for r in self.robots:
             if self.targets[r] is not None and self.cells[r] == self.goals[r]:
                 self.done.add(self.targets[r])
 
-    def _next(self, r):
-        own = [one for one in self.allocation[r] if one not in self.done]
-        ready = own and self.done.issuperset(self.study.earlier(own[0]))
-        return own[0] if ready else None
+    def _next_target(self, r):
+        remaining = [target for target in self.allocation[r] if target not in self.done]
+        ready = remaining and self.done.issuperset(self.study.earlier(remaining[0]))
+        return remaining[0] if ready else None
 
-    def _way(self, r, target):
+    def _cells_on_way(self, r, target):
         return set(shortest_path(self.grid, self.cells[r], self.study.targets[target].cell))
 
     def _dispatch(self, home):
-        wanted = {r: self._next(r) for r in self.robots if home[r]}
-        asking = [r for r in self.robots if wanted.get(r) is not None]
+        wanted = {r: self._next_target(r) for r in self.robots if home[r]}
+        requesting = [r for r in self.robots if wanted.get(r) is not None]
         reserved = set()
         for r in self.robots:
             if not home[r]:
@@ -57,43 +57,45 @@ class Plain:
                     else (self.goals[r],)
                 )
                 reserved |= set(way)
-        held, leader = set(), asking[0] if asking else None
-        for r in asking:
-            way = self._way(r, wanted[r])
+        requested, leader = set(), requesting[0] if requesting else None
+        for r in requesting:
+            way = self._cells_on_way(r, wanted[r])
             others = {self.cells[o] for o in self.robots if o != r}
-            if way & (others | reserved | held):
-                held = way if r == leader else held
+            if way & (others | reserved | requested):
+                requested = way if r == leader else requested
                 continue
             reserved |= way
             home[r] = None
             self.targets[r], self.goals[r] = wanted[r], self.study.targets[wanted[r]].cell
-        if held:
+        if requested:
             goal = self.study.targets[wanted[leader]].cell
-            self._aside([r for r in self.robots if home[r] and r != leader], held, reserved, goal)
+            self._move_aside(
+                [r for r in self.robots if home[r] and r != leader], requested, reserved, goal
+            )
 
-    def _aside(self, idle, held, reserved, goal):
-        known = self.grid.distances(goal)
-        gone, chosen = set(), set()
-        asked = {r for r in idle if self.cells[r] in held}
+    def _move_aside(self, idle, held, reserved, goal):
+        distances = self.grid.distances(goal)
+        moved_robots, chosen = set(), set()
+        requested = {r for r in idle if self.cells[r] in held}
         for _ in self.robots:
-            for r in sorted(asked - gone):
-                near = [there for _, there in self.grid.neighbours(self.cells[r])]
-                free = [c for c in near if c not in {*self.cells, *reserved, *chosen}]
-                off = [c for c in free if c not in held]
-                ahead = [c for c in free if known[c] < known[self.cells[r]]]
-                for there in (*off, *ahead)[:1]:
-                    gone.add(r)
-                    chosen.add(there)
-                    self.goals[r] = there
-            stuck = {self.cells[r] for r in asked - gone}
-            beside = {there for cell in stuck for _, there in self.grid.neighbours(cell)}
-            asked |= {r for r in idle if self.cells[r] in beside}
+            for r in sorted(requested - moved_robots):
+                neighbours = [neighbour for _, neighbour in self.grid.neighbours(self.cells[r])]
+                free = [c for c in neighbours if c not in {*self.cells, *reserved, *chosen}]
+                outside = [c for c in free if c not in held]
+                nearer = [c for c in free if distances[c] < distances[self.cells[r]]]
+                for neighbour in (*outside, *nearer)[:1]:
+                    moved_robots.add(r)
+                    chosen.add(neighbour)
+                    self.goals[r] = neighbour
+            stuck = {self.cells[r] for r in requested - moved_robots}
+            adjacent = {neighbour for cell in stuck for _, neighbour in self.grid.neighbours(cell)}
+            requested |= {r for r in idle if self.cells[r] in adjacent}
 
     def _command(self, r, was_home):
         ways = self.grid.commands_nearer(self.cells[r], self.goals[r])
         return ways[0] if ways and was_home is False else "stay"
 
-    def told(self):
-        """Where robots are, and what is done."""
-        assert all(one in ("stay", *WAYS) for one in self.commands)
+    def read_state(self):
+        """Return the cells of the robots and the targets that are done."""
+        assert all(command in ("stay", *WAYS) for command in self.commands)
         return tuple(self.cells), frozenset(self.done)

@@ -1,4 +1,4 @@
-"""Floors for the tests: squares of cells with robots; the corpus's names for their contracts."""
+"""Floors for the tests: squares of cells with robots; contracts by their names in the corpus."""
 
 import os
 import re
@@ -30,21 +30,27 @@ _WORDS = {
 
 
 def floor(side, *starts, targets=(), orders=(), blocked=(), rows=None, **more):
-    """A floor with robots r0, r1 ... (None starts anywhere) and targets t0, t1 ... in cells."""
+    """Return a floor with robots r0, r1 ... (None: any start) and targets t0, t1 ... in cells."""
     return Study(
         "Hall",
         "hall",
         Grid(side, rows or side, tuple(blocked)),
-        tuple(Robot(f"r{at}", f"r{at}", f"R{at}", start) for at, start in enumerate(starts)),
-        tuple(Target(f"t{at}", f"t{at}", cell, f"T{at}") for at, cell in enumerate(targets)),
-        tuple(Order(*one) for one in orders),
+        tuple(
+            Robot(f"r{index}", f"r{index}", f"R{index}", start)
+            for index, start in enumerate(starts)
+        ),
+        tuple(
+            Target(f"t{index}", f"t{index}", cell, f"T{index}")
+            for index, cell in enumerate(targets)
+        ),
+        tuple(Order(*order) for order in orders),
         obstacles=tuple(f"O{cell}" for cell in blocked),
         **more,
     )
 
 
 def contract_like(name):
-    """Our contract for the floor of a file of corpus/gr1/robots."""
+    """Return our contract for the floor of a file of corpus/gr1/robots."""
     kind, *rest = name.split("_")
     if kind == "robot":
         study = floor(int(int(rest[0]) ** 0.5), None)
@@ -57,16 +63,18 @@ def contract_like(name):
     return system_contract(study, _ENCODING[rest[1]])
 
 
-def said(contract):
-    """All conjuncts as text, with class and side."""
+def list_conjuncts(contract):
+    """Return all conjuncts as text, with side and class."""
     sides = (("assumed", contract.assumptions), ("promised", contract.guarantees))
     return {
-        (side, one.class_, print_formula(one.formula)) for side, known in sides for one in known
+        (side, conjunct.class_, print_formula(conjunct.formula))
+        for side, conjuncts in sides
+        for conjunct in conjuncts
     }
 
 
-def renamed(text):
-    """A formula of the corpus in our names."""
+def rename_variables(text):
+    """Rename the variables of a formula of the corpus to ours."""
     text = re.sub(r"\bfree(\d+)", r"free_\1", text)
-    found = rf"\b({'|'.join(_WORDS)})(\d*)(?!\w)"
-    return re.sub(found, lambda one: f"r{one[2] or 0}_{_WORDS[one[1]]}", text)
+    pattern = rf"\b({'|'.join(_WORDS)})(\d*)(?!\w)"
+    return re.sub(pattern, lambda match: f"r{match[2] or 0}_{_WORDS[match[1]]}", text)

@@ -1,4 +1,4 @@
-"""What is known of a floor's robots is kept: new targets ask for another allocation only."""
+"""The cache of results about a floor's robots: new targets need a new allocation only."""
 
 import pytest
 from small_floors import floor
@@ -28,20 +28,22 @@ def nowhere(origin):
 
 
 @pytest.fixture
-def keeper(tmp_path):
+def crew_cache(tmp_path):
     return CrewCache(Cache(tmp_path), "this version")
 
 
-def made(study, keeper, has_relations=True, options=None):
+def run_mission(study, crew_cache, has_relations=True, options=None):
     sink = Sink()
-    found = run_study(study, nowhere, sink, options or Options(), has_relations, keeper)
-    return found, [(one.rule.code, one.message, one.notes) for one in sink]
+    outcome = run_study(study, nowhere, sink, options or Options(), has_relations, crew_cache)
+    return outcome, [
+        (diagnostic.rule.code, diagnostic.message, diagnostic.notes) for diagnostic in sink
+    ]
 
 
 def forbid(monkeypatch):
     """Nothing may be synthesised, measured or decided from here on."""
 
-    def fail(*given, **named):
+    def fail(*arguments, **named):
         raise AssertionError("done again")
 
     for module, name in (
@@ -55,24 +57,24 @@ def forbid(monkeypatch):
         monkeypatch.setattr(module, name, fail)
 
 
-def test_new_targets_ask_for_another_allocation_and_for_nothing_else(keeper, monkeypatch):
-    first, told = made(FIRST, keeper)
+def test_new_targets_need_a_new_allocation_only(crew_cache, monkeypatch):
+    first, diagnostics = run_mission(FIRST, crew_cache)
     forbid(monkeypatch)
-    second, told_again = made(OTHER, keeper)
+    second, diagnostics_again = run_mission(OTHER, crew_cache)
     assert second.is_good
     assert second.study is OTHER
     assert second.controller.machine == first.controller.machine
     assert second.travel != first.travel
-    assert told_again == told
-    assert [one.holds for one in second.relations] == [one.holds for one in first.relations]
+    assert diagnostics_again == diagnostics
+    assert [claim.holds for claim in second.relations] == [claim.holds for claim in first.relations]
 
 
-def test_what_is_kept_comes_to_the_same_as_what_is_made(keeper):
-    made(FIRST, keeper)
-    kept, told = made(OTHER, keeper)
-    fresh, told_fresh = made(OTHER, None)
-    assert dict(study_files(kept)) == dict(study_files(fresh))
-    assert told == told_fresh
+def test_cached_and_fresh_outcomes_are_equal(crew_cache):
+    run_mission(FIRST, crew_cache)
+    cached, diagnostics = run_mission(OTHER, crew_cache)
+    fresh, fresh_diagnostics = run_mission(OTHER, None)
+    assert dict(study_files(cached)) == dict(study_files(fresh))
+    assert diagnostics == fresh_diagnostics
 
 
 @pytest.mark.parametrize(
@@ -85,64 +87,64 @@ def test_what_is_kept_comes_to_the_same_as_what_is_made(keeper):
         floor(3, None, None, targets=(0, 8), counter_size=4),
     ],
 )
-def test_another_floor_or_other_robots_are_made_anew(other, keeper, monkeypatch):
-    made(FIRST, keeper, has_relations=False)
+def test_another_floor_or_other_robots_miss_the_cache(other, crew_cache, monkeypatch):
+    run_mission(FIRST, crew_cache, has_relations=False)
     forbid(monkeypatch)
     with pytest.raises(AssertionError, match="done again"):
-        made(other, keeper, has_relations=False)
+        run_mission(other, crew_cache, has_relations=False)
 
 
-def test_another_version_of_the_tool_makes_all_anew(keeper, monkeypatch):
-    made(FIRST, keeper, has_relations=False)
+def test_another_version_of_the_tool_misses_the_cache(crew_cache, monkeypatch):
+    run_mission(FIRST, crew_cache, has_relations=False)
     forbid(monkeypatch)
     with pytest.raises(AssertionError, match="done again"):
-        made(FIRST, CrewCache(keeper.cache, "the next version"), has_relations=False)
+        run_mission(FIRST, CrewCache(crew_cache.cache, "the next version"), has_relations=False)
 
 
-def test_claims_that_were_not_asked_for_are_decided_later(keeper):
-    made(FIRST, keeper, has_relations=False)
-    found, _ = made(FIRST, keeper)
-    assert len(found.relations) == 11
+def test_claims_that_were_not_asked_for_are_decided_later(crew_cache):
+    run_mission(FIRST, crew_cache, has_relations=False)
+    outcome, _ = run_mission(FIRST, crew_cache)
+    assert len(outcome.relations) == 11
 
 
-def test_what_was_not_decided_is_tried_again(keeper):
+def test_undecided_claims_are_tried_again(crew_cache):
     short = Options(limits=Limits(nodes=10))
-    assert keeper.get(FIRST) is None
-    made(FIRST, keeper, has_relations=False)
-    crew = keeper.get(FIRST)
+    assert crew_cache.get(FIRST) is None
+    run_mission(FIRST, crew_cache, has_relations=False)
+    crew = crew_cache.get(FIRST)
     undecided = {
-        one.claim: one
-        for one in claims.decide_claims(FIRST, flow.travel_times_of(FIRST, {}), short)
+        claim.claim: claim
+        for claim in claims.decide_claims(FIRST, flow.travel_times_of(FIRST, {}), short)
     }
-    assert None in {one.holds for one in undecided.values()}
-    keeper.put(FIRST, flow.replace(crew, claims=undecided))
-    assert None not in {one.holds for one in keeper.get(FIRST).claims.values()}
-    found, _ = made(FIRST, keeper)
-    assert None not in {one.holds for one in found.relations}
+    assert None in {claim.holds for claim in undecided.values()}
+    crew_cache.put(FIRST, flow.replace(crew, claims=undecided))
+    assert None not in {claim.holds for claim in crew_cache.get(FIRST).claims.values()}
+    outcome, _ = run_mission(FIRST, crew_cache)
+    assert None not in {claim.holds for claim in outcome.relations}
 
 
-def test_a_damaged_entry_costs_time_only(keeper):
-    made(FIRST, keeper, has_relations=False)
-    key = keeper._key(FIRST)
+def test_a_damaged_entry_costs_time_only(crew_cache):
+    run_mission(FIRST, crew_cache, has_relations=False)
+    key = crew_cache._key(FIRST)
     for data in (
         b"no JSON",
         b"{}",
         b"[{},[],[]]",
         b'[{"inputs":[],"outputs":["nobody"]},[],[]]',
     ):
-        keeper.cache.put(key, data)
-        assert keeper.get(FIRST) is None
-    assert made(FIRST, keeper, has_relations=False)[0].is_good
+        crew_cache.cache.put(key, data)
+        assert crew_cache.get(FIRST) is None
+    assert run_mission(FIRST, crew_cache, has_relations=False)[0].is_good
 
 
-def test_a_table_is_kept_as_well():
+def test_a_table_is_cached_too():
     study = floor(2, None, targets=(3,))
     contract = controller_contract(study)
-    found = synthesise_controller(contract, nowhere, Sink(), Options(), Form.TABLE)
-    assert isinstance(found.machine, Table)
-    again = decode_controller(
-        encode_controller(found.machine), reduce_contract(contract).contract.variables
+    result = synthesise_controller(contract, nowhere, Sink(), Options(), Form.TABLE)
+    assert isinstance(result.machine, Table)
+    decoded = decode_controller(
+        encode_controller(result.machine), reduce_contract(contract).contract.variables
     )
-    assert again == found.machine
-    answers = Answers(again, ANY, study.grid)
+    assert decoded == result.machine
+    answers = Answers(decoded, ANY, study.grid)
     assert measure_travel_times(study, (answers,))[3] == {0: 4, 1: 3, 2: 3, 3: 1}

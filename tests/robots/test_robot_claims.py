@@ -1,9 +1,9 @@
-"""Robots, environment and mission together: what of C_S they keep, judged by listed states."""
+"""Joint proofs about robots, environment and mission, compared with enumerated states."""
 
 from functools import partial
 
 import pytest
-from listed_floor import STAY, Listed
+from listed_floor import STAY, ListedFloor
 from msgspec.structs import replace
 from small_floors import floor
 
@@ -38,50 +38,53 @@ FLOORS = {
 new_manager = partial(Manager, "", Limits(), lambda *given: None)
 
 
-def together(study):
+def make_proof(study):
     return JointProof(study, new_manager)
 
 
 @pytest.mark.parametrize("name", FLOORS)
-def test_what_is_decided_is_what_listed_states_say(name):
+def test_proofs_agree_with_listed_states(name):
     study = FLOORS[name]
-    asked, listed = together(study), Listed(study)
-    assert (asked.find_safety_failure() is None) == listed.is_safe()
-    assert (asked.find_offer_failure() is not None) == listed.is_ever_stuck()
-    assert (asked.find_endless_travel() is not None) == listed.is_ever_away()
+    proof, listed = make_proof(study), ListedFloor(study)
+    assert (proof.find_safety_failure() is None) == listed.is_safe()
+    assert (proof.find_offer_failure() is not None) == listed.is_ever_stuck()
+    assert (proof.find_endless_travel() is not None) == listed.is_ever_away()
 
 
 @pytest.mark.parametrize("name", FLOORS)
 def test_a_run_that_fails_is_one_of_the_listed_states(name):
     study = FLOORS[name]
-    found, listed = together(study).find_offer_failure(), Listed(study)
-    if found is not None:
-        steps = [state(study, one) for one in found.run.steps]
-        onward = [*steps[1:], steps[found.run.loop]]
-        assert all(then in listed.after[now] for now, then in zip(steps, onward, strict=True))
-        loop = steps[found.run.loop :]
-        assert not any(listed.is_near(one, 0) for one in loop)
+    failure, listed = make_proof(study).find_offer_failure(), ListedFloor(study)
+    if failure is not None:
+        steps = [read_listed_state(study, step) for step in failure.run.steps]
+        onward = [*steps[1:], steps[failure.run.loop]]
+        assert all(
+            following in listed.successors[current]
+            for current, following in zip(steps, onward, strict=True)
+        )
+        loop = steps[failure.run.loop :]
+        assert not any(listed.is_near(step, 0) for step in loop)
         for robot in listed.robots:
-            assert any(listed.is_served(one, robot) for one in loop)
+            assert any(listed.is_served(step, robot) for step in loop)
 
 
-def state(study, values):
-    """The values of a step as a listed state."""
+def read_listed_state(study, values):
+    """Convert the values of a step to a listed state."""
     return tuple(
         (
-            values[terms.position(one)],
-            values[terms.target(one)],
-            frozenset(way for way in WAYS if values[terms.sensor(one, way)]),
-            values[terms.command(one)],
+            values[terms.position(robot)],
+            values[terms.target(robot)],
+            frozenset(way for way in WAYS if values[terms.sensor(robot, way)]),
+            values[terms.command(robot)],
         )
-        for one in study.robots
+        for robot in study.robots
     )
 
 
-def test_floors_of_both_kinds_are_judged():
-    answers = {together(study).find_offer_failure() is None for study in FLOORS.values()}
+def test_floors_have_proofs_and_failures():
+    answers = {make_proof(study).find_offer_failure() is None for study in FLOORS.values()}
     assert answers == {True, False}
-    assert {together(study).find_endless_travel() is None for study in FLOORS.values()} == {
+    assert {make_proof(study).find_endless_travel() is None for study in FLOORS.values()} == {
         True,
         False,
     }
@@ -90,73 +93,93 @@ def test_floors_of_both_kinds_are_judged():
 @pytest.mark.parametrize(("side", "robots"), [(3, 2), (4, 2), (5, 2), (4, 4), (5, 5)])
 def test_floors_of_the_thesis_are_decided_one_robot_or_two_at_a_time(side, robots):
     study = floor(side, *(None,) * robots)
-    asked = together(study)
-    assert asked.find_safety_failure() is None
-    assert asked.find_liveness_failure() is None
-    found = asked.find_offer_failure()
-    assert found.conjunct.text == "Again and again 'r0' is in its target, or may go nearer."
-    assert list(violated_conjuncts(found.run, (found.conjunct,))) == [found.conjunct]
-    promised = list(violated_conjuncts(found.run, asked.contracts.system.guarantees))
-    assert [one.text for one in promised] == ["'r0' reaches its targets."]
+    proof = make_proof(study)
+    assert proof.find_safety_failure() is None
+    assert proof.find_liveness_failure() is None
+    failure = proof.find_offer_failure()
+    assert failure.conjunct.text == "Again and again 'r0' is in its target, or may go nearer."
+    assert list(violated_conjuncts(failure.run, (failure.conjunct,))) == [failure.conjunct]
+    violated = list(violated_conjuncts(failure.run, proof.contracts.system.guarantees))
+    assert [conjunct.text for conjunct in violated] == ["'r0' reaches its targets."]
 
 
-def test_without_its_promise_to_go_on_free_ways_only_a_robot_breaks_what_is_assumed_of_it():
-    asked = together(floor(3, None, None))
-    first, *others = asked.contracts.robots
-    kept = [one for one in first.guarantees if "only when the way is free" not in one.text]
-    asked.contracts.robots = [replace(first, guarantees=tuple(kept)), *others]
-    asked.contracts.parts = (asked.contracts.environment, *asked.contracts.robots)
-    asked._step_conjuncts = {(one.class_, one.formula) for one in asked.contracts.steps()}
-    broken = [one for one in asked.contracts.environment.assumptions if not asked._is_proven(one)]
-    assert [one.text for one in broken] == [
+def test_a_robot_without_its_guarantee_about_free_ways_violates_assumptions():
+    proof = make_proof(floor(3, None, None))
+    first, *other_robots = proof.contracts.robots
+    guarantees = [
+        conjunct
+        for conjunct in first.guarantees
+        if "only when the way is free" not in conjunct.text
+    ]
+    proof.contracts.robots = [replace(first, guarantees=tuple(guarantees)), *other_robots]
+    proof.contracts.parts = (proof.contracts.environment, *proof.contracts.robots)
+    proof._step_conjuncts = {
+        (conjunct.class_, conjunct.formula) for conjunct in proof.contracts.steps()
+    }
+    broken = [
+        conjunct
+        for conjunct in proof.contracts.environment.assumptions
+        if not proof._is_proven(conjunct)
+    ]
+    assert [conjunct.text for conjunct in broken] == [
         f"'r0' goes {way} only when the way is free." for way in WAYS
     ]
 
 
-def test_nothing_says_how_soon_a_robot_comes_to_its_target():
-    found = together(floor(3, None, None, within=4)).find_safety_failure()
-    assert found.conjunct.text == "'r0' reaches a target within 4 steps."
-    assert [one["r0_timer"] for one in found.run.steps][:8] == [0, 0, 0, 1, 2, 3, 4, 5]
-    assert together(floor(1, None, within=4)).find_safety_failure() is None
+def test_no_contract_bounds_the_time_to_a_target():
+    failure = make_proof(floor(3, None, None, within=4)).find_safety_failure()
+    assert failure.conjunct.text == "'r0' reaches a target within 4 steps."
+    assert [step["r0_timer"] for step in failure.run.steps][:8] == [0, 0, 0, 1, 2, 3, 4, 5]
+    assert make_proof(floor(1, None, within=4)).find_safety_failure() is None
 
 
 def test_targets_of_a_mission_stay_and_can_be_reached():
     """What joins the contracts keeps what C_R and C_S assume of targets, on any floor."""
     for study in FLOORS.values():
-        asked = together(study)
-        goals = {terms.target(one) for one in study.robots}
-        for part in asked.contracts.robots:
-            of_targets = [one for one in part.assumptions if goals & names(one)]
-            assert all(asked._is_proven(one) for one in of_targets if one.class_ != "liveness")
+        proof = make_proof(study)
+        goals = {terms.target(robot) for robot in study.robots}
+        for part in proof.contracts.robots:
+            target_assumptions = [
+                conjunct for conjunct in part.assumptions if goals & list_names(conjunct)
+            ]
+            assert all(
+                proof._is_proven(conjunct)
+                for conjunct in target_assumptions
+                if conjunct.class_ != "liveness"
+            )
 
 
-def names(conjunct):
-    return {one.name for one in variables(conjunct.formula)}
+def list_names(conjunct):
+    return {variable.name for variable in variables(conjunct.formula)}
 
 
-def test_others_rest_in_nobodys_way():
+def test_robots_outside_the_proof_rest_without_violations():
     study = floor(3, None, None, None)
-    found = together(study).find_offer_failure()
+    failure = make_proof(study).find_offer_failure()
     contract = environment_contract(study)
-    assert list(violated_conjuncts(found.run, (*contract.assumptions, *contract.guarantees))) == []
-    assert list(violated_conjuncts(found.run, mission_guarantees(study))) == []
-    assert {one["r2_command"] for one in found.run.steps} == {STAY}
+    assert (
+        list(violated_conjuncts(failure.run, (*contract.assumptions, *contract.guarantees))) == []
+    )
+    assert list(violated_conjuncts(failure.run, mission_guarantees(study))) == []
+    assert {step["r2_command"] for step in failure.run.steps} == {STAY}
 
 
-def test_where_there_is_no_room_a_run_of_few_robots_is_none_of_all():
+def test_a_run_of_few_robots_cannot_be_extended_on_a_full_floor():
     study = floor(2, None, None, None, None)
     few = replace(study, robots=study.robots[:1])
-    run = together(few).find_offer_failure().run
+    run = make_proof(few).find_offer_failure().run
     contract = environment_contract(study)
-    for one in extend_to_all_robots(study, few.robots, run):
-        assert list(violated_conjuncts(one, contract.guarantees)) != []
+    for extended_run in extend_to_all_robots(study, few.robots, run):
+        assert list(violated_conjuncts(extended_run, contract.guarantees)) != []
 
 
-def test_a_floor_that_is_full_is_not_decided_in_no_time():
+def test_a_claim_beyond_the_time_limit_stays_undecided():
     study = floor(2, *(None,) * 4)
     options = Options(limits=Limits(seconds=0.1))
-    found = {one.claim: one for one in decide_claims(study, shortest_travel_times(study), options)}
-    whole = found["C_R, C_E and C_M together refine C_S"]
+    claims = {
+        claim.claim: claim for claim in decide_claims(study, shortest_travel_times(study), options)
+    }
+    whole = claims["C_R, C_E and C_M together refine C_S"]
     assert whole.holds is None
     assert "limit" in whole.reason
 
@@ -164,5 +187,8 @@ def test_a_floor_that_is_full_is_not_decided_in_no_time():
 def test_the_mission_as_it_is_written_keeps_what_every_mission_does():
     """C_M of a study promises, of goals, what the study of all missions relies on."""
     study = floor(3, None, None, targets=(0, 4, 8), orders=((0, 1, True),))
-    texts = {one.text for one in mission_contract(study, shortest_travel_times(study)).guarantees}
+    texts = {
+        conjunct.text
+        for conjunct in mission_contract(study, shortest_travel_times(study)).guarantees
+    }
     assert {"At first 'r0' has no target.", "'r0' keeps a target until it has reached it."} <= texts

@@ -9,7 +9,7 @@ import pytest
 from greedy_machine import greedy_answers
 from msgspec.structs import replace
 from small_floors import floor
-from test_robot_simulation import some_floor
+from test_robot_simulation import random_floor
 
 from sysmlc.diagnostics import Sink, Subject
 from sysmlc.logic.evaluate import find_violation
@@ -39,62 +39,68 @@ class RecordingWorld(World):
         super()._offer_and_answer(number, memory, goal, move, runs)
 
     def read_variables(self):
-        found = {}
+        values = {}
         for number, (robot, body) in enumerate(zip(self.study.robots, self.bodies, strict=True)):
-            (memory,) = [one for one, plane in body.memory.items() if plane]
+            (memory,) = [memory_state for memory_state, plane in body.memory.items() if plane]
             commands = [way for way, plane in body.commands.items() if plane]
-            found[terms.position(robot)] = body.places.index(1)
-            found[terms.target(robot)] = memory.goal
-            found[terms.command(robot)] = commands[0] if commands else STAY
-            found |= {terms.sensor(robot, way): (number, way) in self.offered for way in WAYS}
-        return found | {terms.free(cell): not one for cell, one in enumerate(self.occupied)}
+            values[terms.position(robot)] = body.places.index(1)
+            values[terms.target(robot)] = memory.goal
+            values[terms.command(robot)] = commands[0] if commands else STAY
+            values |= {terms.sensor(robot, way): (number, way) in self.offered for way in WAYS}
+        return values | {
+            terms.free(cell): not is_occupied for cell, is_occupied in enumerate(self.occupied)
+        }
 
 
-def run_of(study, allocation, answers, start, world=RecordingWorld):
+def record_run(study, allocation, answers, start, world=RecordingWorld):
     """What the variables are in each step, and the step to which the last one returns."""
     cells = range(study.grid.size)
-    placed = tuple(tuple(int(cell == one) for cell in cells) for one in start)
-    made = world(study, allocation, answers, RunSpace(1, 0, placed, difference))
-    assert Simulation(made).run() is None
+    start_planes = tuple(tuple(int(cell == position) for cell in cells) for position in start)
+    recorder = world(study, allocation, answers, RunSpace(1, 0, start_planes, difference))
+    assert Simulation(recorder).run() is None
     period = len(study.robots)
-    assert made.trace[-1] == made.trace[-1 - period]
-    return made.trace[:-1], len(made.trace) - 1 - period
+    assert recorder.trace[-1] == recorder.trace[-1 - period]
+    return recorder.trace[:-1], len(recorder.trace) - 1 - period
 
 
-def broken(contract, trace, loop, is_promise=True):
+def list_violations(contract, trace, loop, is_promise=True):
     """The conjuncts that do not hold in a run."""
-    known = contract.guarantees if is_promise else contract.assumptions
-    return [one.text for one in known if find_violation(one, trace, loop) is not None]
+    conjuncts = contract.guarantees if is_promise else contract.assumptions
+    return [
+        conjunct.text for conjunct in conjuncts if find_violation(conjunct, trace, loop) is not None
+    ]
 
 
-def starts_of(study, count=7):
+def list_starts(study, count=7):
     """Some of the starts, far from one another."""
-    known = list(permutations(study.grid.cells, len(study.robots)))
-    return known[:: max(1, len(known) // count)]
+    starts = list(permutations(study.grid.cells, len(study.robots)))
+    return starts[:: max(1, len(starts) // count)]
 
 
 @pytest.mark.parametrize("seed", range(1, 10))
 def test_all_contracts_are_kept_in_whole_runs(seed):
-    study, allocation = some_floor(seed)
+    study, allocation = random_floor(seed)
     answers = greedy_answers(study)
-    for start in starts_of(study):
-        trace, loop = run_of(study, allocation, answers, start)
+    for start in list_starts(study):
+        trace, loop = record_run(study, allocation, answers, start)
         environment = environment_contract(study)
-        assert broken(environment, trace, loop) == []
-        assert broken(environment, trace, loop, is_promise=False) == []
-        assert broken(system_contract(study), trace, loop) == []
+        assert list_violations(environment, trace, loop) == []
+        assert list_violations(environment, trace, loop, is_promise=False) == []
+        assert list_violations(system_contract(study), trace, loop) == []
         for robot in study.robots:
             shared = robot_contract(study, robot, is_alone=False)
-            assert broken(shared, trace, loop, is_promise=False) == []
-            assert broken(shared, trace, loop) == []
+            assert list_violations(shared, trace, loop, is_promise=False) == []
+            assert list_violations(shared, trace, loop) == []
 
 
 def test_the_synthesised_machine_keeps_them_as_well():
     study = floor(3, None, None, targets=(0, 8, 4))
-    made = synthesise_robot(study, lambda origin: Subject(), Sink(), Options())
-    trace, loop = run_of(study, ((0, 2), (1,)), build_answers(study, made), (4, 5))
-    assert broken(environment_contract(study), trace, loop) == []
-    assert broken(robot_contract(study, study.robots[0], is_alone=False), trace, loop) == []
+    controller = synthesise_robot(study, lambda origin: Subject(), Sink(), Options())
+    trace, loop = record_run(study, ((0, 2), (1,)), build_answers(study, controller), (4, 5))
+    assert list_violations(environment_contract(study), trace, loop) == []
+    assert (
+        list_violations(robot_contract(study, study.robots[0], is_alone=False), trace, loop) == []
+    )
 
 
 class Silent(RecordingWorld):
@@ -106,8 +112,8 @@ class Silent(RecordingWorld):
 
 def test_without_a_turn_for_robots_at_rest_the_environment_breaks_its_promise():
     study = floor(3, None, None, targets=(0, 8))
-    run = run_of(study, ((0,), (1,)), greedy_answers(study), (4, 5), Silent)
-    assert broken(environment_contract(study), *run) == [
+    run = record_run(study, ((0,), (1,)), greedy_answers(study), (4, 5), Silent)
+    assert list_violations(environment_contract(study), *run) == [
         "Again and again a way is offered to 'r0', if one is free.",
         "Again and again a way is offered to 'r1', if one is free.",
     ]
@@ -115,10 +121,10 @@ def test_without_a_turn_for_robots_at_rest_the_environment_breaks_its_promise():
 
 def test_two_robots_with_one_cell_between_them_have_it_in_turn():
     study = floor(3, None, None, rows=1, targets=(0, 2))
-    trace, loop = run_of(study, ((0,), (1,)), greedy_answers(study), (0, 2))
-    assert broken(environment_contract(study), trace, loop) == []
-    rights = [one["r0_sensor_right"] for one in trace[loop:]]
-    lefts = [one["r1_sensor_left"] for one in trace[loop:]]
+    trace, loop = record_run(study, ((0,), (1,)), greedy_answers(study), (0, 2))
+    assert list_violations(environment_contract(study), trace, loop) == []
+    rights = [step["r0_sensor_right"] for step in trace[loop:]]
+    lefts = [step["r1_sensor_left"] for step in trace[loop:]]
     assert sorted(zip(rights, lefts, strict=True)) == [(False, True), (True, False)]
 
 
@@ -126,28 +132,31 @@ def test_two_robots_with_one_cell_between_them_have_it_in_turn():
 def test_ways_are_too_long_exactly_where_a_timer_of_the_system_says_so(start):
     study = floor(3, None, None, targets=(0, 8))
     answers = greedy_answers(study)
-    trace, _ = run_of(study, ((0,), (1,)), answers, start)
-    longest = max(timers(study, trace))
+    trace, _ = record_run(study, ((0,), (1,)), answers, start)
+    longest = max(iter_timers(study, trace))
     assert longest > 1
     for within, is_slow in ((longest, False), (longest - 1, True)):
         bounded = replace(study, within=within)
-        world = World(bounded, ((0,), (1,)), answers, placed(study, start))
+        world = World(bounded, ((0,), (1,)), answers, place_robots(study, start))
         failure = Simulation(world).run()
         assert (failure is not None and failure.is_slow) is is_slow
 
 
-def timers(study, trace):
+def iter_timers(study, trace):
     """How long robots have had their targets, in each step."""
     for robot in study.robots:
         timer = 0
-        for one in trace:
+        for step in trace:
             yield timer
-            is_home = one[terms.position(robot)] == one[terms.target(robot)]
+            is_home = step[terms.position(robot)] == step[terms.target(robot)]
             timer = 0 if is_home else timer + 1
 
 
-def placed(study, start):
+def place_robots(study, start):
     cells = range(study.grid.size)
     return RunSpace(
-        1, 0, tuple(tuple(int(cell == one) for cell in cells) for one in start), difference
+        1,
+        0,
+        tuple(tuple(int(cell == position) for cell in cells) for position in start),
+        difference,
     )

@@ -2,7 +2,7 @@
 
 from xml.etree import ElementTree
 
-from floors_v1 import FOLDER, library
+from floors_v1 import FOLDER, convert_library
 
 from sysmlc.driver import Request, compile_model
 from sysmlc.logic.contract import Contract
@@ -33,68 +33,79 @@ package Plant {
 """
 
 
-def ids():
-    """Ids of what the library has, by name; features behind the name of their owner."""
-    found = {}
-    for one in ElementTree.parse(LIBRARY).getroot().iter("packagedElement"):
-        found[one.get("name")] = one.get(f"{XMI}id")
-        for feature in one.iter("ownedAttribute"):
-            found[f"{one.get('name')}.{feature.get('name')}"] = feature.get(f"{XMI}id")
-    return found
+def read_ids():
+    """Return the ids of blocks and features of the library by qualified name."""
+    ids_by_name = {}
+    for block in ElementTree.parse(LIBRARY).getroot().iter("packagedElement"):
+        ids_by_name[block.get("name")] = block.get(f"{XMI}id")
+        for feature in block.iter("ownedAttribute"):
+            ids_by_name[f"{block.get('name')}.{feature.get('name')}"] = feature.get(f"{XMI}id")
+    return ids_by_name
 
 
-KNOWN = ids()
+IDS = read_ids()
 
 
-def block(name, general, inside="", **values):
-    """A block that specialises one of the library and gives its attributes values."""
+def build_block(name, general, inside="", **values):
+    """Return a block that specialises *general* of the library and sets attributes."""
     owners = {"columns": "Floor", "counted": "Floor", "deadline": "Mission"}
-    known = {one: KNOWN[f"{owners.get(one, 'Placed')}.{one}"] for one in values}
+    feature_ids = {feature: IDS[f"{owners.get(feature, 'Placed')}.{feature}"] for feature in values}
     features = "".join(
         f'<ownedAttribute xmi:id="{name}.{feature}" name="{feature}">'
-        f'<redefinedProperty href="Floors.uml#{known[feature]}"/>'
+        f'<redefinedProperty href="Floors.uml#{feature_ids[feature]}"/>'
         f'<defaultValue xmi:type="uml:LiteralInteger" xmi:id="{name}.{feature}v" value="{value}"/>'
         "</ownedAttribute>"
         for feature, value in values.items()
     )
     return (
         f'<packagedElement xmi:type="uml:Class" xmi:id="{name}" name="{name}">'
-        f'<generalization xmi:id="{name}.g"><general href="Floors.uml#{KNOWN[general]}"/>'
+        f'<generalization xmi:id="{name}.g"><general href="Floors.uml#{IDS[general]}"/>'
         f"</generalization>{features}{inside}</packagedElement>"
     )
 
 
-def part(name, type_):
+def build_part(name, type_):
     kind = f'type="{type_}"' if type_ else ""
-    href = "" if type_ else f'<type href="Floors.uml#{KNOWN["Robot"]}"/>'
+    href = "" if type_ else f'<type href="Floors.uml#{IDS["Robot"]}"/>'
     head = f'<ownedAttribute xmi:id="p.{name}" name="{name}" aggregation="composite" {kind}'
     return f"{head}>{href}</ownedAttribute>"
 
 
-def connector(association, *targets):
-    ends = "".join(f'<end xmi:id="{association}.{one}" role="p.{one}"/>' for one in targets)
+def build_connector(association, *targets):
+    ends = "".join(
+        f'<end xmi:id="{association}.{target}" role="p.{target}"/>' for target in targets
+    )
     return (
-        f'<ownedConnector xmi:id="c.{association}"><type href="Floors.uml#{KNOWN[association]}"/>'
+        f'<ownedConnector xmi:id="c.{association}"><type href="Floors.uml#{IDS[association]}"/>'
         f"{ends}</ownedConnector>"
     )
 
 
-def model():
-    """The same hall in XMI, its blocks over the library's by reference."""
-    robots = part("r1", "R1") + part("spare", "") + part("pillar", "Pillar") + part("work", "Work")
-    targets = part("shelf", "Shelf") + part("dock", "Dock") + part("charger", "Charger")
-    orders = connector("Carry", "shelf", "dock") + connector("Before", "dock", "charger")
+def build_model():
+    """Return the same hall in XMI; its blocks refer to those of the library."""
+    robots = (
+        build_part("r1", "R1")
+        + build_part("spare", "")
+        + build_part("pillar", "Pillar")
+        + build_part("work", "Work")
+    )
+    targets = (
+        build_part("shelf", "Shelf") + build_part("dock", "Dock") + build_part("charger", "Charger")
+    )
+    orders = build_connector("Carry", "shelf", "dock") + build_connector(
+        "Before", "dock", "charger"
+    )
     blocks = (
-        block("Hall", "Floor", robots, columns=4, counted=5)
-        + block("R1", "Robot", row=1, column=2)
-        + block("Pillar", "Obstacle", row=0, column=1)
-        + block("Work", "Mission", targets + orders, deadline=30)
-        + block("Shelf", "Target", row=0, column=3)
-        + block("Dock", "Target", row=2, column=0)
-        + block("Charger", "Target", row=2, column=3)
+        build_block("Hall", "Floor", robots, columns=4, counted=5)
+        + build_block("R1", "Robot", row=1, column=2)
+        + build_block("Pillar", "Obstacle", row=0, column=1)
+        + build_block("Work", "Mission", targets + orders, deadline=30)
+        + build_block("Shelf", "Target", row=0, column=3)
+        + build_block("Dock", "Target", row=2, column=0)
+        + build_block("Charger", "Target", row=2, column=3)
     )
     names = ("Hall", "R1", "Pillar", "Work", "Shelf", "Dock", "Charger")
-    stereotypes = "".join(f'<Blocks:Block xmi:id="b{one}" base_Class="{one}"/>' for one in names)
+    stereotypes = "".join(f'<Blocks:Block xmi:id="b{name}" base_Class="{name}"/>' for name in names)
     return (
         '<xmi:XMI xmi:version="20131001" xmlns:xmi="http://www.omg.org/spec/XMI/20131001"'
         ' xmlns:uml="http://www.eclipse.org/uml2/5.0.0/UML"'
@@ -103,37 +114,37 @@ def model():
     )
 
 
-def said(*files):
-    made = compile_model(Request(files))
-    assert [(one.rule.code, one.message) for one in made.diagnostics] == []
-    (study,) = made.graph.derived(Study)
+def compile_study(*files):
+    result = compile_model(Request(files))
+    assert [(diagnostic.rule.code, diagnostic.message) for diagnostic in result.diagnostics] == []
+    (study,) = result.graph.derived(Study)
     return study, [
-        (one.component, sorted(print_formula(part.formula) for part in side))
-        for one in made.graph.derived(Contract)
-        for side in (one.assumptions, one.guarantees)
+        (contract.component, sorted(print_formula(conjunct.formula) for conjunct in side))
+        for contract in result.graph.derived(Contract)
+        for side in (contract.assumptions, contract.guarantees)
     ]
 
 
 def test_both_give_equal_studies_and_contracts(tmp_path):
     first, second = tmp_path / "hall.uml", tmp_path / "hall.sysml"
-    first.write_text(model(), encoding="utf-8")
+    first.write_text(build_model(), encoding="utf-8")
     second.write_text(TEXT, encoding="utf-8")
-    ours, contracts = said(first, LIBRARY)
-    theirs, wanted = said(second)
-    assert contracts == wanted
+    ours, contracts = compile_study(first, LIBRARY)
+    theirs, expected = compile_study(second)
+    assert contracts == expected
     assert (ours.grid, ours.deadline, ours.counter_size) == (theirs.grid, theirs.deadline, 5)
-    assert [one.start for one in ours.robots] == [6, None]
+    assert [robot.start for robot in ours.robots] == [6, None]
     for study in (ours, theirs):
-        pairs = [(one.earlier, one.later, one.is_carried) for one in study.orders]
+        pairs = [(order.earlier, order.later, order.is_carried) for order in study.orders]
         assert pairs == [(0, 1, True), (1, 2, False)]
 
 
 def test_the_library_is_the_one_for_sysml_v2_in_the_other_notation():
     """When Floors.sysml changes, ``python tests/robots/floors_v1.py`` writes it anew."""
-    assert LIBRARY.read_bytes() == library()
+    assert LIBRARY.read_bytes() == convert_library()
 
 
 def test_the_library_alone_is_clean_and_is_no_floor():
-    made = compile_model(Request((LIBRARY,)))
-    assert [one.message for one in made.diagnostics] == []
-    assert made.graph.derived(Study) == ()
+    result = compile_model(Request((LIBRARY,)))
+    assert [diagnostic.message for diagnostic in result.diagnostics] == []
+    assert result.graph.derived(Study) == ()

@@ -1,4 +1,4 @@
-"""Floors of models: what specialises the library is a study, what is wrong with it is told."""
+"""Floors of models: a block that specialises the library is a study; its faults are reported."""
 
 import pytest
 
@@ -26,26 +26,26 @@ package Plant {
 """
 
 
-def compiled(tmp_path, text):
+def compile_text(tmp_path, text):
     path = tmp_path / "plant.sysml"
     path.write_text(text, encoding="utf-8")
     return compile_model(Request((path,)))
 
 
-def study_of(tmp_path, text=HALL):
-    made = compiled(tmp_path, text)
-    assert [one.rule.code for one in made.diagnostics] == []
-    (study,) = made.graph.derived(Study)
+def read_study(tmp_path, text=HALL):
+    result = compile_text(tmp_path, text)
+    assert [diagnostic.rule.code for diagnostic in result.diagnostics] == []
+    (study,) = result.graph.derived(Study)
     return study
 
 
 def test_a_floor_with_robots_obstacles_and_a_mission_is_a_study(tmp_path):
-    study = study_of(tmp_path)
+    study = read_study(tmp_path)
     assert study.component == "Plant::Hall"
     assert (study.grid.columns, study.grid.rows, study.grid.blocked) == (4, 3, (1,))
-    robots = [(one.word, one.start) for one in study.robots]
+    robots = [(robot.word, robot.start) for robot in study.robots]
     assert robots == [("r1", 6), ("spare", None), ("spare_2", None)]
-    assert [(one.name, one.cell, one.deadline) for one in study.targets] == [
+    assert [(target.name, target.cell, target.deadline) for target in study.targets] == [
         ("shelf", 3, None),
         ("dock", 8, 12),
     ]
@@ -55,8 +55,8 @@ def test_a_floor_with_robots_obstacles_and_a_mission_is_a_study(tmp_path):
 
 
 def test_its_contracts_are_among_those_of_the_model(tmp_path):
-    made = compiled(tmp_path, HALL)
-    assert [one.component for one in made.graph.derived(Contract)] == [
+    result = compile_text(tmp_path, HALL)
+    assert [contract.component for contract in result.graph.derived(Contract)] == [
         "Plant::Hall",
         "Plant::Hall.environment",
         "Plant::Hall.mission",
@@ -72,7 +72,7 @@ def test_its_contracts_are_among_those_of_the_model(tmp_path):
 def test_the_pass_run_again_changes_nothing(tmp_path):
     from sysmlc.passes.robots import Robots
 
-    graph = compiled(tmp_path, HALL).graph
+    graph = compile_text(tmp_path, HALL).graph
     before = graph.derived(Contract)
     Robots().run(graph, Sink())
     assert graph.derived(Contract) == before
@@ -91,47 +91,51 @@ WRONG = {
 
 
 @pytest.mark.parametrize("code", WRONG)
-def test_what_is_wrong_is_told_at_its_element(code, tmp_path):
+def test_a_fault_is_reported_at_its_element(code, tmp_path):
     old, new, name = WRONG[code]
-    made = compiled(tmp_path, HALL.replace(old, new))
-    (found,) = made.diagnostics
-    assert (found.rule.code, found.subject.name.rpartition("::")[2]) == (code, name)
-    assert made.graph.derived(Study) == ()
+    result = compile_text(tmp_path, HALL.replace(old, new))
+    (diagnostic,) = result.diagnostics
+    assert (diagnostic.rule.code, diagnostic.subject.name.rpartition("::")[2]) == (code, name)
+    assert result.graph.derived(Study) == ()
 
 
 def test_a_negative_row_and_a_text_are_no_numbers(tmp_path):
     for value, problem in (("-1", "is negative"), ("1.5", "is not a whole number")):
-        made = compiled(tmp_path, HALL.replace(":>> row = 1", f":>> row = {value}"))
-        (found,) = (one for one in made.diagnostics if one.rule.code == "SM566")
-        assert problem in found.message
+        result = compile_text(tmp_path, HALL.replace(":>> row = 1", f":>> row = {value}"))
+        (diagnostic,) = (
+            diagnostic for diagnostic in result.diagnostics if diagnostic.rule.code == "SM566"
+        )
+        assert problem in diagnostic.message
 
 
 def test_a_target_behind_obstacles_is_out_of_reach(tmp_path):
     wall = " ".join(
-        f"part o{at} : Obstacle {{ :>> row = {at}; :>> column = 1; }}" for at in range(1, 3)
+        f"part o{row} : Obstacle {{ :>> row = {row}; :>> column = 1; }}" for row in range(1, 3)
     )
     text = HALL.replace("part spare : Robot[2];", wall)
-    made = compiled(tmp_path, text)
-    (found,) = made.diagnostics
-    assert (found.rule.code, found.subject.name) == ("SM569", "Plant::Hall::work::dock")
+    result = compile_text(tmp_path, text)
+    (diagnostic,) = result.diagnostics
+    assert (diagnostic.rule.code, diagnostic.subject.name) == ("SM569", "Plant::Hall::work::dock")
 
 
-def test_a_second_floor_of_one_name_is_told_and_not_studied(tmp_path):
+def test_a_second_floor_of_one_name_is_reported_and_not_studied(tmp_path):
     """A mutant of a model wrote the contracts of both into one file."""
-    made = compiled(tmp_path, HALL + HALL)
-    twice = [one for one in made.diagnostics if one.rule.code == "SM577"]
-    assert [one.subject.name for one in twice] == ["Plant::Hall"]
-    assert "SM900" not in {one.rule.code for one in made.diagnostics}
-    assert len(made.graph.derived(Study)) == 1
-    other = compiled(tmp_path, HALL + HALL.replace("package Plant", "package Store"))
-    assert "SM577" not in {one.rule.code for one in other.diagnostics}
+    result = compile_text(tmp_path, HALL + HALL)
+    duplicates = [
+        diagnostic for diagnostic in result.diagnostics if diagnostic.rule.code == "SM577"
+    ]
+    assert [diagnostic.subject.name for diagnostic in duplicates] == ["Plant::Hall"]
+    assert "SM900" not in {diagnostic.rule.code for diagnostic in result.diagnostics}
+    assert len(result.graph.derived(Study)) == 1
+    other = compile_text(tmp_path, HALL + HALL.replace("package Plant", "package Store"))
+    assert "SM577" not in {diagnostic.rule.code for diagnostic in other.diagnostics}
     assert len(other.graph.derived(Study)) == 2
 
 
 @pytest.mark.parametrize("count", ["200", "99999999999999999999"])
 def test_more_robots_than_contracts_can_list_are_refused(count, tmp_path):
     """A mutant of a model with the second number had no end."""
-    made = compiled(tmp_path, HALL.replace("spare : Robot[2]", f"spare : Robot[{count}]"))
-    (found,) = made.diagnostics
-    assert found.rule.code == "SM566"
-    assert "too many robots, more than 28 on 12 cells" in found.message
+    result = compile_text(tmp_path, HALL.replace("spare : Robot[2]", f"spare : Robot[{count}]"))
+    (diagnostic,) = result.diagnostics
+    assert diagnostic.rule.code == "SM566"
+    assert "too many robots, more than 28 on 12 cells" in diagnostic.message

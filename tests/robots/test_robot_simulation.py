@@ -1,4 +1,4 @@
-"""Many runs at once: each is what a plain simulation of one start comes to."""
+"""Simulation of many runs at once: each run equals a plain simulation from its start."""
 
 import random
 from itertools import permutations
@@ -6,7 +6,7 @@ from itertools import permutations
 import pytest
 from greedy_machine import greedy_answers
 from msgspec.structs import replace
-from plain_world import Plain
+from plain_world import PlainWorld
 from small_floors import floor
 
 from sysmlc.robots import validation as validating
@@ -24,57 +24,60 @@ from sysmlc.robots.world import World
 STEPS = 60
 
 
-def some_floor(seed):
+def random_floor(seed):
     """A floor with two or three robots and some targets, dealt out to them in turn."""
     rnd = random.Random(seed)
     side, rows, robots = rnd.choice([(3, 3, 2), (3, 2, 2), (3, 3, 3), (4, 2, 3)])
     cells = list(range(side * rows))
     blocked = (4,) if rnd.random() < 0.3 and rows == 3 else ()
-    targets = rnd.sample([one for one in cells if one not in blocked], rnd.randint(2, 4))
+    targets = rnd.sample([target for target in cells if target not in blocked], rnd.randint(2, 4))
     orders = [(0, 1)] if rnd.random() < 0.5 else []
     study = floor(
         side, *(None,) * robots, targets=targets, orders=orders, blocked=blocked, rows=rows
     )
     numbers = range(len(targets))
-    return study, tuple(tuple(one for one in numbers if one % robots == r) for r in range(robots))
+    return study, tuple(
+        tuple(target for target in numbers if target % robots == r) for r in range(robots)
+    )
 
 
 @pytest.mark.parametrize("seed", range(12))
 def test_every_run_is_the_plain_one(seed):
-    study, allocation = some_floor(seed)
+    study, allocation = random_floor(seed)
     answers = greedy_answers(study)
     (runs,) = iter_start_chunks(study)
     world = World(study, allocation, answers, runs)
     starts = list(permutations(study.grid.cells, len(study.robots)))
-    plain = {start: Plain(study, allocation, start) for start in starts}
+    plain = {start: PlainWorld(study, allocation, start) for start in starts}
     bits = {start: _bit(runs, start) for start in starts}
     assert runs.all.bit_count() == len(starts)
     for _ in range(STEPS):
         world.step()
-        for start, one in plain.items():
-            one.step()
-            assert one.told() == _told(world, bits[start])
+        for start, plain_world in plain.items():
+            plain_world.step()
+            assert plain_world.read_state() == _read_state(world, bits[start])
     assert world.wrong == 0
 
 
 def _bit(runs, start):
-    found = runs.all
+    bit = runs.all
     for robot, cell in zip(runs.starts, start, strict=True):
-        found &= robot[cell]
-    assert found.bit_count() == 1
-    return found
+        bit &= robot[cell]
+    assert bit.bit_count() == 1
+    return bit
 
 
-def _told(world, bit):
+def _read_state(world, bit):
     cells = tuple(
-        next(cell for cell, one in enumerate(body.places) if one & bit) for body in world.bodies
+        next(cell for cell, runs_at in enumerate(body.places) if runs_at & bit)
+        for body in world.bodies
     )
-    return cells, frozenset(at for at, one in enumerate(world.done) if one & bit)
+    return cells, frozenset(target for target, runs_at in enumerate(world.done) if runs_at & bit)
 
 
 @pytest.mark.parametrize("seed", range(6))
 def test_decision_diagrams_come_to_the_same(seed):
-    study, allocation = some_floor(seed)
+    study, allocation = random_floor(seed)
     answers = greedy_answers(study)
     assert validate_symbolically(study, allocation, answers) == validate_allocation(
         study, allocation, answers
@@ -83,8 +86,8 @@ def test_decision_diagrams_come_to_the_same(seed):
 
 def test_starts_are_all_placements_of_robots_in_different_cells():
     starts = digit_patterns((3, 3))
-    assert [f"{one:09b}" for one in starts[0]] == ["001001001", "010010010", "100100100"]
-    assert [f"{one:09b}" for one in starts[1]] == ["000000111", "000111000", "111000000"]
+    assert [f"{pattern:09b}" for pattern in starts[0]] == ["001001001", "010010010", "100100100"]
+    assert [f"{pattern:09b}" for pattern in starts[1]] == ["000000111", "000111000", "111000000"]
     assert starts_without_collision(starts, (1 << 9) - 1).bit_count() == 6
     runs, count = symbolic_starts(floor(3, None, 4, None))
     assert count == 8 * 7
@@ -99,35 +102,39 @@ def test_given_starts_are_no_choice():
 
 
 def test_more_starts_than_one_operation_takes_are_simulated_in_parts(monkeypatch):
-    study, allocation = some_floor(3)
+    study, allocation = random_floor(3)
     whole = validate_allocation(study, allocation, greedy_answers(study))
     monkeypatch.setattr(validating, "MAX_CHUNK_RUNS", 16)
     assert validate_allocation(study, allocation, greedy_answers(study)) == whole
 
 
-def merged(monkeypatch, steps, most=1 << 17):
-    """States are gone on with once from this step on, so many in one operation."""
+def merge_early(monkeypatch, steps, most=1 << 17):
+    """Merge equal states from step *steps* on, with at most *most* runs at once."""
     monkeypatch.setattr(validating, "FIRST_MERGE_STEP", steps)
     monkeypatch.setattr(validating, "MIN_MERGED_STARTS", 0)
     monkeypatch.setattr(validating, "MAX_CHUNK_RUNS", most)
 
 
 @pytest.mark.parametrize("seed", range(12))
-def test_states_that_many_runs_come_to_are_gone_on_with_once(seed, monkeypatch):
-    study, allocation = some_floor(seed)
+def test_merging_equal_states_does_not_change_the_result(seed, monkeypatch):
+    study, allocation = random_floor(seed)
     answers = greedy_answers(study)
     whole = validate_allocation(study, allocation, answers)
     for steps, most in ((1, 1 << 17), (3, 1 << 17), (2, 40), (5, 16)):
-        merged(monkeypatch, steps, most)
-        found = validate_allocation(study, allocation, answers)
+        merge_early(monkeypatch, steps, most)
+        validation = validate_allocation(study, allocation, answers)
         if whole.is_good:
-            assert found == whole
+            assert validation == whole
         else:
-            assert (found.is_good, found.steps, found.late) == (False, whole.steps, whole.late)
+            assert (validation.is_good, validation.steps, validation.late) == (
+                False,
+                whole.steps,
+                whole.late,
+            )
 
 
 def test_states_are_fewer_than_runs():
-    study, allocation = some_floor(3)
+    study, allocation = random_floor(3)
     (runs,) = iter_start_chunks(study)
     world = World(study, allocation, greedy_answers(study), runs)
     assert Simulation(world).run(until=6) is None
@@ -137,7 +144,7 @@ def test_states_are_fewer_than_runs():
     (batch,) = states.batches(1 << 17, world)
     again = World(study, allocation, greedy_answers(study), batch.runs, batch.state, 6)
     for bit, origin in enumerate(batch.origins):
-        assert _told(again, 1 << bit) == _told(world, 1 << origin)
+        assert _read_state(again, 1 << bit) == _read_state(world, 1 << origin)
 
 
 @pytest.mark.parametrize("deadline", [7, 9, 11, 13])
@@ -145,26 +152,30 @@ def test_a_failing_state_leads_back_to_a_start_that_fails(deadline, monkeypatch)
     study = floor(3, None, None, None, targets=(0, 8, 4, 2), deadline=deadline)
     allocation = ((0, 3), (1,), (2,))
     answers = greedy_answers(study)
-    merged(monkeypatch, 2, 50)
-    found = validate_allocation(study, allocation, answers)
-    assert found.late is not None
-    robots = zip(study.robots, found.failed, strict=True)
-    placed = replace(study, robots=tuple(replace(one, start=cell) for one, cell in robots))
-    again = validate_allocation(placed, allocation, answers)
-    assert (again.failed, again.late, again.steps) == (found.failed, found.late, deadline)
+    merge_early(monkeypatch, 2, 50)
+    validation = validate_allocation(study, allocation, answers)
+    assert validation.late is not None
+    robots = zip(study.robots, validation.failed, strict=True)
+    placed = replace(study, robots=tuple(replace(robot, start=cell) for robot, cell in robots))
+    revalidation = validate_allocation(placed, allocation, answers)
+    assert (revalidation.failed, revalidation.late, revalidation.steps) == (
+        validation.failed,
+        validation.late,
+        deadline,
+    )
 
 
 def test_robots_that_cannot_pass_one_another_fail_with_a_start():
     study = floor(3, None, None, rows=1, targets=(0, 2), deadline=30)
-    found = validate_allocation(study, ((0,), (1,)), greedy_answers(study))
-    assert not found.is_good
-    first, second = found.failed
+    validation = validate_allocation(study, ((0,), (1,)), greedy_answers(study))
+    assert not validation.is_good
+    first, second = validation.failed
     assert first > second
 
 
 def test_a_deadline_that_is_too_short_names_the_target_that_is_late():
     study = floor(3, 0, targets=(8,), deadline=5)
-    found = validate_allocation(study, ((0,),), greedy_answers(study))
-    assert (found.is_good, found.late, found.steps) == (False, 0, 5)
+    validation = validate_allocation(study, ((0,),), greedy_answers(study))
+    assert (validation.is_good, validation.late, validation.steps) == (False, 0, 5)
     study = floor(3, 0, targets=(8,), deadline=6)
     assert validate_allocation(study, ((0,),), greedy_answers(study)).is_good
