@@ -87,6 +87,7 @@ def _count_nodes(nodes: Sequence[Node]) -> int:
 
 
 def _detach_notes(notes: tuple[Note, ...]) -> tuple[Note, ...]:
+    # The nodes that a note refers to may be in other parts.
     return tuple(replace(note, targets=()) for note in notes)
 
 
