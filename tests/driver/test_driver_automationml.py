@@ -24,7 +24,7 @@ def build(*paths, backends=()):
 
 def told(made):
     """The diagnostics, without the one that these files have no plant (SM158)."""
-    rows = [f"{found.rule.code}: {found.message}" for found in made.diagnostics]
+    rows = [f"{diagnostic.rule.code}: {diagnostic.message}" for diagnostic in made.diagnostics]
     return [row for row in rows if not row.startswith("SM158")]
 
 

@@ -33,7 +33,7 @@ def faulty(tmp_path):
 
 
 def codes(compilation):
-    return [found.rule.code for found in compilation.diagnostics]
+    return [diagnostic.rule.code for diagnostic in compilation.diagnostics]
 
 
 def paths(compilation):

@@ -77,7 +77,7 @@ def test_a_file_that_is_referred_to_but_is_no_model_is_left_alone(tmp_path):
     plant = model(tmp_path / "plant.uml", "plant", "Plant", "notes.uml")
     made = compiled(plant, passes=())
     assert inputs(made) == ["plant.uml"]
-    assert [found.rule.code for found in made.diagnostics] == []
+    assert [diagnostic.rule.code for diagnostic in made.diagnostics] == []
 
 
 def test_entries_of_an_archive_are_inputs_of_their_own(tmp_path):
@@ -99,7 +99,7 @@ def test_entries_of_an_archive_are_inputs_of_their_own(tmp_path):
 def test_a_damaged_archive_is_reported_and_nothing_old_is_removed(tmp_path, content, code):
     (tmp_path / "plant.mdzip").write_bytes(content)
     made = compiled(tmp_path / "plant.mdzip", passes=())
-    assert [found.rule.code for found in made.diagnostics] == [code]
+    assert [diagnostic.rule.code for diagnostic in made.diagnostics] == [code]
     assert (made.exit_code(), made.is_complete) == (1, False)
 
 

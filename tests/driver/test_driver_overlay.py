@@ -140,7 +140,7 @@ def test_a_model_outside_of_the_folder_is_not_opened(folder):
     write(folder, "in/line.overlay.yaml", HOLD.replace("models/", "../"))
     made = build(folder / "in/line.ir")
     assert [one.path for one in made.inputs] == ["line.ir", "line.overlay.yaml"]
-    (found,) = (one for one in made.diagnostics if one.rule.code == "SM324")
+    (found,) = (diagnostic for diagnostic in made.diagnostics if diagnostic.rule.code == "SM324")
     assert found.help == "the file '../stopping.ir' is not part of the compile unit"
 
 

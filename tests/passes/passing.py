@@ -45,9 +45,11 @@ def again(graph: Graph, name: str) -> str:
 
 def lines(sink: Sink) -> list[str]:
     """Findings, one a line, as a test expects them: code, severity, message."""
-    return [f"{found.rule.code} {found.severity}: {found.message}" for found in sink]
+    return [
+        f"{diagnostic.rule.code} {diagnostic.severity}: {diagnostic.message}" for diagnostic in sink
+    ]
 
 
 def codes(sink: Sink) -> list[str]:
     """Codes of the findings."""
-    return [found.rule.code for found in sink]
+    return [diagnostic.rule.code for diagnostic in sink]

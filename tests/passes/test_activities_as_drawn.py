@@ -39,7 +39,7 @@ def contract_of(drawing):
     graph, sink = parse_text(drawing.text()), Sink()
     pipeline.run(graph, sink)
     found = graph.derived(Contract)
-    assert found or {one.rule.code for one in sink} & {"SM454", "SM455"}
+    assert found or {diagnostic.rule.code for diagnostic in sink} & {"SM454", "SM455"}
     return found[0] if found else None
 
 

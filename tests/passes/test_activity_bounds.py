@@ -68,7 +68,7 @@ def told(text):
     pipeline.run(graph, sink)
     for tokens in graph.derived(TokenGraph):
         if "x" in tokens.written_variables and "y" not in {one.name for one in tokens.inputs}:
-            found = (one for one in sink if one.rule.code == "SM428")
+            found = (diagnostic for diagnostic in sink if diagnostic.rule.code == "SM428")
             return {one.subject.id: said(one.message) for one in found}
     return None
 

@@ -40,7 +40,7 @@ Package p "Plant"
 def told(body):
     graph, sink = parse_text(MODEL.replace("{body}", body)), Sink()
     pipeline.run(graph, sink)
-    return [one.message for one in sink if one.rule is UNKNOWN]
+    return [diagnostic.message for diagnostic in sink if diagnostic.rule is UNKNOWN]
 
 
 def test_a_misspelt_name_is_told_with_the_one_that_was_meant():
@@ -63,4 +63,4 @@ def test_what_a_write_action_refers_to_is_no_name():
     writing = MODEL.replace('subkind="opaque" body="{body}"', 'subkind="write"\n        -> calls x')
     graph, sink = parse_text(writing), Sink()
     pipeline.run(graph, sink)
-    assert not [one for one in sink if one.rule is UNKNOWN]
+    assert not [diagnostic for diagnostic in sink if diagnostic.rule is UNKNOWN]

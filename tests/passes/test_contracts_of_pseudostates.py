@@ -14,7 +14,7 @@ def derived(text, messages=False):
     graph, sink = parse_text(text), Sink()
     pipeline.run(graph, sink, verify_each=True)
     found = {one.component: one for one in graph.derived(Contract)}
-    told = [one.message if messages else one.rule.code for one in sink]
+    told = [diagnostic.message if messages else diagnostic.rule.code for diagnostic in sink]
     return found.get("Plant::Gate"), told, graph
 
 

@@ -121,7 +121,7 @@ def checked(file):
         found, found, lambda origin: graph.subject(graph[origin]), sink, Options()
     )
     verdicts = {one.verdict.component: one.verdict.is_realizable for one in results}
-    return verdicts, [f"{one.rule.code} {one.message}" for one in sink]
+    return verdicts, [f"{diagnostic.rule.code} {diagnostic.message}" for diagnostic in sink]
 
 
 def test_operations_made_of_actions_can_be_kept_and_nothing_in_them_is_suspicious():

@@ -34,7 +34,7 @@ def edges(graph: TokenGraph) -> list[str]:
 
 
 def codes(sink: Sink) -> list[str]:
-    return [found.rule.code for found in sink]
+    return [diagnostic.rule.code for diagnostic in sink]
 
 
 @pytest.mark.parametrize("code", WITH_GRAPHS)
@@ -603,7 +603,10 @@ Activity b "b"
 def test_a_call_of_what_raises_an_exception_may_end_the_caller():
     made, sink = tokens(CALLER.format(handlers=""))
     assert "raised_c" in [variable.name for variable in made[0].inputs]
-    assert {found.subject.id for found in sink if found.rule.code == "SM475"} == {"c", "r"}
+    assert {diagnostic.subject.id for diagnostic in sink if diagnostic.rule.code == "SM475"} == {
+        "c",
+        "r",
+    }
 
 
 def test_a_call_of_what_catches_its_exceptions_ends_by_itself():

@@ -24,7 +24,7 @@ def derived(text):
 
 
 def codes(sink):
-    return [found.rule.code for found in sink]
+    return [diagnostic.rule.code for diagnostic in sink]
 
 
 def formulas(contract, *classes):
@@ -157,7 +157,7 @@ def test_what_is_not_derived_is_named_and_there_is_no_contract(kind):
     text = machine(choice("h", kind), arrow("a", "h", "start"))
     _, contracts, sink = derived(text)
     assert contracts == []
-    (found,) = [one for one in sink if one.rule.code == "SM420"]
+    (found,) = [diagnostic for diagnostic in sink if diagnostic.rule.code == "SM420"]
     assert found.subject.id == "h"
     assert kind in found.message
 
@@ -269,7 +269,7 @@ def test_prose_in_english_is_no_formula():
 
 def test_a_bad_formula_is_told_with_its_place():
     _, _, sink = derived(with_formula("[](state=B ->\\n state=C)"))
-    (message,) = [one.message for one in sink if one.rule.code == "SM501"]
+    (message,) = [diagnostic.message for diagnostic in sink if diagnostic.rule.code == "SM501"]
     assert message.endswith("'C' is neither a variable nor a literal (line 2, column 8)")
 
 

@@ -58,7 +58,10 @@ def test_model_before_and_after_the_pass(name, golden):
     graph, sink = parse_text((FOLDER / f"{name}.ir").read_text(encoding="utf-8")), Sink()
     pipeline.run(graph, sink, verify_each=True)
     shown = "".join(f"{line}\n" for line in SHOWN[name](graph))
-    found = "".join(f"{one.rule.code} {one.severity}: {one.message}\n" for one in sink)
+    found = "".join(
+        f"{diagnostic.rule.code} {diagnostic.severity}: {diagnostic.message}\n"
+        for diagnostic in sink
+    )
     assert shown, "the pass derived nothing"
     golden.check(f"passes/{name}-derived", {"after.txt": shown, "found.txt": found})
     assert verify(graph) == []

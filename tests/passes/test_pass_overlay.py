@@ -121,7 +121,7 @@ def test_the_author_directs_and_types_ports():
 def test_a_flow_against_the_direction_of_a_port_is_reported_where_the_overlay_says_it():
     text = f"{FLOW}{{item: MiniPallet, from: sw}}\n"
     _, sink = laid_over(text, until="flows")
-    found = next(one for one in sink if one.rule.code == "SM310")
+    found = next(diagnostic for diagnostic in sink if diagnostic.rule.code == "SM310")
     assert found.message == (
         "item flow 'Plant::Switch::p_swIn - Plant::Stopper::p_sOut' leaves port "
         "'Plant::Switch::p_swIn', whose direction is in"
@@ -134,7 +134,7 @@ def test_mixed_domains_on_one_connector_are_reported():
     items = ITEMS + "  Tag2: {domain: information}\n" + FLOW.removeprefix(ITEMS)
     text = items + "{item: MiniPallet, to: sw}\n    - {item: Tag2, to: sw}\n"
     _, sink = laid_over(text, until="flows")
-    (found,) = (one for one in sink if one.rule.code == "SM317")
+    (found,) = (diagnostic for diagnostic in sink if diagnostic.rule.code == "SM317")
     assert found.subject.place.file == "0.overlay.yaml"
     assert text[found.subject.place.ordinal :].startswith("MiniPallet, to: sw")
 
@@ -244,7 +244,7 @@ def test_a_default_is_a_value_of_its_type(type_, good, bad):
 def test_of_many_lost_entries_the_first_are_answered_with_the_nearest_name():
     rows = "".join(f"  Plant/Switch/p_swl{n}: {{direction: in}}\n" for n in range(30))
     found = list(laid_over("overlay: 1\nports:\n" + rows)[1])
-    assert [one.rule.code for one in found] == ["SM324"] * 30
+    assert [diagnostic.rule.code for diagnostic in found] == ["SM324"] * 30
     assert sum(one.help == "did you mean 'Plant/Switch/p_swIn'?" for one in found) == 20
 
 

@@ -131,7 +131,7 @@ def without_places(graph: Graph) -> str:
 
 
 def findings(sink):
-    return sorted((found.rule.code, found.message) for found in sink)
+    return sorted((diagnostic.rule.code, diagnostic.message) for diagnostic in sink)
 
 
 @given(overlays)
@@ -182,7 +182,7 @@ def test_an_overlay_of_a_random_model_is_no_fault(graph, overlay, random):
     sink = Sink()
     made = overlay_of(text, sink)
     if made is None:
-        assert [found.rule.code for found in sink] == ["SM323"] * len(sink)
+        assert [diagnostic.rule.code for diagnostic in sink] == ["SM323"] * len(sink)
         return
     graph.store(Refinement, [made])
     Overlay().run(graph, sink)

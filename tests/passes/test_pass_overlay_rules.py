@@ -24,7 +24,9 @@ def test_right_overlay_is_right_in_every_way(rule):
 
 @pytest.mark.parametrize("rule", RULES, ids=lambda rule: rule.name)
 def test_finding_has_file_line_and_column(rule):
-    found = next(one for one in laid_over(rule.read_page().wrong)[1] if one.rule is rule)
+    found = next(
+        diagnostic for diagnostic in laid_over(rule.read_page().wrong)[1] if diagnostic.rule is rule
+    )
     place = found.subject.place
     is_of_model = rule.name.startswith("call-")
     assert place.file == ("gate.uml" if is_of_model else "0.overlay.yaml")

@@ -25,7 +25,7 @@ def run(text):
 
 @pytest.mark.parametrize("rule", RULES, ids=lambda rule: f"{rule.code}-{rule.name}")
 def test_a_rule_reports_its_wrong_model_and_not_its_right_one(rule):
-    assert [found.rule.code for found in run(rule.read_page().wrong)[1]] == [rule.code]
+    assert [diagnostic.rule.code for diagnostic in run(rule.read_page().wrong)[1]] == [rule.code]
     assert list(run(rule.read_page().right)[1]) == []
 
 
@@ -115,7 +115,7 @@ def allocation(source, target, name="more", file=""):
 
 def offers(text):
     found, sink = run(text)
-    assert [f"{one.rule.code}: {one.message}" for one in sink] == []
+    assert [f"{diagnostic.rule.code}: {diagnostic.message}" for diagnostic in sink] == []
     return [(one.machine, one.plant, one.operation, one.how) for one in found.offers]
 
 

@@ -23,7 +23,7 @@ def run(text: str, **options: object) -> tuple[Graph, list[str], Sink]:
     """The graph after the pass, the codes found, and the sink."""
     graph, sink = parse_text(text), Sink()
     Recipe(**options).run(graph, sink)
-    return graph, [found.rule.code for found in sink], sink
+    return graph, [diagnostic.rule.code for diagnostic in sink], sink
 
 
 def model(text: str, **options: object) -> Model:
@@ -371,7 +371,11 @@ def test_a_tag_that_cannot_be_read_is_told_and_left_out():
 
 def test_a_missing_flow_is_told_once_at_each_of_its_ends():
     steps = tuple(step for step in samples.STEPS if step != "g l")
-    found = [one for one in run(samples.task(steps=steps))[2] if one.rule.code == "SM603"]
+    found = [
+        diagnostic
+        for diagnostic in run(samples.task(steps=steps))[2]
+        if diagnostic.rule.code == "SM603"
+    ]
     assert [one.message for one in found] == [
         "in 'Plant::Mount', nothing leads to 'look'",
         "in 'Plant::Mount', no way leads from 'grip' to an end",

@@ -14,7 +14,7 @@ from sysmlc.recipe.model import Model
 def run(text: str, **options: object) -> tuple[Graph, list[str]]:
     graph, sink = parse_text(text), Sink()
     Recipe(**options).run(graph, sink)
-    return graph, [f"{found.rule.code}: {found.message}" for found in sink]
+    return graph, [f"{diagnostic.rule.code}: {diagnostic.message}" for diagnostic in sink]
 
 
 def model(text: str) -> Model:

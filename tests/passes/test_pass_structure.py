@@ -363,7 +363,9 @@ def plants(port):
     documents = "".join(f'Document {f} "{f}" subkind="caex" @{f}.aml:0\n' for f in "ab")
     directed = 'Class d "D" @a.aml:98\n  Port d.p "p" direction="in" @a.aml:99\n    -> typed-by c\n'
     _, sink = refined(f'{documents}Class c "C" @a.aml:97\n{ports}{directed}', "ports")
-    return [f"{one.rule.code}: {one.message}" for one in sink], [one.subject.id for one in sink]
+    return [f"{diagnostic.rule.code}: {diagnostic.message}" for diagnostic in sink], [
+        one.subject.id for one in sink
+    ]
 
 
 LISTED = ", ".join(f"'C::p{n}'" for n in range(8))

@@ -56,7 +56,7 @@ FILL = model(
 
 def test_who_asks_keeps_the_preconditions_and_what_is_done_the_postconditions():
     (contract,), sink, graph = derived(FILL)
-    assert [one.rule.code for one in sink] == []
+    assert [diagnostic.rule.code for diagnostic in sink] == []
     assert contract.component == "Plant::Tank.fill"
     assert [f"{one.owner.value} {one.name}" for one in contract.variables] == [
         *("env call", "sys busy", "sys done", "env amount", "sys level", "sys open"),

@@ -30,7 +30,7 @@ def nowhere(origin):
 def made(study, has_relations=False):
     sink = Sink()
     found = run_study(study, nowhere, sink, Options(), has_relations)
-    return found, [(one.rule.code, one.message) for one in sink]
+    return found, [(diagnostic.rule.code, diagnostic.message) for diagnostic in sink]
 
 
 @pytest.fixture(scope="module")
