@@ -40,7 +40,7 @@ class Observer:
         """Called with the graph after a pass, and with ``read`` after the front ends."""
 
     def fault(self, where: str, trace: str) -> None:
-        """Called with the Python traceback of a fault of ours."""
+        """Called with the Python traceback of an internal fault."""
 
 
 class Request(Struct, frozen=True):
@@ -277,7 +277,7 @@ class _CompilationRun:
         return [a for a in self._output.artefacts() if a.path not in failed]
 
     def _run_guarded(self, where: str, run: Callable[[], None]) -> bool:
-        """Run a step of ours or of a plug-in; return whether it had no internal fault.
+        """Run a step of sysmlc or of a plug-in; return whether it had no internal fault.
 
         An exception in it becomes a diagnostic, because no model may cause a traceback.
         """

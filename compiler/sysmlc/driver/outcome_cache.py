@@ -53,7 +53,7 @@ def compute_outcome_key(
 def compute_tool_digest() -> str:
     """Return the digest of the running tool: versions, sysmlc's own files and those of plug-ins.
 
-    It is computed once per process, because a process does not run files that change later.
+    It is computed once per process: later changes of the files do not affect loaded code.
     """
     versions = f"{__version__} {sys.version} {sys.platform}"
     return _hash_texts([versions, *_digest_own_files(), *_digest_plug_ins()])
@@ -146,7 +146,10 @@ def _digest_file(path: str) -> str:
 
 
 def _hash_texts(texts: Iterable[str]) -> str:
-    """Return the digest of a list of texts; the lengths keep neighbours apart."""
+    """Return the digest of a list of texts.
+
+    The lengths of the texts are part of it, so that lists split in other places differ.
+    """
     joined = "".join([f"{len(text)}:{text}" for text in texts])
     return sha256(joined.encode("utf-8", "surrogatepass")).hexdigest()
 

@@ -1,4 +1,4 @@
-"""Which files of an output folder are ours: those that a manifest lists, by path and digest.
+"""Which files of an output folder sysmlc wrote: those in a manifest, by path and digest.
 
 A manifest may come from a stranger's repository. It is therefore only a claim: a file counts as
 ours if its content has the digest that the manifest states, and never if it is an input or a
@@ -36,7 +36,7 @@ OTHER = "not a file"
 
 
 class ForeignManifestError(Exception):
-    """A file has the name of a manifest but is none of ours."""
+    """A file has the name of a manifest, but sysmlc did not write it."""
 
     def __init__(self, file: Path) -> None:
         super().__init__(f"'{file}' is not a manifest of sysmlc")
@@ -113,7 +113,8 @@ def compute_digest(folder: Path, path: str) -> str | None:
 
 
 def _open_without_waiting(path: str, flags: int) -> int:
-    """Open a file, but no link and no pipe that nobody writes to."""
+    """Open a file that is not a link, without waiting for the writer of a pipe."""
+    # A manifest of somebody else may list a pipe or a link. Windows has neither of the flags.
     return os.open(path, flags | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_NOFOLLOW", 0))
 
 
@@ -144,7 +145,7 @@ class Ownership(Struct, frozen=True):
         return is_claimed and not self.is_protected(path)
 
     def is_only_pending(self, path: str, digest: str) -> bool:
-        """Whether an interrupted build wrote *path*, and no complete build the same content."""
+        """Whether the content of *path* is from an interrupted build, not from a complete one."""
         return digest == self.pending.get(path) != self.listed.get(path)
 
     def is_protected(self, path: str) -> bool:

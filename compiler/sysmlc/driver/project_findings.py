@@ -60,7 +60,7 @@ def select_project_findings(
 def without_project_findings(
     diagnostics: Iterable[Diagnostic], kept: frozenset[str]
 ) -> Iterator[Diagnostic]:
-    """Yield *diagnostics* without those about the configuration whose message is not in *kept*."""
+    """Yield *diagnostics*; of those about the configuration, only messages in *kept*."""
     return (diagnostic for diagnostic in diagnostics if _is_kept(diagnostic, kept))
 
 
@@ -90,7 +90,7 @@ def _is_model(path: Path, frontends: Sequence[Frontend]) -> bool:
 def _list_files(config: Config) -> Iterator[Path]:
     """Yield the real paths of the files of every ``[[model]]``, or else of the whole project.
 
-    Of the project these are all files that are named like models.
+    The files of the whole project are all those that are named like models.
     """
     if config.folder is None:
         return

@@ -130,9 +130,9 @@ def publish(outcome: Outcome, target: Target) -> Publication:
 
 
 def compare(outcome: Outcome, target: Target) -> list[str]:
-    """Return the paths that are not as ``publish`` would leave them, and unlisted files, sorted.
+    """Return the paths that are not up to date, and the unlisted files, sorted.
 
-    Unlisted files are those in folders of ours that no build generates any more.
+    Unlisted files are in folders that sysmlc wrote, but no build generates them any more.
     """
     folder = target.folder
     try:
@@ -158,7 +158,7 @@ def _check_boundary(target: Target, sink: Sink) -> bool:
 def _plan(outcome: Outcome, target: Target, sink: Sink) -> _Plan:
     """Compare the folder with the outcome; report files that must not be replaced.
 
-    When an input could not be read, files that it would give are kept, and listed as such.
+    When an input could not be read, its output files of an earlier run are kept and listed as kept.
     """
     folder = target.folder
     digests = {file.path: file.sha256 for file in outcome.files}
@@ -333,6 +333,7 @@ def lock_folder(folder: Path) -> Iterator[None]:
 
     Raises OSError if another process does not end.
     """
+    # Windows has no fcntl.
     try:
         import fcntl
     except ImportError:

@@ -163,7 +163,10 @@ class _Reader:
         )
 
     def read(self, path: Path, otherwise: Rule | None, *, is_named: bool = False) -> None:
-        """Read a file and its overlay; report *otherwise* if no front end recognises the file."""
+        """Read a file and its overlay.
+
+        If no front end recognises the file, the rule *otherwise* is reported, unless it is None.
+        """
         real = Path(os.path.realpath(path))
         if real in self._visited:
             return

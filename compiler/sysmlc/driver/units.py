@@ -24,9 +24,9 @@ from sysmlc.support.output import assign_file_names
 
 @dataclass(eq=False, slots=True)
 class Bundle:
-    """Files that are in one unit for certain: texts of one folder, files that are named together.
+    """Files that always belong to the same unit: texts of one folder, files named together.
 
-    ``references`` are the bundles that it refers to.
+    ``references`` are the bundles to which the files refer.
     """
 
     folder: Path
@@ -63,7 +63,7 @@ def open_units(request: Request) -> list[OpenedUnit]:
 
 
 def _applies_to_all(file: ReadFile) -> bool:
-    """Whether the file is an overlay of the command line that does not say for which files."""
+    """Whether the file is an overlay of the command line that does not name its models."""
     return file.is_overlay and file.is_named and not file.references
 
 
@@ -158,7 +158,7 @@ def _refer_by_name(bundles: Sequence[Bundle]) -> None:
 
 
 def _count_shared(left: Path, right: Path) -> int:
-    """Return how many folders from the top two paths have in common."""
+    """Return the number of leading folders that the two paths share."""
     return len(Path(os.path.commonpath([left, right])).parts)
 
 

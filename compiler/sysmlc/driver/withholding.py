@@ -14,8 +14,8 @@ def find_withheld_artefacts(
 ) -> dict[str, tuple[Diagnostic, ...]]:
     """Return the path of each withheld artefact, with the errors that are the reason.
 
-    An error concerns an artefact if it is about a traced element, about an owner or origin of
-    one, or about the file of one as a whole.
+    An error concerns an artefact if its subject is a traced element, an owner or the origin of a
+    traced element, or the whole file of a traced element.
     """
     by_id, by_file = _index_errors(d for d in diagnostics if d.is_error)
     if not by_id and not by_file:

@@ -8,7 +8,7 @@ from sysmlc.ir.kinds import Edge
 class Drawing(Struct, frozen=True):
     """One diagram. References are ids of ``file`` or hrefs, as the tool wrote them.
 
-    ``type`` is the tool's word for the type of the diagram, ``diagram`` ours (docs/ir.md).
+    ``type`` is the type of the diagram in the tool's words, ``diagram`` in those of docs/ir.md.
     ``source`` and ``ordinal`` are its position. ``paths`` are nested elements, outermost first,
     ``listed`` elements that only a compartment of another one names, and ``relations`` lines that
     are edges of the graph, not elements.

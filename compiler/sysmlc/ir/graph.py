@@ -135,7 +135,7 @@ class Graph:
     # -- names and positions -------------------------------------------------------------------
 
     def qualified_name(self, element: Element) -> str:
-        """Return the names from the root down, joined by ``::``; no name is ``<Kind>``."""
+        """Return the names from the root down, joined by ``::``; an absent name is ``<Kind>``."""
         path = [element, *self.ancestors(element)]
         return "::".join(part.name or f"<{part.kind}>" for part in reversed(path))
 

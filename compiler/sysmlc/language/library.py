@@ -47,7 +47,7 @@ class Library:
     def roots(self, name: str) -> list[Node]:
         """Return the root members with that name.
 
-        Files that are named like it are searched first, then those whose text mentions it.
+        Files with that name are searched first, then files whose text mentions the name.
         """
         # A library file is mostly named after its package, so most names need one file.
         members = self._find_roots(self._stems.get(name, ()), name)

@@ -135,7 +135,7 @@ _NO_KINDS: frozenset[str] = frozenset()
 
 
 def is_a(kind: str, general: str) -> bool:
-    """Whether a metaclass is ``general`` or specialises it; an unknown metaclass is not."""
+    """Whether a metaclass is ``general`` or specialises it; False for an unknown metaclass."""
     return general in ALL_GENERALS.get(kind, _NO_KINDS)
 
 

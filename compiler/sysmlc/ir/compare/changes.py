@@ -110,9 +110,9 @@ def _iter_unpaired(pairs: Pairs, side: Side, what: What) -> Iterator[Change]:
 
 
 def _is_transparent(side: Side, owner_id: str, paired: Container[str]) -> bool:
-    """Return whether children are reported alone: their owner is a new own class.
+    """Return whether the owner is a new own class, whose children are reported without it.
 
-    The InternalElement of the class is paired, and only the class is new.
+    The InternalElement of the class has a partner in the other model; only the class is new.
     """
     owner = side.graph[owner_id]
     if owner_id in paired or not is_own_class(owner):
@@ -121,9 +121,9 @@ def _is_transparent(side: Side, owner_id: str, paired: Container[str]) -> bool:
 
 
 def _is_consequence(side: Side, element: Element, paired: Container[str]) -> bool:
-    """Return whether an unpaired element is reported with another one.
+    """Return whether an unpaired element is reported as part of another element's change.
 
-    The occurrences at the ends of a message come and go with the message.
+    The occurrences at the ends of a message are added and removed with the message.
     """
     if element.kind is Kind.OCCURRENCE:
         incoming = side.incoming.get(element.id, ())
@@ -192,7 +192,7 @@ def _is_implied_role(difference: _Difference) -> bool:
 
 
 def _is_renamed_with_part(pairs: Pairs, old: Element, new: Element) -> bool:
-    """Return whether the new name is that of an InternalElement, reported for another element."""
+    """Return whether the renaming is reported for another element of the InternalElement."""
     if is_own_class(old) and is_own_class(new):
         return any(_is_renamed(pairs, user) for user in users_of_own_class(pairs.new, new))
     part = _paired_part(pairs, new)
@@ -205,7 +205,7 @@ def _is_renamed(pairs: Pairs, new: Element) -> bool:
 
 
 def _is_retyped_with_part(pairs: Pairs, new: Element) -> bool:
-    """Return whether *new* holds the values of a part for which another type is reported."""
+    """Return whether *new* holds the values of a part whose change of type is reported."""
     part = _paired_part(pairs, new)
     if part is None:
         return False
@@ -280,7 +280,7 @@ def _difference_of_key(
 def _format_difference(
     pairs: Pairs, olds: list[Fact], news: list[Fact], *, is_connector: bool
 ) -> tuple[str, str]:
-    """Return the texts before and after, as short as they can be and still differ."""
+    """Return the texts before and after, as short as possible but different."""
     before = ", ".join(fact.text(pairs.old) for fact in olds)
     after = ", ".join(fact.text(pairs.new) for fact in news)
     if before == after and is_connector:
@@ -299,7 +299,10 @@ _MEASURES = frozenset({Kind.UNIT.value, Kind.QUANTITY_KIND.value})
 
 
 def _omit_consequences_of_unit(pairs: Pairs, old: Element, new: Element) -> list[_Difference]:
-    """Return the differences; of another unit, not also the type and quantity that come with it."""
+    """Return the differences, without those that follow from a change of unit.
+
+    A change of unit may also change the quantity kind and a type that only adds the unit.
+    """
     differences = _list_differences(pairs, old, new)
     if not any(difference.names == _UNIT for difference in differences):
         return differences

@@ -21,7 +21,7 @@ from sysmlc.ir.kinds import Edge, Kind
 
 
 class What(StrEnum):
-    """What happened to an element."""
+    """Kind of change of an element."""
 
     ADDED = "added"
     REMOVED = "removed"
@@ -224,7 +224,7 @@ def _own_content(side: Side, detail: Element) -> tuple[Value, ...]:
 
 
 def _abstract_owner(targets: list[Element], detail: Element) -> list[Value]:
-    """Return the targets with "owner" for the owner of the detail, which may have moved."""
+    """Return the targets, with "owner" for the owner of the detail: the owner may have moved."""
     return ["owner" if target.id == detail.owner else target for target in targets]
 
 

@@ -56,14 +56,14 @@ class Pairs:
     # -- tokens --------------------------------------------------------------------------------
 
     def old_token(self, element: Element) -> Token:
-        """Return the token of an element of the old model, that of its partner if it has one."""
+        """Return the token of an element of the old model; it equals the token of its partner."""
         partner = self.new_of.get(element.id)
         if partner is not None:
             return ("new", partner.id)
         return self._unpaired_token(self.old, element)
 
     def new_token(self, element: Element) -> Token:
-        """Return the token of an element of the new model."""
+        """Return the token of an element of the new model; it equals the token of its partner."""
         if element.id in self.old_of:
             return ("new", element.id)
         return self._unpaired_token(self.new, element)
@@ -78,11 +78,11 @@ class Pairs:
         return ("old only" if side is self.old else "new only", element.id)
 
     def old_facts(self, element: Element) -> "list[TokenisedFact]":
-        """Return the facts about an element of the old model with their tokens."""
+        """Return the facts about an element of the old model, with the tokens of key and value."""
         return _tokenise(iter_facts(self.old, element), self.old_token)
 
     def new_facts(self, element: Element) -> "list[TokenisedFact]":
-        """Return the facts about an element of the new model with their tokens."""
+        """Return the facts about an element of the new model, with the tokens of key and value."""
         return _tokenise(iter_facts(self.new, element), self.new_token)
 
 
@@ -95,7 +95,10 @@ def _tokenise(facts: Iterator[Fact], to_token: Callable[[Element], Token]) -> li
 
 
 def fact_token(fact: Fact, to_token: Callable[[Element], Token]) -> tuple[Token, Token]:
-    """Return the tokens of the key and the value; the ends of a connector have no order."""
+    """Return the tokens of the key and the value of a fact.
+
+    The ends of a connector are sorted, because they have no order.
+    """
     value = _value_token(fact.value, to_token)
     if fact.key == BETWEEN and isinstance(value, tuple):
         value = tuple(sorted(value, key=repr))
@@ -305,12 +308,15 @@ def _score(old: Element, new: Element, old_portrait: _Portrait, new_portrait: _P
 
 
 def _types(portrait: _Portrait) -> set[Token]:
-    """Return the facts about types; general classifiers may change together with the name."""
+    """Return the tokens of the facts about the type.
+
+    Facts about general classifiers are not included, because they may change with the name.
+    """
     return {fact for fact in portrait if isinstance(fact, tuple) and fact[0] == ("typed-by",)}
 
 
 def _likeness(left: _Portrait, right: _Portrait) -> float:
-    """Return the Dice coefficient of two portraits; 0 for two empty ones."""
+    """Return the Dice coefficient of two multisets of tokens; 0 if both are empty."""
     common = sum((left & right).values())
     return 2 * common / ((left.total() + right.total()) or 1)
 
@@ -331,7 +337,10 @@ def _portray(pairs: Pairs, element: Element, *, is_old: bool) -> _Portrait:
 
 
 def _split_ends(fact: tuple[Token, Token]) -> Iterator[Token]:
-    """Iterate over the ends of a relation, because one may have changed; else over the fact."""
+    """Iterate over the ends of a relation, because a single end may have changed.
+
+    For any other fact, yield the fact itself.
+    """
     key, value = fact
     if key in (FROM_TO, BETWEEN) and isinstance(value, tuple):
         for position, end in enumerate(value):

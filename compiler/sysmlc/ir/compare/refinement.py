@@ -22,7 +22,7 @@ Group = tuple[list[Element], list[Element]]
 
 
 def pair_by_surroundings(fingerprints: "BothFingerprints", pairs: Pairs) -> None:
-    """Pair siblings whose colour is unique on both sides, after most rounds first."""
+    """Pair siblings whose colour is unique on both sides, by colours of the last round first."""
     groups = list(pairs.iter_unpaired())
     rounds = _Refinement(fingerprints, groups).rounds if groups else ()
     for old_colours, new_colours in rounds:
@@ -35,7 +35,8 @@ def pair_by_surroundings(fingerprints: "BothFingerprints", pairs: Pairs) -> None
 def pair_by_choice(fingerprints: "BothFingerprints", pairs: Pairs) -> None:
     """Pair any two siblings of equal colour, and follow the choice to their neighbours.
 
-    For each group only the latest round with equal colours is used; the rest waits for new colours.
+    Each group uses only the latest round in which colours are equal. The pairs change the colours,
+    so that further elements of the group are paired in a later call.
     """
     groups = list(pairs.iter_unpaired())
     refinement = _Refinement(fingerprints, groups)
@@ -150,7 +151,7 @@ class _Fingerprints:
         """Ids of the elements whose facts refer to an element."""
 
     def of_subtree(self, element: Element) -> int:
-        """Return the fingerprint of *element* with its visible subtree."""
+        """Return the fingerprint of *element* and of the visible elements below it."""
         # Without recursion: models may be nested deeply.
         stack, missing = [element], []
         while stack:

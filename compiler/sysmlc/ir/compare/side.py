@@ -1,4 +1,4 @@
-"""One of the two models that are compared, indexed for the questions that the comparison asks.
+"""One of the two models that are compared, indexed for the queries of the comparison.
 
 An InternalElement is up to three elements of the graph (docs/automationml.md): a part, an instance
 that holds its values, and an *own class* if it has more than its SystemUnitClass. Differences of
@@ -69,7 +69,7 @@ class Side:
 
     @cached_property
     def incoming(self) -> dict[str, list[tuple[Edge, Element]]]:
-        """Edges by target, with their sources; the owner of a detail replaces the detail."""
+        """Edges and their sources by target; an edge from a detail counts as one from its owner."""
         index: dict[str, list[tuple[Edge, Element]]] = {}
         for source_id, edges in self.edges.items():
             source = self.find_visible(self.graph[source_id])
@@ -81,9 +81,9 @@ class Side:
 
     @cached_property
     def links(self) -> dict[str, list[tuple[str, Element]]]:
-        """Links from and to each element, labelled: edges, and attributes whose values are ids.
+        """Links from and to each element with labels: edges, and attributes whose values are ids.
 
-        The links of a detail belong to its owner; their labels begin with the detail's own words.
+        The links of a detail belong to its owner. Their labels begin with the title of the detail.
         """
         index: dict[str, list[tuple[str, Element]]] = {}
         for element, label, target in (*self._edge_links(), *self._attribute_links()):

@@ -76,7 +76,7 @@ def features(graph: Graph, classifier: Element) -> list[Element]:
 
 
 def type_of(graph: Graph, element: Element) -> Element | None:
-    """Return the type of *element*; without one, that of the nearest feature it redefines."""
+    """Return the type of *element*, else the type of the nearest feature that it redefines."""
     own = graph.target(element, Edge.TYPED_BY)
     if own is not None:
         return own
@@ -158,7 +158,7 @@ def unit_of(graph: Graph, feature: Element) -> Element | None:
 
 
 def quantity_kind_of(graph: Graph, feature: Element) -> Element | None:
-    """Return the quantity kind of a feature or a value type; else that of its unit."""
+    """Return the quantity kind of a feature or a value type, else that of its unit."""
     own = next(filter(is_quantity_kind, _iter_references(graph, feature)), None)
     unit = None if own else unit_of(graph, feature)
     references = [] if unit is None else graph.targets(unit, Edge.REFERENCES)

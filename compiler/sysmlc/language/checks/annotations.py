@@ -40,7 +40,7 @@ def check_type(model: Model, node: Node) -> Iterator[Finding]:
 
 
 def check_annotated(model: Model, node: Node) -> Iterator[Finding]:
-    """Report metadata that annotates elements which its definition is not for."""
+    """Report metadata that annotates an element of a kind that its definition does not allow."""
     allowed = _list_allowed_kinds(model, node)
     for element in _list_annotated(node):
         if allowed and not any(is_a(element.kind, kind) for kind in allowed):
@@ -91,7 +91,10 @@ def _list_allowed_kinds_in(model: Model, namespaces: Iterable[Node]) -> list[str
 
 
 def _mentions(member: Node, feature: Node) -> bool:
-    """Whether a relation ends with the name of a feature: far cheaper than to resolve it."""
+    """Whether a relation ends with the name of a feature.
+
+    The test is far cheaper than the resolution of the reference.
+    """
     return any(relation.reference.chain[-1][-1] == feature.name for relation in member.relations)
 
 
@@ -108,7 +111,7 @@ def check_body(model: Model, node: Node) -> Iterator[Finding]:
 
 
 def _is_foreign(model: Model, owner: Node, member: Node) -> bool:
-    """Whether a feature of a body is no feature of what its owner specialises."""
+    """Whether a member of a body is not a feature that a general of the owner has."""
     redefined = [
         relation.reference.target
         for relation in member.relations

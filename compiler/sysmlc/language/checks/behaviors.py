@@ -120,7 +120,7 @@ _STATES = kinds_of("StateUsage")
 
 
 def check_source(model: Model, node: Node) -> Iterator[Finding]:
-    """Report a transition with an accept action whose source is an action and no state."""
+    """Report a transition with an accept action whose source is an action, not a state."""
     triggers = [member for member in node.members if member.role == "trigger"]
     for _, source in iter_stated(node, _MEMBERSHIP):
         if triggers and source.kind in _ACTIONS - _STATES:

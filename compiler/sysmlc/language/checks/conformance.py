@@ -197,7 +197,7 @@ _INSTANTIATIONS = kinds_of("InstantiationExpression")
 
 
 def check_bound(model: Model, node: Node) -> Iterator[Finding]:
-    """Report a bound whose value is known and no natural number."""
+    """Report a bound whose value is known but not a natural number."""
     for bound in node.members:
         value = evaluate_constant(model, bound)
         if value is not None and bound.kind != "LiteralInfinity":
@@ -259,7 +259,7 @@ class Bounds(NamedTuple):
 
 
 def check_bounds(model: Model, node: Node) -> Iterator[Finding]:
-    """Report bounds that are wider than those of a subset or redefined feature."""
+    """Report bounds that are wider than those of a subsetted or redefined feature."""
     own_bounds = _find_stated_bounds(model, node)
     if own_bounds is None:
         return

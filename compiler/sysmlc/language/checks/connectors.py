@@ -70,7 +70,7 @@ def _is_related(end: Node) -> bool:
 
 
 def check_flow_end(model: Model, node: Node) -> Iterator[Finding]:
-    """Report an end of a flow without a dot that names a feature which no other feature owns.
+    """Report a flow end that names, without a dot, a feature that no other feature owns.
 
     A feature that a usage owns is reached through that usage, which is the end of the flow.
     """

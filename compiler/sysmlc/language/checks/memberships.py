@@ -1,4 +1,4 @@
-"""What may be a member of what: variants, portions, ends, results, variable features, imports.
+"""Valid owners of members: variants, portions, ends, results, variable features, imports.
 
 Members that may occur once are the subject, objective, result, entry, do, exit and rendering.
 """
@@ -198,7 +198,7 @@ _IMPORTS = frozenset({"MembershipImport", "NamespaceImport"})
 
 
 def check_result(model: Model, node: Node) -> Iterator[Finding]:
-    """Report a result expression beside another one, owned or inherited."""
+    """Report a second result expression; the first one may be owned or inherited."""
     own_results = _list_results(node)
     if not own_results and not model.lookup.generals(node):
         return
@@ -218,7 +218,7 @@ def _list_results(node: Node) -> list[Node]:
 
 
 def check_variable(model: Model, node: Node) -> Iterator[Finding]:
-    """Report a feature that is declared variable and cannot be."""
+    """Report a feature that is declared variable although it cannot be."""
     if node.attributes.get("isVariable") is not True:
         return
     owner = find_owning_type(node)
@@ -295,7 +295,10 @@ _PARAMETERS = ("parameter", "subject")
 
 
 def check_objective(model: Model, node: Node) -> Iterator[Finding]:
-    """Report a case that inherits an objective beside another; own ones are checked above."""
+    """Report a case with an inherited objective and another one.
+
+    ``check_own_members`` reports several owned objectives.
+    """
     if not model.lookup.generals(node):
         return
     objectives = [

@@ -216,5 +216,5 @@ def _has_feature(model: Model, scope: Node, feature: Node) -> bool:
 def _find_outside(
     model: Model, scope: Node, uses: list[tuple[Node, Relation, Node]]
 ) -> list[tuple[Node, Relation, Node]]:
-    """Return the uses of features that the nearest scope does not have."""
+    """Return the uses of features that are not features of ``scope``."""
     return [use for use in uses if not _has_feature(model, scope, use[2])]

@@ -27,7 +27,7 @@ _SUBCLASSIFICATION = frozenset({"Subclassification"})
 
 
 class Exclusion(NamedTuple):
-    """Metaclasses that cannot specialise the excluded ones, and what they can, in words."""
+    """Metaclasses that cannot specialise the excluded ones; in words, what they can specialise."""
 
     kinds: frozenset[str]
     excluded: frozenset[str]
@@ -253,7 +253,10 @@ _REQUIREMENTS: tuple[tuple[str, Requirement], ...] = (
 
 
 def _find_requirements() -> dict[str, Requirement]:
-    """Return the requirement of each metaclass of usages: the first row with a general of it."""
+    """Return the requirement of each metaclass of usages.
+
+    It is the first row of the table that lists the metaclass or a general of it.
+    """
     requirements: dict[str, Requirement] = {}
     for kind in kinds_of("Usage") - kinds_of("Connector"):
         for general, requirement in _REQUIREMENTS:

@@ -57,7 +57,7 @@ _OPERANDS = {")", "]", "}", "true", "false", "null", "*"}
 
 
 def read_tokens(text: str, types: TokenTypes) -> list[Token]:
-    """Return the tokens of a text whose lines end with line feeds; the last one is its end."""
+    """Return the tokens of a text whose lines end with line feeds; the last token is the end."""
     scanned = tokenize(text, types)
     tokens = []
     end_before = 0
@@ -106,7 +106,7 @@ def _find_column(text: str, offset: int) -> int:
 
 
 def iter_meaning(tokens: list[Token]) -> Iterator[str]:
-    """Yield the texts of tokens and notes without what indentation changes."""
+    """Yield the texts of tokens and notes, without the white space that indentation changes."""
     for token in tokens:
         if token.sort is Sort.COMMENT:
             yield "\n".join(line.strip(" \t") for line in token.text.split("\n"))
@@ -137,7 +137,7 @@ Statement = list[Token | Block]
 
 
 def group_statements(tokens: Sequence[Token]) -> tuple[list[Statement], Token]:
-    """Return the statements of a text, and its last token with the notes before it."""
+    """Return the statements of a text and its end token, which has the notes after them."""
     reader = _StatementReader(tokens)
     statements = reader.read_body()
     return statements, tokens[reader.position]

@@ -45,7 +45,7 @@ RedefinitionQuery = Callable[[Node], Sequence[Node]]
 
 
 def redefine_nothing(_: Node) -> Sequence[Node]:
-    """Answer the query for trees of which only the text is known."""
+    """Return no redefined features: the answer for trees without resolved names."""
     return ()
 
 
@@ -77,7 +77,7 @@ def find_effective_name(
 
 
 def find_accepted(node: Node) -> Node | None:
-    """Return what the trigger accepts, for the payload parameter of a transition."""
+    """Return the payload of the trigger if ``node`` is the payload parameter of a transition."""
     owner = node.owner
     if owner is None or owner.kind != "TransitionUsage" or node.membership != "ParameterMembership":
         return None

@@ -99,7 +99,7 @@ class _IdAssigner:
         return str(uuid5(self._base, path))
 
     def _assign_to_element(self, element: Element, path: str, qualified: str) -> None:
-        """Assign ids to an element that is no owned relationship, and to its relationships.
+        """Assign ids to an element that is not an owned relationship, and to its relationships.
 
         ``qualified`` is its qualified name, empty if it has none.
         """
@@ -258,7 +258,7 @@ class _IdIndex:
         return file in self._ids or basename(splitext(file)[0]) in self._stems
 
     def make_find(self, path: str) -> _Find:
-        """Return the function that finds the links of the file ``path``."""
+        """Return a function that finds the elements to which links of the file ``path`` lead."""
         return lambda link: self._load_ids(_file_of(path, link)).get(_id_of(link))
 
     def _load_ids(self, file: str) -> Mapping[str, Node]:

@@ -29,7 +29,7 @@ def fold_constructor_arguments(result: Node) -> None:
 
 
 def unwrap_argument(node: Node, owner: Node) -> Node:
-    """Return the expression that a parameter only carries, else the parameter itself."""
+    """Return the expression of a parameter that only carries an argument, else the parameter."""
     value = _find_carried_value(node)
     if value is node:
         return node
@@ -79,7 +79,7 @@ _DROPPED_RELATIONSHIPS = {"PortConjugation"}
 
 
 class Folding:
-    """Folds closed frames into the nodes of the frames around them."""
+    """Folds each frame, when its XML element closes, into the node of the enclosing frame."""
 
     def __init__(self, references: References) -> None:
         self._references = references
@@ -196,7 +196,7 @@ class Folding:
 
 
 def _is_chain(node: Node) -> bool:
-    """Whether a node is a feature that is nothing but a feature chain."""
+    """Whether a node is a feature that consists of a feature chain alone."""
     return (
         node.kind == "Feature"
         and len(node.relations) > 1
@@ -229,7 +229,10 @@ def _is_implicit(node: Node, frame: Frame, owner: Frame) -> bool:
 
 
 def _has_target_features(owner: Node) -> bool:
-    """Whether an empty feature of ``owner`` only leads to the target of a chain or a step."""
+    """Whether the owner implies its empty features.
+
+    Transitions, chains and assignments reach their targets through empty features.
+    """
     nameless = not (owner.name or owner.relations)
     return owner.kind == "TransitionUsage" or (owner.kind in _BARE and nameless)
 
@@ -243,7 +246,10 @@ def _find_role(frame: Frame) -> str:
 
 
 def _find_visibility(frame: Frame, owner: Frame) -> str:
-    """Return the stated visibility; parameters of expressions are private in files only."""
+    """Return the stated visibility, without that of parameters of expressions.
+
+    Interchange files state that these are private; a text does not.
+    """
     if frame.kind in _PARAMETERS and owner.kind in _EXPRESSIONS:
         return ""
     return str(frame.node.attributes.get("visibility", ""))

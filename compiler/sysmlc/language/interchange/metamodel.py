@@ -133,7 +133,7 @@ def list_features(kind: str) -> frozenset[str]:
 
 
 def has_feature(kind: str, feature: str) -> bool:
-    """Whether the metaclass has the feature, or some metaclass has it as a derived one."""
+    """Whether the metaclass has the feature, or the feature is derived in some metaclass."""
     return feature in list_features(kind) or feature in _list_derived()
 
 

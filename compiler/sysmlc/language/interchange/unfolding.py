@@ -1,4 +1,4 @@
-"""Unfolding: the relationships and elements that the tree folds, as the metamodel has them.
+"""Unfolding: restore the relationships and elements of the metamodel that the tree folds.
 
 KerML 1.0, 8.3 and 8.2.5.8. The inverse of ``folding``.
 """

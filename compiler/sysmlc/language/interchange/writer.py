@@ -41,7 +41,11 @@ class InterchangeFile:
                 self._conjugates[find_conjugated(element)] = element
 
     def target(self, node: Node, feature: str) -> Element | None:
-        """Return the element that a feature refers to when it leads to ``node``."""
+        """Return the element of the file that a feature with the value ``node`` refers to.
+
+        That is the element of the node, its membership, or for ``conjugatedPortDefinition`` the
+        conjugated definition.
+        """
         if feature == "conjugatedPortDefinition":
             return self._conjugates.get(node)
         return (self._memberships if feature in _MEMBERSHIPS else self._elements).get(node)

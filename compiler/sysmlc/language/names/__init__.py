@@ -1,4 +1,4 @@
-"""Names: what every name of a model leads to, and what its elements specialise."""
+"""Name resolution: the elements that names denote, and the generals of elements."""
 
 from sysmlc.language.names.model import Model
 from sysmlc.language.names.resolution import resolve, resolve_all

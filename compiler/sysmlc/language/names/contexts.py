@@ -183,7 +183,10 @@ def _is_event_of_message(node: Node) -> bool:
 
 
 def _find_end_scope(connector: Node | None) -> Node | None:
-    """Return the scope of a connector's ends; those of a transition's are outside of it."""
+    """Return the scope in which the ends of a connector are looked up.
+
+    The ends of the succession of a transition are looked up outside of the transition.
+    """
     scope = find_namespace(connector) if connector else None
     return find_namespace(scope) if scope is not None and scope.kind == "TransitionUsage" else scope
 

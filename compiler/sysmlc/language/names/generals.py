@@ -206,7 +206,7 @@ class GeneralLookup(ABC):
         return cached
 
     def own_features_of_role(self, scope: Node, role: str) -> list[Node]:
-        """Return the features of a type with a positional role, in the order of the text."""
+        """Return the features of a type with this positional role, in the order of the text."""
         key = (scope, role)
         cached = self._own_of_role.get(key)
         if cached is None:
@@ -214,7 +214,7 @@ class GeneralLookup(ABC):
         return cached
 
     def features_of_role(self, scope: Node, role: str) -> list[Node]:
-        """Return the features of a type with a positional role, own before inherited ones."""
+        """Return the features of a type with this positional role, own before inherited ones."""
         key = (scope, role)
         cached = self._at_positions.get(key)
         if cached is None:
@@ -264,7 +264,7 @@ _MAX_DEPTH = 100
 class FeatureTypes:
     """Memoised types of features.
 
-    Most features have one type that specialises all others which they inherit. It is computed from
+    Most features have one type that specialises all inherited types. This type is computed from
     the single types of the generals. Only features without such a type collect all types.
     ``supertypes`` returns a type with everything that it specialises.
     """
@@ -312,7 +312,7 @@ class FeatureTypes:
         return left if is_special else right
 
     def _find_several(self, node: Node) -> list[Node]:
-        """Return the most special types among the generals of a feature and theirs."""
+        """Return the most special types of the direct and indirect generals of a feature."""
         generals = self._lookup.all_generals(node)
         cached = self._multiple_types.get(generals)
         if cached is None:
@@ -322,7 +322,7 @@ class FeatureTypes:
         return cached
 
     def _collect_types(self, generals: tuple[Node, ...]) -> list[Node]:
-        """Return all types among generals of a feature and theirs, nearest first."""
+        """Return all types of the direct and indirect generals of a feature, nearest first."""
         types: dict[Node, None] = {}
         seen: set[Node] = set()
         worklist = [generals]

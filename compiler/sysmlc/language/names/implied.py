@@ -112,7 +112,7 @@ def _list_connector_bases(node: Node) -> list[str]:
 
 @cache
 def _list_default_bases(kind: str) -> tuple[str, ...]:
-    """Return the bases of the nearest metaclasses that have one."""
+    """Return the base type of a metaclass, else those of its nearest general metaclasses."""
     if kind in BASES:
         return (BASES[kind],)
     names = (name for general in GENERALS.get(kind, ()) for name in _list_default_bases(general))
@@ -180,7 +180,7 @@ def may_redefine_by_position(feature: Node) -> bool:
 
 
 def find_own_features(scope: Node, role: str) -> list[Node]:
-    """Return the features of ``scope`` with a role, in the order of the text."""
+    """Return the features of ``scope`` with this positional role, in the order of the text."""
     return [member for member in scope.members if find_role(member) == role]
 
 
@@ -200,7 +200,7 @@ def find_redefined(feature: Node, lookup: GeneralizationQueries) -> list[Node]:
 
 
 def gather_features(scope: Node, role: str, lookup: GeneralizationQueries) -> list[Node]:
-    """Return the features of ``scope`` with a role, inherited ones after its own."""
+    """Return the features of ``scope`` with this positional role, in the order of the text."""
     features = list(lookup.own_features_of_role(scope, role))
     for general in lookup.all_generals(scope):
         inherited = lookup.features_of_role(general, role)

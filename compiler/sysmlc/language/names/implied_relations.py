@@ -98,8 +98,8 @@ _DECLARED = TYPES - kinds_of("Multiplicity") - _EXPRESSIONS
 def implied_relations(model: Model, node: Node) -> list[Relation]:
     """Return the relations of a type or feature that the text does not state.
 
-    Expressions and multiplicities have none. The conditions of steps are an exception: they are
-    parameters, and have the names of the parameters that they redefine.
+    Expressions and multiplicities have none, except the conditions of steps: these are parameters,
+    and take their names from the parameters that they redefine.
     """
     if not _has_implied(node):
         return []

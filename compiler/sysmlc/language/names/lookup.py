@@ -311,7 +311,10 @@ class Lookup(ImportLookup):
         kinds: frozenset[str] | None,
         everything: bool = False,
     ) -> Node | None:
-        """Return the member that the names after ``index`` lead to from the first possible hit."""
+        """Return the member that the names after ``index`` lead to from the first suitable hit.
+
+        ``hits`` are the members for ``names[index]``.
+        """
         for hit in hits:
             member = self._match_hit(hit, names, index, kinds, everything)
             if member is not None:
@@ -326,7 +329,11 @@ class Lookup(ImportLookup):
         kinds: frozenset[str] | None,
         everything: bool,
     ) -> Node | None:
-        """Return ``hit`` if it ends the name and is of a kind, else the member inside of it."""
+        """Return the member that the names lead to if ``hit`` is the member for ``names[index]``.
+
+        If that is the last name, the result is ``hit`` itself, provided that its element is of one
+        of ``kinds``. Otherwise the next names are looked up inside the element of ``hit``.
+        """
         element = hit if hit.kind != "Membership" else self.resolve_alias(hit)
         if element is None:
             return None

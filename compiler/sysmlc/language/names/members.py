@@ -48,7 +48,10 @@ class MemberLookup(GeneralLookup):
         return index
 
     def own_members(self, scope: Node, name: str) -> Hits:
-        """Return the owned members with a name; a nameless one if its naming reference resolves."""
+        """Return the owned members with that name.
+
+        A feature without a declared name is included only if its naming reference resolves.
+        """
         hits = self.symbol_table(scope).get(name)
         if hits is None:
             return NO_HITS
@@ -82,25 +85,25 @@ class MemberLookup(GeneralLookup):
             yield self.imported_members(scope, name, inside=True)
 
     def _iter_stages_without_imports(self, scope: Node, name: str) -> Iterator[Hits]:
-        """Yield owned members by name, then inherited ones."""
+        """Yield the owned members with that name, then the inherited ones."""
         yield self.own_members(scope, name)
         if scope.kind in TYPES:
             yield self.inherited(scope, name)
 
     def _iter_stages_without_implied(self, scope: Node, name: str) -> Iterator[Hits]:
-        """Yield members by name, without those that only implied generals have."""
+        """Yield the members with that name, without those that only implied generals have."""
         yield self.own_members(scope, name)
         for general in self.generals(scope):
             yield self._find_heritable(general, name)
         yield self.imported_members(scope, name, inside=True)
 
     def iter_visible_inside(self, scope: Node, name: str) -> Iterator[Node]:
-        """Yield members by name as seen from inside: owned, inherited, imported ones."""
+        """Yield the members with that name as seen from inside: owned, inherited, imported ones."""
         for hits in self._iter_stages(scope, name, None):
             yield from hits
 
     def visible_outside(self, scope: Node, name: str) -> Hits:
-        """Return members by name as seen from outside: public owned, inherited, imported ones."""
+        """Return the public members with that name: owned, inherited, imported ones."""
         hits = [
             member
             for member in self.own_members(scope, name)
@@ -113,7 +116,7 @@ class MemberLookup(GeneralLookup):
         return tuple(hits)
 
     def inherited(self, scope: Node, name: str) -> Hits:
-        """Return the members by name that a type inherits, without those that it redefines."""
+        """Return the inherited members with that name that the type does not redefine."""
         names = self._inheritable.get(scope)
         if names is not None and name not in names:
             return NO_HITS
@@ -193,7 +196,7 @@ class MemberLookup(GeneralLookup):
                 hits += [hit for hit in inherited if hit not in hits]
         if not hits and not self._may_inherit(scope, name):
             return NO_HITS
-        # A member of the model is final, but an implied general may redefine one of the library.
+        # An implied general can redefine a member of the library, but not a member of the model.
         if not hits or any(map(is_in_library, hits)):
             for general in self._find_implied_generals(scope):
                 inherited = self._find_heritable(general, name)
@@ -202,12 +205,12 @@ class MemberLookup(GeneralLookup):
         return tuple(hits) if len(hits) < 2 else self._drop_general(hits)
 
     def _may_inherit(self, scope: Node, name: str) -> bool:
-        """Whether a general of the type may have a member by name, by the memoised names."""
+        """Whether ``scope`` may inherit a member with that name, by the memoised names."""
         names = self._names_of.get(self.all_generals(scope))
         return names is None or name in names
 
     def _find_heritable(self, general: Node, name: str) -> Hits:
-        """Return the members by name that ``general`` passes on to its specialisations."""
+        """Return the members named ``name`` that ``general`` passes on to its specialisations."""
         if name in self.symbol_table(general):
             hits = [
                 member
@@ -245,7 +248,7 @@ class MemberLookup(GeneralLookup):
 
 
 def is_in_library(node: Node) -> bool:
-    """Whether a member is in a library package: an implied general may have a more special one."""
+    """Whether a library package contains ``node``."""
     owner = node.owner
     while owner is not None and owner.owner is not None:
         node, owner = owner, owner.owner

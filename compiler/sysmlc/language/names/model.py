@@ -15,7 +15,7 @@ from sysmlc.language.tree import Document, Node, Relation, find_root
 
 
 class _ImpliedGenerals(NamedTuple):
-    """Relations and targets that nodes with one candidate key may implicitly specialise."""
+    """What all nodes with the same candidate key may implicitly specialise."""
 
     pairs: list[tuple[str, Node]]
     targets: tuple[Node, ...]

@@ -23,14 +23,14 @@ class GeneralizationQueries(Protocol):
         """Return the generals that the text states and those that may be implied."""
 
     def own_features_of_role(self, scope: Node, role: str) -> list[Node]:
-        """Return the features of ``scope`` with a positional role, in the order of the text."""
+        """Return the features of ``scope`` with this positional role, in the order of the text."""
 
     def features_of_role(self, scope: Node, role: str) -> list[Node]:
-        """Return the features of a type with a positional role, own before inherited ones."""
+        """Return the features of a type with this positional role, own before inherited ones."""
 
 
 class LookupQueries(GeneralizationQueries, Protocol):
-    """Queries about members and redefinition, which ``lookup.Lookup`` answers too."""
+    """Queries about generals, members and redefinition; ``lookup.Lookup`` implements them."""
 
     def resolve_alias(self, hit: Node) -> Node | None:
         """Return the element that a member stands for: that of an alias, else the member."""

@@ -146,7 +146,7 @@ def _has_visible_member(
 def _advise_import(
     name: str, package: Node, lookup: Lookup, context: contexts.LookupContext
 ) -> str:
-    """Return how to import a name; a package that is imported itself does not bring its members."""
+    """Return how to import a name; the import of a package alone does not bring its members."""
     for scope in _list_scopes(context):
         for import_ in lookup.imports(scope):
             if import_.kind in _MEMBERSHIP_IMPORTS and any(
@@ -178,7 +178,10 @@ def _search_regardless(
 def _list_known_names(
     lookup: Lookup, names: tuple[str, ...], context: contexts.LookupContext, container: Node | None
 ) -> list[str]:
-    """Return the names that are valid instead: in the element before, else in the scopes around."""
+    """Return the names that are valid instead.
+
+    After a dot these are members of the element before it, else names in the scopes around.
+    """
     if container is None and len(names) > 1:
         container = lookup.search(context, names[:-1], None)
     if container is None and context.inherited and context.scope is not None:
@@ -251,7 +254,10 @@ def _find_containing(
 
 
 def _is_incomplete(scope: Node | None, lookup: Lookup) -> bool:
-    """Whether a general of ``scope`` is unresolved, which is reported and may have the name."""
+    """Whether ``scope`` has an unresolved general.
+
+    That general may have the missing name, and is itself reported as unresolved.
+    """
     worklist = [scope] if scope is not None else []
     seen = set(worklist)
     while worklist:

@@ -96,7 +96,7 @@ def _first_advice(
 
 
 def _advise_first_word(tokens: Tokens, index: int, beginnings: Collection[str]) -> str:
-    """Return the keyword that may be meant where a member begins with a word that is none."""
+    """Return the keyword that may be meant by the first word of a member that is not a keyword."""
     word = tokens[index] if index >= 0 else ""
     is_first = index == 0 or tokens[index - 1] in _SEPARATORS
     if not is_first or not word.isidentifier() or word in beginnings:

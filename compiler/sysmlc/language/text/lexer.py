@@ -38,11 +38,11 @@ _ESCAPES = {"n": "\n", "t": "\t", "r": "\r", "f": "\f", "v": "\v", "b": "\b"}
 
 
 class LexicalFault(Struct, frozen=True):
-    """A part of a text that is no token.
+    """A part of a text that is not a token.
 
-    ``what`` is ``comment``, ``quote`` or ``string`` for one that is never closed, ``character`` for
-    a character outside of all tokens, ``number`` for one that is too large, ``encoding`` for a text
-    that is not UTF-8.
+    ``what`` is the kind of fault: ``comment``, ``quote`` or ``string`` for an unterminated comment,
+    quoted name or string, ``character`` for a character that no token contains, ``number`` for a
+    number that is too large, ``encoding`` for a text that is not UTF-8.
     """
 
     what: str
@@ -128,7 +128,10 @@ def tokenize(text: str, types: TokenTypes) -> Tokens:
 
 
 def _tokenize_valid(tokens: Tokens, types: TokenTypes, position: int) -> int:
-    """Append tokens up to an invalid one; return where to go on, or -1 at the end of the text."""
+    """Append tokens up to an invalid one.
+
+    Return the offset to continue at, or -1 at the end of the text.
+    """
     token_types, starts, ends = tokens.types, tokens.starts, tokens.ends
     words, name = types.words, types.name
     # Indexed by the number of the matching group; 0 is the end of the text.
@@ -147,7 +150,7 @@ def _tokenize_valid(tokens: Tokens, types: TokenTypes, position: int) -> int:
 
 
 def _skip_invalid(tokens: Tokens, types: TokenTypes, start: int) -> int:
-    """Record a part of the text that is no token; return where to go on."""
+    """Record a part of the text that is not a token; return the offset to continue at."""
     text = tokens.text
     char = text[start]
     # The rest of the text is the comment, so nothing of it is read.
@@ -169,7 +172,7 @@ def _skip_invalid(tokens: Tokens, types: TokenTypes, start: int) -> int:
 
 
 def _check_name_characters(tokens: Tokens, types: TokenTypes) -> None:
-    """Record a fault for names without quotes that have other letters than a to z."""
+    """Record a fault for names without quotes that contain letters other than a to z."""
     for index, token_type in enumerate(tokens.types):
         if token_type == types.name and not (name := tokens[index]).isascii() and name[0] != "'":
             char = next(char for char in name if not char.isascii())

@@ -194,7 +194,7 @@ class Recovery:
         return all(self._shift(simulated, token_type) for token_type in token_types)
 
     def _shift(self, states: list[int], token_type: int) -> bool:
-        """Reduce and shift on ``states`` only; return False where the token does not fit."""
+        """Reduce and shift on a stack of states without values; return False for a syntax error."""
         rows, defaults = self._tables.rows, self._tables.defaults
         while True:
             step = rows[states[-1]].get(token_type, defaults[states[-1]])

@@ -1,4 +1,4 @@
-"""What can be wrong with a text in KerML or SysML v2 before its names are looked at."""
+"""Rules about texts in KerML or SysML v2 that need no name resolution."""
 
 from sysmlc.diagnostics import Severity, rule
 

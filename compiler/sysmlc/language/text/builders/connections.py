@@ -139,7 +139,7 @@ class Tail:
 
 
 def apply_tail(node: Node, tail: Tail, tokens: Tokens) -> Node:
-    """Make the usage what its tail states, and return it."""
+    """Set the kind and the ends of a usage according to its tail, and return the usage."""
     if tail.word and node.kind != tail.kind and node.kind not in _KINDS_BY_WORD[tail.word]:
         _report_misplaced_tail(node, tail, tokens)
     node.kind = tail.kind or node.kind

@@ -233,7 +233,7 @@ def _build_filter(tokens: Tokens, _stop: int, _begin: int, condition: Node) -> N
 def apply_visibility(
     tokens: Tokens, _stop: int, begin: int, visibility: int, item: Node | list[Node]
 ) -> Node | list[Node]:
-    """Set the visibility of all nodes of an item."""
+    """Set the visibility of a member, or of all members that one declaration produces."""
     nodes = item if isinstance(item, list) else [item]
     for node in nodes:
         node.visibility = tokens[visibility]
