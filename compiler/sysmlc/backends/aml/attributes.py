@@ -40,7 +40,7 @@ class Typing:
 
 
 def is_attribute(context: Context, feature: Element) -> bool:
-    """Return whether a property has values: its type is a value type, or it has none."""
+    """Return whether a property has values: it is typed by a value type, or untyped."""
     if feature.kind is not Kind.PROPERTY or feature.role not in ("value", ""):
         return False
     type_ = context.graph.target(feature, Edge.TYPED_BY)

@@ -145,9 +145,10 @@ def _make_unit(
 
 
 def _index_parts(context: Context, parent: Node, unit: SystemUnit) -> None:
-    """Register the node under the parts of the class that it represents or redefines.
+    """Register the node at its parent by the ids of the parts that it stands for.
 
-    The paths of links consist of parts of the class.
+    These are its own part, parts that its instance represents, and parts that they redefine. Links
+    need this index, because their paths consist of parts of the class.
     """
     graph = context.graph
     stack = [unit.part] if unit.part is not None else []
@@ -208,7 +209,7 @@ def _find_declared_class(context: Context, unit: SystemUnit) -> Element | None:
 
 
 def _write_class_reference(context: Context, unit: SystemUnit) -> None:
-    """Write the path of the class, or postpone the ID of the master of a mirror object."""
+    """Write the path of the class. A mirror object gets the ID of its master later."""
     for element in unit.elements:
         for master in context.graph.targets(element, Edge.MIRRORS):
             context.mark_edge(Edge.MIRRORS, element, master)
@@ -258,7 +259,7 @@ def _make_group(context: Context, element: Element, file: File) -> Node:
 
 
 def _list_mirrors(element: Element, target: Element) -> list[tuple[str, str]]:
-    """Return name and ID of each mirror of *target*; a mirror with its name may have no ID."""
+    """Return name and ID of each stored mirror of *target*, else its name and an empty ID."""
     triples = element.attrs.get("mirrors")
     mirrors = [
         (str(triple[1]), str(triple[2]))

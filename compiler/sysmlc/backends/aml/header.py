@@ -96,9 +96,9 @@ def _write_comments(context: Context, element: Element, node: Node) -> None:
 
 
 def _is_general_comment(context: Context, element: Element) -> bool:
-    """Return whether it is a comment, but not one that an instance has on a feature of its class.
+    """Return whether the element is a comment that no instance owns.
 
-    The writer of internal elements adds the latter (``instances.py``).
+    Comments of instances are about features of their class; ``instances.py`` writes them.
     """
     owner = context.graph.owner(element)
     return element.kind is Kind.COMMENT and (owner is None or owner.kind is not Kind.INSTANCE)

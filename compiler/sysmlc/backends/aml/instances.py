@@ -95,7 +95,7 @@ def _list_path(context: Context, element: Element) -> list[Element]:
 
 
 def _find_or_repeat_attribute(context: Context, unit: SystemUnit, path: list[Element]) -> Node:
-    """Return the copy of a nested attribute in an internal element; add absent copies."""
+    """Return the attribute at *path* in an internal element; add missing attributes as copies."""
     node = unit.node
     for feature in path:
         attribute = node.find_child("Attribute", feature.name)

@@ -59,7 +59,7 @@ def _add_interface(context: Context, port: Element, file: File, parent: Node) ->
 
 
 def _write_class_reference(context: Context, port: Element, node: Node, file: File) -> None:
-    """Write the path of the interface class, or postpone the ID of the master of a mirror."""
+    """Write the path of the interface class. A mirror gets the ID of its master later."""
     graph = context.graph
     master = graph.target(port, Edge.MIRRORS)
     if master is not None:

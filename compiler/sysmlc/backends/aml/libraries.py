@@ -181,7 +181,7 @@ def _fill_interface_class(context: Context, element: Element, node: Node, file: 
 
 
 def write_hierarchies(context: Context) -> None:
-    """Add an instance hierarchy for each one of the source and each package with instances."""
+    """Add an instance hierarchy for each one in the source and each package with instances."""
     for package in context.graph.of_kind(Kind.PACKAGE):
         file = context.find_file(package)
         if package.subkind == HIERARCHY:

@@ -43,9 +43,9 @@ def _write_connector(context: Context, connector: Element) -> None:
 def _find_holder(context: Context, element: Element, ends: Iterable[Element]) -> Node | None:
     """Return the node that holds a link, or None.
 
-    It is the node of the owner. A hierarchy cannot hold links, so a link between its elements
-    goes to another top element than the linked ones if both ends are in the same, else to the
-    element of the first end.
+    The holder is the node of the owner, unless this is a hierarchy, which cannot hold links. If
+    both ends are in the same top element of the hierarchy, another top element holds the link;
+    if not, the top element of the first end does.
     """
     owner = context.graph.owner(element)
     node = context.nodes.get(owner.id) if owner is not None else None

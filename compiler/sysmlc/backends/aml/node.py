@@ -121,7 +121,7 @@ def format_value(value: AttrValue) -> str:
 
 
 def find_data_type(value: AttrValue) -> str:
-    """Return the XML Schema type of a number or truth value, for other values nothing."""
+    """Return the XML Schema type of a number or truth value; empty for other values."""
     if isinstance(value, bool):
         return "xs:boolean"
     if isinstance(value, int):

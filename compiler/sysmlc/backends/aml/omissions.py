@@ -80,7 +80,7 @@ def _mark_documents(context: Context) -> None:
 
 
 def _needs_no_object(context: Context, element: Element) -> bool:
-    """Return whether an element is no content of its own: a stub, a unit, a mere container."""
+    """Return whether an element needs no CAEX object: a stub, a unit, a mere container."""
     graph = context.graph
     if element.attrs.get("external") or element.kind in _MEASURES or is_measured_type(element):
         return True

@@ -40,7 +40,7 @@ def _make_role_path(context: Context, role: Element, file: File) -> str:
 
 
 def _find_or_add_role(node: Node, tag: str, path: str) -> Node:
-    """Return the child that names a role; a role has one child."""
+    """Return the child that names a role; add it if absent, since a role has only one child."""
     for child in node.children:
         if child.tag == tag and child.attributes.get(_PATHS[tag]) == path:
             return child

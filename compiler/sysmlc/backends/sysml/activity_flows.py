@@ -281,10 +281,10 @@ def _format_object_flow(
 
 
 def _record_shared_node(writer: Writer, flow: Element, source: Element, target: Element) -> None:
-    """Record a binding of a node with several flows, each of which adds or removes objects.
+    """Record the loss if a binding replaces a flow of an object node with several flows.
 
-    A flow connects features of two elements (SysML 2.0, 7.16). A node of the activity itself is
-    not such a feature, so that only a binding can reach it.
+    Each flow of such a node adds or removes objects; a binding does not. A flow connects features
+    of two elements (SysML 2.0, 7.16), but an object node belongs to the activity itself.
     """
     for node, edge in ((source, Edge.FLOW_SOURCE), (target, Edge.FLOW_TARGET)):
         if node.kind is not Kind.PIN and len(writer.graph.sources(node, edge)) > 1:

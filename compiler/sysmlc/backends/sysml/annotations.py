@@ -110,7 +110,7 @@ def _iter_documentation(element: Element) -> Iterator[Line]:
 
 
 def _iter_source_name(writer: Writer, member: Member, element: Element) -> Iterator[Line]:
-    """Yield the name in the source if the member has another one."""
+    """Yield metadata with the name in the source if the member has a different name."""
     if member.name and member.name != replace_control_characters(element.name):
         yield make_annotation(writer, member, "Named", {"name": element.name})
 
@@ -183,7 +183,7 @@ def _needs_subkind(element: Element) -> bool:
 
 
 def _name_plain_port(writer: Writer, element: Element) -> str | None:
-    """Return ``port`` for a port of UML: a reader takes all others for proxy ports of SysML."""
+    """Return ``port`` for a port of plain UML, which would be read as a proxy port of SysML."""
     if element.kind is not Kind.PORT or element.role != "port":
         return None
     if is_part_port(writer.graph, element) or element.source in writer.caex_files:
@@ -192,7 +192,7 @@ def _name_plain_port(writer: Writer, element: Element) -> str | None:
 
 
 def _name_idle_activity(writer: Writer, member: Member, element: Element) -> str | None:
-    """Return ``activity`` for an activity without actions: a reader takes it for an operation."""
+    """Return ``activity`` for an activity without actions, which would be read as an operation."""
     is_usage = element.kind is Kind.ACTIVITY and member.shape.keyword == "action"
     owner = writer.graph.owner(element) if is_usage else None
     if owner is None or owner.kind not in CLASSIFIERS or element.attrs.get("body"):

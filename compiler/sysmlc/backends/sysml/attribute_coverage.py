@@ -48,7 +48,7 @@ def iter_unexpressed_attributes(
 ) -> Iterator[str]:
     """Yield the keys of the attributes that nothing else in the text expresses.
 
-    *member* is None for an element that another member expresses.
+    *member* is None for an element that has no member because another member expresses it.
     """
     is_listed = element.kind in _LISTED_KINDS
     if is_listed or (element.kind is Kind.APPLICATION and not is_standard(element)):
@@ -107,7 +107,7 @@ def _has_unexpressed_subkind(writer: Writer, _member: Member | None, element: El
 
 
 def _has_unexpressed_action_kind(writer: Writer, action: Element) -> bool:
-    """Whether an action reads a feature, or calls an operation outside of the model."""
+    """Whether the text lacks the kind: of a read action, or a call of an operation elsewhere."""
     operation = writer.graph.target(action, Edge.CALLS)
     is_outside = operation is not None and bool(operation.attrs.get("external"))
     return action.subkind == "read" or (action.subkind == "call-operation" and is_outside)
@@ -192,7 +192,7 @@ def _has_empty_default(_writer: Writer, _member: Member | None, element: Element
 
 
 def _has_unexpressed_path(writer: Writer, _member: Member | None, element: Element) -> bool:
-    """Whether no feature chain contains the path: those of item flows without connectors do."""
+    """Whether the text lacks the path: only an item flow without connector has it as its chain."""
     is_item_flow = element.kind is Kind.ITEM_FLOW
     return not is_item_flow or bool(writer.graph.targets(element, Edge.REALIZING))
 

@@ -108,7 +108,7 @@ def _write_reference(writer: Writer, scope: Member, word: str, behaviour: Elemen
 
 
 def chain_statements(statements: list[str]) -> list[Line]:
-    """Return actions that run one after the other."""
+    """Return the statements as actions that run one after the other."""
     first, *rest = statements
     return [Line(first), *(Line(f"then {statement}") for statement in rest)]
 

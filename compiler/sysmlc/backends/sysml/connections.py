@@ -245,7 +245,7 @@ def _order_ends(
 def _format_flow_end(
     writer: Writer, member: Member, end: Element, item: Element | None
 ) -> str | None:
-    """Return the chain to an end, and to the only flow property of its port that fits the item."""
+    """Return the chain to an end, with the only flow property of its port that fits the item."""
     chain = _format_end_chain(writer, member, end)
     role = role_of(writer.graph, end)
     if chain is None or role is None or role.kind is not Kind.PORT or item is None:

@@ -90,7 +90,7 @@ def write_definition(writer: Writer, member: Member) -> list[Line]:
 
 
 def write_contents(writer: Writer, member: Member) -> list[Line]:
-    """Return the annotations and members of a namespace, and the lines that others add to it."""
+    """Return the annotations and members of a namespace, and lines added by other elements."""
     body = write_annotations(writer, member) + writer.write_members(member)
     element = member.element
     if element is None:
@@ -165,7 +165,7 @@ def write_value_type(writer: Writer, member: Member) -> list[Line]:
 
 
 def _record_other_quantity(writer: Writer, element: Element, quantity: str) -> None:
-    """Record a quantity kind that is not the one of the unit: in ISQ, a unit determines it."""
+    """Record a quantity kind that differs from that of the unit: in ISQ, a unit determines it."""
     quantity_kind = quantity_kind_of(writer.graph, element)
     if quantity_kind is None:
         return

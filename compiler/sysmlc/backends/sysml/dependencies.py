@@ -1,7 +1,7 @@
 """Dependencies by their meaning: satisfaction, verification, derivation, allocation, or none.
 
-The lines of some dependencies stand inside their client. ``prewrite_dependencies`` writes these
-before all other members, so that they are there when the client is written.
+Some dependencies are written inside their client. ``prewrite_dependencies`` writes their lines
+before all other members, because the client must contain them when it is written itself.
 """
 
 from collections.abc import Callable
@@ -98,7 +98,7 @@ def _find_targets(writer: Writer, member: Member, edge: Edge) -> list[Member]:
 
 
 def _find_definition(usage: Member) -> Member | None:
-    """Return the definition around a usage: only inside it, the bare name denotes the usage."""
+    """Return the definition that contains a usage: its bare name is valid only there."""
     return next((space for space in usage.namespaces if space.shape.is_definition), None)
 
 
@@ -200,7 +200,7 @@ def _write_allocation(writer: Writer, member: Member) -> list[Line]:
 
 
 def _write_usage_allocation(writer: Writer, member: Member, ends: list[Member]) -> list[Line]:
-    """Write an allocation; one between features of the same definition stands inside it."""
+    """Write an allocation; inside the definition if both features belong to the same one."""
     name = quote_name(member.name) if member.name else ""
     head = f"allocation {name} allocate" if name else "allocate"
     definition = _find_definition(ends[0])

@@ -55,10 +55,10 @@ def _is_bare_control_flow(flow: Element) -> bool:
 
 
 def find_specific_feature(graph: Graph, element: Element) -> Element | None:
-    """Return the feature for which a class exists (SysML 1.6, 8.3.2.10); None for other classes.
+    """Return the feature of a property-specific class (SysML 1.6, 8.3.2.10), else None.
 
-    Such a class has the name of the feature or none, has the same owner, and is referred to by
-    nothing else.
+    Such a class has the name of the feature or none, has the same owner, and only this feature
+    refers to it.
     """
     if not element.attrs.get("property_specific") or element.kind not in _CLASSES:
         return None
@@ -75,7 +75,7 @@ def find_specific_feature(graph: Graph, element: Element) -> Element | None:
 
 
 def iter_types(graph: Graph, feature: Element) -> Iterator[Element]:
-    """Yield the types of a feature; the generals of a property-specific class stand for it."""
+    """Yield the types of a feature; a property-specific class is replaced by its generals."""
     for type_ in graph.targets(feature, Edge.TYPED_BY):
         if find_specific_feature(graph, type_) is feature:
             yield from graph.targets(type_, Edge.SPECIALIZES)

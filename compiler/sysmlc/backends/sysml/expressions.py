@@ -36,7 +36,7 @@ class UnknownNameError(ValueError):
 
 
 def format_expression(writer: Writer, scope: Member | None, text: str) -> str | None:
-    """Return the text as an expression of SysML v2; None if it is none over this model."""
+    """Return the text as an expression of SysML v2; None if it is invalid or names are unknown."""
     try:
         return print_expression(writer, scope, parse_expression(text))
     except (syntax.ExpressionError, UnknownNameError, RecursionError):

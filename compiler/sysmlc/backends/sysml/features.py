@@ -83,7 +83,7 @@ def _has_port_type(writer: Writer, port: Element) -> bool:
 
 
 def _move_type_inside(port: Element, head: Head) -> list[Line]:
-    """Return a feature of the port's type: that is what flows through ports of SysML 1.2."""
+    """Return a feature typed by the port's type, whose values flow through a port in SysML 1.2."""
     types = [type_.removeprefix("~") for type_ in head.types or ()]
     head.types = []
     direction = str(port.attrs.get("direction", ""))
@@ -174,7 +174,7 @@ def write_pin(writer: Writer, member: Member) -> list[Line]:
 
 
 def _redefine_parameter(writer: Writer, member: Member, parameter: Element, head: Head) -> None:
-    """Add a redefinition to the head, which then needs neither the same name nor the same type."""
+    """Add the redefinition of *parameter* to the head; drop a name and types equal to its own."""
     name = writer.refer_to_redefined(member.parent, parameter)
     if name is None:
         return

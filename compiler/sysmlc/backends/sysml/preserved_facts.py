@@ -49,7 +49,7 @@ def list_unexpressed_facts(writer: Writer, member: Member, element: Element) -> 
 
 
 def list_all_facts(writer: Writer, element: Element) -> tuple[str, ...]:
-    """Return all facts of an element for which SysML v2 has nothing at all."""
+    """Return all facts of an element whose kind has no equivalent in SysML v2."""
     facts = []
     for key, value in element.attrs.items():
         fact = _format_attribute(writer, key, value)

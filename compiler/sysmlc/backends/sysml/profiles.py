@@ -93,7 +93,7 @@ def _iter_attribute_names(plan: Plan, definition: Member) -> Iterator[str]:
 
 
 def _widen_type(known_type: str, value: AttrValue) -> str:
-    """Return type and multiplicity of an attribute that has *value* besides its earlier values."""
+    """Return the type and multiplicity that allow *value* and the values of *known_type*."""
     is_list = isinstance(value, tuple) or "[0..*]" in known_type
     sample = value[0] if isinstance(value, tuple) and value else value
     type_ = "String"

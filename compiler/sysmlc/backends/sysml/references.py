@@ -29,7 +29,7 @@ _BEHAVIOUR_KEYWORDS = ("action", "state", "occurrence", "connection", "flow", "c
 
 
 def look_up(plan: Plan, scope: Member | None, name: str) -> Member | None:
-    """Return the member that a name denotes in *scope*; None if it denotes none of the plan."""
+    """Return the member that a name denotes in *scope*; None if the plan has no such member."""
     for namespace in _iter_scopes(scope):
         member = visible_members(plan, namespace).get(name)
         if member is not None or name in namespace.shape.library_names:
@@ -192,7 +192,7 @@ def format_qualified_name(plan: Plan, scope: Member | None, target: Member) -> s
 
 
 def _find_path(plan: Plan, scope: Member | None, target: Member) -> list[Member] | None:
-    """Return the members to name, outermost first; None if one of them has no name.
+    """Return the members whose names form the reference, outermost first; None if one has no name.
 
     The path starts with the innermost member that name lookup finds. If it finds none, the path
     is complete, and the reference starts at the root (``$::``).

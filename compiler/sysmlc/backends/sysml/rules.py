@@ -1,4 +1,4 @@
-"""Losses: what of the graph SysML v2 text cannot express, or expresses in other words."""
+"""Losses: content of the graph that SysML v2 cannot express or can only approximate."""
 
 from dataclasses import dataclass, field
 

@@ -205,7 +205,7 @@ def _find_feature_keyword(graph: Graph, feature: Element, type_shapes: _TypeShap
 
 
 def _find_behaviour_shape(graph: Graph, element: Element, _type_shapes: _TypeShapes) -> Shape:
-    """Return a definition for a behaviour of a package, a usage for a behaviour of anything else.
+    """Return a definition for a behaviour in a package, a usage for any other behaviour.
 
     Only a usage may refer to the features of its owner without a path to them.
     """
@@ -230,7 +230,7 @@ def _find_control_node_shape(
 
 
 def _is_terminating(graph: Graph, final_node: Element) -> bool:
-    """Whether a final node ends other flows, too, or is one of several."""
+    """Whether a final node ends concurrent flows, or the behaviour has several final nodes."""
     owner = graph.owner(final_node)
     siblings = [] if owner is None else graph.owned(owner)
     subkinds = [sibling.subkind for sibling in siblings if sibling.kind is Kind.CONTROL]

@@ -1,4 +1,4 @@
-"""The state that the functions share which write members, and the order of members."""
+"""State shared by the functions that write members, and the order of members."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -66,7 +66,7 @@ class Writer:
     def refer_to(
         self, scope: Member | None, holder: Element, edge: Edge, target: Element
     ) -> str | None:
-        """Return the text that names *target* in *scope*; None, and a loss, if nothing does."""
+        """Return the text that names *target* in *scope*; None, with a loss, if none does."""
         text = format_element_reference(self.plan, scope, target)
         if text is None:
             self.record_unreachable(holder, str(edge.value))
@@ -120,7 +120,7 @@ class Writer:
     # -- lines -----------------------------------------------------------------------------------
 
     def declare_attribute(self, namespace: Member, name: str, type_: str) -> str:
-        """Declare an attribute that no element stands for. Return its name as it is written.
+        """Declare an attribute without an element of the graph. Return its name as it is written.
 
         A second declaration of the same name in the namespace reuses the first attribute.
         """

@@ -151,7 +151,7 @@ def _write_any_value(context: Context, element: Element, key: str, value: AttrVa
 
 
 def _write_any_guard(context: Context, element: Element, _key: str, _value: AttrValue) -> None:
-    """Write a guard that is an attribute; a guard that is a constraint of its own is an edge."""
+    """Write a guard that is stored as an attribute; a constraint as guard is an edge instead."""
     if element.kind in (Kind.CONTROL_FLOW, Kind.OBJECT_FLOW):
         write_guard(context, element)
     elif context.graph.target(element, Edge.GUARD) is None:
@@ -308,7 +308,7 @@ def _write_nothing(context: Context, element: Element, key: str, value: AttrValu
 
 def _make_record_writer(tag: str, metaclass: str, *features: str) -> _Writer:
     def write_records(context: Context, element: Element, _key: str, value: AttrValue) -> None:
-        """Write each record as a child; its columns are ids of elements, one list per feature."""
+        """Write each record as a child; each column of a record lists ids for one feature."""
         node = context.find_node(element)
         for index, record in enumerate(value if isinstance(value, tuple) else ()):
             child = _find_or_add_record(context, element, node, tag, metaclass, index)
@@ -337,7 +337,7 @@ def _find_or_add_record(
 def _write_extended_signature(
     context: Context, element: Element, _key: str, value: AttrValue
 ) -> None:
-    """Write the signatures that the signature of a template extends; the value names templates."""
+    """Write ``extendedSignature``; the value has ids of templates, not of their signatures."""
     templates = [context.graph[str(id)] for id in _as_tuple(value) if str(id) in context.nodes]
     ids = [find_or_add_signature(context, template).id for template in templates]
     if ids:

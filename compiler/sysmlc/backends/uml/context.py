@@ -20,7 +20,7 @@ _EDGES = frozenset(edge.value for edge in Edge)
 
 @dataclass(slots=True)
 class Context:
-    """The document as far as it is written."""
+    """The document while it is written."""
 
     graph: Graph
     losses: Losses
@@ -104,7 +104,7 @@ def assign_ids(graph: Graph) -> dict[str, str]:
 
 
 def _choose_id(id: str, used: set[str]) -> str:
-    """Return the id without its file, the id after an underscore, or a derived id."""
+    """Return the id without its file, or a variant of it that is valid XML and not used."""
     original = "" if _ADDED_ID.search(id) else id.rpartition("#")[2]
     for candidate in (original, f"_{id}"):
         if _NAME.fullmatch(candidate) and candidate not in used:

@@ -1,4 +1,4 @@
-"""Features of UML 2.5.1 that attributes and edges of the graph are written as."""
+"""Features of UML 2.5.1 that express attributes and edges of the graph."""
 
 import re
 from functools import cache

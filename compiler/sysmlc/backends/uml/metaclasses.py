@@ -1,4 +1,4 @@
-"""The metaclass of UML that each kind of the graph is written as (docs/ir.md)."""
+"""The metaclass of UML for each kind of the graph (docs/ir.md)."""
 
 from sysmlc.backends.uml.features import to_class_name
 from sysmlc.ir import Element, Graph, Kind

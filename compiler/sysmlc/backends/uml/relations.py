@@ -51,7 +51,7 @@ def write_edges(context: Context, element: Element) -> None:
 
 
 def _write_references(context: Context, element: Element, edge: Edge, targets: _Targets) -> None:
-    """Write edges as references; an edge without feature becomes a dependency if not implied."""
+    """Write edges as references; an edge without a feature that nothing implies as a dependency."""
     by_feature: dict[str, list[Element]] = {}
     for target in targets:
         feature = find_edge_feature(element, edge, target)
@@ -154,7 +154,7 @@ def _add_interface_realization(context: Context, element: Element, target: Eleme
 
 
 def _write_extends(context: Context, element: Element, targets: _Targets) -> None:
-    """Write the extends of a use case that no element Extend expresses."""
+    """Write the edges to extended use cases that no element Extend expresses."""
     extends = (part for part in context.graph.owned(element) if part.kind is Kind.EXTEND)
     expressed = {
         target.id for part in extends for target in context.graph.targets(part, Edge.EXTENDS)

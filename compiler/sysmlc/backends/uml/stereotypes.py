@@ -236,7 +236,7 @@ class StereotypeWriter:
 
 
 def _find_nearest(metaclass: str, extended: Sequence[str]) -> str:
-    """Return the first of a metaclass and its generals that is extended, else the metaclass."""
+    """Return the metaclass or its nearest general in *extended*; *metaclass* if none is."""
     candidates = (metaclass, *_GENERALS.get(metaclass, ()))
     return next((name for name in candidates if name in extended), metaclass)
 

@@ -118,7 +118,7 @@ def read_extended_metaclasses() -> dict[str, tuple[str, ...]]:
 
 
 def is_foreign(namespace: str, name: str) -> bool:
-    """Return whether it is a stereotype in another tool's copy of SysML that Papyrus has too."""
+    """Return whether a stereotype is another tool's copy of one in Papyrus's SysML profile."""
     is_other = _OTHER_NAMESPACES.match(namespace) is not None
     return is_other and name in read_packages() and name not in _NOT_IN_PAPYRUS
 
@@ -259,7 +259,7 @@ def _has_dependency(graph: Graph, source: Element, edge: Edge, target: Element) 
 
 
 def _is_tagged(graph: Graph, source: Element, edge: Edge, target: Element | None = None) -> bool:
-    """Return whether a tag that implies the kind of edge names *target*, or anything."""
+    """Return whether a tag that implies the edge names *target*, or has a value if that is None."""
     for application in iter_applications(graph, source):
         for tag in _TAGS[edge]:
             value = application.attrs.get(f"tag.{tag}")
@@ -283,7 +283,7 @@ def _iter_named_ids(graph: Graph, value: object) -> Iterator[str]:
 
 
 def _is_measure_reference(source: Element, target: Element) -> bool:
-    """Return whether slots of a unit, or the name of a library type, express the reference."""
+    """Return whether one end is a unit or quantity kind: slots or type names express the edge."""
     is_measure = source.role in ("unit", "quantity kind") or source.kind is Kind.UNIT
     return is_measure or target.kind in (Kind.UNIT, Kind.QUANTITY_KIND)
 

@@ -16,7 +16,7 @@ _BOUND_OPERATORS = {"RequiredMinValue": ">=", "RequiredValue": "==", "RequiredMa
 
 
 def lower_attribute(context: Context, owner: Type, node: Node, document: Document) -> None:
-    """Add an attribute of a class; attributes below it are features of a type of its own."""
+    """Add an attribute of a class; nested attributes are features of a type added for it."""
     worklist = [(owner, node)]
     while worklist:
         holder, attribute = worklist.pop()
@@ -27,7 +27,7 @@ def lower_attribute(context: Context, owner: Type, node: Node, document: Documen
 
 
 def _lower_single(context: Context, owner: Type, node: Node, document: Document) -> Type | None:
-    """Add an attribute without those below it; return the type made for these, if there are any."""
+    """Add an attribute; return the type added for its nested attributes, None if it has none."""
     data_type = node.attributes.get("AttributeDataType", "")
     value, default = node.child_text("Value"), node.child_text("DefaultValue")
     initial = default if value is None else value
@@ -77,7 +77,7 @@ def _add_structure(
     element: Element,
     declared: Type | None,
 ) -> Type | None:
-    """Add the data type for an attribute that has attributes of its own."""
+    """Add the data type for an attribute that has nested attributes."""
     if not node.has_child("Attribute"):
         return None
     data_type = Element(f"{element.id}#type", Kind.DATA_TYPE, node.name, owner.id)

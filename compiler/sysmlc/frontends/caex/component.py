@@ -87,7 +87,7 @@ class Component:
 
     @property
     def node(self) -> Node:
-        """The node that declares it."""
+        """The node of the internal element or class."""
         return self.document.node(self.row)
 
     @property
@@ -97,7 +97,7 @@ class Component:
 
     @property
     def type(self) -> Type | None:
-        """The class whose members it has."""
+        """The class whose members the component has."""
         return self.own_type or self.declared_type
 
     def find_part_path(self, ancestor: "Component") -> list[str] | None:

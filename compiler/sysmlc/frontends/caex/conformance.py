@@ -1,6 +1,6 @@
-"""Reports what no schema of CAEX allows: attributes, texts, repeated names, order of elements.
+"""Reports violations of the CAEX schemas: attributes, texts, repeated names, order of elements.
 
-None of it prevents the reading: 35 of 1,606 public files do not validate against the schemas.
+None of them prevents reading: 35 of 1,606 public files do not validate against the schemas.
 """
 
 from collections.abc import Collection, Iterable, Iterator, Sequence
@@ -143,7 +143,7 @@ def _report_stray_texts(context: Context, document: Document, source: Source) ->
 
 
 def _has_stray_text_of_rows(document: Document) -> bool:
-    """Whether a row that is checked has text of its own although its tag holds none."""
+    """Whether a checked row has text although its tag allows none."""
     texts, tags = document.texts[""].items(), document.tags
     rows = (row for row, text in texts if tags[row] in _TEXTLESS_TAGS and text.strip())
     return any(not is_unchecked(document, row) for row in rows)
@@ -218,7 +218,7 @@ def _find_repeated_rows(document: Document) -> Iterator[int]:
 def report_order(context: Context, document: Document) -> None:
     """Report the first element in a wrong place.
 
-    Once a file: a tool that writes one element in the wrong place does so for all elements like it.
+    One report per file is enough: a tool misplaces all elements of the same kind.
     """
     misplaced = [
         pair
@@ -234,7 +234,7 @@ def report_order(context: Context, document: Document) -> None:
 
 
 def _find_unordered_rows(document: Document) -> list[int]:
-    """Return the rows with a child after a sibling that the schema has later."""
+    """Return the rows with a child that the schema puts before a preceding sibling."""
     if 0 not in document.tag_codes:
         return _find_unordered_neighbours(document)
     ranks = [ORDER.get(tag, -1) for tag in document.tags]
@@ -251,9 +251,9 @@ def _find_unordered_rows(document: Document) -> list[int]:
 
 
 def _find_unordered_neighbours(document: Document) -> list[int]:
-    """Return the same rows of a file without unknown tags.
+    """Return the rows with children in a wrong order, for a file without unknown tags.
 
-    Every child then has a rank, so a wrong order shows in two neighbours.
+    Every child then has a rank, so two adjacent siblings are in the wrong order if any are.
     """
     codes, parents, ends = document.tag_codes, document.parents, document.ends
     # Neighbours without content have consecutive rows.

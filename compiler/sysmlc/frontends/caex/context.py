@@ -140,7 +140,7 @@ class Context:
     # -- classes -----------------------------------------------------------------------------------
 
     def find_resolved(self, text: str, family: Family, document: Document) -> Type | None:
-        """Return the class that a path was resolved to before, if it was."""
+        """Return the class to which a path was resolved earlier; None if it was not."""
         return self._resolved.get((document, family, text))
 
     def resolve_type(
@@ -178,7 +178,7 @@ class Context:
         return Subject(qualified_name(node), node.element_id, document.locate(node))
 
     def record_unresolved_path(self, element: Element, node: Node) -> None:
-        """Store a reference that does not resolve as it is written, for the way back to CAEX."""
+        """Store the text of an unresolved reference; the back end ``aml`` writes it again."""
         stored = element.attrs.get("unresolved_paths")
         paths = stored if isinstance(stored, tuple) else ()
         path = (node.tag, read_class_reference(node))
@@ -205,7 +205,7 @@ class Context:
             self._report_elements_without_id(document)
 
     def _report_elements_without_id(self, document: Document) -> None:
-        """Report the first of them; the message counts the others."""
+        """Report the first InternalElement without ID; the message counts the others."""
         rows = self.ids.list_rows_without_id(document, "InternalElement")
         if rows:
             node, rest = document.node(rows[0]), len(rows) - 1
@@ -213,7 +213,7 @@ class Context:
             self.report(rules.MISSING_ID, document, node, element=qualified_name(node), more=count)
 
     def release_nodes(self) -> None:
-        """Break the cycles of documents and nodes, which nothing needs after the reading."""
+        """Break the reference cycles of documents and nodes, which are not needed any more."""
         for document in self.documents:
             document.release_nodes()
 

@@ -34,7 +34,7 @@ class Node:
 
     @property
     def parent(self) -> "Node | None":
-        """The node around it; None at the root."""
+        """The parent node; None for the root."""
         row = self.document.parents[self.row]
         return None if row < 0 else self.document.node(row)
 
@@ -58,7 +58,7 @@ class Node:
 
     @property
     def children(self) -> list["Node"]:
-        """The nodes directly below it."""
+        """The child nodes."""
         document = self.document
         return [document.node(row) for row in document.child_rows(self.row)]
 
@@ -91,7 +91,7 @@ class Node:
         return folded + [child.own_text for child in self.iter_children(tag)]
 
     def has_child(self, *tags: str) -> bool:
-        """Whether a node with one of these tags is directly below it."""
+        """Whether the node has a child with one of these tags."""
         return next(self.iter_children(*tags), None) is not None
 
     def iter_children(self, *tags: str) -> Iterator["Node"]:
@@ -104,7 +104,7 @@ class Node:
         return map(document.node, rows)
 
     def iter_ancestors(self) -> Iterator["Node"]:
-        """Yield the nodes around it, nearest first."""
+        """Yield the ancestors of the node, nearest first."""
         node = self.parent
         while node is not None:
             yield node

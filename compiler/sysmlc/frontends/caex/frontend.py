@@ -1,7 +1,7 @@
-"""The front end for AutomationML; the modules that read are imported for the first file.
+"""The front end for AutomationML. The modules that parse are imported with the first parsed file.
 
-Detection, references and kinds of files are found by searches in the bytes, because the compile
-unit decides with them which files are parsed at all.
+Searches in the bytes detect the format and find references and the kind of a file, because the
+compile unit needs these to decide which files are parsed.
 """
 
 import re
@@ -64,7 +64,7 @@ class CaexFrontend:
         return list(dict.fromkeys(unescape(match[1] or match[2]) for match in matches if match))
 
     def read_names(self, source: Source) -> FileNames:
-        """Return that a file without an instance hierarchy is a library.
+        """Return no names; a file without an instance hierarchy is marked as a library.
 
         Files refer to one another by path only.
         """

@@ -77,7 +77,9 @@ def lower_group(context: Context, component: Component, kind: Kind) -> None:
 
 
 def _add_realization(context: Context, document: Document, element: Element, path: str) -> None:
-    """Realise a role that specialises Facet or Group; these two are the kind of the element."""
+    """Add the realization of a role that specialises Facet or Group.
+
+    Facet and Group themselves need none: they determine the kind of the element."""
     role = context.find_resolved(path, Family.ROLE, document)
     if role is not None and role.path[:-1] != BASE_ROLE:
         context.graph.connect(Edge.REALIZES, element, role.id)
@@ -129,7 +131,7 @@ def _iter_shown_features(context: Context, component: Component) -> Iterator[tup
 
 
 def _find_copied_feature(context: Context, component: Component, node: Node) -> Node | None:
-    """Return the feature of the same name around the facet, unless the facet changes it."""
+    """Return the feature with this name of the facet's parent, unless the facet changes it."""
     parent = component.parent
     if parent is None or parent.type is None:
         return None

@@ -1,4 +1,4 @@
-"""Headers of files: the document, the aliases of other files, and files without a plant."""
+"""Headers of files: documents, aliases of other files, and the report of a missing plant."""
 
 import posixpath
 from urllib.parse import unquote

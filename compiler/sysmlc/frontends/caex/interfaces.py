@@ -15,7 +15,7 @@ from sysmlc.ir import AttrValue, Edge, Element, Kind
 
 
 def lower_interface(context: Context, owner: Type, node: Node, document: Document) -> None:
-    """Add an external interface of a class; nested ones are ports of a class of its own."""
+    """Add an external interface of a class; nested interfaces are ports of a class added for it."""
     worklist = [(owner, node)]
     while worklist:
         holder, interface = worklist.pop()
@@ -27,7 +27,7 @@ def lower_interface(context: Context, owner: Type, node: Node, document: Documen
 
 
 def _lower_single(context: Context, owner: Type, node: Node, document: Document) -> Type | None:
-    """Add an interface without those below it; return the type made for it alone, if any."""
+    """Add an interface without its nested interfaces; return the type added for it, if any."""
     element = context.add_element(Kind.PORT, node, document, owner.id)
     declared = mirrors.resolve_member_class(context, node, document)
     declared = declared or _find_inherited_class(owner, node)
@@ -64,7 +64,7 @@ def _add_own_type(
     element: Element,
     declared: Type | None,
 ) -> Type | None:
-    """Add the interface block for nested interfaces and attributes that the class lacks."""
+    """Add an interface block with the nested interfaces and attributes that the class lacks."""
     overriding = list(iter_overriding_attributes(context.types, document, node, declared))
     if not overriding and not node.has_child("ExternalInterface"):
         return None
@@ -115,7 +115,7 @@ def _read_cardinality(node: Node) -> str:
 
 
 def _read_values(context: Context, node: Node) -> dict[str, AttrValue]:
-    """Return the values of an attribute and of those below it, by ``value.`` and their path."""
+    """Return the values of an attribute and its nested attributes, by ``value.`` and their path."""
     values: dict[str, AttrValue] = {}
     worklist = [(node, f"value.{node.name}")]
     while worklist:

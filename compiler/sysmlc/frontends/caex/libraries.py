@@ -103,7 +103,7 @@ def connect_base_classes(context: Context, types: list[Type]) -> None:
 def _cut_cycle(context: Context, start: Type, acyclic: set[Type]) -> None:
     """Remove the base of *start* if the class specialises itself.
 
-    *acyclic* collects the classes whose bases are known to end.
+    *acyclic* collects the classes whose chains of base classes end.
     """
     chain: dict[Type, None] = {}
     type: Type | None = start
@@ -135,7 +135,7 @@ def order_by_base(types: list[Type]) -> Iterator[Type]:
 def order_by_parts(context: Context, types: list[Type]) -> list[Type]:
     """Return the classes, each after its base class and the classes of its internal elements.
 
-    Built-in classes are omitted. Of classes that contain one another the first comes first.
+    Built-in classes are omitted. A cycle is cut at the class that is visited first.
     """
     ordered: dict[Type, None] = {}
     visited: set[Type] = set()
@@ -226,7 +226,7 @@ class StandardLibraries:
         return True
 
     def release_nodes(self) -> None:
-        """Break the cycle of document and nodes."""
+        """Break the reference cycle between the document and its nodes."""
         self._document.release_nodes()
 
 

@@ -23,7 +23,7 @@ _MIN_ID_LENGTH = 32
 
 
 class LinkEnd(NamedTuple):
-    """The port that a side of a link means, and the component that has it."""
+    """The port to which a side of a link refers, and the component that has the port."""
 
     port: str
     component: Component
@@ -86,7 +86,9 @@ class LinkEndResolver:
         return end
 
     def _resolve_text(self, text: str, document: Document, node: Node) -> LinkEnd | Problem:
-        """Try the ID of an interface, then ID or path of its owner, split at each ``:`` in turn."""
+        """Find an interface by its ID, else by the ID or path of its owner, ``:`` and its name.
+
+        Names may contain ``:``, so the text is split at each one in turn."""
         interface = self._context.find_node(text, document)
         if interface is not None:
             self._context.report_inexact_id(document, node, text)
@@ -136,7 +138,7 @@ class LinkEndResolver:
         return Problem(f"that is not an interface but '{node.name}'", node.element_id)
 
     def _make_end_of_name(self, owner: Node, name: str) -> LinkEnd | Problem:
-        """Return the end at an interface by name; perhaps only the class of *owner* declares it."""
+        """Return the end at an interface of *owner*, or of its class, that has this name."""
         node = self._index_interfaces(owner).get(name)
         if node is not None:
             return self._make_end_of_node(node)

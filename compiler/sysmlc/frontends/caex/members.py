@@ -24,7 +24,7 @@ _FeaturePath = tuple[str, ...]
 
 
 def lower_members(context: Context, component: Component) -> None:
-    """Lower the members: values for those of the class, features for the others."""
+    """Lower the members: those that the class declares to values, all others to features."""
     for child in component.node.children:
         if child.tag == "Attribute":
             _lower_attribute(context, component, child)
@@ -38,7 +38,7 @@ def lower_members(context: Context, component: Component) -> None:
 
 
 def _lower_requirements(context: Context, component: Component, requirements: Node) -> None:
-    """Add the members that a component needs to play its role and lacks."""
+    """Add the members that the role of a component requires and that the component lacks."""
     document = component.document
     for node in requirements.iter_children("Attribute", "ExternalInterface"):
         type = component.type
@@ -108,7 +108,7 @@ def _lower_attribute(context: Context, component: Component, node: Node) -> None
 
 
 def _check_class(context: Context, node: Node, component: Component) -> None:
-    """Resolve the class that an instance names, only to record it if it is missing."""
+    """Record the class that an instance names if it does not exist."""
     path = read_class_reference(node)
     if path and not mirrors.is_mirror(context, node):
         context.resolve_type(path, mirrors.MEMBER_FAMILIES[node.tag], component.document, node)
@@ -156,7 +156,9 @@ def _add_description(
 
 
 def _lower_interface(context: Context, component: Component, node: Node) -> None:
-    """Add slots for the values of an inherited interface, else a port of the own class."""
+    """Lower an interface: slots for the values of an inherited one, else a port.
+
+    The port belongs to the class for members that the declared class lacks."""
     declared = component.declared_type
     inherited = declared.find_member(node.tag, node.name) if declared else None
     if (

@@ -96,7 +96,7 @@ def _lower_statement(context: Context, document: Document, node: Node, element: 
 
 
 def _add_metadata(context: Context, document: Document, node: Node, element: Element) -> None:
-    """Add Metadata with each value by its path, and with the XML as it is written."""
+    """Add Metadata with the values, whose keys are their paths, and the source text of the XML."""
     id = context.make_unique(f"{element.id}/{node.tag}", node)
     metadata = Element(id, Kind.METADATA, node.tag, element.id, node.ordinal, document.name)
     for key, value in _iter_values(node):
@@ -109,7 +109,7 @@ def _add_metadata(context: Context, document: Document, node: Node, element: Ele
 
 
 def _iter_values(top: Node) -> Iterator[tuple[str, str]]:
-    """Yield the XML attributes and texts of a node and those below it, by their path."""
+    """Yield the XML attributes and texts of a node and its descendants, each with its path."""
     stack = [(top, "")]
     while stack:
         node, prefix = stack.pop()

@@ -18,7 +18,7 @@ class Member(NamedTuple):
 
     @property
     def node(self) -> Node:
-        """The node that declares it."""
+        """The node that declares the feature."""
         return self.document.node(self.row)
 
 
@@ -50,7 +50,7 @@ class Type:
 
     @property
     def node(self) -> Node:
-        """The node that declares it."""
+        """The node that declares the class."""
         return self.document.node(self.row)
 
     def iter_chain(self) -> Iterator["Type"]:

@@ -89,7 +89,7 @@ def _read_unit(context: Context, node: Node, document: Document) -> str:
 
 
 def report_unknown_units(context: Context) -> None:
-    """Report each text in the place of a unit that is none, once a file."""
+    """Report each text that stands in place of a unit but is no unit, once for each file."""
     for (document, text), nodes in context.unknown_units.items():
         count = f" and {len(nodes) - 1} more" if len(nodes) > 1 else ""
         problem = "is the name of a type" if text in units.TYPE_NAMES else "is not known"

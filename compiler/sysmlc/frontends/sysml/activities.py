@@ -108,7 +108,10 @@ def _has_only_redefinitions(node: Node) -> bool:
 def _connect_performed(
     lowering: "Lowering", node: Node, owner: Element, target: Node | None
 ) -> None:
-    """Make a performed behaviour that of the classifier; allocate a performed step to it."""
+    """Lower a performance: set the classifier behaviour, or allocate a step to the behaviour.
+
+    The performed element is a behaviour in the first case, a step in the second.
+    """
     performed = lowering.element_of(target)
     if performed is None or performed.kind in BEHAVIORS:
         lowering.connect_node(Edge.CLASSIFIER_BEHAVIOR, owner, target)

@@ -23,7 +23,7 @@ _FLOW_EDGES = (Edge.FLOW_SOURCE, Edge.FLOW_TARGET)
 
 
 def list_linked_ends(node: Node) -> list[Node]:
-    """Return the ends behind ``connect``, else those of the body that name a feature."""
+    """Return the ends after ``connect``, else the ends in the body that refer to a feature."""
     ends = [member for member in nodes.body_of(node) if member.attributes.get("isEnd")]
     named = [end for end in ends if nodes.find_reference(end, "ReferenceSubsetting", "Subsetting")]
     return nodes.ends_of(node) or (named if len(named) > 1 else [])

@@ -52,9 +52,9 @@ class NotExpressibleError(ValueError):
 
 
 def write_expression(node: Node, source: str = "") -> str:
-    """Return an expression as text of our grammar, else as *source*, the document's text, has it.
+    """Return an expression as text of our grammar, else its text in the document (*source*).
 
-    A document of interchange has no text: its expression is printed in the notation of KerML.
+    A document in XMI has no such text: *source* is empty, and the expression is printed in KerML.
     """
     expression = read_expression(node)
     text = None if expression is None else _print(expression)
@@ -131,8 +131,8 @@ def _append_members(base: Expression, links: tuple[tuple[str, ...], ...]) -> Exp
 def _read_first_link(reference: Reference) -> Expression:
     """Return the name of the first feature of a chain.
 
-    Inside an action, its features are often qualified by its name (``Task::pallet``), which our
-    grammar does not need. Literals keep the name of their enumeration.
+    A feature of an action is often qualified by the name of the action (``Task::pallet``); the
+    qualifier is dropped. A literal keeps the name of its enumeration.
     """
     names = reference.chain[0]
     target = reference.targets[0] if reference.targets else None

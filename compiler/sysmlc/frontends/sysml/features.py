@@ -268,7 +268,7 @@ def _lower_port(lowering: "Lowering", node: Node, owner: Element) -> Element:
 
 
 def _find_only_flow(port: Node) -> Node | None:
-    """Return the one member of a port without a type, if it is a reference without a name."""
+    """Return the only member of an untyped port if this member is an unnamed reference."""
     members = [member for member in nodes.body_of(port) if not nodes.is_annotation(member)]
     if len(members) != 1 or port.relations:
         return None

@@ -1,4 +1,4 @@
-"""Usages in packages: instances if they only give values, else classes."""
+"""Usages in packages: lowered to instances if they only give values, else to classes."""
 
 from typing import TYPE_CHECKING
 
@@ -101,7 +101,7 @@ def _lower_members(lowering: "Lowering", node: Node, instance: Element) -> None:
 
 
 def _is_part(node: Node) -> bool:
-    """Whether a member of an instance has values of its own, or is a part without a value."""
+    """Whether a member of an instance contains further members, or is a part without a value."""
     is_part_usage = node.kind == "PartUsage" and nodes.value_of(node) is None
     return is_part_usage or not all(map(nodes.is_annotation, nodes.body_of(node)))
 

@@ -124,7 +124,7 @@ class Lowering(Verdicts):
         return target if target is not None else self.model.target(node, relation)
 
     def element_of(self, node: Node | None) -> Element | None:
-        """Return the element of the node; for a redundant redefinition, of what it redefines."""
+        """Return the element of the node, or of what it redefines if it is redundant."""
         if node is None:
             return None
         element = self.elements.get(id(node))
@@ -175,7 +175,7 @@ class Lowering(Verdicts):
     def add_element(
         self, node: Node, kind: Kind, name: str, owner: Element | None, **attrs: AttrValue
     ) -> Element:
-        """Add the element that the node is."""
+        """Add an element and register it as the element of the node."""
         element = self.elements[id(node)] = self.add_derived(node, kind, name, owner, **attrs)
         return element
 
@@ -345,7 +345,7 @@ class Lowering(Verdicts):
         return element
 
     def mark_flow_finals(self) -> None:
-        """Make each ``done`` that ends only one of several concurrent branches a flow final."""
+        """Mark each ``done`` that ends one of several concurrent branches as a flow final node."""
         for (_, name), end in self._starts_and_ends.items():
             if name == "done" and end.kind is Kind.CONTROL and not is_joined(self.graph, end):
                 self.set_attributes(end, subkind="flow-final")

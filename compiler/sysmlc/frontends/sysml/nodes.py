@@ -52,7 +52,7 @@ def find_target(node: Node, *kinds: str) -> Node | None:
 
 
 def list_subsettings(node: Node) -> list[Reference]:
-    """Return the references to features that the node subsets, redefinitions aside."""
+    """Return the references to features that the node subsets, excluding redefined features."""
     return list_references(node, *SUBSETTINGS)
 
 
@@ -216,7 +216,7 @@ def path_of_expression(expression: Node) -> list[Node | None]:
 
 
 def _path_of_reference(reference: Reference) -> list[Node | None]:
-    """Return the targets of the chain, with one None for those that are not resolved."""
+    """Return the targets of the chain; a single None stands for all unresolved targets."""
     targets: list[Node | None] = list(reference.targets or ())
     return targets if len(targets) == len(reference.chain) else [*targets, None]
 

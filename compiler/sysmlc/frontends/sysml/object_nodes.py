@@ -216,7 +216,7 @@ def _add_object_flow(lowering: "Lowering", node: Node, owner: Element) -> Elemen
 
 
 def _order_steps(lowering: "Lowering", object_flow: Element, control_flow: Element) -> None:
-    """Connect the control flow to the steps whose pins the object flow connects."""
+    """Connect a control flow to the steps that own the pins at the ends of an object flow."""
     for edge in _FLOW_EDGES:
         end = lowering.graph.target(object_flow, edge)
         step = lowering.graph.owner(end) if end is not None and end.kind is Kind.PIN else end

@@ -109,7 +109,7 @@ def _parse_value(text: str) -> AttrValue:
 
 
 def _freeze(value: object) -> AttrValue:
-    """Return lists as tuples, and None for what is not a value of an attribute."""
+    """Return lists as tuples; None for a JSON value that an attribute cannot have."""
     if isinstance(value, list):
         return tuple(_freeze(item) for item in value)
     return value if isinstance(value, str | int | float | bool) else None

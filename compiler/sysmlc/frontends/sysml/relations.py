@@ -211,7 +211,7 @@ def allocate_steps(lowering: "Lowering", node: Node, owner: Element) -> None:
 
 
 def _has_only_members(node: Node) -> bool:
-    """Whether a member only contains members; a value that no handler reads is reported."""
+    """Whether a node is neither an annotation nor an expression, and has no value."""
     is_content = nodes.is_annotation(node) or node.kind in nodes.EXPRESSIONS
     return not is_content and nodes.value_of(node) is None
 

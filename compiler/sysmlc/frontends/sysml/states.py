@@ -298,7 +298,7 @@ def _lower_transition(lowering: "Lowering", node: Node, region: Element, previou
 
 
 def _add_mentioned_vertex(lowering: "Lowering", region: Element, end: End, node: Node) -> None:
-    """Add the start or the end of a region at the node that first mentions it."""
+    """Add the initial or final vertex of a region if the end names it; *node* is its location."""
     if isinstance(end, Reference) and is_own_end(lowering, end):
         lowering.ensure_vertex(region, nodes.last_name(end), node)
     elif isinstance(end, Node) and _is_subaction(end):

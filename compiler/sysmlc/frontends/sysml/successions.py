@@ -90,7 +90,7 @@ def reference_of_end(end: Node) -> Reference | None:
 
 
 def _lower_guarded_succession(lowering: "Lowering", node: Node, body: _Body) -> None:
-    """Lower a succession with a guard; without a guard it is the one for ``else``."""
+    """Lower a guarded succession. A succession without a guard gets the guard ``else``."""
     source = nodes.find_reference(node, "Membership") or body.previous
     succession = next(nodes.iter_by_metaclass(node, *_SUCCESSIONS), None)
     ends = [] if succession is None else nodes.ends_of(succession)
@@ -224,7 +224,7 @@ def _is_action_of_package(lowering: "Lowering", end: End) -> bool:
 
 
 def _add_mentioned_end(lowering: "Lowering", body: _Body, end: End, node: Node) -> None:
-    """Add the start or the end of a behaviour at the node that first mentions it."""
+    """Add the initial or final node of a behaviour if the end names it; *node* is its location."""
     if body.entry_and_exit is None and isinstance(end, Reference) and is_own_end(lowering, end):
         lowering.ensure_control_node(body.owner, nodes.last_name(end), node)
 

@@ -56,7 +56,7 @@ def _write_time(lowering: "Lowering", expression: Node) -> str:
 
 
 def _describe_payload(lowering: "Lowering", trigger: Element, payload: Node) -> None:
-    """Describe a trigger by the type of its payload: a call, any event or a signal."""
+    """Set the kind of a trigger by the type of its payload: a call, any event or a signal."""
     types = nodes.types_of(lowering, payload)
     names = [nodes.qualified_name_of(type_) for type_ in types]
     if _CALL in names:
@@ -75,7 +75,7 @@ def _describe_payload(lowering: "Lowering", trigger: Element, payload: Node) -> 
 
 
 def _mark_call(lowering: "Lowering", trigger: Element) -> None:
-    """Make a trigger that accepts an action a call."""
+    """Set the subkind ``call`` of a trigger whose payload type is an activity or an operation."""
     type_ = lowering.graph.target(trigger, Edge.TYPED_BY)
     if type_ is not None and type_.kind in (Kind.ACTIVITY, Kind.OPERATION):
         lowering.set_attributes(trigger, subkind="call")

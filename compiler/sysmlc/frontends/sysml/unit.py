@@ -106,7 +106,7 @@ def _find_flow_features(nodes_by_kind: NodesByKind) -> set[int]:
 
 
 def _iter_payload_types(nodes_by_kind: NodesByKind) -> Iterator[Node]:
-    """Yield what accept actions accept, what expressions create, and what messages carry."""
+    """Yield the types that accept actions accept, expressions instantiate, and messages carry."""
     for node in nodes_by_kind.get("AcceptActionUsage", ()):
         for parameter in nodes.iter_by_membership(node, "ParameterMembership"):
             yield from _iter_targets(parameter, "FeatureTyping")
@@ -119,7 +119,7 @@ def _iter_payload_types(nodes_by_kind: NodesByKind) -> Iterator[Node]:
 
 
 def _iter_feature_types(nodes_by_kind: NodesByKind) -> Iterator[Node]:
-    """Yield the types of usages, payloads of accept actions aside."""
+    """Yield the types of usages, except for payloads of accept actions."""
     for kind, features in nodes_by_kind.items():
         if kind.endswith("Usage") or kind == "PayloadFeature":
             for feature in features:
@@ -195,7 +195,7 @@ def _relate_errors(lowering: Lowering) -> None:
 
 
 def _find_element_at(lowering: Lowering, root: Node, offset: int) -> Element | None:
-    """Return applied metadata at a character, else the outermost element below the packages."""
+    """Return the stereotype application at an offset, else the outermost element in a package."""
     outermost: Element | None = None
     for node in _iter_nodes_at(root, offset):
         element = lowering.elements.get(id(node))

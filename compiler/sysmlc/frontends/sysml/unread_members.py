@@ -63,7 +63,7 @@ def report_losses(lowering: "Lowering") -> None:
 
 
 def _mark_unread_members(lowering: "Lowering") -> None:
-    """Mark the members that were not lowered and that no handler read with their owner."""
+    """Mark the members that no handler lowered or read as approximated by nothing."""
     accounted = lowering.lowered.union(
         lowering.verdicts, lowering.skipped, lowering.redundant, lowering.elements
     )

@@ -83,7 +83,7 @@ def _referenced_feature(expression: Node) -> Node | None:
 def constant_of(expression: Node) -> AttrValue:
     """Return the value of a literal, a quantity or a sequence; None if it must be computed.
 
-    The value of a quantity is its number. Its unit is that of the type, or ``unit_of``.
+    The value of a quantity is its number. Its unit is the unit of the type, or ``unit_of``.
     """
     if expression.kind in _LITERALS:
         return expression.attributes.get("value")

@@ -166,7 +166,7 @@ def _read_tag(context: Context, application: Element, row: int, name: str, text:
 def _select_existing(
     context: Context, application: Element, row: int, name: str, tokens: list[str]
 ) -> list[str]:
-    """Return the ids of existing elements and report the others; none if a token is no id."""
+    """Return the tokens that are ids of elements; report other ids. Empty if a token is no id."""
     missing = dict.fromkeys(token for token in tokens if not _has_target(context, token))
     if not all(map(is_generated, missing)):
         return []
@@ -222,7 +222,7 @@ def _report_lost_tag(
 def _apply_sysml_meaning(
     context: Context, application: Element, row: int, bases: list[Target]
 ) -> None:
-    """Add what stereotypes of SysML itself say of their base elements."""
+    """Add what stereotypes of SysML state about their base elements."""
     document = context.document
     if not bases:
         return
@@ -240,7 +240,7 @@ def _apply_sysml_meaning(
 
 
 def _refer_to_unit(context: Context, row: int, feature: str, value_type: str) -> None:
-    """Refer to a unit in a library that is not part of the unit, so that it becomes a stub."""
+    """Refer to a unit of measure in a library outside the compile unit; it becomes a stub."""
     for reference in context.document.references(row, feature):
         if not reference.is_href:
             continue

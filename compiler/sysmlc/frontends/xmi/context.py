@@ -25,7 +25,7 @@ ElementHandler = Callable[["Context", Element, int], None]
 
 
 class UncheckedReference(NamedTuple):
-    """Ids that a feature names, that its own file does not define, and that no edge follows."""
+    """References of a feature that lead to no element of the file and become no edge."""
 
     holder: str
     """Id of the element that has the feature, or of the nearest element around it."""
@@ -108,7 +108,7 @@ class Context:
         return end
 
     def next_row(self, row: int) -> int:
-        """Return the next row of the walk: after the row's content if that has its verdicts."""
+        """Return the next row of the walk, which skips content that has verdicts already."""
         following = row + 1
         end = self.document.ends[row]
         return end if following < end and self.verdicts[following] is not None else following
@@ -221,9 +221,10 @@ _REDUNDANT_KEYS = frozenset(map(to_snake_case, uml_features.REDUNDANT_REFERENCES
 
 
 def check_references_inside(context: Context, row: int, followed: Collection[str] = ()) -> None:
-    """Note the references of a row and its content, which become no elements.
+    """Defer a check of the references in a row and its content that become no elements.
 
-    Nothing else states the references named *followed*, so that their loss is an error.
+    Targets that are missing are reported. References of the features *followed* are not redundant:
+    no other feature states them, so a missing target is an error.
     """
     document = context.document
     for inner in range(row, document.ends[row]):

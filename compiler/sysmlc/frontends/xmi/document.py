@@ -264,7 +264,7 @@ def _number_elements(rows: int, breaks: list[tuple[int, int]]) -> list[int]:
 
 
 def _derive_columns(document: Document) -> None:
-    """Fill the columns that are derived from tags and attributes, and move types out of these."""
+    """Fill the columns derived from tags and attributes; move types to their own column."""
     versions = [uri for uri in document.declared_namespaces if namespaces.is_xmi(uri)]
     xmi, *other_versions = versions or [""]
     for namespace in other_versions:

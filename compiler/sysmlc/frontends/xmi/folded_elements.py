@@ -44,7 +44,7 @@ def _lower_edge(context: Context, row: int) -> None:
 def report_losses(
     context: Context, row: int, lowered: Collection[str], *, is_named: bool = False
 ) -> None:
-    """Approximate a row that has attributes which are not *lowered* and not at their default.
+    """Mark a row as approximated if an attribute is neither *lowered* nor at its default.
 
     Visibilities do not count, because tools generate them; a name counts only if the row
     *is_named* by the author of the model.

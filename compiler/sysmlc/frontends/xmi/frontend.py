@@ -85,7 +85,7 @@ class XmiFrontend:
 def _read_profile_namespaces(source: Source) -> frozenset[str] | None:
     """Return the namespaces of the stereotypes in a profile; None for any other document.
 
-    Papyrus saves one for each version of the profile, MagicDraw derives it from the name.
+    Papyrus saves a namespace for each version; MagicDraw derives it from the profile's name.
     """
     root = _ROOT.search(source.data)
     if root is None or root[1] != b"Profile":

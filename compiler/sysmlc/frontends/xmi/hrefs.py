@@ -41,7 +41,7 @@ def normalise_href(href: str, file: str) -> str:
 def is_in_project(href: str, fragment: str) -> bool:
     """Whether *href* leads into a project of MagicDraw: the model's own, or a used one.
 
-    The href does not say which of them, only the id does; ids of roots are the same in each.
+    Only the id identifies the project, not the href; the ids of roots are equal in all projects.
     """
     return not fragment.startswith(ROOT) and _PROJECT.match(href) is not None
 
@@ -49,8 +49,8 @@ def is_in_project(href: str, fragment: str) -> bool:
 def can_lead_into(library: str, path: str, id: str) -> bool:
     """Whether a reference to *id* in the file *path* can mean an element of *library*.
 
-    Ids that tools generate are the same in no two models, so that the path does not matter;
-    ``_0`` is an id in many models.
+    Generated ids are unique across models, so the path does not matter for them. An id such as
+    ``_0`` occurs in many models, so the path decides.
     """
     return is_globally_unique(id) or is_in_project(path, id) or path == library != ""
 

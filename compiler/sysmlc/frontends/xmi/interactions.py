@@ -45,7 +45,7 @@ def _complete_observation(context: Context, observation: Element, row: int) -> N
 
 
 def _store_first_event(context: Context, element: Element, row: int) -> None:
-    """Store which of the observed events count at their end; the beginning is the default."""
+    """Store ``firstEvent``: whether an observed event counts at its beginning (default) or end."""
     document = context.document
     flags = document.attributes[row].get("firstEvent", "").split()
     flags += [document.texts.get(child, "") for child in document.children(row, "firstEvent")]
@@ -154,7 +154,7 @@ def _connect_end(context: Context, message: Element, edge: Edge, end: Target) ->
 def _add_legacy_signature(context: Context, message: Element, end: Target) -> bool:
     """Refer to the signature, which UML before 2.4 writes at the event of the occurrence.
 
-    Return whether the event has one.
+    Return whether the event has a signature.
     """
     event = _find_event(context, end.file, end.row)
     if event is None:
@@ -167,7 +167,7 @@ def _add_legacy_signature(context: Context, message: Element, end: Target) -> bo
 
 
 def _mark_destruction(context: Context, occurrence: Element, row: int) -> None:
-    """Set the subkind of an occurrence whose event (UML before 2.4) destroys the lifeline."""
+    """Set the subkind of an occurrence with a destruction event (UML before 2.4)."""
     event = _find_event(context, context.file, row)
     if event is not None and event.type == "DestructionEvent":
         occurrence.attrs["subkind"] = "destruction"

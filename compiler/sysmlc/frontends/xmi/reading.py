@@ -202,7 +202,7 @@ def _list_losses(context: Context) -> Iterator[Loss]:
 
 
 def _count_losses(context: Context) -> dict[int, int]:
-    """Return the number of elements of each loss, by the row at which it begins."""
+    """Return the number of elements that each loss covers, by the first row of the loss."""
     document, verdicts = context.document, context.verdicts
     first_rows: dict[int, int] = {}
     sizes: dict[int, int] = {}

@@ -59,7 +59,7 @@ class _UnknownAttribute(NamedTuple):
 def _list_reports(
     groups: Mapping[_Key, list[int]], noun: str
 ) -> Iterator[tuple[_Key, list[int], tuple[str, ...]]]:
-    """Yield key, rows and notes of the groups to report; the last note counts the remainder."""
+    """Yield key, rows and notes of the first groups; the last note counts the groups omitted."""
     remaining = len(groups) - _MAX_REPORTS
     for number, (key, rows) in enumerate(islice(groups.items(), _MAX_REPORTS), 1):
         is_last = number == _MAX_REPORTS and remaining > 0
@@ -80,7 +80,7 @@ def suggest(name: str, names: Iterable[str]) -> str:
 
 
 def report_unknown_attributes(context: Context) -> None:
-    """Report attributes that no metaclass, or another one, has; their elements are approximated.
+    """Report attributes that the metaclass of their element lacks, and approximate the elements.
 
     Tags of stereotypes, the content of extensions, and attributes in namespaces of tools are no
     attributes of UML.
@@ -105,7 +105,7 @@ def report_unknown_attributes(context: Context) -> None:
 
 
 def _list_unknown(metaclass: str, names: Iterable[str]) -> list[_UnknownAttribute]:
-    """Return the unknown attributes among *names*, then those that another metaclass has."""
+    """Return attributes that the metaclass lacks; those that other metaclasses have come last."""
     checked = (_check(metaclass, name) for name in islice(names, DEFAULT_LIMITS.attributes))
     unknown = [attribute for attribute in checked if attribute is not None]
     return sorted(unknown, key=lambda attribute: attribute.metaclass != "")

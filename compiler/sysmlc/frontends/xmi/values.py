@@ -161,7 +161,7 @@ def parse_bound(text: str) -> AttrValue:
 
 
 def is_natural(value: AttrValue) -> bool:
-    """Whether a bound is a natural number, as a literal of any type."""
+    """Whether a bound is a natural number; the type of its literal does not matter."""
     if isinstance(value, str):
         return value.isascii() and value.isdigit()
     return value.__class__ is int and value >= 0

@@ -59,7 +59,7 @@ class Context(Struct, frozen=True):
 
     @property
     def variables(self) -> Mapping[str, str]:
-        """The variable of each feature, found without its domain."""
+        """The variable of each feature by name; the domains of the features are not computed."""
         return self.features.variables if isinstance(self.features, _FeatureTable) else {}
 
     @property
@@ -94,7 +94,7 @@ def context_of(
 def variables_of(
     graph: Graph, classifier: Element | None, behaviour: Element | None = None
 ) -> dict[str, str]:
-    """Return the variable of each name in the context of a classifier, without the features."""
+    """Return the variable of each name in the context of a classifier; compute no features."""
     if classifier is None:
         return {}
     return _name_variables(_find_elements(graph, classifier, behaviour))
@@ -288,7 +288,7 @@ def _iter_texts(graph: Graph, behaviour: Element) -> Iterator[str]:
 
 @lru_cache(_CACHE_SIZE)
 def _find_values(text: str) -> tuple[tuple[str, ...], tuple[tuple[str, str], ...]]:
-    """Return the strings in an expression, and its names with the numbers or literals beside them.
+    """Return the strings in a text, and pairs of a name and the value that it is compared with.
 
     Regular expressions also find the values in texts that the grammar rejects.
     """

@@ -269,7 +269,7 @@ def _infer_operands(
 def _check_range(expression: Binary, left: GuardedValue, right: GuardedValue) -> None:
     """Raise ElaborationError if a number is outside the range of the other operand.
 
-    An order may use the number next to the range (``x < 8`` for 0..7).
+    ``<``, ``<=``, ``>`` and ``>=`` may also use the number next to the range (``x < 8`` for 0..7).
     """
     for operand, domain, other_domain in (
         (expression.right, right.domain, left.domain),

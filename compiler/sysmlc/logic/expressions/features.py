@@ -284,9 +284,9 @@ def _iter_constraints(
 def _iter_bodies(
     graph: Graph, owner: Element, names: frozenset[str], word: str = ""
 ) -> Iterator[tuple[frozenset[str], Expression]]:
-    """Yield the constraints of an owner that hold at all times, with *names*.
+    """Yield *names* and the expression of each constraint of an owner that always holds.
 
-    Texts that cannot contain *word* are skipped before they are parsed.
+    Constraints that cannot contain *word* are skipped before they are parsed.
     """
     constraints = {
         element.id: element for element in graph.owned(owner) if element.kind is Kind.CONSTRAINT

@@ -105,7 +105,7 @@ def write(contract: Contract, format_name: str) -> str:
 
 
 def lower(contract: Contract, format_name: str) -> Contract:
-    """Return the contract that reading gives after the contract was written.
+    """Return the contract as it is read back after it was written in the format.
 
     Raises NotExpressibleError.
     """

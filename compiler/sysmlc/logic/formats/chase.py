@@ -187,7 +187,7 @@ class _ContractReader:
 
 
 class _ChaseReader(FormulaReader):
-    """Reads formulas with the propositions of the contract."""
+    """Reads formulas in which names of propositions stand for the terms that define them."""
 
     def __init__(
         self,

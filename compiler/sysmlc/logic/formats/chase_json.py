@@ -1,4 +1,4 @@
-"""JSON of chase-mcp: inputs and outputs with types, conjuncts as strings in LTL."""
+"""JSON format of chase-mcp: inputs and outputs with types, conjuncts as strings in LTL."""
 
 from collections.abc import Iterable
 

@@ -32,7 +32,7 @@ _OWNERS = {str(owner): owner for owner in Owner}
 
 
 class _NeutralReader(FormulaReader):
-    """The files of corpus/gr1 may name the literals of enumerations by their numbers."""
+    """Reads formulas of corpus/gr1, in which numbers may stand for literals of enumerations."""
 
     accepts_literal_numbers = True
 
@@ -256,7 +256,7 @@ def print_contract(contract: Contract) -> str:
 
 
 def _group_by_class(conjuncts: Iterable[Conjunct]) -> dict[str, list[dict[str, str]]]:
-    """Return the conjuncts of each class, of classes without conjuncts an empty list."""
+    """Return the conjuncts of each class; the list of a class without conjuncts is empty."""
     groups: dict[str, list[dict[str, str]]] = {str(class_): [] for class_ in Class}
     for conjunct in conjuncts:
         groups[str(conjunct.class_)].append(
@@ -296,7 +296,7 @@ def _print_neutral(contract: Contract) -> str:
 
 
 def _list_formulas(conjuncts: Iterable[Conjunct]) -> dict[str, list[str]]:
-    """Return the formulas of each class; the class "other" only if it has any.
+    """Return the formulas of each class; omit the class "other" if it is empty.
 
     GR(1) tools, for which the neutral form was made, know the other three classes only.
     """

@@ -31,10 +31,10 @@ from sysmlc.logic.syntax import COMPARISONS
 
 
 def encode_as_integers(contract: Contract, *, is_flat: bool, from_zero: bool = True) -> Contract:
-    """Return the contract with the index of each literal, from 0, in place of enumerations.
+    """Return the contract over integers: each enumeration literal becomes its index, from 0.
 
-    With *is_flat* every comparison is between a variable and a value. With *from_zero* ranges are
-    shifted to begin at 0; without *is_flat* only those that begin below 0. Raises
+    With *is_flat*, each comparison is between a variable and a value. With *from_zero*, ranges are
+    shifted to begin at 0: all ranges with *is_flat*, else only those that begin below 0. Raises
     TooManyValuesError.
     """
     variable_domains = index_domains(contract)
@@ -59,7 +59,7 @@ def encode_as_integers(contract: Contract, *, is_flat: bool, from_zero: bool = T
 
 
 def _compute_shift(domain: Domain, is_flat: bool, from_zero: bool) -> int:
-    """Return what is subtracted from the values of a variable."""
+    """Return the offset that is subtracted from the values of a variable."""
     if not isinstance(domain, IntegerDomain) or not from_zero:
         return 0
     return domain.low if is_flat else min(domain.low, 0)
@@ -258,7 +258,7 @@ def _build_equality(bits: list[Var], value: int) -> Formula:
 
 
 def _build_at_most(bits: list[Var], value: int) -> Formula:
-    """Return that a number is at most *value*, by a comparison from the lowest bit upwards."""
+    """Return the formula that a number is at most *value*, built from the lowest bit upwards."""
     if value < 0:
         return f.FALSE
     at_most: Formula = f.TRUE

@@ -1,7 +1,7 @@
 """Prefix notation of slugsin: ``& a | ! b c'``; ``$ n`` and ``? i`` share subformulas.
 
-``$ n`` fills a memory with the n formulas behind it. Each of them may refer to one before it, as
-``? i``, and the value of ``$`` is the last.
+``$ n`` stores the n formulas that follow it in a list. Each formula may refer to the i-th entry of
+the list as ``? i`` if that precedes it; the value of ``$ n`` is the last formula.
 
 Source: slugs, doc/input_formats.md and examples.
 """

@@ -162,7 +162,7 @@ def _parse_line(draft: ContractDraft, line: str, offset: int) -> Formula:
 
 
 class _SlugsReader(FormulaReader):
-    """``a ^ b`` is exclusive or; 0 and 1 are Booleans where a Boolean is required."""
+    """Reads ``a ^ b`` as exclusive or, and 0 and 1 as Booleans where a Boolean is required."""
 
     def require_boolean(self, term: Term) -> Formula:
         if isinstance(term.formula, Const) and term.formula.value in (0, 1):

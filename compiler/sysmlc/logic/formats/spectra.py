@@ -154,7 +154,7 @@ class _ModuleReader:
         self._definitions[name.text] = meaning
 
     def _create_meaning(self, body: int, parameters: tuple[str, ...] | None) -> Meaning:
-        """Return the meaning of a define, which has no parameters, or of a predicate."""
+        """Return a function that expands a define (without *parameters*) or a predicate."""
 
         def expand(reader: SpectraReader, token: Token) -> Term:
             arguments: Mapping[str, Term] = {}
@@ -188,7 +188,7 @@ class _ModuleReader:
             raise FormulaError(reason, token.offset)
 
     def _read_parameters(self) -> tuple[str, ...]:
-        """Read the names of parameters, which may stand behind types."""
+        """Read the names of parameters; a type may precede each name."""
         cursor = self._cursor
         cursor.expect("(")
         names: list[str] = []

@@ -83,7 +83,7 @@ class TypeReader:
         return EnumerationDomain(tuple(literals))
 
     def read_range(self, read_constant: ConstantReader, end: str) -> IntegerDomain:
-        """Read ``0..7`` and the closing sign behind it. Raises FormulaError."""
+        """Read ``0..7`` and the closing bracket after it. Raises FormulaError."""
         offset = self._cursor.next.offset
         low = self._read_bound(read_constant)
         self._cursor.expect("..")

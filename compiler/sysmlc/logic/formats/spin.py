@@ -102,7 +102,7 @@ def _infer_domain(values: list[str]) -> Domain:
 
 
 class _SpinReader(FormulaReader):
-    """Refuses formulas that SPIN and other tools read differently."""
+    """Reads formulas of SPIN; rejects those that SPIN and other tools read differently."""
 
     _previous_op: Op | None = None
     """The connective before, inside the same brackets."""

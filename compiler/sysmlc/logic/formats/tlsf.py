@@ -248,7 +248,9 @@ def _replace_signs(name: str) -> str:
 
 
 def _find_start(tree: Tree) -> int:
-    """Return the offset of the first character; the offset of a tree is that of its operator."""
+    """Return the offset of the first character of an expression.
+
+    ``tree.offset`` is the offset of the operator, which follows its first operand."""
     return min([tree.offset, *(_find_start(arg) for arg in tree.args[:1])])
 
 

@@ -61,8 +61,8 @@ def read_target(attributes: Mapping[str, str]) -> str:
 def extend_path(path: tuple[str, ...], id: str) -> tuple[str, ...]:
     """Return the path of a shape that is drawn inside *path* and shows the element *id*.
 
-    Some symbols consist of two shapes of the same element. Shapes deeper than the limit stand
-    beside the last one above it.
+    Some symbols consist of two shapes of the same element. Shapes deeper than the limit
+    become siblings of the last shape above it.
     """
     return path if path[-1:] == (id,) else (*path[: _MAX_DEPTH - 1], id)
 
@@ -70,7 +70,7 @@ def extend_path(path: tuple[str, ...], id: str) -> tuple[str, ...]:
 class RelationReader:
     """Parser handlers that collect the relations of a model file that become edges of the graph.
 
-    Diagrams refer to the id of a generalization, for example, which its edge does not have.
+    Diagrams refer to ids of generalizations, for example, but edges of the graph have no ids.
     """
 
     def __init__(self) -> None:

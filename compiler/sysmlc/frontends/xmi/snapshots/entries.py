@@ -149,8 +149,8 @@ class Snapshots:
 def _read_entries(source: Source) -> tuple[list[Entry], Counter[str], frozenset[str]]:
     """Return the elements with an ID, the number of elements by type, and names of attributes.
 
-    Owned elements come before their owners. The names are all that the parser has met and that are
-    no tags. Raises SourceError.
+    Owned elements precede their owners. Attribute names are all names that the parser has met,
+    except tags. Raises SourceError.
     """
     xml_parser = make_parser()
     name, limit = source.name, DEFAULT_LIMITS.depth

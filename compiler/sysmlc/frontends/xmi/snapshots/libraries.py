@@ -252,7 +252,7 @@ def _is_unknown(name: str) -> bool:
 def _find_holders(source: Source, names: frozenset[str]) -> dict[str, dict[str, int]]:
     """Return the ids and ordinals of the elements that have an attribute, by attribute name.
 
-    The snapshot is parsed again: few have unknown attributes, and all are large.
+    The snapshot is parsed again instead of storing all attributes: few have unknown ones.
     """
     holders: dict[str, dict[str, int]] = {}
     ids, ordinal = [""], -1
