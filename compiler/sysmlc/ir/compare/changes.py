@@ -57,7 +57,10 @@ def compare(old: Graph, new: Graph, ignore: Collection[str] = ()) -> list[Change
 
 
 def _pair_elements(old: Side, new: Side, *, has_ids: bool) -> Pairs:
-    """Pair the elements by id, by name, and then by the surest step that finds another pair."""
+    """Pair the elements by id, then by name, then by the most reliable step that finds a pair.
+
+    After each success the steps start again with the most reliable one.
+    """
     pairs = Pairs(old, new)
     if has_ids:
         pair_by_id(pairs)
@@ -153,7 +156,7 @@ def _unpaired_change(side: Side, element: Element, what: What, paired: Container
 
 
 class _Difference(NamedTuple):
-    """Facts with one key that differ."""
+    """A difference of the facts under one key."""
 
     names: frozenset[str]
     """The words of the key: names of the attribute or edge."""
@@ -214,7 +217,7 @@ def _is_retyped_with_part(pairs: Pairs, new: Element) -> bool:
 
 
 def _paired_part(pairs: Pairs, new: Element) -> Element | None:
-    """Return the part, if both models have it, whose values *new* holds."""
+    """Return the part whose values *new* holds, if the part has a partner in the old model."""
     part = represented_part(pairs.new, new) if is_part_instance(new) else None
     return part if part is not None and part.id in pairs.old_of else None
 

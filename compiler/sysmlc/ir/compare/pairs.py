@@ -283,7 +283,10 @@ def _iter_best_pairs(
 def _iter_candidates(
     old_portraits: list[_Portrait], new_portraits: list[_Portrait]
 ) -> Iterator[tuple[int, int]]:
-    """Iterate over positions of elements that share a fact; over all pairs if there are few."""
+    """Iterate over positions of old and new elements that share a fact that is not too common.
+
+    If there are few elements, iterate over all pairs.
+    """
     if len(old_portraits) * len(new_portraits) <= _COMMON * _COMMON:
         for i in range(len(old_portraits)):
             yield from ((i, j) for j in range(len(new_portraits)))

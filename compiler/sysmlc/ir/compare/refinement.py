@@ -62,7 +62,7 @@ def _choose_pairs(
 def _iter_equal(
     pairs: Pairs, group: Group, old_colours: Colours, new_colours: Colours
 ) -> Iterator[tuple[list[Element], list[Element]]]:
-    """Iterate over the unpaired elements of a group by colours that both sides have."""
+    """Iterate over the unpaired old and new elements of a group with the same colour."""
     olds = _by_colour((e for e in group[0] if e.id not in pairs.new_of), old_colours)
     news = _by_colour((e for e in group[1] if e.id not in pairs.old_of), new_colours)
     return ((elements, news[colour]) for colour, elements in olds.items() if colour in news)
@@ -231,7 +231,7 @@ class _SideRefinement:
     """The colours of the unpaired elements of one side.
 
     A link of an element below an unpaired element counts as a link of the unpaired element.
-    Fingerprints are the first colours and not negative; later colours are negative.
+    The first colours are fingerprints, which are not negative; later colours are negative.
     """
 
     def __init__(

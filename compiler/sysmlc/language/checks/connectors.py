@@ -201,12 +201,15 @@ def check_cross_feature(model: Model, node: Node) -> Iterator[Finding]:
 
 
 def _is_binary(owner: Node | None) -> bool:
-    """Whether the owner has two ends. With more ends, crossing uses links between the others."""
+    """Whether the owner has two ends.
+
+    With more ends, an end crosses through links between the other ends.
+    """
     return owner is not None and sum(map(is_end, owner.members)) == 2
 
 
 def _is_opposite(node: Node, reference: Reference) -> bool:
-    """Whether a chain leads from the other end to a feature of it."""
+    """Whether a chain starts at the other end and leads to a feature of that end."""
     targets = reference.targets or []
     is_other = bool(targets) and targets[0] is not node and is_end(targets[0])
     return len(targets) == 2 and is_other and find_owning_type(targets[0]) is not None

@@ -162,7 +162,7 @@ def check_conjugate(model: Model, node: Node) -> Iterator[Finding]:
 
 
 def check_separate_specialization(model: Model, node: Node) -> Iterator[Finding]:
-    """Report a specialisation element that is about a conjugated type."""
+    """Report a separately declared specialisation whose specific type is conjugated."""
     for relation, special in iter_stated(node, _SPECIFIC):
         if any(True for _ in iter_stated(special, _CONJUGATION)):
             for _, general in iter_stated(node, _GENERAL):

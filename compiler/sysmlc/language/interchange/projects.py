@@ -225,8 +225,9 @@ _COMPARISON = re.compile(r"(>=|<=|>|<|==|=|\^|~)?\s*v?(\d+(?:\.\d+)*)$")
 def resolve_usages(
     project: Project, projects: Sequence[Project], sink: Sink, *, has_standard: bool = False
 ) -> Mapping[ProjectUsage, Project]:
-    """Return the project for each usage; report usages without a project, or with an old one only.
+    """Return the project for each usage.
 
+    Report usages for which there is no project, or none whose version satisfies the constraint.
     ``has_standard`` means that the standard libraries are available in another way.
     """
     resolved: dict[ProjectUsage, Project] = {}

@@ -208,7 +208,7 @@ def _find_direction(node: Node) -> str:
 
 
 def _complete_usage(element: Element, node: Node) -> None:
-    """Set the attributes that follow from the language: composition, constancy of ends."""
+    """Set the attributes that the language implies: ``isComposite``, and ``isConstant`` of ends."""
     if is_composite(node):
         element.attributes["isComposite"] = True
     owner = node.owner.kind if node.owner else ""
@@ -218,7 +218,10 @@ def _complete_usage(element: Element, node: Node) -> None:
 
 
 def _unfold_ends(element: Element, node: Node, worklist: list[Element]) -> None:
-    """Unfold a relationship that is an element: its ends are features, and it owns chains."""
+    """Add the ends of a relationship that is an element of its own.
+
+    An end becomes a feature of the relationship. A feature chain becomes an owned element.
+    """
     for relation in node.relations:
         if len(relation.reference.chain) > 1:
             element.targets.append(

@@ -145,7 +145,11 @@ def _write_start_tag(
 
 
 def _choose_tag(element: Element, owned: Element) -> str:
-    """Return the tag: a plain relationship owns elements, but annotations as relationships."""
+    """Return the tag of an owned element.
+
+    A relationship that is not a namespace owns related elements, except annotations, which are
+    relationships.
+    """
     is_plain = is_a(element.kind, "Relationship") and not is_a(element.kind, "Namespace")
     return _RELATED if is_plain and owned.kind != "Annotation" else _RELATIONSHIP
 

@@ -1,4 +1,4 @@
-"""What each metaclass implicitly specialises (KerML 8.4.2 to 8.4.4, SysML 8.4): the base tables."""
+"""Base types that each metaclass implicitly specialises (KerML 8.4.2 to 8.4.4, SysML 8.4)."""
 
 from typing import NamedTuple
 

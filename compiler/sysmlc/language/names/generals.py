@@ -180,7 +180,7 @@ class GeneralLookup(ABC):
         return redefined
 
     def _find_positional_members(self, scope: Node) -> list[Node]:
-        """Return the members of ``scope`` that may redefine a feature without stating it."""
+        """Return the members of ``scope`` that may redefine a feature by position."""
         cached = self._positional_members.get(scope)
         if cached is None:
             cached = self._positional_members[scope] = [

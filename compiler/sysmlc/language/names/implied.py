@@ -38,7 +38,7 @@ def find_owning_type(node: Node) -> Node | None:
 
 
 def is_part(node: Node) -> bool:
-    """Whether the values of a feature are parts of the value that has the feature."""
+    """Whether a feature is composite."""
     return is_composite(node) if node.kind in USAGES else bool(node.attributes.get("isComposite"))
 
 

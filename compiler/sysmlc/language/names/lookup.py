@@ -1,6 +1,6 @@
 """Name lookup: the elements that the references of a model lead to (KerML 8.2.3.5).
 
-Members that namespaces import are part of it (KerML 8.2.3.5.3 and 7.2.5.4).
+The lookup includes members that namespaces import (KerML 8.2.3.5.3 and 7.2.5.4).
 """
 
 from collections.abc import Callable, Iterable

@@ -172,7 +172,7 @@ METADATA = frozenset({"MetadataUsage", "MetadataFeature"})
 
 
 def find_semantic_bases(node: Node, lookup: LookupQueries) -> list[tuple[str, Node]]:
-    """Return relation and target of what ``node`` specialises because of its metadata."""
+    """Return relation and target of each base type of ``node`` that its metadata names."""
     relations: list[tuple[str, Node]] = []
     for member in node.members:
         if member.kind in METADATA:

@@ -61,7 +61,7 @@ def _add_accepted_payload(index: SymbolTable, transition: Node) -> None:
 
 
 def find_payload(transition: Node) -> tuple[Node | None, Node | None]:
-    """Return the payload parameter of a transition, and that of the action that triggers it."""
+    """Return the payload parameters of a transition and of the accept action that triggers it."""
     parameters = [
         member for member in transition.members if member.membership == "ParameterMembership"
     ]

@@ -79,7 +79,7 @@ def advise_unexpected(
 
 
 def advise_missing(tokens: Tokens, before: int, index: int, beginnings: Collection[str]) -> str:
-    """Return advice where a member seems to end with token ``before``, and ``index`` follows."""
+    """Return advice about token ``index`` after a member that seems to end at token ``before``."""
     return (
         _advise_import(tokens, index, ())
         or _advise_ends(tokens, index, ())

@@ -141,7 +141,7 @@ class Recovery:
     # -- panic mode ------------------------------------------------------------------------------
 
     def _panic(self, stack: Stack, index: int) -> int:
-        """Parse on at the end of the member or at its body, with as much of it as possible."""
+        """Skip to the end or the body of the member; parse on with as much of it as possible."""
         tokens = self._tokens
         body = self._find_body(stack[2::3])
         for stop, symbol in self._find_stops(index):

@@ -109,7 +109,7 @@ def build_metadata(
     about: list[Reference] | None,
     body: list[Node],
 ) -> Node:
-    """Build a metadata usage that is a member of its own (SysML 8.2.2.27)."""
+    """Build a metadata usage that is a separate member (SysML 8.2.2.27)."""
     node = apply_names(make_node("MetadataUsage", OWNING, tokens, begin, stop), names, tokens)
     node.relations.append(typing)
     return add_members(_add_annotated_elements(node, about), body)

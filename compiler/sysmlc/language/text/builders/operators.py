@@ -97,7 +97,7 @@ def make_argument(node: Node) -> Node:
 
 
 def make_type_argument(operator: str, name: Reference) -> Node:
-    """Return the feature for a type that is an argument or the result of an operator."""
+    """Return a feature with the type ``name``: the result of a cast, else an argument."""
     membership = "ReturnParameterMembership" if operator in _CASTS else ARGUMENT
     feature = Node("Feature", membership=membership, start=name.start, end=name.end)
     feature.relations.append(Relation("FeatureTyping", name))

@@ -1,4 +1,4 @@
-"""Usages that reference or declare another one: perform, satisfy, entry ... (SysML 8.2.2)."""
+"""Usages that either reference or declare a usage: perform, satisfy, entry ... (SysML 8.2.2)."""
 
 from sysmlc.language.text.builders.actions import make_parameter
 from sysmlc.language.text.builders.connections import Tail, apply_tail
