@@ -133,6 +133,7 @@ def _iter_files(folder: Path, omitted: Path | None) -> Iterator[str]:
     for path, folders, names in os.walk(folder):
         if omitted is not None and path == str(omitted):
             continue
+        # Python writes bytecode during the run; the sources determine it.
         folders[:] = [name for name in folders if name != "__pycache__"]
         yield from (os.path.join(path, name) for name in names)  # noqa: PTH118 - thousands of files
 

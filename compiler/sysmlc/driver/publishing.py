@@ -266,11 +266,13 @@ def _write_files(folder: Path, texts: Mapping[str, str]) -> None:
     temporaries: dict[str, str] = {}
     try:
         for path, text in texts.items():
+            # A link that was made after the plan must not redirect the write.
             obstacle = find_obstacle(folder, path)
             if obstacle is not None:
                 raise OSError(errno.ELOOP, "it was replaced by a link", str(obstacle))
             parent = str((folder / path).parent)
             temporaries[path] = write_temporary(parent, text.encode("utf-8"))
+        # The contents are on the disk before the first replacement: no crash leaves half a file.
         _sync_all(temporaries.values())
         for path in texts:
             os.replace(temporaries[path], folder / path)  # noqa: PTH105
@@ -314,6 +316,7 @@ def _remove(folder: Path, path: str) -> bool:
         except FileNotFoundError:
             continue
         except OSError as problem:
+            # POSIX allows either number for a folder that is not empty.
             if problem.errno not in (errno.ENOTEMPTY, errno.EEXIST):
                 raise
             break
@@ -329,9 +332,9 @@ _PAUSE = 0.05
 
 @contextmanager
 def lock_folder(folder: Path) -> Iterator[None]:
-    """Exclude other processes that publish to *folder*, where the system can lock folders.
+    """Exclude other processes that publish to *folder*, if the system can lock folders.
 
-    Raises OSError if another process does not end.
+    Raises OSError if another process holds the lock for too long.
     """
     # Windows has no fcntl.
     try:
@@ -356,4 +359,4 @@ def lock_folder(folder: Path) -> Iterator[None]:
                 break
         yield
     finally:
-        os.close(handle)
+        os.close(handle)  # releases the lock

@@ -215,6 +215,7 @@ class _Reader:
                 target = self._roots.resolve(path, href)
                 if target is not None:
                     self._add_reference(path, target)
+                    # A reference may lead to any file, so an unrecognised file is not a fault.
                     self.read(target, None)
             self._check_mentioned_files(path, item)
 

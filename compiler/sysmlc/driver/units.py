@@ -115,6 +115,7 @@ def _group(bundles: list[Bundle], recognised: Mapping[str, Recognised]) -> list[
     _refer_by_path(bundles)
     _refer_by_name(bundles)
     units = _connect([bundle for bundle in bundles if not bundle.is_library])
+    # Libraries that no model uses form units of their own.
     covered = {bundle for unit in units for bundle in unit}
     units += _connect([bundle for bundle in bundles if bundle not in covered])
     return sorted(units, key=lambda unit: _own_files(unit)[0].path)

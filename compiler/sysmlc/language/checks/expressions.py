@@ -157,7 +157,7 @@ _REFERRING = frozenset({"FeatureReferenceExpression", "FeatureChainExpression"})
 
 
 def check_named_feature(model: Model, node: Node) -> Iterator[Finding]:
-    """Report an expression that names a type, or a feature of another element than its operand."""
+    """Report an expression that names a type, or a feature that its operand does not have."""
     for relation, target in iter_stated(node, _MEMBERSHIP):
         facts = {"name": name_of(model, target)}
         if target.kind in TYPES - FEATURES:

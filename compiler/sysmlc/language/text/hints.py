@@ -132,7 +132,7 @@ def _next_tokens(tokens: Tokens, index: int) -> list[str]:
 
 
 def _advise_unit(tokens: Tokens, index: int, _expected: Collection[str]) -> str:
-    """Advise about a name behind a number, which is meant as its unit."""
+    """Advise about a name behind a number: the author probably means a unit, ``5 [kg]``."""
     unit, number = tokens[index], tokens[index - 1] if index else ""
     is_unit = number[:1].isdigit() and unit[:1].isalpha()
     return f"units stand in brackets: {number} [{unit}]" if is_unit else ""

@@ -152,7 +152,7 @@ def _find_argument_positions(rule: "Rule") -> tuple[int, ...]:
 def _skip_unit_reductions(
     rows: list[Row], defaults: list[int | None], forms: list[EncodedRule]
 ) -> None:
-    """Replace a step into a state that only reduces a unit rule by the step that follows it."""
+    """Bypass states that only reduce a unit rule: a step into one becomes the step after it."""
     symbols = {
         state: forms[~default][0]
         for state, default in enumerate(defaults)
