@@ -48,9 +48,9 @@ def find_unit_root(paths: Sequence[Path], preferred: Path | None) -> Path:
 def find_allowed_roots(paths: Sequence[Path], root: Path) -> Roots:
     """Return the folders that references of a unit may lead into.
 
-    These are the project roots of what the user named, as far as they lie below *root*, the
-    folder that outputs name files relative to. *root* alone could be ``/``: it holds all models
-    that the user named.
+    For each path that the user named this is its project root, or *root* if that is the deeper
+    folder. *root* alone, the folder that outputs name files relative to, would be too wide: it
+    holds all named models and could be ``/``.
     """
     projects = {find_project_root(_make_absolute(path)) for path in paths}
     return Roots(tuple(sorted(max(root, project, key=_depth) for project in projects)))

@@ -79,7 +79,7 @@ def _is_whole_project(config: Config, units: Sequence[OpenedUnit]) -> bool:
 
 
 def _is_model(path: Path, frontends: Sequence[Frontend]) -> bool:
-    """Whether a front end recognises the file; much XML is no model."""
+    """Whether a front end recognises the file; most XML files are not models."""
     try:
         sources = load(path, path.name)
     except SourceError:

@@ -209,7 +209,7 @@ def _separate_words(kind: Kind) -> str:
 
 
 def _content(side: Side, detail: Element) -> Value:
-    """Return everything that a detail and its subtree state, whatever their kinds."""
+    """Return the content of a detail and its subtree, for all kinds of details."""
     return tuple(
         (element.name if element is not detail else "", *_own_content(side, element))
         for element in side.graph.subtree(detail)

@@ -206,7 +206,11 @@ def _instances_of_part(side: Side, part: Element) -> list[Element]:
 
 
 def alternate_id(element: Element) -> str:
-    """Return the id of an instance after its part gets, or loses, the InternalElement's id."""
+    """Return the other id that an instance may have, or an empty string for another element.
+
+    An instance has the id of its InternalElement with a suffix if its part has that id, and without
+    the suffix otherwise.
+    """
     if element.kind is not Kind.INSTANCE:
         return ""
     if element.id.endswith(_VALUES):
