@@ -130,7 +130,7 @@ def _find_part_instance(context: Context, unit: SystemUnit, part: Element) -> El
 def _make_unit(
     context: Context, parent: Node, file: File, part: Element | None, instance: Element | None
 ) -> SystemUnit:
-    """Add an internal element for a part, an instance, or the instance of a part."""
+    """Add an internal element for a part, for an instance, or for both if they correspond."""
     named = part or instance
     node = parent.add(Node("InternalElement", {"Name": named.name if named else ""}))
     unit = SystemUnit(node, file, part, instance)

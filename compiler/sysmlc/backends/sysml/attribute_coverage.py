@@ -174,7 +174,7 @@ def _has_unexpressed_visibility(writer: Writer, _member: Member | None, element:
 
 
 def _has_unexpressed_default(writer: Writer, member: Member | None, element: Element) -> bool:
-    """Whether a port has the default, or it is a text that a reader takes for something else."""
+    """Whether the text lacks the default: that of a port, or a text not written as a string."""
     default = element.attrs["default"]
     if element.kind is Kind.PORT or member is None:
         return True

@@ -227,7 +227,7 @@ def list_types(
 
 
 def _list_referenced_features(writer: Writer, scope: Member | None, element: Element) -> list[str]:
-    """Return the features that a feature references: ``::>`` in the SysML v2 of the source."""
+    """Return the names of features that the source references by ``::>`` (SysML v2)."""
     is_feature = element.kind in (Kind.PROPERTY, Kind.PORT)
     features = writer.graph.targets(element, Edge.REFERENCES) if is_feature else []
     names = (writer.refer_to(scope, element, Edge.REFERENCES, feature) for feature in features)

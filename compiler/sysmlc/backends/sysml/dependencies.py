@@ -149,7 +149,7 @@ def _write_requirement_references(
     keyword: str,
     end: str,
 ) -> list[Line]:
-    """Return a line for each requirement; the first has the name of the dependency."""
+    """Return a line for each requirement; the first line bears the name of the dependency."""
     name, lines = member.name, []
     for requirement in requirements:
         reference = str(format_reference(writer.plan, scope, requirement))

@@ -1,7 +1,7 @@
 """Elements that the text elides because it expresses them with another element.
 
-A merge is elided where the step after it accepts several successions, and a class that exists for
-one feature where the members of the class become members of the feature.
+A merge is elided if the step after it accepts several successions. A property-specific class is
+elided if its members become members of the feature that it types.
 """
 
 from collections.abc import Iterator

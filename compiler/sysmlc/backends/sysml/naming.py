@@ -38,7 +38,7 @@ def assign_names(plan: Plan) -> None:
 
 
 def _assign_sibling_names(plan: Plan, members: list[Member], taken: set[str]) -> dict[str, Member]:
-    """Name the members of one namespace and return them by name; *taken* grows by the names."""
+    """Name the members of one namespace, return them by name, and add the names to *taken*."""
     by_name: dict[str, Member] = {}
     numbers: Counter[str] = Counter()
     nameless = [member for member in members if member.shape.needs_name and not member.name]

@@ -86,7 +86,7 @@ def _iter_edge_facts(
 
 
 def _iter_part_facts(writer: Writer, part: Element, default_name: str) -> Iterator[str]:
-    """Yield the facts of a part without a member; a reader gives it *default_name*."""
+    """Yield the facts of a part without a member; readers name it *default_name* otherwise."""
     writer.stored_attributes.add((part.id, "name"))
     if part.name != default_name and not part.name and default_name in ("start", "done"):
         construct = "a first or last node without a name"

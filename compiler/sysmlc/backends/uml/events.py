@@ -29,7 +29,7 @@ def write_events(context: Context) -> None:
 
 
 def _find_shared_events(graph: Graph) -> dict[str, str]:
-    """Return the id of the first trigger with the same event, by the id of a trigger."""
+    """Map the id of each trigger to the id of the first trigger with the same event."""
     keys: dict[str, str] = {}
     for application in graph.of_kind(Kind.APPLICATION):
         if str(application.attrs.get("on", "")).endswith("-event"):

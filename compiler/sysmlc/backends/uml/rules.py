@@ -88,7 +88,7 @@ def is_plant(graph: Graph) -> bool:
 
 @dataclass(slots=True)
 class RoundTripFacts:
-    """What UML cannot express of a plant, by the ids that elements have in the file."""
+    """Facts of a plant that UML cannot express; keys are the ids of elements in the file."""
 
     graph: Graph
     ids: dict[str, str]

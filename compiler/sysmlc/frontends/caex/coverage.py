@@ -121,7 +121,7 @@ def _report_missing_targets(context: Context, sources: Sequence[Source]) -> None
 
 
 def _mark_unresolved(context: Context, node: Node) -> None:
-    """Name the missing edge at its element, so that later rules do not report the consequences."""
+    """Record the missing edge in its element, so that later rules do not report consequences."""
     nodes = (node, *node.iter_ancestors())
     elements = ((context.graph.get(holder.element_id), holder) for holder in nodes)
     element, holder = next((pair for pair in elements if pair[0] is not None), (None, node))

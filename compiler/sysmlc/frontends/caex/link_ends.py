@@ -118,7 +118,7 @@ class LinkEndResolver:
         return None
 
     def _index_path_steps(self, node: Node) -> dict[str, list[Node]]:
-        """Return the nodes that the next name of a path can mean, by name; memoised."""
+        """Return the nodes below *node* that a path can name next, by name; memoised."""
         steps = self._path_steps.get(node)
         if steps is None:
             steps = self._path_steps[node] = {}

@@ -175,7 +175,7 @@ def _namespace_of(definition: Node | None) -> str:
 
 
 def is_external_stub(node: Node) -> bool:
-    """Whether a definition is a stub for a stereotype of a profile that is not there."""
+    """Whether a definition is a stub for a stereotype of a profile outside the unit."""
     owner = node.owner
     return owner is not None and owner.name == _STUB_PACKAGE and owner.kind == "Package"
 

@@ -157,7 +157,7 @@ def _set_ambiguous_paths(
 
 
 def _has_similar_part(lowering: "Lowering", owner: Element, part: Element) -> bool:
-    """Whether another part has the type of a part, or one that is related by generalization."""
+    """Whether a second part has the same type, or a type related to it by generalization."""
     graph, type_ = lowering.graph, type_of(lowering.graph, part)
     for classifier in (owner, *generals(graph, owner)):
         for member in graph.owned(classifier):

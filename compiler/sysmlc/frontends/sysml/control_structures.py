@@ -153,7 +153,9 @@ def _connect_block(
 
 
 def _defer_implied_start(lowering: "Lowering", node: Node, owner: Element, entry: Element) -> None:
-    """Start a structure with the behaviour if only its own flows, such as a loop's, lead to it."""
+    """Add a flow from the start of the behaviour if no other node of it leads to the structure.
+
+    Flows of the structure itself, such as that back to the entry of a loop, do not count."""
 
     def connect_start() -> None:
         flows = lowering.graph.sources(entry, Edge.FLOW_TARGET)

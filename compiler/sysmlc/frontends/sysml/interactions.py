@@ -154,7 +154,7 @@ def lower_event(lowering: "Lowering", node: Node, owner: Element) -> None:
 
 
 def _share_element(lowering: "Lowering", node: Node, target: Node | None) -> None:
-    """Make the element of a referenced event that of the node, too."""
+    """Register the element of a referenced event as the element of the node, too."""
     element = lowering.element_of(target)
     if element is not None:
         lowering.elements[id(node)] = element

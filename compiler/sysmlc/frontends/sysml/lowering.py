@@ -335,7 +335,7 @@ class Lowering(Verdicts):
     def _add_start_or_done(
         self, node: Node | None, kind: Kind, name: str, owner: Element, subkind: str
     ) -> Element:
-        """Add an element at the location of the node that mentions it, if there is one."""
+        """Add an element for ``start`` or ``done``; *node*, which names it, gives the location."""
         if node is None:
             element = self.add_implied_child(owner, kind, name)
         else:

@@ -256,9 +256,9 @@ def _connect_binding(lowering: "Lowering", node: Node, flow: Element) -> None:
 def _is_default_value(
     lowering: "Lowering", node: Node, ends: tuple[Element | None, Element | None]
 ) -> bool:
-    """Set the default of a parameter bound to a feature without object node; return whether it is.
+    """Return whether a binding leads from a parameter to a property or port; set the default if so.
 
-    The default is the path of the feature as text.
+    Such a feature has no object node. The default of the parameter is its path as text.
     """
     for number, (feature, parameter_node) in enumerate((ends, ends[::-1])):
         if feature is None or feature.kind not in (Kind.PROPERTY, Kind.PORT):

@@ -307,7 +307,7 @@ def _connect_imported(lowering: "Lowering", import_: Element, target: Node) -> N
 
 
 def lower_alias(lowering: "Lowering", node: Node, owner: Element | None) -> None:
-    """Lower a membership with a name to an alias; one without a name is notation."""
+    """Lower a membership with a name to an alias; ignore a membership without a name."""
     name = node.name or node.short_name
     if not name:
         lowering.mark_ignored(node)

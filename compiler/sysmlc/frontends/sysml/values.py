@@ -106,7 +106,7 @@ def _constant_of_operation(expression: Node) -> AttrValue:
 
 
 def _constant_of_sequence(arguments: list[Node]) -> AttrValue:
-    """Return the values of ``(a, b, c)``, whose tree nests to the right for each value."""
+    """Return the values of ``(a, b, c)``, which is parsed as ``(a, (b, c))``."""
     sequence: list[AttrValue] = []
     while len(arguments) == 2:
         first, rest = arguments

@@ -45,7 +45,7 @@ _Key = TypeVar("_Key")
 
 
 class _UnknownAttribute(NamedTuple):
-    """The name of an attribute, and the metaclass that lacks it if other metaclasses have it."""
+    """An attribute that its metaclass lacks; *metaclass* is empty if no metaclass has it."""
 
     name: str
     metaclass: str = ""

@@ -215,7 +215,7 @@ def _name_bits(variable: Variable, taken: set[str]) -> tuple[str, ...]:
 def _iter_ranges(
     contract: Contract, owner: Owner, bits: Mapping[str, tuple[str, ...]]
 ) -> Iterator[Conjunct]:
-    """Yield, for the initial and the next values, that the bits encode no value above the range."""
+    """Yield conjuncts that the initial and next values of the bits are within the range."""
     for variable in contract.variables:
         if variable.owner is not owner or not isinstance(variable.domain, IntegerDomain):
             continue

@@ -178,7 +178,7 @@ Scope = Mapping[str, Value]
 
 
 class Definition(Struct, frozen=True):
-    """A parameter, or a function by clauses of guard and body; the first true guard decides."""
+    """A parameter or a function; of its clauses, the first one with a true guard counts."""
 
     parameters: tuple[str, ...]
     clauses: tuple[tuple[Tree | None, Tree], ...]
