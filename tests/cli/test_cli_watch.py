@@ -330,7 +330,7 @@ def test_who_keeps_going_gets_what_no_error_concerns(tmp_path, capsys):
     assert "1 withheld because of errors" in capsys.readouterr().out
 
 
-@pytest.mark.parametrize(("saves", "pauses"), [(3, 1), (8, 0)])
+@pytest.mark.parametrize(("saves", "pauses"), [(3, 1), pytest.param(8, 0, marks=pytest.mark.long)])
 def test_what_was_compiled_is_let_go(saves, pauses, tmp_path, monkeypatch):
     """Front ends freeze what they made, so that no collection looks at it later.
 

@@ -182,7 +182,7 @@ def test_a_truncated_file_is_reported_whichever_byte_is_the_last(tmp_path):
 ENCODED = {
     "latin-1 bytes in UTF-8": (
         model().replace('"C"', '"é"').encode("latin-1"),
-        "not in the encoding UTF-8",
+        "not encoded in UTF-8",
     ),
     "UTF-16 without being it": (model(head=HEAD.replace("8", "16")), "declaration is incorrect"),
     "UTF-8 in UTF-16": (model().encode("utf-16"), "declaration is incorrect"),
@@ -194,20 +194,20 @@ ENCODED = {
         model(head=HEAD.replace("8", "16")).encode("utf-16")[:-1],
         "unclosed token",
     ),
-    "unknown": (model(head=HEAD.replace("UTF-8", "klingon")), "encoding 'klingon' is not known"),
-    "no encoding of texts": (model(head=HEAD.replace("UTF-8", "base64")), "'base64' is not known"),
-    "UTF-7": (model(head=HEAD.replace("UTF-8", "UTF-7")), "encoding 'UTF-7' is not known"),
+    "unknown": (model(head=HEAD.replace("UTF-8", "klingon")), "encoding 'klingon' is unknown"),
+    "no encoding of texts": (model(head=HEAD.replace("UTF-8", "base64")), "'base64' is unknown"),
+    "UTF-7": (model(head=HEAD.replace("UTF-8", "UTF-7")), "encoding 'UTF-7' is unknown"),
     "broken Shift_JIS": (
         model(head=HEAD.replace("UTF-8", "Shift_JIS")).replace('"C"', '"\x81"').encode("latin-1"),
-        "not in the encoding Shift_JIS",
+        "not encoded in Shift_JIS",
     ),
     "NUL": (model().replace('"C"', '"\0"'), "invalid token"),
     "NULs at the end": (model() + "\0" * 100, "invalid token"),
     "surrogate": (
         model().replace('"C"', '"\ud800"').encode("utf-8", "surrogatepass"),
-        "not in the encoding UTF-8",
+        "not encoded in UTF-8",
     ),
-    "overlong": (model().encode().replace(b'"C"', b'"\xc0\xaf"'), "not in the encoding UTF-8"),
+    "overlong": (model().encode().replace(b'"C"', b'"\xc0\xaf"'), "not encoded in UTF-8"),
     "reference to NUL": (model().replace('"C"', '"&#0;"'), "invalid character number"),
     "reference to a surrogate": (model().replace('"C"', '"&#xD800;"'), "invalid character number"),
 }

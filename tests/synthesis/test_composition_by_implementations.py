@@ -134,6 +134,7 @@ def test_predicted_conjuncts_hold_in_all_implementations(start):
         check_implementations(seed)
 
 
+@pytest.mark.long
 def test_random_pairs_have_implementations_and_both_predictions():
     results = [check_implementations(seed) for seed in range(50)]
     assert sum(number > 0 for _, number in results) > 20

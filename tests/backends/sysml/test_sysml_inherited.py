@@ -33,7 +33,12 @@ def test_definitions_have_the_names_of_their_usages(keyword):
 
 
 @pytest.mark.parametrize(
-    ("part", "item"), [("shape", "forks"), ("ownedStates", "self"), ("start", "joins")]
+    ("part", "item"),
+    [
+        ("shape", "forks"),
+        pytest.param("ownedStates", "self", marks=pytest.mark.long),
+        pytest.param("start", "joins", marks=pytest.mark.long),
+    ],
 )
 def test_a_block_with_such_a_name_is_named_with_its_package(part, item):
     text = MODEL.format(part=part, item=item)
