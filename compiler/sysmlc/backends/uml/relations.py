@@ -167,7 +167,8 @@ def _write_extends(context: Context, element: Element, targets: _Targets) -> Non
 def _write_extensions(context: Context, stereotype: Element, metaclasses: _Targets) -> None:
     """Write each extension of a metaclass (UML 2.5.1 clause 12.3).
 
-    It is a property of the stereotype, and an association in the profile that owns its other end.
+    It consists of a property of the stereotype, and an association that owns the opposite end.
+    The profile owns the association.
     """
     node = context.find_node(stereotype)
     profile = context.graph.owner(stereotype)

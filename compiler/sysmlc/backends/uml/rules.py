@@ -208,7 +208,7 @@ class Losses(LossCounter):
             round_trip.store_attribute(element, "subkind")
 
     def list_losses(self) -> list[tuple[Rule, Element, dict[str, object]]]:
-        """Return the losses; what a plant stores for the way back is not lost."""
+        """Return the losses, without facts that are stored for restoring a plant."""
         losses = super().list_losses()
         if self.round_trip is None:
             return losses

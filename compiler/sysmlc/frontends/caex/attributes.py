@@ -87,7 +87,7 @@ def _add_structure(
 
 
 def add_own_type(context: Context, element: Element, type: Type, declared: Type | None) -> Type:
-    """Add the type that only one feature has; it specialises the declared one."""
+    """Add a type for a single feature, which specialises the declared type of the feature."""
     element.id = type.id = context.make_unique(element.id, type.node)
     context.set_location(element, type.document, type.node.ordinal)
     context.graph.add(element)

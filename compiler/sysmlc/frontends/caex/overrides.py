@@ -43,7 +43,7 @@ def _find_inner(member: Member, node: Node) -> Member | None:
 def iter_overriding_attributes(
     types: TypeTable, document: Document, interface: Node, type: Type | None
 ) -> Iterator[Node]:
-    """Yield the attributes of an interface that define more than values for those of its class."""
+    """Yield the attributes of an interface that override more than the values in its class."""
     for node in interface.iter_children("Attribute"):
         member = type.find_member("Attribute", node.name) if type is not None else None
         if member is None:

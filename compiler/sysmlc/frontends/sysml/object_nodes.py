@@ -118,7 +118,7 @@ def _pin_subkind(action: Element, direction: str) -> str:
 
 
 def _set_output(lowering: "Lowering", action: Element, value: Node) -> None:
-    """Make an action whose output is bound to a value or a feature the action that reads it."""
+    """Set the subkind of an action whose output is bound: a value action or a read action."""
     if action.subkind in _CALLS or action.kind is not Kind.ACTION:
         return
     constant = values.constant_of(value)

@@ -176,7 +176,7 @@ def _report_stray_text(context: Context, row: int, feature: str) -> None:
 
 
 def set_deferred_attributes(context: Context) -> None:
-    """Set the attributes that needed the elements of all documents."""
+    """Set the attributes that were deferred until the elements of all documents exist."""
     for target, subkind in context.deferred_conditions:
         row = context.document.ids.get(target, -1)
         if row >= 0 and context.elements[row]:

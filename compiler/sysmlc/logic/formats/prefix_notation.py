@@ -86,7 +86,7 @@ class _PrefixReader:
         return _CHAINS[word](*operands)
 
     def _read_memory(self, depth: int) -> Formula:
-        """Read ``$ n`` and its formulas, which do not see the memory around them."""
+        """Read ``$ n`` and its formulas, which cannot refer to entries of an enclosing ``$``."""
         count = self._read_index()
         outer, self._memory = self._memory, []
         for _ in range(count):

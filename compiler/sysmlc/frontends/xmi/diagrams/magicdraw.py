@@ -19,7 +19,7 @@ _FRAME = "DiagramFrame"
 
 
 class ShapeReader:
-    """Parser handlers that collect the elements that are drawn, and inside which others.
+    """Parser handlers that collect the drawn elements and their nesting.
 
     ``paths`` are ids, outermost first. An id of MagicDraw means the same element in every file, so
     that only the fragment of an href counts.
