@@ -26,6 +26,9 @@ def sort_targets(study: Study) -> Iterator[int]:
             candidate for candidate in remaining if visited.issuperset(study.earlier(candidate))
         )
         target: int | None = next(ready_targets, None)
+        if target is None:
+            # Only an order with a cycle leaves no target ready; the reader rejects such missions.
+            return
         while target is not None and target in remaining:
             yield target
             remaining.remove(target)
@@ -35,9 +38,6 @@ def sort_targets(study: Study) -> Iterator[int]:
                 study.earlier(carried_target)
             )
             target = carried_target if is_ready else None
-        # Only an order with a cycle leaves no target ready; the reader rejects such missions.
-        if not visited:
-            return
 
 
 def allocate_greedily(study: Study, travel: TravelTimes) -> Schedule | None:
