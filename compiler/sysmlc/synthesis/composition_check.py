@@ -35,7 +35,7 @@ OPEN = rule(
     "part-assumption-open",
     Severity.ERROR,
     "part '{part}' of '{component}' assumes '{formula}', which neither the other parts nor "
-    "the block's assumptions guarantee{said}",
+    "the block's assumptions guarantee{context}",
     help=(
         "let another part guarantee it, let the block assume it, or remove the assumption; the "
         "run shows a counterexample"
@@ -46,14 +46,14 @@ CIRCLE = rule(
     "parts-wait-for-one-another",
     Severity.WARNING,
     "part '{part}' of '{component}' assumes '{formula}', which other parts guarantee "
-    "only in response to it{said}",
+    "only in response to it{context}",
     help="let one of the parts guarantee its side without that assumption",
 )
 BREAK = rule(
     "SM597",
     "parts-break-whole",
     Severity.ERROR,
-    "the parts of '{component}' together do not guarantee '{formula}'{said}",
+    "the parts of '{component}' together do not guarantee '{formula}'{context}",
     help="let a part guarantee more, or the block less; the run shows a counterexample",
 )
 CONTRADICT = rule(
@@ -67,7 +67,7 @@ LOST = rule(
     "SM506",
     "sent-in-one-step",
     Severity.WARNING,
-    "in '{component}' two messages are sent in one step, and one of them is lost{said}",
+    "in '{component}' two messages are sent in one step, and one of them is lost{context}",
     help="send the second message only after the first was accepted; the run shows an example",
 )
 NOT_COMPOSED = rule(
@@ -207,7 +207,7 @@ def _report_open(
         part=assumption.part.name,
         component=composite.component,
         formula=print_formula(assumption.conjunct.formula),
-        said=text_in_parentheses(assumption.conjunct),
+        context=text_in_parentheses(assumption.conjunct),
     )
 
 

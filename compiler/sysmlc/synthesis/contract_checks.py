@@ -33,14 +33,14 @@ BREAKS = rule(
     "SM560",
     "behaviour-breaks-requirement",
     Severity.ERROR,
-    "the behaviour of '{component}' violates '{formula}'{said}",
+    "the behaviour of '{component}' violates '{formula}'{context}",
     help="correct the behaviour or the requirement; the run shows a counterexample",
 )
 ASSUMES = rule(
     "SM561",
     "behaviour-assumes-more",
     Severity.ERROR,
-    "the behaviour of '{component}' assumes '{formula}', which its requirements do not{said}",
+    "the behaviour of '{component}' assumes '{formula}', which its requirements do not{context}",
     help="add it to the assumptions of the requirement, or let the behaviour work without it",
 )
 NOT_COMPARED = rule(

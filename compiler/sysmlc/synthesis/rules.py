@@ -63,7 +63,7 @@ DEADLOCK = rule(
     "environment-deadlock",
     Severity.WARNING,
     "the environment of '{component}' can reach a state in which its assumptions allow "
-    "no next step: {said}",
+    "no next step: {detail}",
     help="write the assumption about the next step (x' instead of x), so that the state is "
     "never reached",
 )
@@ -71,28 +71,28 @@ NOT_SEPARATED = rule(
     "SM535",
     "not-well-separated",
     Severity.WARNING,
-    "'{component}' can force its environment to violate the assumptions{said}",
+    "'{component}' can force its environment to violate the assumptions{detail}",
     help="assume only what the environment can satisfy whatever the component does",
 )
 NO_FRAME = rule(
     "SM536",
     "output-without-frame",
     Severity.WARNING,
-    "output '{name}' of '{component}' may change freely {said}",
+    "output '{name}' of '{component}' may change freely {detail}",
     help="add a guarantee for the steps in which it stays unchanged ({name}'={name})",
 )
 WRONG_OWNER = rule(
     "SM537",
     "decided-by-the-other",
     Severity.WARNING,
-    "'{component}' {name} '{formula}', which {said} decides alone",
+    "'{component}' {name} '{formula}', which {detail} decides alone",
     help="move it to the other side of the contract, or change the owner of the variables",
 )
 NO_FAIRNESS = rule(
     "SM538",
     "fairness-missing",
     Severity.WARNING,
-    "'{component}' could satisfy its contract if its environment did not wait forever{said}",
+    "'{component}' could satisfy its contract if its environment did not wait forever{detail}",
     help="add a liveness assumption",
 )
 INITIAL_INPUT = rule(

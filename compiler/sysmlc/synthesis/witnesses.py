@@ -200,5 +200,5 @@ def report_failure(
         notes=(*describe_run(failure.trace, conjunct), *notes),
         component=component,
         formula=print_formula(conjunct.formula),
-        said=text_in_parentheses(conjunct),
+        context=text_in_parentheses(conjunct),
     )

@@ -122,7 +122,8 @@ def list_losses(text):
     writer, _ = write_document(graph_of(text))
     losses_by_id = writer.losses.by_element.items()
     return {
-        id_: [facts.get("said", code) for code, facts in losses] for id_, losses in losses_by_id
+        id_: [facts.get("construct", code) for code, facts in losses]
+        for id_, losses in losses_by_id
     }
 
 

@@ -36,7 +36,7 @@ APPROXIMATED = rule(
     "SM744",
     "caex-approximated",
     Severity.INFO,
-    "{said} is saved as {written} ({count})",
+    "{construct} is saved as {replacement} ({count})",
 )
 ILLEGAL_CHARACTERS = rule(
     "SM745",
@@ -57,7 +57,7 @@ class Losses(LossCounter):
 
     def record_approximation(self, element: Element, original: str, replacement: str) -> None:
         """Count an element that is saved in another form."""
-        self.record(APPROXIMATED, element, said=original, written=replacement)
+        self.record(APPROXIMATED, element, construct=original, replacement=replacement)
 
     def record_untyped(self, feature: Element, kind: str, type_: Element) -> None:
         """Count a feature whose type CAEX cannot reference."""

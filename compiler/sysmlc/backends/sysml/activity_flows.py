@@ -117,7 +117,7 @@ def _record_waiting(writer: Writer, step: Element | None) -> None:
         return
     incoming = writer.graph.sources(step, Edge.FLOW_TARGET)
     control_flows = [flow for flow in incoming if flow.kind is Kind.CONTROL_FLOW]
-    recorded = (facts.get("said") for _, facts in writer.losses.by_element.get(step.id, ()))
+    recorded = (facts.get("construct") for _, facts in writer.losses.by_element.get(step.id, ()))
     if len(control_flows) > 1 and _WAITING not in recorded:
         written = "one that waits for those whose guards hold"
         writer.record_approximation(step, _WAITING, written)

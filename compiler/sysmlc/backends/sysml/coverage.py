@@ -95,7 +95,7 @@ def _record_name(writer: Writer, element: Element) -> None:
         element, Edge.REFERENCES
     )
     if feature is None or feature.name != element.name:
-        writer.losses.record(NAME_LEFT_OUT, element, said=description)
+        writer.losses.record(NAME_LEFT_OUT, element, construct=description)
 
 
 def _record_attributes(writer: Writer, element: Element) -> None:

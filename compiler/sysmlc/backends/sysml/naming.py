@@ -71,7 +71,7 @@ def _find_free_name(
         numbers[f"{name}_"] = max(numbers[f"{name}_"], 1)
         free_name = _append_number(f"{name}_", taken, numbers)
     if member.element is not None:
-        plan.losses.record(RENAMED, member.element, name=name, written=free_name)
+        plan.losses.record(RENAMED, member.element, name=name, replacement=free_name)
     return free_name
 
 
@@ -164,5 +164,5 @@ def _append_free_number(plan: Plan, member: Member, taken: set[str]) -> None:
     free_name = f"{member.name}_{number}"
     taken.add(free_name)
     if member.element is not None:
-        plan.losses.record(RENAMED, member.element, name=member.name, written=free_name)
+        plan.losses.record(RENAMED, member.element, name=member.name, replacement=free_name)
     member.name = free_name

@@ -232,7 +232,10 @@ def _move_item_flows(plan: Plan) -> None:
             continue
         if all(other is namespace for other in namespaces):
             _move(plan, member, namespace)
-            facts = {"said": "the owner of an item flow", "written": "that of its connector"}
+            facts = {
+                "construct": "the owner of an item flow",
+                "replacement": "that of its connector",
+            }
             plan.losses.record(APPROXIMATED, flow, **facts)
 
 

@@ -28,13 +28,13 @@ RENAMED = rule(
     "SM733",
     "sysml-renamed",
     Severity.INFO,
-    "the name '{name}' is already used in its namespace; it is written '{written}'",
+    "the name '{name}' is already used in its namespace; it is written '{replacement}'",
 )
 APPROXIMATED = rule(
     "SM734",
     "sysml-approximated",
     Severity.INFO,
-    "{said} is written as {written} ({count} in the text)",
+    "{construct} is written as {replacement} ({count} in the text)",
 )
 TEXT_AS_NAME = rule(
     "SM735",
@@ -52,7 +52,7 @@ NAME_LEFT_OUT = rule(
     "SM737",
     "sysml-name-left-out",
     Severity.INFO,
-    "{said} has no name in SysML v2 ({count} names omitted)",
+    "{construct} has no name in SysML v2 ({count} names omitted)",
 )
 
 

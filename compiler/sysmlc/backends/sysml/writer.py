@@ -106,7 +106,7 @@ class Writer:
 
     def record_approximation(self, element: Element, construct: str, replacement: str) -> None:
         """Record that the text replaces a construct of the model by a similar one of SysML v2."""
-        self.losses.record(APPROXIMATED, element, said=construct, written=replacement)
+        self.losses.record(APPROXIMATED, element, construct=construct, replacement=replacement)
 
     def drop(self, member: Member, edge: str) -> list[Line]:
         """Omit a member because the text cannot name the targets of *edge*. Return no lines.

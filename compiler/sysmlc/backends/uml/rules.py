@@ -44,7 +44,7 @@ APPROXIMATED = rule(
     "SM724",
     "uml-approximated",
     Severity.INFO,
-    "{said} is saved as {written} ({count})",
+    "{construct} is saved as {replacement} ({count})",
 )
 ILLEGAL_CHARACTERS = rule(
     "SM725",
@@ -189,7 +189,7 @@ class Losses(LossCounter):
 
     def record_approximation(self, element: Element, original: str, replacement: str) -> None:
         """Count an element that is saved in another form."""
-        self.record(APPROXIMATED, element, said=original, written=replacement)
+        self.record(APPROXIMATED, element, construct=original, replacement=replacement)
 
     def record_attribute(self, element: Element, name: str) -> None:
         """Count an attribute that UML cannot express."""

@@ -16,7 +16,7 @@ APPROXIMATED = rule(
     "SM481",
     "v2-approximated",
     Severity.INFO,
-    "{said} is read as {written} ({count} in the unit)",
+    "{construct} is read as {replacement} ({count} in the unit)",
 )
 NOT_IN_GRAPH = rule(
     "SM482",

@@ -55,7 +55,7 @@ def report_losses(lowering: "Lowering") -> None:
         count, subject = len(lost), lowering.subject_of(lost[0])
         if construct:
             lowering.sink.report(
-                APPROXIMATED, subject, count=count, said=construct, written=approximation
+                APPROXIMATED, subject, count=count, construct=construct, replacement=approximation
             )
         else:
             metaclass = nodes.spell_metaclass(approximation)

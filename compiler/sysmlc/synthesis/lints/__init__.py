@@ -37,7 +37,7 @@ def lint(contract: Contract, place: Place, sink: Sink, create_manager: ManagerFa
             component=contract.component,
             formula=formula,
             name=finding.name,
-            said=finding.detail,
+            detail=finding.detail,
         )
 
 

@@ -40,7 +40,7 @@ class LintFinding(Struct, frozen=True):
     name: str = ""
     """Value of the placeholder ``name`` in the message of the rule."""
     detail: str = ""
-    """Value of the placeholder ``said`` in the message of the rule."""
+    """Value of the placeholder ``detail`` in the message of the rule."""
 
 
 def check_ownership(contract: Contract) -> Iterator[LintFinding]:
