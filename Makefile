@@ -25,10 +25,10 @@ test: .venv/.ready ## style, types and all tests but the long ones
 	.venv/bin/ruff format --check
 	@$(MAKE) --no-print-directory --jobs 2 types quick-tests
 
-types:
+types: .venv/.ready
 	.venv/bin/mypy
 
-quick-tests:
+quick-tests: .venv/.ready
 	.venv/bin/pytest -n 2 -m "not long"
 
 test-long: .venv/.ready ## the long tests: random models, crashes, whole corpus
