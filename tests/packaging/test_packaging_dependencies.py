@@ -82,13 +82,13 @@ def test_the_page_lists_all_other_distributions_and_what_requires_them():
         )
         for name in names.keys() - direct
     }
-    listed = {row[0]: row[2].split(", ") for row in rows("Required by these")}
+    listed = {row[0]: row[2].split(", ") for row in rows("Required indirectly")}
     assert listed == parents
 
 
 def test_the_page_has_the_licences_of_the_installed_metadata():
     listed = {Requirement(row[0].strip("`")).name: row[1] for row in rows("Required directly")}
-    listed |= {row[0]: row[1] for row in rows("Required by these")}
+    listed |= {row[0]: row[1] for row in rows("Required indirectly")}
     installed = {name: licence(found) for name, found in closure().items()}
     assert {canonicalize_name(name): text for name, text in listed.items()} == installed
 
