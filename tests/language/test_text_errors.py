@@ -1,10 +1,13 @@
 """What is wrong with a text is said where it is, in words, once, and the rest is read."""
 
+from codecs import BOM_UTF8
+
 import pytest
 from texts_v2 import advised, parsed, said, understood
 
 from sysmlc.diagnostics import Sink
 from sysmlc.language.text import parse, rules
+from sysmlc.sources import Source
 
 EXAMPLES = [
     rules.SYNTAX,
@@ -295,6 +298,14 @@ def test_the_last_error_that_is_told_says_that_it_is_the_last():
 @pytest.mark.parametrize("text", ["", " \n", "// nothing", "\ufeff"])
 def test_nothing_is_no_error(text):
     assert understood(text) == []
+
+
+@pytest.mark.parametrize("marks", [0, 1, 2])
+def test_an_error_is_located_at_its_byte_after_any_byte_order_marks(marks):
+    source = Source("a.sysml", BOM_UTF8 * marks + b"part a : ;")
+    sink = Sink()
+    parse(source.data.decode("utf-8-sig"), source.name, "sysml", sink, source)
+    assert [error.subject.place.offset for error in sink] == [source.data.index(b";")]
 
 
 def test_a_file_in_another_encoding_is_one_message():

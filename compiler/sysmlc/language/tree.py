@@ -185,19 +185,18 @@ def locate(document: Document, start: int) -> Place:
     """Return the location of a character of a text, or of an XML element of an interchange file."""
     if not document.text:
         return Place(document.path, ordinal=start)
-    return Place(document.path, offset=byte_offset(document, start))
+    return Place(document.path, offset=byte_offset(document.text, document.source, start))
 
 
-def byte_offset(document: Document, start: int) -> int:
-    """Return the offset in the file, in bytes, of a character of the text; -1 stays -1."""
+def byte_offset(text: str, source: "Source | None", start: int) -> int:
+    """Return the offset in the file, in bytes, of a character of its text; -1 stays -1."""
     if start < 0:
         return start
-    text = document.text
     offset = start if text.isascii() else len(text[:start].encode("utf-8", "replace"))
-    return byte_order_mark_length(document) + offset
+    return byte_order_mark_length(source) + offset
 
 
-def byte_order_mark_length(document: Document) -> int:
-    """Return the number of bytes of the byte order mark before the text."""
-    is_marked = document.source is not None and document.source.data.startswith(BOM_UTF8)
+def byte_order_mark_length(source: "Source | None") -> int:
+    """Return the number of bytes of the byte order mark, which a decoded text does not contain."""
+    is_marked = source is not None and source.data.startswith(BOM_UTF8)
     return len(BOM_UTF8) if is_marked else 0

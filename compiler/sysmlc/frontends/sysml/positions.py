@@ -19,7 +19,7 @@ class DocumentPositions:
     def __init__(self, document: Document) -> None:
         self.document = document
         self.path = document.path
-        surplus = byte_order_mark_length(document) if document.text else 0
+        surplus = byte_order_mark_length(document.source) if document.text else 0
         self._wide_characters: list[int] = []
         self._surplus_bytes = [surplus]
         """Bytes beyond one for each character, before the first and after each wide character."""

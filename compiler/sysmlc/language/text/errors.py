@@ -1,12 +1,12 @@
 """Syntax errors, reported at their location with the expected tokens and advice."""
 
-from codecs import BOM_UTF8
 from collections.abc import Collection
 
 from sysmlc.diagnostics import Place, Rule, Sink, Subject
 from sysmlc.language.text import hints, rules
 from sysmlc.language.text.lexer import LexicalFault, Tokens
 from sysmlc.language.text.nesting import MAX_DEPTH
+from sysmlc.language.tree import byte_offset
 from sysmlc.sources import Source
 
 _MAX_ERRORS = 100
@@ -44,10 +44,7 @@ class Errors:
         self._path = path
         self._language = language
         self._sink = sink
-        is_marked = source is not None and source.data.startswith(BOM_UTF8)
-        # A text that was decoded with its byte order mark counts the mark itself.
-        has_hidden_mark = is_marked and not tokens.text.startswith("\ufeff")
-        self._mark_length = len(BOM_UTF8) if has_hidden_mark else 0
+        self._source = source
         self._remaining = _MAX_ERRORS
         self._is_unclosed_reported = False
         self.beginnings: list[str] = []
@@ -57,13 +54,10 @@ class Errors:
         self._remaining -= 1
         if self._remaining < 0:
             return
-        place = Place(self._path, offset=self._byte_offset(offset))
+        place = Place(self._path, offset=byte_offset(self._tokens.text, self._source, offset))
         facts.setdefault("advice", "")
         notes = () if self._remaining else (_LAST_NOTE,)
         self._sink.report(rule, Subject(place=place), help="", notes=notes, **facts)
-
-    def _byte_offset(self, offset: int) -> int:
-        return self._mark_length + len(self._tokens.text[:offset].encode("utf-8", "replace"))
 
     def report_depth(self, start: int) -> None:
         """Report that the text is nested too deep, and suppress the errors that follow from it."""
