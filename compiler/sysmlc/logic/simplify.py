@@ -8,6 +8,7 @@ from sysmlc.logic import formula as f
 from sysmlc.logic.contract import Domain
 from sysmlc.logic.evaluate import compile_evaluation, value_of
 from sysmlc.logic.formula import Apply, Const, Formula, Literal, Op, Var
+from sysmlc.logic.syntax import PAST, TEMPORAL
 
 _MAX_VALUATIONS = 4096
 """Most valuations tried; above this number a formula counts as satisfiable."""
@@ -30,7 +31,7 @@ def substitute(formula: Formula, values: Mapping[str, Formula]) -> Formula:
 
 def rebuild(op: Op, args: tuple[Formula, ...]) -> Formula:
     """Apply the operator to the operands and fold constants."""
-    if all(isinstance(arg, Const) for arg in args) and op not in _TEMPORAL:
+    if all(isinstance(arg, Const) for arg in args) and op not in TEMPORAL and op not in PAST:
         return Const(value_of(Apply(op, args), {}))
     if op in _CONNECTIVES:
         return _CONNECTIVES[op](*args)
@@ -275,8 +276,6 @@ def _split_conjunction(formula: Formula) -> tuple[Formula, ...]:
     return formula.args if is_and and isinstance(formula, Apply) else (formula,)
 
 
-_TEMPORAL = frozenset([Op.NEXT, Op.ALWAYS, Op.EVENTUALLY, Op.UNTIL, Op.RELEASE, Op.WEAK_UNTIL])
-_TEMPORAL |= {Op.PREVIOUS, Op.ONCE, Op.HISTORICALLY, Op.SINCE}
 _CONNECTIVES: dict[Op, Callable[..., Formula]] = {
     Op.AND: f.both,
     Op.OR: f.either,
