@@ -13,14 +13,9 @@ from sysmlc.ir import AttrValue, Edge, Element, Kind
 from sysmlc.ir.query import generals, type_of
 from sysmlc.ir.query.classifiers import unit_of
 from sysmlc.logic.expressions import expression as syntax
+from sysmlc.logic.expressions.expression import POSTFIX, PRECEDENCE, UNARY
 from sysmlc.logic.expressions.parsing import parse_expression
 
-_PRECEDENCE = {"implies": 2, "or": 3, "xor": 4, "and": 5, "==": 6, "!=": 6} | {
-    **dict.fromkeys(("<", "<=", ">", ">="), 8),
-    **dict.fromkeys("+-", 9),
-    **dict.fromkeys("*/%", 10),
-}
-_UNARY, _POSTFIX = 12, 13
 _WITHOUT_VALUE = frozenset({"transition", "succession", "flow", "comment", "dependency", "start"})
 """Keywords of members that no expression denotes."""
 _QUALIFIED = (Kind.ENUMERATION_LITERAL, Kind.PROPERTY, Kind.PORT, Kind.OPERATION, Kind.INSTANCE)
@@ -79,7 +74,7 @@ class _ExpressionPrinter:
             base, base_member = (
                 self.print_chain(tree.base)
                 if isinstance(tree.base, syntax.Name | syntax.Member)
-                else (self.print(tree.base, _POSTFIX), None)
+                else (self.print(tree.base, POSTFIX), None)
             )
             feature = None
             if base_member is not None:
@@ -87,22 +82,22 @@ class _ExpressionPrinter:
             if feature is None:
                 raise UnknownNameError(tree.name)
             return f"{base}.{quote_name(feature.name)}", feature
-        return self.print(tree, _POSTFIX), None
+        return self.print(tree, POSTFIX), None
 
     def _print_node(self, tree: syntax.Expression) -> tuple[str, int]:  # noqa: PLR0911 - one a kind
         """Return the text of an expression, and the precedence of its outermost operator."""
         match tree:
             case syntax.Literal(value):
-                return _print_literal(value), _POSTFIX
+                return _print_literal(value), POSTFIX
             case syntax.Name() | syntax.Member():
-                return self.print_chain(tree)[0], _POSTFIX
+                return self.print_chain(tree)[0], POSTFIX
             case syntax.Call(function, args):
                 arguments = ", ".join(self.print(arg, 0) for arg in args)
-                return f"{self.print(function, _POSTFIX)}({arguments})", _POSTFIX
+                return f"{self.print(function, POSTFIX)}({arguments})", POSTFIX
             case syntax.Index(base, index):
-                return f"{self.print(base, _POSTFIX)}#({self.print(index, 0)})", _POSTFIX
+                return f"{self.print(base, POSTFIX)}#({self.print(index, 0)})", POSTFIX
             case syntax.Unary(op, operand):
-                return f"{op}{' ' * (op == 'not')}{self.print(operand, _UNARY)}", _UNARY
+                return f"{op}{' ' * (op == 'not')}{self.print(operand, UNARY)}", UNARY
             case syntax.Binary():
                 return self._print_binary(tree)
             case syntax.Conditional(condition, then, otherwise):
@@ -110,7 +105,7 @@ class _ExpressionPrinter:
                 return "if {} ? {} else {}".format(*parts), 0
 
     def _print_binary(self, tree: syntax.Binary) -> tuple[str, int]:
-        precedence = _PRECEDENCE[tree.op]
+        precedence = PRECEDENCE[tree.op]
         is_right_associative = tree.op == "implies"
         left = self.print(tree.left, precedence + is_right_associative)
         right = self.print(tree.right, precedence + (not is_right_associative))

@@ -136,13 +136,14 @@ Statement = Assignment | Send | Invocation
 
 # -- printing ----------------------------------------------------------------------------------
 
-_PRECEDENCE: dict[str, int] = {"implies": 2, "or": 3, "xor": 4, "and": 5, "==": 6, "!=": 6} | {
+PRECEDENCE: dict[str, int] = {"implies": 2, "or": 3, "xor": 4, "and": 5, "==": 6, "!=": 6} | {
     **dict.fromkeys(("<", "<=", ">", ">="), 7),
     **dict.fromkeys("+-", 8),
     **dict.fromkeys("*/%", 9),
 }
 """Precedence of the binary operators, weakest first; a conditional has 0."""
-_UNARY, _POSTFIX = 10, 11
+UNARY, POSTFIX = 10, 11
+"""Precedence of a unary operator, and of a name, literal, call or index."""
 
 
 def print_expression(expression: Expression) -> str:
@@ -154,13 +155,13 @@ def print_statement(statement: Statement) -> str:
     """Return one statement of an effect as text."""
     match statement:
         case Assignment(target, value):
-            return f"{_print(target, _POSTFIX)} := {_print(value, 0)}"
+            return f"{_print(target, POSTFIX)} := {_print(value, 0)}"
         case Send(signal, args, receiver):
             arguments = f"({_print_arguments(args)})" if args else ""
-            end = "" if receiver is None else f" to {_print(receiver, _POSTFIX)}"
-            return f"send {_print(signal, _POSTFIX)}{arguments}{end}"
+            end = "" if receiver is None else f" to {_print(receiver, POSTFIX)}"
+            return f"send {_print(signal, POSTFIX)}{arguments}{end}"
         case Invocation(call):
-            return _print(call, _POSTFIX)
+            return _print(call, POSTFIX)
 
 
 def print_effect(statements: tuple[Statement, ...]) -> str:
@@ -207,17 +208,17 @@ def _print_with_precedence(expression: Expression) -> tuple[str, int]:  # noqa: 
     """Return the text without parentheses around it, and the precedence of its operator."""
     match expression:
         case Literal(value):
-            return print_literal(value), _POSTFIX
+            return print_literal(value), POSTFIX
         case Name(path):
-            return "::".join(map(_print_name, path)), _POSTFIX
+            return "::".join(map(_print_name, path)), POSTFIX
         case Member(base, name):
-            return f"{_print(base, _POSTFIX)}.{_print_name(name)}", _POSTFIX
+            return f"{_print(base, POSTFIX)}.{_print_name(name)}", POSTFIX
         case Call(function, args):
-            return f"{_print(function, _POSTFIX)}({_print_arguments(args)})", _POSTFIX
+            return f"{_print(function, POSTFIX)}({_print_arguments(args)})", POSTFIX
         case Index(base, index):
-            return f"{_print(base, _POSTFIX)}#({_print(index, 0)})", _POSTFIX
+            return f"{_print(base, POSTFIX)}#({_print(index, 0)})", POSTFIX
         case Unary(op, operand):
-            return f"{op}{' ' * (op == 'not')}{_print(operand, _UNARY)}", _UNARY
+            return f"{op}{' ' * (op == 'not')}{_print(operand, UNARY)}", UNARY
         case Binary():
             return _print_binary(expression)
         case Conditional(condition, then, otherwise):
@@ -226,7 +227,7 @@ def _print_with_precedence(expression: Expression) -> tuple[str, int]:  # noqa: 
 
 
 def _print_binary(expression: Binary) -> tuple[str, int]:
-    precedence = _PRECEDENCE[expression.op]
+    precedence = PRECEDENCE[expression.op]
     is_right_associative = expression.op == "implies"
     left = _print(expression.left, precedence + is_right_associative)
     right = _print(expression.right, precedence + (not is_right_associative))
