@@ -244,13 +244,12 @@ def _find_unevaluable(model: Model, node: Node) -> str:
     if node.kind != "InvocationExpression":
         return ""
     function = find_named_element(node, model.lookup)
+    if function is None:
+        return ""
     # Functions of the library are evaluable, except those that iterate with a body (KerML 8.4.4.9).
-    is_basic = function is None or (_is_in_library(function) and function.name not in _ITERATING)
-    return "" if is_basic else name_of(model, function)
-
-
-def _is_in_library(node: Node) -> bool:
-    return node.owner is not None and node.owner.kind == "LibraryPackage"
+    is_of_library = function.owner is not None and function.owner.kind == "LibraryPackage"
+    is_evaluable = is_of_library and function.name not in _ITERATING
+    return "" if is_evaluable else name_of(model, function)
 
 
 def _quote_name(model: Model, node: Node | None) -> str:
