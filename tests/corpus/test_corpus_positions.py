@@ -6,7 +6,7 @@ from random import Random
 
 import pytest
 
-from dialects.mutate import mutate
+from dialects.mutations import mutate
 from fuzz.aml_changes import AML_CHANGES
 from long_runs import quick_first
 from sysmlc.diagnostics.renderers import make_report

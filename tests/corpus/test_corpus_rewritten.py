@@ -2,7 +2,7 @@
 
 import pytest
 
-from dialects.comparing import OF_THE_DIALECT, WRITERS, of_dialect
+from dialects.comparison import DIALECT_ATTRIBUTES, WRITERS, is_dialect_difference
 from graph_differences import diff
 from long_runs import quick_first
 from sysmlc.diagnostics import Coverage, Sink
@@ -43,10 +43,10 @@ def test_a_real_model_is_the_same_in_every_dialect(corpus, name, dialect):
     one = graph("model.uml", papyrus)
     other = graph(f"model.{dialect}", WRITERS[dialect](papyrus))
     assert len(one) > 80
-    changes = diff(one, other, {"id", "source", "trace", *OF_THE_DIALECT})
+    changes = diff(one, other, {"id", "source", "trace", *DIALECT_ATTRIBUTES})
     unsayable = UNSAYABLE.get((name, dialect), "nothing")
     assert [
         change
         for change in changes
-        if not of_dialect(change) and not change.detail.startswith(unsayable)
+        if not is_dialect_difference(change) and not change.detail.startswith(unsayable)
     ] == []

@@ -4,7 +4,7 @@ from collections import Counter
 
 import pytest
 
-from dialects.comparing import OF_THE_DIALECT, of_dialect
+from dialects.comparison import DIALECT_ATTRIBUTES, is_dialect_difference
 from dialects.metamodel import Metamodel
 from examples.compiling import compile_example, compile_text
 from graph_differences import diff
@@ -60,8 +60,8 @@ def uml(compilation):
 def changes(path, folder):
     one = compile_example(path, "uml")
     two = compile_text(folder, "model.uml", uml(one).encode(), "uml")
-    for change in diff(one.graph, two.graph, {"id", "source", "trace", *OF_THE_DIALECT}):
-        if not of_dialect(change):
+    for change in diff(one.graph, two.graph, {"id", "source", "trace", *DIALECT_ATTRIBUTES}):
+        if not is_dialect_difference(change):
             yield change, libraries(one.graph) | libraries(two.graph)
 
 

@@ -1,10 +1,9 @@
-"""Writes a Papyrus document again as MagicDraw 19 saves the same model (XML, and .mdzip).
+"""Translation of a Papyrus document into a file of MagicDraw 19 (XML, and .mdzip).
 
-The differences are those of the dialect table in the project's notes on XMI: no xmi:version, OMG
-namespaces, lists of references as child elements, ids of 41 characters, one SysML namespace with
-capital Id and Text, bounds of pins and parameters inside extensions, flows not repeated at their
-nodes, a path on nearly every connector end, readable names beside references to other files, and
-diagrams.
+MagicDraw writes no xmi:version, OMG namespaces, lists of references as child elements, ids of 41
+characters, one SysML namespace with capital Id and Text, bounds of pins and parameters inside
+extensions, a path on nearly every connector end, readable names beside references to other files,
+and diagrams. It does not repeat flows at their nodes.
 """
 
 import hashlib
@@ -60,12 +59,12 @@ LISTS = frozenset(
         "test",
     )
 )
-"""Features that hold several references: MagicDraw writes each reference as a child."""
+"""Features with several references; MagicDraw writes each reference as a child element."""
 
 _NOT_SAVED = frozenset(
     {"incoming", "outgoing", "partition", "base_NamedElement", "base_DirectedRelationship"}
 )
-"""What Papyrus saves and MagicDraw derives."""
+"""Features that Papyrus saves and MagicDraw derives."""
 
 LISTS_OF = {
     "uml:ActivityPartition": {"node", "edge"},
@@ -73,7 +72,7 @@ LISTS_OF = {
     "uml:InstanceSpecification": {"classifier"},
     "uml:InterruptibleActivityRegion": {"node", "interruptingEdge"},
 }
-"""Features that are lists of references in these metaclasses only."""
+"""Features that are lists of references in some metaclasses only."""
 
 _CAPITAL = {("Requirement", "id"): "Id", ("Requirement", "text"): "Text"}
 
@@ -87,26 +86,26 @@ _SYSML_PROFILE = "pathmap://SysML16_PROFILES/SysML.profile.uml#"
 
 
 def write_xml(papyrus: bytes, customised: bool = False) -> bytes:
-    """The document as MagicDraw saves it in one XML file.
+    """Return the document as MagicDraw saves it in one XML file.
 
-    ``customised`` adds the stereotypes of MagicDraw's own SysML customisation, which repeat what
-    the type of a property says.
+    *customised* adds the stereotypes of MagicDraw's own SysML customisation, which follow from the
+    type of a property and add no information.
     """
     source = etree.fromstring(papyrus)
     writer = _Writer(source)
     if customised:
-        writer.customise(source)
+        writer.apply_customisation(source)
     etree.indent(writer.root, space="\t")
     return etree.tostring(writer.root, xml_declaration=True, encoding="UTF-8")
 
 
-def ids_of(papyrus: bytes) -> dict[str, str]:
-    """The ids that the elements of a Papyrus document get in MagicDraw's files."""
+def map_ids(papyrus: bytes) -> dict[str, str]:
+    """Map the ids of a Papyrus document to those in MagicDraw's files."""
     return _Writer(etree.fromstring(papyrus)).ids
 
 
 def write_mdzip(papyrus: bytes) -> bytes:
-    """The document as a MagicDraw project: a zip with the model among other entries."""
+    """Return the document as a MagicDraw project: a zip with the model among other entries."""
     buffer = io.BytesIO()
     entries = {
         "PROJECT-5d0cf1f2-3c61-4a8a-a4c1-2b4c27c0f3aa": b"",
@@ -121,184 +120,194 @@ def write_mdzip(papyrus: bytes) -> bytes:
 
 
 class _Writer:
-    """One document on its way from Papyrus to MagicDraw."""
+    """Translates one document from Papyrus to MagicDraw."""
 
     def __init__(self, source: Element) -> None:
-        self.ids = {id_of(element): _magicdraw_id(id_of(element)) for element in _with_id(source)}
-        own = {prefix: uri for prefix, uri in source.nsmap.items() if _is_custom(uri)}
+        self.ids = {id_of(element): _make_id(id_of(element)) for element in _iter_with_id(source)}
+        custom = {prefix: uri for prefix, uri in source.nsmap.items() if _is_custom(uri)}
         self.root = etree.Element(
             f"{{{XMI}}}XMI",
-            nsmap={**_PREFIXES, **own},
+            nsmap={**_PREFIXES, **custom},
         )
-        self._head()
+        self._write_head()
         for element in source:
             if element.tag == f"{{{PAPYRUS_UML}}}Model":
                 self.ids[id_of(element)] = ROOT_ID
-                self._model(element)
+                self._write_model(element)
             else:
-                self._application(element)
-        self._end_paths(source)
+                self._write_application(element)
+        self._write_end_paths(source)
 
-    def _head(self) -> None:
+    def _write_head(self) -> None:
         documentation = etree.SubElement(self.root, f"{{{XMI}}}Documentation")
         etree.SubElement(documentation, f"{{{XMI}}}exporter").text = "MagicDraw UML"
         etree.SubElement(documentation, f"{{{XMI}}}exporterVersion").text = "19.0 v9"
-        extension = _extension(self.root)
+        extension = _add_extension(self.root)
         etree.SubElement(extension, "plugin", pluginName="SysML", pluginVersion="19.0")
 
-    def _model(self, source: Element) -> None:
+    def _write_model(self, source: Element) -> None:
         model = etree.SubElement(self.root, f"{{{UML}}}Model", {f"{{{XMI}}}type": "uml:Model"})
         self._copy_content(source, model)
-        self._diagram(model)
+        self._write_diagram(model)
 
     def _copy(self, source: Element, owner: Element) -> None:
         tag = etree.QName(source).localname
-        if tag == "eAnnotations" or _is_package_of_sysml(source):
+        if tag == "eAnnotations" or _is_repeated_sysml(source):
             return
         if "href" in source.attrib:
-            _outside_reference(source, etree.SubElement(owner, tag))
-        elif tag in ("lowerValue", "upperValue") and _type(owner) in _BOUNDED_IN_EXTENSION:
-            box = etree.SubElement(_extension(owner), "modelExtension")
+            _write_outside_reference(source, etree.SubElement(owner, tag))
+        elif tag in ("lowerValue", "upperValue") and _type_of(owner) in _BOUNDED_IN_EXTENSION:
+            box = etree.SubElement(_add_extension(owner), "modelExtension")
             self._copy_content(source, etree.SubElement(box, tag))
         else:
             self._copy_content(source, etree.SubElement(owner, tag))
 
-    def _copy_content(self, source: Element, made: Element) -> None:
+    def _copy_content(self, source: Element, copy: Element) -> None:
         type_ = f"{{{XMI}}}type"
         if type_ in source.attrib:
-            made.set(type_, source.attrib[type_])
+            copy.set(type_, source.attrib[type_])
         for name, value in source.attrib.items():
             if name != type_ and name not in _NOT_SAVED:
-                self._feature(made, str(name), str(value))
+                self._write_feature(copy, str(name), str(value))
         for child in source:
-            self._copy(child, made)
-        _text(source, made)
+            self._copy(child, copy)
+        _copy_text(source, copy)
 
-    def _feature(self, made: Element, name: str, value: str) -> None:
+    def _write_feature(self, copy: Element, name: str, value: str) -> None:
         ids = value.split()
         if name == f"{{{XMI}}}id":
-            made.set(name, self.ids[value])
-        elif name in LISTS or name in LISTS_OF.get(_type(made), ()):
+            copy.set(name, self.ids[value])
+        elif name in LISTS or name in LISTS_OF.get(_type_of(copy), ()):
             for id_ in ids:
-                etree.SubElement(made, name, {f"{{{XMI}}}idref": self.ids.get(id_, id_)})
+                etree.SubElement(copy, name, {f"{{{XMI}}}idref": self.ids.get(id_, id_)})
         elif name not in ("name", "body") and ids and all(id_ in self.ids for id_ in ids):
-            made.set(name, " ".join(self.ids[id_] for id_ in ids))
+            copy.set(name, " ".join(self.ids[id_] for id_ in ids))
         else:
-            made.set(name, value)
+            copy.set(name, value)
 
-    def _application(self, source: Element) -> None:
+    def _write_application(self, source: Element) -> None:
         qualified = etree.QName(source)
         namespace = SYSML if str(qualified.namespace).startswith(PAPYRUS_SYSML) else None
         tag = f"{{{namespace or qualified.namespace}}}{qualified.localname}"
-        made = etree.SubElement(self.root, tag)
+        application = etree.SubElement(self.root, tag)
         for name, value in source.attrib.items():
             if name not in _NOT_SAVED:
                 capital = _CAPITAL.get((qualified.localname, str(name)), str(name))
-                self._tag(made, capital, str(value))
+                self._write_tag(application, capital, str(value))
         for child in source:
-            etree.SubElement(made, etree.QName(child).localname).text = child.text
+            etree.SubElement(application, etree.QName(child).localname).text = child.text
 
-    def _tag(self, made: Element, name: str, value: str) -> None:
+    def _write_tag(self, application: Element, name: str, value: str) -> None:
         if name in ("Id", "Text"):
-            made.set(name, value)
+            application.set(name, value)
             return
         words = value.split(" ")
-        made.set(name, " ".join(self.ids.get(word, word) for word in words))
+        application.set(name, " ".join(self.ids.get(word, word) for word in words))
 
-    def _end_paths(self, source: Element) -> None:
-        """MagicDraw notes the path of nearly every connector end, also where it is one part."""
-        told = {str(e.get("base_ConnectorEnd")) for e in source if "base_ConnectorEnd" in e.attrib}
+    def _write_end_paths(self, source: Element) -> None:
+        """Write the path of nearly every connector end, as MagicDraw does, even one of one part."""
+        ends_with_path = {
+            str(e.get("base_ConnectorEnd")) for e in source if "base_ConnectorEnd" in e.attrib
+        }
         for end in source.iter("end"):
-            if "partWithPort" in end.attrib and id_of(end) not in told:
+            if "partWithPort" in end.attrib and id_of(end) not in ends_with_path:
                 path = etree.SubElement(self.root, f"{{{SYSML}}}NestedConnectorEnd")
-                path.set(f"{{{XMI}}}id", _magicdraw_id(id_of(end) + "path"))
+                path.set(f"{{{XMI}}}id", _make_id(id_of(end) + "path"))
                 path.set("base_ConnectorEnd", self.ids[id_of(end)])
                 path.set("propertyPath", self.ids[str(end.get("partWithPort"))])
 
-    def customise(self, source: Element) -> None:
-        """PartProperty and ValueProperty, as MagicDraw applies them to typed properties."""
-        types = {id_of(element): _type(element) for element in _with_id(source)}
-        for one in source.iter("ownedAttribute"):
-            kind = types.get(str(one.get("type")), "")
-            is_part = kind == "uml:Class" and one.get("aggregation") == "composite"
-            if _type(one) == "uml:Property" and (is_part or kind == "uml:Enumeration"):
+    def apply_customisation(self, source: Element) -> None:
+        """Apply PartProperty and ValueProperty to typed properties, as MagicDraw does."""
+        types = {id_of(element): _type_of(element) for element in _iter_with_id(source)}
+        for attribute in source.iter("ownedAttribute"):
+            kind = types.get(str(attribute.get("type")), "")
+            is_part = kind == "uml:Class" and attribute.get("aggregation") == "composite"
+            if _type_of(attribute) == "uml:Property" and (is_part or kind == "uml:Enumeration"):
                 name = "PartProperty" if is_part else "ValueProperty"
-                made = etree.SubElement(self.root, f"{{{CUSTOMISATION}}}{name}")
-                made.set(f"{{{XMI}}}id", _magicdraw_id(id_of(one) + name))
-                made.set("base_Property", self.ids[id_of(one)])
+                application = etree.SubElement(self.root, f"{{{CUSTOMISATION}}}{name}")
+                application.set(f"{{{XMI}}}id", _make_id(id_of(attribute) + name))
+                application.set("base_Property", self.ids[id_of(attribute)])
 
-    def _diagram(self, model: Element) -> None:
-        box = etree.SubElement(_extension(model), "modelExtension")
-        kept = etree.SubElement(box, "ownedDiagram", {f"{{{XMI}}}type": "uml:Diagram"})
-        kept.set(f"{{{XMI}}}id", _magicdraw_id("diagram"))
-        kept.set("name", "Overview")
-        kept.set("ownerOfDiagram", ROOT_ID)
-        shown = etree.SubElement(_extension(kept), "diagramRepresentation")
-        drawn = etree.SubElement(
-            shown, f"{{{DIAGRAM}}}DiagramRepresentationObject", nsmap={"diagram": DIAGRAM}
+    def _write_diagram(self, model: Element) -> None:
+        box = etree.SubElement(_add_extension(model), "modelExtension")
+        diagram = etree.SubElement(box, "ownedDiagram", {f"{{{XMI}}}type": "uml:Diagram"})
+        diagram.set(f"{{{XMI}}}id", _make_id("diagram"))
+        diagram.set("name", "Overview")
+        diagram.set("ownerOfDiagram", ROOT_ID)
+        representation = etree.SubElement(_add_extension(diagram), "diagramRepresentation")
+        contents = etree.SubElement(
+            representation, f"{{{DIAGRAM}}}DiagramRepresentationObject", nsmap={"diagram": DIAGRAM}
         )
-        drawn.set("ID", _magicdraw_id("drawn"))
-        drawn.set("diagramProperties", "3c 3f 78 6d 6c")
+        contents.set("ID", _make_id("drawn"))
+        contents.set("diagramProperties", "3c 3f 78 6d 6c")
         for element in list(model.iter("packagedElement"))[:5]:
-            etree.SubElement(drawn, "usedObjects", href="#" + id_of(element))
-            etree.SubElement(drawn, "usedElements").text = id_of(element)
+            etree.SubElement(contents, "usedObjects", href="#" + id_of(element))
+            etree.SubElement(contents, "usedElements").text = id_of(element)
         model.insert(0, box.getparent())
 
 
-def _with_id(source: Element) -> Iterator[Element]:
+def _iter_with_id(source: Element) -> Iterator[Element]:
     return (element for element in source.iter() if id_of(element))
 
 
-def _magicdraw_id(id_: str) -> str:
+def _make_id(id_: str) -> str:
     number = int(hashlib.sha256(id_.encode()).hexdigest(), 16)
     stamp, rest = 1_600_000_000_000 + number % 20_000_000_000, number // 20_000_000_000
     return f"_19_0_4_25dc056a_{stamp}_{rest % 1_000_000:06}_{rest // 1_000_000 % 100_000:05}"
 
 
 def _is_custom(uri: str) -> bool:
-    known = (PAPYRUS_SYSML, PAPYRUS_UML, XMI, "http://www.w3.org", "http://www.eclipse.org/emf")
-    return not uri.startswith(known)
+    standard_namespaces = (
+        PAPYRUS_SYSML,
+        PAPYRUS_UML,
+        XMI,
+        "http://www.w3.org",
+        "http://www.eclipse.org/emf",
+    )
+    return not uri.startswith(standard_namespaces)
 
 
-def _is_package_of_sysml(source: Element) -> bool:
-    """Papyrus applies SysML package by package; MagicDraw applies it once."""
+def _is_repeated_sysml(source: Element) -> bool:
+    """Whether another package of SysML is already applied: MagicDraw applies SysML once."""
     profile = source.find("appliedProfile")
     if profile is None or not str(profile.get("href")).startswith(_SYSML_PROFILE):
         return False
     earlier = source.itersiblings(source.tag, preceding=True)
-    return any(_SYSML_PROFILE in etree.tostring(one, encoding="unicode") for one in earlier)
+    return any(
+        _SYSML_PROFILE in etree.tostring(application, encoding="unicode") for application in earlier
+    )
 
 
-def _type(element: Element) -> str:
+def _type_of(element: Element) -> str:
     return element.get(f"{{{XMI}}}type", "")
 
 
-def _extension(owner: Element) -> Element:
+def _add_extension(owner: Element) -> Element:
     return etree.SubElement(owner, f"{{{XMI}}}Extension", extender=EXTENDER)
 
 
-def _text(source: Element, made: Element) -> None:
+def _copy_text(source: Element, copy: Element) -> None:
     if source.text and source.text.strip():
-        made.text = source.text
-    if _type(source) == "uml:Comment":
-        body = made.find("body")
+        copy.text = source.text
+    if _type_of(source) == "uml:Comment":
+        body = copy.find("body")
         if body is not None:
-            made.set("body", body.text or "")
-            made.remove(body)
+            copy.set("body", body.text or "")
+            copy.remove(body)
 
 
-def _outside_reference(source: Element, made: Element) -> None:
-    """A reference to another file, with the readable path that MagicDraw puts beside it."""
-    href, path = standard(str(source.get("href")))
-    made.set("href", href)
-    detail = {"referentPath": path, "referentType": _type(source).removeprefix("uml:")}
-    etree.SubElement(_extension(made), "referenceExtension", detail)
+def _write_outside_reference(source: Element, reference: Element) -> None:
+    """Write a reference to another file, with the readable path that MagicDraw adds."""
+    href, path = translate_href(str(source.get("href")))
+    reference.set("href", href)
+    detail = {"referentPath": path, "referentType": _type_of(source).removeprefix("uml:")}
+    etree.SubElement(_add_extension(reference), "referenceExtension", detail)
 
 
-def standard(href: str) -> tuple[str, str]:
-    """What MagicDraw calls an element of the standards' files: where it is, and its path.
+def translate_href(href: str) -> tuple[str, str]:
+    """Return MagicDraw's reference to an element of the standards' files, and its readable path.
 
-    Of other files nothing is known, and the path is empty.
+    A reference to another file stays as it is, and its path is empty.
     """
     primitives = "UML Standard Profile::UML2 Metamodel::PrimitiveTypes"
     if href.startswith(_PRIMITIVES):
@@ -310,7 +319,7 @@ def standard(href: str) -> tuple[str, str]:
         steps = "-".join(f"{name}_PackageableElement" for name in names)
         return f"{SYSML}.xmi#_SysML_{steps}", "::".join(["SysML", *names])
     if href.startswith(_SYSML_PROFILE) and len(names) > 1:
-        number = _magicdraw_id(names[-1]).removeprefix("_19_0_4")
+        number = _make_id(names[-1]).removeprefix("_19_0_4")
         return f"{SYSML}.xmi#_11_5EAPbeta{number}", "::".join(["SysML", *names])
     if href.startswith(_SYSML_PROFILE):
         return f"{SYSML}.xmi#_SysML__0", "SysML"

@@ -1,4 +1,4 @@
-"""Writes UML and SysML documents as Papyrus saves them: UML2 5.0.0, SysML 1.6, stereotypes last."""
+"""Builder of UML and SysML documents as Papyrus saves them (UML2 5.0.0, SysML 1.6)."""
 
 import base64
 import hashlib
@@ -26,7 +26,7 @@ _PACKAGES = {
     "PortsAndFlows": "Ports_u0026Flows",
     "Requirements": "Requirements",
 }
-"""Packages of the SysML profile: the prefix, and the name in the id of the package."""
+"""Packages of the SysML profile: their prefixes, and their names in the ids of the profile."""
 
 _ORDER = {
     feature: rank
@@ -66,7 +66,7 @@ _ORDER = {
 
 
 class PapyrusDocument:
-    """A document that grows element by element; ids come from place and name, never from chance."""
+    """A document built element by element; ids are derived from owner and name, never random."""
 
     def __init__(self, name: str, seed: str = "", profiles: dict[str, str] | None = None) -> None:
         namespaces = {"xmi": XMI, "xsi": XSI, **(profiles or {})}
@@ -83,74 +83,76 @@ class PapyrusDocument:
     def add(
         self, owner: Element, feature: str, metaclass: str, name: str = "", **features: Value
     ) -> Element:
-        """Add an element as ``feature`` of its owner; elements as values become references."""
-        made = etree.SubElement(owner, feature)
-        made.set(f"{{{XMI}}}type", f"uml:{metaclass}")
-        made.set(f"{{{XMI}}}id", self._new_id(f"{id_of(owner)}/{feature}/{metaclass}/{name}"))
+        """Add an element as *feature* of its owner; values that are elements become references."""
+        element = etree.SubElement(owner, feature)
+        element.set(f"{{{XMI}}}type", f"uml:{metaclass}")
+        element.set(f"{{{XMI}}}id", self._new_id(f"{id_of(owner)}/{feature}/{metaclass}/{name}"))
         if name:
-            made.set("name", name)
-        self.set(made, **features)
-        return made
+            element.set("name", name)
+        self.set(element, **features)
+        return element
 
     def set(self, element: Element, **features: Value) -> None:
-        """Set features: elements become references, true and numbers their text."""
+        """Set features; elements become references, booleans and numbers their text."""
         for feature, value in features.items():
-            element.set(feature.rstrip("_"), _text(value))
+            element.set(feature.rstrip("_"), _format_value(value))
 
-    def refer(self, owner: Element, feature: str, metaclass: str, href: str) -> None:
+    def add_reference(self, owner: Element, feature: str, metaclass: str, href: str) -> None:
         """Add a reference to an element of another file."""
-        made = etree.SubElement(owner, feature)
-        made.set(f"{{{XMI}}}type", f"uml:{metaclass}")
-        made.set("href", href)
+        reference = etree.SubElement(owner, feature)
+        reference.set(f"{{{XMI}}}type", f"uml:{metaclass}")
+        reference.set("href", href)
 
-    def opaque(self, owner: Element, feature: str, body: str, language: str = "") -> Element:
+    def add_expression(
+        self, owner: Element, feature: str, body: str, language: str = ""
+    ) -> Element:
         """Add an opaque expression."""
-        made = self.add(owner, feature, "OpaqueExpression")
-        say(made, body, language)
-        return made
+        expression = self.add(owner, feature, "OpaqueExpression")
+        add_body(expression, body, language)
+        return expression
 
-    def comment(self, owner: Element, body: str, *annotated: Element) -> None:
-        """Add a comment on its owner, or on what is given."""
-        made = self.add(owner, "ownedComment", "Comment", annotatedElement=annotated or (owner,))
-        etree.SubElement(made, "body").text = body
+    def add_comment(self, owner: Element, body: str, *annotated: Element) -> None:
+        """Add a comment about its owner, or about the *annotated* elements."""
+        comment = self.add(owner, "ownedComment", "Comment", annotatedElement=annotated or (owner,))
+        etree.SubElement(comment, "body").text = body
 
-    def multiplicity(self, element: Element, lower: int, upper: str) -> None:
-        """Set the bounds, as children that leave the defaults out."""
-        low = self.add(element, "lowerValue", "LiteralInteger")
+    def set_bounds(self, element: Element, lower: int, upper: str) -> None:
+        """Add the bounds as children, which omit default values."""
+        lower_value = self.add(element, "lowerValue", "LiteralInteger")
         if lower:
-            low.set("value", str(lower))
+            lower_value.set("value", str(lower))
         self.add(element, "upperValue", "LiteralUnlimitedNatural", value=upper)
 
     def apply(self, stereotype: str, base: Element, **tags: Value) -> Element:
-        """Apply ``Prefix:Name`` to the element; its metaclass gives the base property."""
+        """Apply stereotype ``Prefix:Name`` to *base*, whose metaclass names the base property."""
         prefix, local = stereotype.split(":")
-        made = etree.SubElement(self.root, f"{{{self._namespaces[prefix]}}}{local}")
-        made.set(f"{{{XMI}}}id", self._new_id(f"{id_of(base)}/{stereotype}"))
-        made.set(f"base_{_BASES.get(local, metaclass_of(base))}", id_of(base))
-        self.set(made, **tags)
-        return made
+        application = etree.SubElement(self.root, f"{{{self._namespaces[prefix]}}}{local}")
+        application.set(f"{{{XMI}}}id", self._new_id(f"{id_of(base)}/{stereotype}"))
+        application.set(f"base_{_BASES.get(local, metaclass_of(base))}", id_of(base))
+        self.set(application, **tags)
+        return application
 
-    def applied_profile(self, source: str, href: str) -> None:
-        """Say that the model applies a profile, the way UML2 notes its Ecore form."""
-        made = self.add(self.model, "profileApplication", "ProfileApplication", source)
-        del made.attrib["name"]
-        note = etree.SubElement(made, "eAnnotations")
+    def add_profile_application(self, source: str, href: str) -> None:
+        """Apply a profile to the model, with UML2's annotation that refers to its Ecore form."""
+        application = self.add(self.model, "profileApplication", "ProfileApplication", source)
+        del application.attrib["name"]
+        note = etree.SubElement(application, "eAnnotations")
         note.set(f"{{{XMI}}}type", "ecore:EAnnotation")
         note.set(f"{{{XMI}}}id", self._new_id(f"{source}/note"))
         note.set("source", "http://www.eclipse.org/uml2/2.0.0/UML")
         reference = etree.SubElement(note, "references")
         reference.set(f"{{{XMI}}}type", "ecore:EPackage")
         reference.set("href", source)
-        self.refer(made, "appliedProfile", "Profile", href)
+        self.add_reference(application, "appliedProfile", "Profile", href)
 
     def apply_sysml(self) -> None:
         """Apply the packages of SysML 1.6."""
         for prefix, package in _PACKAGES.items():
             href = "pathmap://SysML16_PROFILES/SysML.profile.uml#SysML.package_packagedElement_"
-            self.applied_profile(f"{SYSML}#//{prefix.lower()}", href + package)
+            self.add_profile_application(f"{SYSML}#//{prefix.lower()}", href + package)
 
-    def bytes(self) -> bytes:
-        """The document as Papyrus would save it."""
+    def as_bytes(self) -> bytes:
+        """Return the document as Papyrus would save it."""
         for element in self.root.iter():
             _link_flow_ends(element)
         for element in self.model.iter():
@@ -175,7 +177,7 @@ _BASES = {
     "DirectedFeature": "Feature",
     **dict.fromkeys(("Continuous", "Discrete", "Probability", "Rate"), "ActivityEdge"),
 }
-"""Stereotypes whose base property names a general metaclass."""
+"""Stereotypes whose base property names a more general metaclass."""
 
 
 def id_of(element: Element) -> str:
@@ -186,14 +188,14 @@ def metaclass_of(element: Element) -> str:
     return element.get(f"{{{XMI}}}type", "uml:Model").removeprefix("uml:")
 
 
-def say(element: Element, body: str, language: str = "") -> None:
-    """Give an opaque element its text."""
+def add_body(element: Element, body: str, language: str = "") -> None:
+    """Add the text of an opaque element."""
     if language:
         etree.SubElement(element, "language").text = language
     etree.SubElement(element, "body").text = body
 
 
-def _text(value: Value) -> str:
+def _format_value(value: Value) -> str:
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, str | int):
@@ -208,11 +210,11 @@ def _rank(element: Element) -> int:
 
 
 def _link_flow_ends(element: Element) -> None:
-    """Papyrus writes the flows of an activity also at their nodes."""
+    """Repeat a flow of an activity at its nodes, as Papyrus does."""
     if element.tag == "edge" and "source" in element.attrib:
         nodes = {id_of(node): node for node in element.getroottree().getroot().iter()}
         for end, feature in (("source", "outgoing"), ("target", "incoming")):
             node = nodes[element.attrib[end]]
-            known = node.get(feature, "").split()
-            if id_of(element) not in known:
-                node.set(feature, " ".join([*known, id_of(element)]))
+            edges = node.get(feature, "").split()
+            if id_of(element) not in edges:
+                node.set(feature, " ".join([*edges, id_of(element)]))

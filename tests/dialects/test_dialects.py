@@ -9,7 +9,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from dialects.comparing import WRITERS, common_outputs, compile_both, graph_changes
+from dialects.comparison import WRITERS, common_outputs, compile_both, graph_changes
 from dialects.enterprise_architect import write_xmi
 from dialects.magicdraw import write_xml
 from dialects.random_models import random_model

@@ -5,7 +5,7 @@ from random import Random
 
 from lxml import etree
 
-from dialects.mutate import JUNK, Change, any_element, any_id, references, xmi_key
+from dialects.mutations import JUNK, Change, any_element, any_id, references, xmi_key
 from dialects.papyrus import Element
 
 _BOUNDS = ("0", "1", "-1", "*", "2147483648", "9" * 400, "1.5", "", "0x10", "٣", "1e9")

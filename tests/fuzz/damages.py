@@ -6,7 +6,7 @@ import zipfile
 from collections.abc import Callable
 from random import Random
 
-from dialects.mutate import Damage, damage
+from dialects.mutations import Damage, damage
 
 Spoil = Callable[[bytes, Random], tuple[str, bytes]]
 """Changes a document; says what was done."""

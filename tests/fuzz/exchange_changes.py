@@ -4,7 +4,7 @@ from random import Random
 
 from lxml import etree
 
-from dialects.mutate import GENERIC, Change, any_element
+from dialects.mutations import GENERIC, Change, any_element
 from dialects.papyrus import Element
 from fuzz.changes import GENERIC as CROWDS
 

@@ -12,7 +12,7 @@ from random import Random
 from lxml import etree
 
 from dialects.magicdraw import write_mdzip, write_xml
-from dialects.mutate import damage, mutate
+from dialects.mutations import damage, mutate
 from fuzz.aml_changes import AML_CHANGES
 from fuzz.changes import CHANGES
 from fuzz.damages import DAMAGES, TEXT_DAMAGES, mutate_archive

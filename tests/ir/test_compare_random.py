@@ -5,7 +5,7 @@ from random import Random
 
 import pytest
 
-from dialects.graph_mutations import KINDS, Mutation, reissued
+from dialects.graph_mutations import KINDS, Mutation, copy_with_new_ids
 from dialects.random_models import random_model
 from dialects.random_plants import random_plant
 from long_runs import quick_first
@@ -44,7 +44,7 @@ def test_a_model_does_not_differ_from_itself(form, seed):
 
 @pytest.mark.parametrize(("form", "seed"), SEEDS)
 def test_new_ids_another_order_and_other_places_are_no_difference(form, seed):
-    assert compare(read(form, seed), reissued(read(form, seed), Random(seed))) == []
+    assert compare(read(form, seed), copy_with_new_ids(read(form, seed), Random(seed))) == []
 
 
 @pytest.mark.parametrize(("form", "seed"), SEEDS)
@@ -53,7 +53,7 @@ def test_without_any_names_every_element_is_still_found_by_what_surrounds_it(for
     for graph in (old, new):
         for element in list(graph):
             graph.rename(element, "")
-    assert compare(old, reissued(new, Random(seed))) == []
+    assert compare(old, copy_with_new_ids(new, Random(seed))) == []
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -62,15 +62,17 @@ def test_one_change_is_reported_and_nothing_else_with_old_ids_and_with_new_ones(
     form, seed = model
     changed = read(form, seed)
     mutation = Mutation(changed, Random(seed))
-    expected = [] if not mutation.make(kind) else [(mutation.what, mutation.name, mutation.aspect)]
+    expected = (
+        [] if not mutation.apply(kind) else [(mutation.change, mutation.name, mutation.aspect)]
+    )
     assert told(compare(read(form, seed), changed)) == expected
-    assert told(compare(read(form, seed), reissued(changed, Random(seed)))) == expected
+    assert told(compare(read(form, seed), copy_with_new_ids(changed, Random(seed)))) == expected
 
 
 def test_every_kind_of_change_has_been_made():
     for kind in KINDS:
         for form in READERS:
-            made = (Mutation(read(*s), Random(s[1])).make(kind) for s in SEEDS if s[0] == form)
+            made = (Mutation(read(*s), Random(s[1])).apply(kind) for s in SEEDS if s[0] == form)
             assert any(made), (kind, form)
 
 

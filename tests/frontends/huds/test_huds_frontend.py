@@ -4,7 +4,7 @@ from random import Random
 
 import pytest
 
-from dialects.mutate import damage, mutate
+from dialects.mutations import damage, mutate
 from sysmlc.diagnostics import Coverage, Sink
 from sysmlc.driver import Request, compile_model
 from sysmlc.frontends.huds import FRONTEND

@@ -6,7 +6,7 @@ from random import Random
 
 import pytest
 
-from dialects.mutate import mutate
+from dialects.mutations import mutate
 from sysmlc.backends.plantuml import BACKEND
 from sysmlc.diagnostics.renderers import make_report
 from sysmlc.driver import Request, compile_model
