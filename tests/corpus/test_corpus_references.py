@@ -77,7 +77,7 @@ def features(corpus):
 def documents(corpus, features):
     """Graph and references of every file, by name."""
     paths = sorted(path for path in (corpus / "xmi").rglob("*") if path.suffix in SUFFIXES)
-    return {path.name: (graph(path), references(path, features)) for path in paths}
+    return {path.name: (graph(path), find_references(path, features)) for path in paths}
 
 
 def graph(path):
@@ -88,7 +88,7 @@ def graph(path):
     return made
 
 
-def references(path, features):
+def find_references(path, features):
     models = (source for source in load(path, path.name) if "snapshot" not in source.name)
     return [one for source in models for one in written(source.data, features)]
 

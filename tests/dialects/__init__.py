@@ -1,1 +1,1 @@
-"""Writers of models in the dialects of the tools, and models at random, for the tests."""
+"""Translators into the dialects of tools, and random models, for the tests."""

@@ -1,4 +1,4 @@
-"""Spoils documents with knowledge of their structure: what hand edits, merges and bugs leave."""
+"""Random damage to XML documents, like that of hand edits, merges and faulty tools."""
 
 import copy
 from collections.abc import Callable, Sequence
@@ -59,27 +59,27 @@ def mutate(
     more_damages: Sequence[Damage] = (),
     changes: Sequence[Change] | None = None,
 ) -> tuple[str, bytes]:
-    """One to three changes of the document; what was done, and the result.
+    """Apply one to three random changes; return their names and the result.
 
-    ``changes`` are all there are, for documents that are no XMI.
+    *changes* replaces all changes of the tree, for documents that are not XMI.
     """
-    done: list[str] = []
+    names: list[str] = []
     root = etree.fromstring(document)
-    _never_empty(root)
+    _ensure_child(root)
     for _ in range(random.randint(1, 3)):
         change = random.choice(changes or (*_CHANGES, *more_changes))
-        done.append(change.__name__.strip("_"))
+        names.append(change.__name__.strip("_"))
         change(root, random)
-        _never_empty(root)
-    spoilt = etree.tostring(root, xml_declaration=True, encoding="UTF-8")
+        _ensure_child(root)
+    mutated = etree.tostring(root, xml_declaration=True, encoding="UTF-8")
     if random.random() < 0.25:
-        name, spoilt = damage(spoilt, random, more_damages)
-        done.append(name)
-    return " ".join(done), spoilt
+        name, mutated = damage(mutated, random, more_damages)
+        names.append(name)
+    return " ".join(names), mutated
 
 
 def damage(data: bytes, random: Random, more_damages: Sequence[Damage] = ()) -> tuple[str, bytes]:
-    """Damage to the bytes alone, for files that are no XML."""
+    """Damage the bytes of a file that is not XML; return the name of the damage and the result."""
     chosen = random.choice((*_DAMAGES, *more_damages))
     return chosen.__name__.strip("_"), chosen(data, random)
 
@@ -88,49 +88,53 @@ def damage(data: bytes, random: Random, more_damages: Sequence[Damage] = ()) -> 
 
 
 def xmi_key(root: Element, name: str) -> str:
-    """An attribute of XMI, in the version of XMI that the document is written in."""
+    """Return the name of an XMI attribute in the version of XMI that the document uses."""
     spaces = [uri for uri in root.nsmap.values() if "omg.org" in uri and "XMI" in uri]
     return f"{{{spaces[0] if spaces else XMI}}}{name}"
 
 
-def any_element(root: Element, random: Random) -> Element:
-    """Some element, not the root."""
+def choose_element(root: Element, random: Random) -> Element:
+    """Return a random element other than the root."""
     return random.choice([element for element in root.iter("*") if element is not root])
 
 
-def any_id(root: Element, random: Random) -> str:
-    """Id of some element, or the empty string."""
-    return any_element(root, random).get(xmi_key(root, "id"), "")
+def choose_id(root: Element, random: Random) -> str:
+    """Return the id of a random element, or the empty string."""
+    return choose_element(root, random).get(xmi_key(root, "id"), "")
 
 
-def _drop(root: Element, random: Random) -> None:
-    victim = any_element(root, random)
+def _drop_element(root: Element, random: Random) -> None:
+    victim = choose_element(root, random)
     victim.getparent().remove(victim)
 
 
-def _duplicate(root: Element, random: Random) -> None:
-    original = any_element(root, random)
+def _duplicate_element(root: Element, random: Random) -> None:
+    original = choose_element(root, random)
     original.addnext(copy.deepcopy(original))
 
 
-def _swap(root: Element, random: Random) -> None:
-    one, other = any_element(root, random), any_element(root, random)
-    if one not in other.iterancestors() and other not in one.iterancestors() and one is not other:
-        here, there = etree.Element("here"), etree.Element("there")
-        one.addprevious(here)
-        other.addprevious(there)
-        here.getparent().replace(here, other)
-        there.getparent().replace(there, one)
+def _swap_elements(root: Element, random: Random) -> None:
+    first, second = choose_element(root, random), choose_element(root, random)
+    if (
+        first not in second.iterancestors()
+        and second not in first.iterancestors()
+        and first is not second
+    ):
+        first_place, second_place = etree.Element("here"), etree.Element("there")
+        first.addprevious(first_place)
+        second.addprevious(second_place)
+        first_place.getparent().replace(first_place, second)
+        second_place.getparent().replace(second_place, first)
 
 
-def _move(root: Element, random: Random) -> None:
-    moved, owner = any_element(root, random), any_element(root, random)
-    if moved is not owner and moved not in owner.iterancestors():
-        owner.append(moved)
+def _move_element(root: Element, random: Random) -> None:
+    element, owner = choose_element(root, random), choose_element(root, random)
+    if element is not owner and element not in owner.iterancestors():
+        owner.append(element)
 
 
-def references(root: Element) -> list[tuple[Element, str]]:
-    """Elements and the names of their attributes that hold an id of the document."""
+def find_references(root: Element) -> list[tuple[Element, str]]:
+    """Return elements with the names of their attributes that contain an id of the document."""
     key = xmi_key(root, "id")
     ids = {element.get(key) for element in root.iter("*")}
     return [
@@ -141,64 +145,64 @@ def references(root: Element) -> list[tuple[Element, str]]:
     ]
 
 
-def _retarget(root: Element, random: Random) -> None:
-    found = references(root)
-    if found:
-        element, name = random.choice(found)
-        element.set(name, any_id(root, random))
+def _retarget_reference(root: Element, random: Random) -> None:
+    references = find_references(root)
+    if references:
+        element, name = random.choice(references)
+        element.set(name, choose_id(root, random))
 
 
-def _close_a_cycle(root: Element, random: Random) -> None:
-    """A reference to its own element or an owner of it: inheritance, types and flows in circles."""
-    found = references(root)
-    if found:
-        element, name = random.choice(found)
+def _close_cycle(root: Element, random: Random) -> None:
+    """Make a reference name its own element or one of its owners: a cycle of types or flows."""
+    references = find_references(root)
+    if references:
+        element, name = random.choice(references)
         circle = [element, *element.iterancestors()]
         element.set(name, random.choice(circle).get(xmi_key(root, "id"), ""))
 
 
-def _dangle(root: Element, random: Random) -> None:
-    found = references(root)
-    if found:
-        element, name = random.choice(found)
+def _break_reference(root: Element, random: Random) -> None:
+    references = find_references(root)
+    if references:
+        element, name = random.choice(references)
         element.set(name, random.choice(["_nothing", "a b", "", "_"]))
 
 
 def _change_type(root: Element, random: Random) -> None:
     key = xmi_key(root, "type")
-    typed = [element for element in root.iter("*") if key in element.attrib]
-    random.choice(typed or [root]).set(key, "uml:" + random.choice(_METACLASSES))
+    typed_elements = [element for element in root.iter("*") if key in element.attrib]
+    random.choice(typed_elements or [root]).set(key, "uml:" + random.choice(_METACLASSES))
 
 
 def _rename_feature(root: Element, random: Random) -> None:
-    element = any_element(root, random)
-    element.tag = any_element(root, random).tag
+    element = choose_element(root, random)
+    element.tag = choose_element(root, random).tag
 
 
 def _drop_attribute(root: Element, random: Random) -> None:
-    element = any_element(root, random)
+    element = choose_element(root, random)
     if element.attrib:
         del element.attrib[random.choice(list(element.attrib))]
 
 
 def _spoil_attribute(root: Element, random: Random) -> None:
-    element = any_element(root, random)
+    element = choose_element(root, random)
     if element.attrib:
         element.set(random.choice(list(element.attrib)), random.choice(JUNK))
 
 
 def _spoil_text(root: Element, random: Random) -> None:
     texts = [element for element in root.iter("*") if element.text and element.text.strip()]
-    random.choice(texts or [any_element(root, random)]).text = random.choice(JUNK)
+    random.choice(texts or [choose_element(root, random)]).text = random.choice(JUNK)
 
 
-def _same_id(root: Element, random: Random) -> None:
-    any_element(root, random).set(xmi_key(root, "id"), any_id(root, random))
+def _duplicate_id(root: Element, random: Random) -> None:
+    choose_element(root, random).set(xmi_key(root, "id"), choose_id(root, random))
 
 
-def _bury(root: Element, random: Random) -> None:
-    """An element under many owners of its own kind."""
-    victim = any_element(root, random)
+def _nest_deeply(root: Element, random: Random) -> None:
+    """Nest an element in many owners of its own kind."""
+    victim = choose_element(root, random)
     tag, attributes = victim.tag, dict(victim.attrib)
     for depth in range(random.choice([3, 120])):
         outer = etree.Element(tag, attributes)
@@ -208,80 +212,82 @@ def _bury(root: Element, random: Random) -> None:
         victim = outer
 
 
-def _never_empty(root: Element) -> None:
+def _ensure_child(root: Element) -> None:
     if len(root) == 0:
         etree.SubElement(root, "packagedElement")
 
 
 _CHANGES: tuple[Change, ...] = (
-    _drop,
-    _duplicate,
-    _swap,
-    _move,
-    _retarget,
-    _retarget,
-    _close_a_cycle,
-    _dangle,
+    _drop_element,
+    _duplicate_element,
+    _swap_elements,
+    _move_element,
+    _retarget_reference,
+    _retarget_reference,
+    _close_cycle,
+    _break_reference,
     _change_type,
     _change_type,
     _rename_feature,
     _drop_attribute,
     _spoil_attribute,
     _spoil_text,
-    _same_id,
-    _bury,
+    _duplicate_id,
+    _nest_deeply,
 )
 
 GENERIC: tuple[Change, ...] = (
-    _drop,
-    _duplicate,
-    _swap,
-    _move,
+    _drop_element,
+    _duplicate_element,
+    _swap_elements,
+    _move_element,
     _rename_feature,
     _drop_attribute,
     _spoil_attribute,
     _spoil_text,
 )
-"""Changes that know nothing of XMI."""
+"""Changes that apply to any XML document."""
 
 
 # -- damage to the bytes -----------------------------------------------------------------------
 
 
-def _truncate(data: bytes, random: Random) -> bytes:
+def _truncate_bytes(data: bytes, random: Random) -> bytes:
     return data[: random.randrange(len(data))]
 
 
-def _flip(data: bytes, random: Random) -> bytes:
-    at = random.randrange(len(data))
-    return data[:at] + bytes([random.randrange(256)]) + data[at + 1 :]
+def _replace_byte(data: bytes, random: Random) -> bytes:
+    index = random.randrange(len(data))
+    return data[:index] + bytes([random.randrange(256)]) + data[index + 1 :]
 
 
-def _insert(data: bytes, random: Random) -> bytes:
-    at = random.randrange(len(data))
-    return data[:at] + random.choice([b"\x00", b"\xff", b"<", b"&", b"]]>", b"<!--"]) + data[at:]
+def _insert_bytes(data: bytes, random: Random) -> bytes:
+    index = random.randrange(len(data))
+    return (
+        data[:index] + random.choice([b"\x00", b"\xff", b"<", b"&", b"]]>", b"<!--"]) + data[index:]
+    )
 
 
-def _lie_about_encoding(data: bytes, random: Random) -> bytes:
-    other = random.choice([b"UTF-16", b"windows-1252", b"US-ASCII", b"no-such-encoding"])
-    return data.replace(b"UTF-8", other, 1)
+def _declare_wrong_encoding(data: bytes, random: Random) -> bytes:
+    encoding = random.choice([b"UTF-16", b"windows-1252", b"US-ASCII", b"no-such-encoding"])
+    return data.replace(b"UTF-8", encoding, 1)
 
 
-def _encode_otherwise(data: bytes, random: Random) -> bytes:
-    other = random.choice(["utf-16", "utf-8-sig", "utf-32"])
-    return data.decode("utf-8", "replace").encode(other)
+def _change_encoding(data: bytes, random: Random) -> bytes:
+    encoding = random.choice(["utf-16", "utf-8-sig", "utf-32"])
+    return data.decode("utf-8", "replace").encode(encoding)
 
 
-def _forbidden_prologue(data: bytes, random: Random) -> bytes:
+def _add_doctype(data: bytes, random: Random) -> bytes:
     head, _, rest = data.partition(b"?>")
     return head + b'?><!DOCTYPE x [<!ENTITY e SYSTEM "file:///etc/hostname">]>' + rest
 
 
 _DAMAGES: tuple[Damage, ...] = (
-    _truncate,
-    _flip,
-    _insert,
-    _lie_about_encoding,
-    _encode_otherwise,
-    _forbidden_prologue,
+    _truncate_bytes,
+    _replace_byte,
+    _insert_bytes,
+    _declare_wrong_encoding,
+    _change_encoding,
+    _add_doctype,
 )

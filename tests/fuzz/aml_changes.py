@@ -5,7 +5,7 @@ from random import Random
 
 from lxml import etree
 
-from dialects.mutations import GENERIC, JUNK, Change, any_element
+from dialects.mutations import GENERIC, JUNK, Change, choose_element
 from dialects.papyrus import Element
 from fuzz.changes import GENERIC as CROWDS
 
@@ -72,7 +72,7 @@ def path_of(element: Element) -> str:
 
 
 def _any_path(root: Element, random: Random) -> str:
-    known = path_of(random.choice(_of_tag(root, *_LIBRARIES) or [any_element(root, random)]))
+    known = path_of(random.choice(_of_tag(root, *_LIBRARIES) or [choose_element(root, random)]))
     spelt = "/".join(f"[{part}]" for part in known.split("/"))
     broken = (f"{known}/none", known[:-1], f"A@{known}", f"[{known}", f"{known}]", "/", "@", "@@/")
     return random.choice((known, known, known, spelt, *broken))
@@ -119,12 +119,12 @@ def _circle_of_mirrors(root: Element, random: Random) -> None:
 
 
 def _other_tag(root: Element, random: Random) -> None:
-    element = any_element(root, random)
+    element = choose_element(root, random)
     element.tag = etree.QName(etree.QName(root).namespace, random.choice(_TAGS))
 
 
 def _all_of_one_tag(root: Element, random: Random) -> None:
-    old = any_element(root, random).tag
+    old = choose_element(root, random).tag
     new = etree.QName(etree.QName(root).namespace, random.choice(_TAGS))
     for element in list(root.iter(old)):
         element.tag = new
@@ -197,7 +197,7 @@ def _odd_ports(root: Element, random: Random) -> None:
 
 
 def _no_names(root: Element, random: Random) -> None:
-    tag = any_element(root, random).tag
+    tag = choose_element(root, random).tag
     name = random.choice(("", " ", "same", "a/b", "a@b", "[a]", "a:b", "\u202e", "con", None))
     for element in root.iter(tag):
         if name is None:
@@ -211,7 +211,7 @@ def _schema_version(root: Element, random: Random) -> None:
 
 
 def _crowd(root: Element, random: Random) -> None:
-    victim = any_element(root, random)
+    victim = choose_element(root, random)
     if sum(1 for _ in victim.iter("*")) > 50:
         return
     for number in range(random.choice((5, 60))):
@@ -224,7 +224,7 @@ def _crowd(root: Element, random: Random) -> None:
 
 def _dig(root: Element, random: Random) -> None:
     """Nested so deep that recursion would end: under or over the limit."""
-    here = any_element(root, random)
+    here = choose_element(root, random)
     tag, attributes = here.tag, dict(here.attrib)
     for depth in range(random.choice((100, 400, 600))):
         here = etree.SubElement(here, tag, attributes)

@@ -5,7 +5,7 @@ from random import Random
 
 from lxml import etree
 
-from dialects.mutations import JUNK, Change, any_element, any_id, references, xmi_key
+from dialects.mutations import JUNK, Change, choose_element, choose_id, find_references, xmi_key
 from dialects.papyrus import Element
 
 _BOUNDS = ("0", "1", "-1", "*", "2147483648", "9" * 400, "1.5", "", "0x10", "٣", "1e9")
@@ -103,7 +103,7 @@ def _giant_multiplicity(root: Element, random: Random) -> None:
 
 def _no_names(root: Element, random: Random) -> None:
     """Names are empty, blank, equal or gone, all of one feature."""
-    feature = any_element(root, random).tag
+    feature = choose_element(root, random).tag
     name = random.choice(["", " ", "\n", "same", "\u202e", "a/b:c*", "con", None])
     for element in root.iter(feature):
         if name is None:
@@ -127,7 +127,7 @@ def _crossed_flows(root: Element, random: Random) -> None:
     """Edges and transitions lead from and to anything, also into other behaviours."""
     edges = [element for element in root.iter("*") if "source" in element.attrib]
     for edge in random.sample(edges, min(len(edges), 4)):
-        edge.set(random.choice(["source", "target"]), any_id(root, random))
+        edge.set(random.choice(["source", "target"]), choose_id(root, random))
 
 
 def _turned_flows(root: Element, random: Random) -> None:
@@ -140,7 +140,7 @@ def _turned_flows(root: Element, random: Random) -> None:
 
 def _lists_of_ids(root: Element, random: Random) -> None:
     """A reference gets many targets: doubled, blank, unknown, tabs between."""
-    found = references(root)
+    found = find_references(root)
     if found:
         element, name = random.choice(found)
         some = random.choices([*_ids(root), "_unknown", ""], k=random.choice([2, 3, 40]))
@@ -149,7 +149,7 @@ def _lists_of_ids(root: Element, random: Random) -> None:
 
 def _as_child(root: Element, random: Random) -> None:
     """A reference as MagicDraw writes it, or as an href."""
-    found = references(root)
+    found = find_references(root)
     if found:
         element, name = random.choice(found)
         value = element.attrib.pop(name)
@@ -179,14 +179,14 @@ def _applied_elsewhere(root: Element, random: Random) -> None:
         double = copy.deepcopy(original)
         for name in double.attrib:
             if "base_" in str(name):
-                double.set(name, any_id(root, random))
+                double.set(name, choose_id(root, random))
         double.set(xmi_key(root, "id"), "_applied_again")
         original.addnext(double)
 
 
 def _crowd(root: Element, random: Random) -> None:
     """Many copies of one element, each with ids of its own."""
-    victim = any_element(root, random)
+    victim = choose_element(root, random)
     if sum(1 for _ in victim.iter("*")) > 50:
         return
     key = xmi_key(root, "id")
@@ -200,14 +200,14 @@ def _crowd(root: Element, random: Random) -> None:
 
 def _into_itself(root: Element, random: Random) -> None:
     """A copy of a subtree inside that subtree."""
-    victim = any_element(root, random)
+    victim = choose_element(root, random)
     if sum(1 for _ in victim.iter("*")) < 300:
         random.choice(list(victim.iter("*"))).append(copy.deepcopy(victim))
 
 
 def _many_drops(root: Element, random: Random) -> None:
     """Every element of a kind is gone, with what it holds."""
-    feature = any_element(root, random).tag
+    feature = choose_element(root, random).tag
     for element in [e for e in root.iter(feature) if e is not root]:
         owner = element.getparent()
         if owner is not None and random.random() < 0.7:
@@ -215,19 +215,19 @@ def _many_drops(root: Element, random: Random) -> None:
 
 
 def _rename_attribute(root: Element, random: Random) -> None:
-    element, other = any_element(root, random), any_element(root, random)
+    element, other = choose_element(root, random), choose_element(root, random)
     if element.attrib and other.attrib:
         name = random.choice(list(other.attrib))
         element.set(name, element.attrib.pop(random.choice(list(element.attrib))))
 
 
 def _move_to_root(root: Element, random: Random) -> None:
-    root.insert(random.randrange(len(root) + 1), any_element(root, random))
+    root.insert(random.randrange(len(root) + 1), choose_element(root, random))
 
 
 def _dig(root: Element, random: Random) -> None:
     """Nested so deep that recursion would end: under or over the limit."""
-    here = any_element(root, random)
+    here = choose_element(root, random)
     tag, attributes = here.tag, dict(here.attrib)
     for depth in range(random.choice([100, 400, 600])):
         here = etree.SubElement(here, tag, attributes)

@@ -4,7 +4,7 @@ from random import Random
 
 from lxml import etree
 
-from dialects.mutations import GENERIC, Change, any_element
+from dialects.mutations import GENERIC, Change, choose_element
 from dialects.papyrus import Element
 from fuzz.changes import GENERIC as CROWDS
 
@@ -74,7 +74,7 @@ def _circle(root: Element, random: Random) -> None:
 
 def _same_ids(root: Element, random: Random) -> None:
     for _ in range(random.choice((1, 5))):
-        element = any_element(root, random)
+        element = choose_element(root, random)
         for name in list(element.attrib):
             if _is_id(name):
                 element.set(name, random.choice(_ids(root)))
@@ -95,7 +95,7 @@ def _same_names(root: Element, random: Random) -> None:
 
 def _dig(root: Element, random: Random) -> None:
     """Members within members, under or over the limit."""
-    here = any_element(root, random)
+    here = choose_element(root, random)
     for depth in range(random.choice((40, 300, 700))):
         relation = etree.SubElement(here, "ownedRelationship")
         relation.set(_TYPE, "sysml:OwningMembership")
