@@ -26,10 +26,10 @@ _KINDS = {
 
 
 def sketch(text: str) -> str:
-    """IR text of one activity from a line a node (``kind id``) and a line a flow (``a -> b``).
+    """Return the IR text of an activity; each line of *text* is a node or a flow.
 
-    A flow may end in its guard in brackets or in attributes; indented nodes are owned by the
-    node above.
+    A node is written ``kind id``, a flow ``a -> b``. A flow may end in its guard in brackets or in
+    attributes. Indented nodes are owned by the node above.
     """
     lines = ['Activity a "a"']
     flows = [line.strip() for line in text.splitlines() if "->" in line]

@@ -1,7 +1,7 @@
 """Golden files: ``golden`` compares texts with a folder, ``--update-golden`` writes the folder.
 
-Where the corpus is there (SYSMLC_CORPUS) and in continuous integration (CI) a test that needs
-the corpus or PlantUML may not be skipped: a skip fails.
+Where the corpus is available (SYSMLC_CORPUS) and in continuous integration (CI), a test that needs
+the corpus or PlantUML may not be skipped: a skip is reported as a failure.
 """
 
 import difflib
@@ -17,7 +17,7 @@ import plantuml_jar
 from long_runs import examples
 
 os.environ["SYSMLC_CACHE"] = "off"
-"""Tests see what the code does, not what an earlier run found."""
+"""Without the cache, a test sees what the code does and not the result of an earlier run."""
 
 settings.register_profile(
     "sysmlc", deadline=None, derandomize="CI" in os.environ, max_examples=examples(100)
@@ -26,15 +26,14 @@ settings.load_profile("sysmlc")
 """No test asserts on time; continuous integration tries the same examples in every run."""
 
 GOLDEN = Path(__file__).parent / "golden"
-_SHOWN = 80
-
-
+_MAX_DIFFERENCE_LINES = 80
+"""Lines of one difference that a failure prints."""
 _GARBAGE = 1_000_000
 """Objects that a worker may create before it collects garbage."""
 
 
 def pytest_collection_finish():
-    """Take garbage collection over from the interpreter.
+    """Switch the automatic garbage collection off; ``collect_garbage`` collects between modules.
 
     A worker holds millions of objects: imported modules, thousands of tests, cached libraries. The
     interpreter would traverse all of them again and again, which takes a third of the run.
@@ -55,42 +54,44 @@ def pytest_addoption(parser):
     parser.addoption(
         "--update-golden",
         action="store_true",
-        help="write the golden files anew and show what differs",
+        help="write the golden files again and show the differences",
     )
 
 
 class Golden:
-    """Compares what a test made with the folder ``tests/golden/<name>``."""
+    """Compares the files that a test produces with the folder ``tests/golden/<name>``."""
 
     def __init__(self, update: bool, show) -> None:
         self._update = update
         self._show = show
 
-    def check(self, name: str, made: Mapping[str, str]) -> None:
-        """Fail when a file is missing, is too much or differs; with the option, write instead."""
+    def check(self, name: str, files: Mapping[str, str]) -> None:
+        """Fail if a file is missing, unexpected or different; with ``--update-golden``, write."""
         folder = GOLDEN / name
-        kept = _files(folder)
+        golden_files = _read_files(folder)
         differences = [
             text
-            for path in sorted(kept.keys() | made.keys())
-            if (text := _difference(path, kept.get(path, ""), made.get(path, "")))
+            for path in sorted(golden_files.keys() | files.keys())
+            if (text := _diff_file(path, golden_files.get(path, ""), files.get(path, "")))
         ]
         if self._update:
-            self._write(folder, made, kept)
+            self._write(folder, files, golden_files)
             self._show("\n".join(differences))
         elif differences:
             hint = "if this is right: pytest --update-golden, then read the difference\n"
             pytest.fail(hint + "\n".join(differences), pytrace=False)
 
-    def _write(self, folder: Path, made: Mapping[str, str], kept: Mapping[str, str]) -> None:
-        for path in kept.keys() - made.keys():
+    def _write(
+        self, folder: Path, files: Mapping[str, str], golden_files: Mapping[str, str]
+    ) -> None:
+        for path in golden_files.keys() - files.keys():
             (folder / path).unlink()
-        for path, text in made.items():
+        for path, text in files.items():
             (folder / path).parent.mkdir(parents=True, exist_ok=True)
             (folder / path).write_bytes(text.encode("utf-8"))
 
 
-def _files(folder: Path) -> dict[str, str]:
+def _read_files(folder: Path) -> dict[str, str]:
     return {
         path.relative_to(folder).as_posix(): path.read_bytes().decode("utf-8")
         for path in sorted(folder.rglob("*"))
@@ -98,19 +99,23 @@ def _files(folder: Path) -> dict[str, str]:
     }
 
 
-def _difference(path: str, old: str, new: str) -> str:
+def _diff_file(path: str, old: str, new: str) -> str:
     lines = list(
         difflib.unified_diff(
-            old.splitlines(), new.splitlines(), f"golden/{path}", f"made/{path}", lineterm=""
+            old.splitlines(), new.splitlines(), f"golden/{path}", f"now/{path}", lineterm=""
         )
     )
-    rest = f"\n... {len(lines) - _SHOWN} more lines" if len(lines) > _SHOWN else ""
-    return "\n".join(lines[:_SHOWN]) + rest
+    rest = (
+        f"\n... {len(lines) - _MAX_DIFFERENCE_LINES} more lines"
+        if len(lines) > _MAX_DIFFERENCE_LINES
+        else ""
+    )
+    return "\n".join(lines[:_MAX_DIFFERENCE_LINES]) + rest
 
 
 @pytest.fixture
 def golden(request):
-    """The golden files, to compare with or to write."""
+    """Return the golden files, to compare with or to write."""
     terminal = request.config.get_terminal_writer()
     return Golden(request.config.getoption("--update-golden"), terminal.line)
 
@@ -123,14 +128,14 @@ def pytest_runtest_setup(item):
 
 @pytest.fixture(scope="session")
 def corpus() -> Path:
-    """The folder with real models; a test that uses it carries the mark ``corpus``."""
+    """Return the folder with real models; a test that uses it has the mark ``corpus``."""
     return Path(os.environ["SYSMLC_CORPUS"])
 
 
 @pytest.fixture(scope="session")
 def plantuml(tmp_path_factory) -> plantuml_jar.PlantUml:
-    """Real PlantUML; a test that uses it carries the mark ``plantuml``."""
-    if missing := plantuml_jar.missing():
+    """Return real PlantUML; a test that uses it has the mark ``plantuml``."""
+    if missing := plantuml_jar.list_missing_tools():
         pytest.skip(f"PlantUML cannot run without {missing}")
     return plantuml_jar.PlantUml(tmp_path_factory.mktemp("plantuml"))
 
@@ -138,7 +143,7 @@ def plantuml(tmp_path_factory) -> plantuml_jar.PlantUml:
 @pytest.hookimpl(wrapper=True)
 def pytest_runtest_makereport(item, call):
     report = yield
-    if report.skipped and not hasattr(report, "wasxfail") and _must_run(item):
+    if report.skipped and not hasattr(report, "wasxfail") and must_run(item):
         report.outcome = "failed"
         report.longrepr = f"{item.nodeid} may not be skipped here: {report.longrepr}"
     return report
@@ -153,9 +158,10 @@ def pytest_make_collect_report(collector):
     return report
 
 
-def _must_run(item) -> bool:
-    needed = {"corpus": ("SYSMLC_CORPUS",), "plantuml": ("CI", "SYSMLC_CORPUS")}
+def must_run(item) -> bool:
+    """Whether the environment requires the test, so that a skip of it is a failure."""
+    required_by = {"corpus": ("SYSMLC_CORPUS",), "plantuml": ("CI", "SYSMLC_CORPUS")}
     return any(
         item.get_closest_marker(mark) and any(os.environ.get(name) for name in names)
-        for mark, names in needed.items()
+        for mark, names in required_by.items()
     )

@@ -1,8 +1,8 @@
-"""Exact difference of two graphs, for who checks a front end, a back end or a round trip.
+"""Exact difference of two graphs, for tests of front ends, back ends and round trips.
 
-What changed in a model, for its authors, is told by ``ir.compare``. Here elements are matched by
-id. When ids, sources and traces are to be ignored, they are matched by qualified name, kind and
-position among their equals: what two dialects of one model share.
+``ir.compare`` describes a change to the authors of a model; this module compares every detail.
+Elements are matched by id or, when ids are ignored, by qualified name, kind and position among
+elements with the same name and kind, which two dialects of one model have in common.
 """
 
 from collections import Counter
@@ -18,7 +18,7 @@ _Key = tuple[object, ...]
 
 
 class Change(Struct, frozen=True, order=True):
-    """One difference: ``what`` is added, removed, renamed, attribute, edge-added, edge-removed."""
+    """A difference; *what* is added, removed, attribute, edge-added, edge-removed or edge-order."""
 
     element: str
     what: str
@@ -26,22 +26,26 @@ class Change(Struct, frozen=True, order=True):
 
 
 def diff(old: Graph, new: Graph, ignore: Collection[str] = ()) -> list[Change]:
-    """All differences, sorted by qualified name.
+    """Return all differences, sorted by qualified name.
 
-    ``ignore`` may hold ``id``, ``source``, ``trace`` (attribute ``origin``) and names of
+    *ignore* may contain ``id``, ``source``, ``trace`` (the attribute ``origin``) and names of
     attributes. With ``id``, references to elements are compared by qualified name too.
     """
     left, right = _Side(old, ignore), _Side(new, ignore)
-    changes = [Change(left.names[key], "removed", kind) for key, kind in left.missing_in(right)]
-    changes += [Change(right.names[key], "added", kind) for key, kind in right.missing_in(left)]
+    changes = [
+        Change(left.names[key], "removed", kind) for key, kind in left.iter_missing_in(right)
+    ]
+    changes += [
+        Change(right.names[key], "added", kind) for key, kind in right.iter_missing_in(left)
+    ]
     for key, element in left.elements.items():
         if key in right.elements:
-            changes.extend(_changes(left, right, key, element))
+            changes.extend(_iter_changes(left, right, key, element))
     return sorted(changes)
 
 
 class _Side:
-    """One of the two graphs, its elements under the keys by which they are matched."""
+    """One of the two graphs, with its elements by the keys that match them."""
 
     def __init__(self, graph: Graph, ignore: Collection[str]) -> None:
         self.graph = graph
@@ -52,10 +56,10 @@ class _Side:
         self.elements: dict[_Key, Element] = {}
         self._equals: Counter[_Key] = Counter()
         for root in graph.roots():
-            self._enter(root)
+            self._add_tree(root)
         self.names = {key: graph.qualified_name(e) for key, e in self.elements.items()}
 
-    def _enter(self, root: Element) -> None:
+    def _add_tree(self, root: Element) -> None:
         for element in self.graph.subtree(root):
             key = self._key(element)
             self.keys[element.id] = key
@@ -69,24 +73,24 @@ class _Side:
         self._equals[equals] += 1
         return (*above, (element.kind, element.name, self._equals[equals]))
 
-    def missing_in(self, other: "_Side") -> Iterator[tuple[_Key, str]]:
+    def iter_missing_in(self, other: "_Side") -> Iterator[tuple[_Key, str]]:
         for key, element in self.elements.items():
             if key not in other.elements:
                 yield key, str(element.kind)
 
     def attributes(self, element: Element) -> dict[str, object]:
-        found: dict[str, object] = {
-            key: self._named(value)
+        attributes: dict[str, object] = {
+            key: self._replace_ids(value)
             for key, value in element.attrs.items()
             if key not in self.ignored
         }
         if self.with_source:
-            found["source"] = (element.source, element.ordinal)
-        return found | {"name": element.name, "kind": str(element.kind)}
+            attributes["source"] = (element.source, element.ordinal)
+        return attributes | {"name": element.name, "kind": str(element.kind)}
 
-    def _named(self, value: object) -> object:
+    def _replace_ids(self, value: object) -> object:
         if isinstance(value, tuple):
-            return tuple(self._named(item) for item in value)
+            return tuple(self._replace_ids(item) for item in value)
         if self.by_name and isinstance(value, str) and value in self.keys:
             return self.keys[value]
         return value
@@ -102,7 +106,7 @@ class _Side:
         return self.names.get(key, str(key[0]))
 
 
-def _changes(left: _Side, right: _Side, key: _Key, element: Element) -> Iterator[Change]:
+def _iter_changes(left: _Side, right: _Side, key: _Key, element: Element) -> Iterator[Change]:
     name, other = left.names[key], right.elements[key]
     before, after = left.attributes(element), right.attributes(other)
     for attribute in sorted(before.keys() | after.keys()):
@@ -111,10 +115,10 @@ def _changes(left: _Side, right: _Side, key: _Key, element: Element) -> Iterator
             yield Change(name, "attribute", f"{attribute}: {old!r} -> {new!r}")
     old_edges, new_edges = left.edges(element), right.edges(other)
     for edge in old_edges:
-        yield from _edge_changes(left, right, name, edge, old_edges[edge], new_edges[edge])
+        yield from _iter_edge_changes(left, right, name, edge, old_edges[edge], new_edges[edge])
 
 
-def _edge_changes(
+def _iter_edge_changes(
     left: _Side, right: _Side, name: str, edge: Edge, old: list[_Key], new: list[_Key]
 ) -> Iterator[Change]:
     for key in old:

@@ -22,7 +22,7 @@ BACK_ENDS = "contracts,recipe,platform,graph,chase,uml"
 
 _SCHEMAS_BY_SUFFIX = {".chase.json": "chase-contract", ".gr1c.json": "gr1c-strategy"}
 """Formats of other tools, which have no member ``format``."""
-_KEPT = "sysmlc-kept/1 "
+_COMMENT_PREFIX = "sysmlc-kept/1 "
 COUNTER = {
     "format": "sysmlc-contract/1",
     "name": "Counter",
@@ -153,10 +153,10 @@ def run(*arguments: object) -> str:
 def compile_documents(model: Path, out: Path, *options: object) -> Iterator[Document]:
     """Yield all documents that compiling a model writes and prints."""
     build = ("build", "--no-cache", "--emit", BACK_ENDS, "-o", out, *options, model)
-    yield _findings(f"{model.name}: findings", *build)
+    yield _run_json(f"{model.name}: findings", *build)
     yield from read_documents(out)
-    yield _findings(f"{model.name}: coverage", "coverage", model)
-    yield _sarif(f"{model.name}: coverage as SARIF", "coverage", model)
+    yield _run_json(f"{model.name}: coverage", "coverage", model)
+    yield _run_sarif(f"{model.name}: coverage as SARIF", "coverage", model)
 
 
 def command_documents(out: Path) -> Iterator[Document]:
@@ -164,15 +164,15 @@ def command_documents(out: Path) -> Iterator[Document]:
     gate, behaviour = EXAMPLES / "baygate" / "gate.uml", EXAMPLES / "baygate-behaviour"
     hall = EXAMPLES / "robots" / "hall.sysml"
     simulate = ("simulate", behaviour, "--scenario", behaviour / "scenarios" / "stopper.yaml")
-    yield _sarif("check", "check", "--no-cache", gate)
-    yield _findings("contracts check", "contracts", "check", gate)
-    yield _findings("simulate", *simulate)
-    yield _findings("robots", "robots", hall, "--no-cache", "-o", out / "hall")
-    yield _findings("diff", "diff", hall.with_suffix(".uml"), hall)
+    yield _run_sarif("check", "check", "--no-cache", gate)
+    yield _run_json("contracts check", "contracts", "check", gate)
+    yield _run_json("simulate", *simulate)
+    yield _run_json("robots", "robots", hall, "--no-cache", "-o", out / "hall")
+    yield _run_json("diff", "diff", hall.with_suffix(".uml"), hall)
     contract = out / "counter.contract.json"
     contract.write_text(json.dumps(COUNTER))
     for form in ("own", "table", "gr1c"):
-        yield _findings("synth", "synth", contract, "--machine", form, "-o", out / form)
+        yield _run_json("synth", "synth", contract, "--machine", form, "-o", out / form)
     yield from read_documents(out)
     yield from _manifest_with_kept_files(out / "kept")
 
@@ -187,11 +187,11 @@ def _manifest_with_kept_files(folder: Path) -> Iterator[Document]:
     yield from read_documents(out)
 
 
-def _findings(name: str, *arguments: object) -> Document:
-    return _document(name, json.loads(run(*arguments, "--format", "json")))
+def _run_json(name: str, *arguments: object) -> Document:
+    return _name_schema(name, json.loads(run(*arguments, "--format", "json")))
 
 
-def _sarif(name: str, *arguments: object) -> Document:
+def _run_sarif(name: str, *arguments: object) -> Document:
     return Document(name, "sarif", json.loads(run(*arguments, "--format", "sarif")))
 
 
@@ -199,15 +199,15 @@ def read_documents(folder: Path) -> Iterator[Document]:
     """Yield the JSON files in a folder, and the JSON in comments of its UML files."""
     for path in sorted(folder.rglob("*.json")):
         name = path.relative_to(folder.parent).as_posix()
-        yield _document(name, json.loads(path.read_text(encoding="utf-8")))
+        yield _name_schema(name, json.loads(path.read_text(encoding="utf-8")))
     for path in sorted(folder.rglob("*.uml")):
         for body in etree.parse(path).iter("body"):
-            if (body.text or "").startswith(_KEPT):
-                content = json.loads(body.text.removeprefix(_KEPT))
+            if (body.text or "").startswith(_COMMENT_PREFIX):
+                content = json.loads(body.text.removeprefix(_COMMENT_PREFIX))
                 yield Document(path.name, "sysmlc-kept", content)
 
 
-def _document(path: str, content: dict) -> Document:
+def _name_schema(path: str, content: dict) -> Document:
     for suffix, name in _SCHEMAS_BY_SUFFIX.items():
         if path.endswith(suffix):
             return Document(path, name, content)
@@ -231,20 +231,20 @@ def declared_properties(name: str) -> set[str]:
     schema = SCHEMAS[name]
     definitions = schema.get("$defs", {}).items()
     roots = [("", schema), *((f"/{key}", definition) for key, definition in definitions)]
-    return {f"{name}#{path}" for at, root in roots for path in _declared(root, at)}
+    return {f"{name}#{path}" for prefix, root in roots for path in _iter_declared(root, prefix)}
 
 
-def _declared(schema: object, at: str) -> Iterator[str]:
+def _iter_declared(schema: object, path: str) -> Iterator[str]:
     if not isinstance(schema, dict):
         return
     for key, inner in schema.get("properties", {}).items():
-        yield f"{at}/{key}"
-        yield from _declared(inner, f"{at}/{key}")
+        yield f"{path}/{key}"
+        yield from _iter_declared(inner, f"{path}/{key}")
     for keyword in ("items", "additionalProperties"):
-        yield from _declared(schema.get(keyword), at)
+        yield from _iter_declared(schema.get(keyword), path)
     for keyword in _COMBINATIONS:
         for branch in schema.get(keyword, ()):
-            yield from _declared(branch, at)
+            yield from _iter_declared(branch, path)
 
 
 def written_properties(document: Document) -> set[str]:
@@ -252,30 +252,30 @@ def written_properties(document: Document) -> set[str]:
     name = document.schema
     if name not in SCHEMAS:
         return set()
-    written = _written(_VALIDATORS[name], SCHEMAS[name], document.content, "")
+    written = _iter_written(_VALIDATORS[name], SCHEMAS[name], document.content, "")
     return {f"{name}#{path}" for path in written}
 
 
-def _written(
-    validator: Draft202012Validator, schema: object, value: object, at: str
+def _iter_written(
+    validator: Draft202012Validator, schema: object, value: object, path: str
 ) -> Iterator[str]:
     if not isinstance(schema, dict):
         return
     if "$ref" in schema:
         key = schema["$ref"].removeprefix("#/$defs/")
-        yield from _written(validator, validator.schema["$defs"][key], value, f"/{key}")
+        yield from _iter_written(validator, validator.schema["$defs"][key], value, f"/{key}")
     for keyword in _COMBINATIONS:
         for branch in schema.get(keyword, ()):
             if validator.evolve(schema=branch).is_valid(value):
-                yield from _written(validator, branch, value, at)
+                yield from _iter_written(validator, branch, value, path)
     if isinstance(value, dict):
         properties = schema.get("properties", {})
         for key, inner in value.items():
             if key in properties:
-                yield f"{at}/{key}"
-                yield from _written(validator, properties[key], inner, f"{at}/{key}")
+                yield f"{path}/{key}"
+                yield from _iter_written(validator, properties[key], inner, f"{path}/{key}")
             else:
-                yield from _written(validator, schema.get("additionalProperties"), inner, at)
+                yield from _iter_written(validator, schema.get("additionalProperties"), inner, path)
     elif isinstance(value, list):
         for item in value:
-            yield from _written(validator, schema.get("items"), item, at)
+            yield from _iter_written(validator, schema.get("items"), item, path)

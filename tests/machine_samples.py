@@ -23,31 +23,31 @@ Package p "Plant"
 
 
 def machine(*parts: str) -> str:
-    """A machine of one region with an initial pseudostate, the states A and B, and the parts."""
+    """Return a machine of one region: an initial pseudostate, the states A and B, and the parts."""
     return machine_of(region("r", 'State a "A"\n', 'State b "B"\n', arrow("i", "a"), *parts))
 
 
 def machine_of(*regions: str) -> str:
-    """A machine of these regions."""
-    return _OWNER.replace("{body}", _indented("".join(regions), 6))
+    """Return a machine of these regions."""
+    return _OWNER.replace("{body}", _indent("".join(regions), 6))
 
 
 def region(id: str, *parts: str) -> str:
-    """A region with an initial pseudostate ``i`` (of region ``r``) or ``<id>i``."""
+    """Return a region with an initial pseudostate: ``i`` in region ``r``, else ``<id>i``."""
     initial = "i" if id == "r" else f"{id}i"
     inside = f'Pseudostate {initial} subkind="initial"\n' + "".join(parts)
-    return f"Region {id}\n{_indented(inside, 2)}"
+    return f"Region {id}\n{_indent(inside, 2)}"
 
 
 def state(id: str, *regions: str) -> str:
-    """A state with regions."""
-    return f'State {id} "{id.upper()}"\n' + _indented("".join(regions), 2)
+    """Return a state with regions."""
+    return f'State {id} "{id.upper()}"\n' + _indent("".join(regions), 2)
 
 
 def arrow(
     source: str, target: str, on: str = "", guard: str = "", effect: str = "", after: str = ""
 ) -> str:
-    """A transition, triggered by a signal or by time."""
+    """Return a transition that a signal (*on*), a time (*after*) or the completion triggers."""
     id = f"{source}-{target}{f'-{on}' if on else ''}{f'-{len(guard)}' if guard else ''}"
     lines = [f"Transition {id}" + (f' guard="{guard}"' if guard else "")]
     lines += [f"  -> flow-source {source}", f"  -> flow-target {target}"]
@@ -62,9 +62,9 @@ def arrow(
 
 
 def choice(id: str = "x", kind: str = "choice") -> str:
-    """A pseudostate."""
+    """Return a pseudostate, a choice unless *kind* is given."""
     return f'Pseudostate {id} "{id}" subkind="{kind}"\n'
 
 
-def _indented(text: str, by: int) -> str:
+def _indent(text: str, by: int) -> str:
     return "".join(f"{' ' * by}{line}\n" for line in text.splitlines())

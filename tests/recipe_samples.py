@@ -1,17 +1,17 @@
-"""Small models in IR text that the explanations of the recipe rules are made of."""
+"""Small recipe models in IR text, for tests and for the explanations of the recipe rules."""
 
 
-def _quoted(text: str) -> str:
+def _quote(text: str) -> str:
     return f'"{text}"'
 
 
 def flows(*pairs: str) -> str:
-    """Control flows of an activity of the samples, ``a b [guard]`` each."""
+    """Return control flows of an activity; each pair is ``source target [guard]``."""
     return "".join(_flow(number, *pair.split(" ", 2)) for number, pair in enumerate(pairs))
 
 
 def _flow(number: int, source: str, target: str, guard: str = "") -> str:
-    words = f" guard={_quoted(guard)}" if guard else ""
+    words = f" guard={_quote(guard)}" if guard else ""
     return (
         f"    ControlFlow {source}-{target}-{number}{words}\n"
         f"      -> flow-source {source}\n      -> flow-target {target}\n"
@@ -130,8 +130,8 @@ STEPS = ("s g", "g l", "l d", "d a ok", "d b else", "a m", "b m", "m e")
 
 
 def task(nodes: str = NODES, steps: tuple[str, ...] = STEPS, **parts: str) -> str:
-    """The sample with a task; ``parts`` replace what is right in it."""
-    right = {
+    """Return the sample with a task; *parts* replace the values of a model without faults."""
+    defaults = {
         "have": "1",
         "need": "1",
         "ok": "",
@@ -142,16 +142,16 @@ def task(nodes: str = NODES, steps: tuple[str, ...] = STEPS, **parts: str) -> st
         "uri": ' tag.namespaceUri="urn:robot"',
         "place": "robot",
     }
-    return TASK.format(nodes=nodes, flows=flows(*steps), **{**right, **parts})
+    return TASK.format(nodes=nodes, flows=flows(*steps), **{**defaults, **parts})
 
 
 def recipe(*order: str, supplier: str = "robot") -> str:
-    """The sample with two tasks; flows and the supplier of the first may differ."""
+    """Return the sample with two tasks; flows and the supplier of the first may differ."""
     return RECIPE.format(flows=flows(*(order or ORDER)), supplier=supplier)
 
 
-def _inside_the_robot() -> str:
-    """The sample with a task whose function ``close`` belongs to the robot, a machine unsaid."""
+def _with_owned_function() -> str:
+    """Return the task sample; the robot owns the function ``close`` and is not marked a machine."""
     before, mark, rest = task().partition('  Activity close "Close"')
     function, open_, after = rest.partition('  Activity open "Open"')
     inner = "".join(f"  {line}\n" for line in (mark + function).splitlines())
@@ -160,5 +160,5 @@ def _inside_the_robot() -> str:
     return outer.replace(f'{camera} level="machine"\n', f"{camera}\n") + open_ + after
 
 
-OWNED_FUNCTION = _inside_the_robot()
-"""A machine that only its machine function tells."""
+OWNED_FUNCTION = _with_owned_function()
+"""A model in which only a machine function shows that the robot is a machine."""

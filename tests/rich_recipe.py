@@ -1,4 +1,4 @@
-"""A recipe that has every member of sysmlc-recipe which the examples do not have."""
+"""A recipe with every member of the format sysmlc-recipe that the examples do not use."""
 
 import recipe_samples as samples
 
@@ -47,9 +47,9 @@ tag.interruptible="true" tag.noWait="true"
 def rich_recipe() -> str:
     """Return the model in IR text."""
     text = samples.task(nodes=samples.NODES + _WAIT, steps=_STEPS)
-    for line, more in _TAGS.items():
+    for line, addition in _TAGS.items():
         assert line in text
-        text = text.replace(line, line + more)
+        text = text.replace(line, line + addition)
     text = text.replace('tag.acquire="gripper"', 'tag.acquire="gripper" tag.interruptible="true"')
     text += '  DataType speed "Speed"\n'
     text += '    Application speed.v stereotype="ValueType" namespace="urn:sysml" tag.unit="mm/s"\n'

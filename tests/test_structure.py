@@ -144,14 +144,14 @@ def test_imports_stand_at_the_top(module):
         for node in iter_runtime_nodes(function)
         for name in iter_imports(module, node)
     }
-    own = {name for name in nested if name.startswith("sysmlc")}
-    foreign = {name.partition(".")[0] for name in nested - own}
-    foreign -= SLOW_TO_IMPORT | PLATFORM_MODULES
-    assert not foreign or is_lazy_by_design(module)
-    assert not own or is_lazy_by_design(module)
+    internal = {name for name in nested if name.startswith("sysmlc")}
+    external = {name.partition(".")[0] for name in nested - internal}
+    external -= SLOW_TO_IMPORT | PLATFORM_MODULES
+    assert not external or is_lazy_by_design(module)
+    assert not internal or is_lazy_by_design(module)
 
 
-def test_the_tests_of_names_would_notice():
+def test_participles_are_told_from_verbs():
     assert is_participle("_joined")
     assert is_participle("beside")
     assert not is_participle("embed")
@@ -178,12 +178,12 @@ def test_the_pages_name_modules_that_exist():
     folders = ("compiler", "tests", "benchmarks", "docs")
     modules = {path.as_posix() for folder in folders for path in (root / folder).rglob("*.py")}
     # A repository may contain a module that is named like the package (untrusted-repositories.md).
-    foreign = {"sysmlc.py"}
+    example_names = {"sysmlc.py"}
     missing = {
         (page.name, name)
         for page in (root / "docs").rglob("*.md")
         for name in re.findall(r"`([\w/]+\.py)`", page.read_text(encoding="utf-8"))
-        if name not in foreign and not any(path.endswith(f"/{name}") for path in modules)
+        if name not in example_names and not any(path.endswith(f"/{name}") for path in modules)
     }
     assert missing == set()
 
@@ -202,17 +202,17 @@ def list_names_in_scope(node: ast.FunctionDef | ast.ClassDef) -> set[str]:
         )
     arguments = node.args
     optional = [argument for argument in (arguments.vararg, arguments.kwarg) if argument]
-    every = [*arguments.posonlyargs, *arguments.args, *arguments.kwonlyargs, *optional]
-    return {argument.arg for argument in every}
+    named = [*arguments.posonlyargs, *arguments.args, *arguments.kwonlyargs]
+    return {argument.arg for argument in (*named, *optional)}
 
 
-def iter_unknown_parameters(node: ast.AST, known: set[str]) -> Iterator[str]:
+def iter_unknown_parameters(node: ast.AST, parameters: set[str]) -> Iterator[str]:
     """Yield the names in ``*asterisks*`` in docstrings that are no parameters in scope."""
     for child in ast.iter_child_nodes(node):
         if not isinstance(child, ast.FunctionDef | ast.ClassDef):
-            yield from iter_unknown_parameters(child, known)
+            yield from iter_unknown_parameters(child, parameters)
             continue
-        in_scope = known | list_names_in_scope(child)
+        in_scope = parameters | list_names_in_scope(child)
         if isinstance(child, ast.FunctionDef):
             named = re.findall(r"(?<!\*)\*([a-z_]+)\*(?!\*)", ast.get_docstring(child) or "")
             yield from (f"{child.name}: *{name}*" for name in named if name not in in_scope)
