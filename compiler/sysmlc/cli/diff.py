@@ -152,9 +152,9 @@ def _locate(
 ) -> "Mapping[Place, Place]":
     """Return the lines and columns of the changes in the model at index *side*."""
     from sysmlc.diagnostics import Place
-    from sysmlc.driver.locations import Locator
+    from sysmlc.diagnostics.locations import complete_places
 
     refs = (change.new if side else change.old for change in changes)
     places = {Place(ref.file, ref.ordinal) for ref in refs if ref is not None and ref.file}
     sources = [source for compilation in sides[side].values() for source in compilation.sources]
-    return Locator(sources)(places)
+    return complete_places(sources, places)

@@ -53,6 +53,14 @@ def locate(
     return locations
 
 
+def complete_places(sources: Iterable[Source], places: Iterable[Place]) -> dict[Place, Place]:
+    """Return the places that can be found, each mapped to the same place with line and column."""
+    return {
+        place: Place(place.file, place.ordinal, place.offset, location.line, location.column)
+        for place, location in locate(sources, places).items()
+    }
+
+
 def find_positions(
     sources: Iterable[Source], ordinals: Mapping[str, Iterable[int]]
 ) -> dict[str, dict[int, tuple[int, int]]]:

@@ -1,6 +1,7 @@
 """One compile: inputs -> graph -> passes -> back ends, as a value that is still in memory."""
 
 from collections.abc import Callable, Iterator, Mapping
+from functools import partial
 from pathlib import Path
 from traceback import format_exc
 from typing import TYPE_CHECKING
@@ -10,10 +11,10 @@ from msgspec import Struct, field
 from sysmlc.backends.base import DERIVED, Backend, EmitOptions, InputFile
 from sysmlc.config import Config
 from sysmlc.diagnostics import Coverage, Diagnostic, Place, Sink, Subject
+from sysmlc.diagnostics.locations import complete_places
 from sysmlc.diagnostics.sink import suppress
 from sysmlc.driver import faults, registry
 from sysmlc.driver.inputs import find_unit_root
-from sysmlc.driver.locations import Locator
 from sysmlc.driver.reading import Reading, load_companions, read_unit, store_refinements
 from sysmlc.driver.validation import validate
 from sysmlc.driver.withholding import find_withheld_artefacts
@@ -260,7 +261,7 @@ class _CompilationRun:
         return (*reading.sources(), *overlays, *self._drawings)
 
     def _emit(self, inputs: tuple[InputFile, ...], reading: Reading) -> list[Artefact]:
-        locate = Locator(self._list_sources(reading))
+        locate = partial(complete_places, self._list_sources(reading))
         request = self._request
         options = EmitOptions(request.templates, inputs, locate, request.diagrams)
         failed: set[str] = set()
