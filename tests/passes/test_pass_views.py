@@ -2,7 +2,7 @@
 
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Edge, Kind
-from sysmlc.ir.drawing import Drawing
+from sysmlc.ir.pending import Drawing
 from sysmlc.ir.text import parse_text, print_text
 from sysmlc.ir.verify import verify
 from sysmlc.passes import pipeline

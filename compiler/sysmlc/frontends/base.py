@@ -92,4 +92,4 @@ class DiagramReader(Protocol):
     def read_drawings(
         self, sources: Sequence[Source], beside: Sequence[Source], graph: Graph, sink: Sink
     ) -> None:
-        """Store the diagrams of authors (``ir.drawing.Drawing``) for the pass ``views``."""
+        """Store the diagrams of authors (``ir.pending.Drawing``) for the pass ``views``."""

@@ -3,9 +3,10 @@
 from importlib import import_module
 from typing import TYPE_CHECKING
 
-from sysmlc.ir.element import AttrValue, Element, Reference, derived_id
+from sysmlc.ir.element import AttrValue, Element, derived_id
 from sysmlc.ir.graph import Graph
 from sysmlc.ir.kinds import Edge, Kind
+from sysmlc.ir.pending import Reference
 from sysmlc.ir.verify import verify
 
 if TYPE_CHECKING:

@@ -1,10 +1,9 @@
-"""The nodes of the graph, their ids, and references to nodes that are not resolved yet."""
+"""The nodes of the graph, and their ids."""
 
 import re
 from hashlib import sha1
-from typing import NamedTuple
 
-from sysmlc.ir.kinds import Edge, Kind
+from sysmlc.ir.kinds import Kind
 
 AttrValue = str | int | float | bool | None | tuple["AttrValue", ...]
 """Value of an attribute: a JSON value, with tuples for lists."""
@@ -50,23 +49,6 @@ class Element:
     def subkind(self) -> str:
         """The subdivision of the kind ("decision", "call-operation", ...), or ""."""
         return str(self.attrs.get("subkind", ""))
-
-
-class Reference(NamedTuple):
-    """An edge to an element that the front end has not found.
-
-    ``target`` is an id of the graph, or an ``href`` (``file#id``) into another file. ``kind`` and
-    ``name`` describe an external target as far as the source does; the external stub takes them
-    when the file is not part of the compile unit. ``ordinal`` is the position of the reference in
-    its file, -1 for the position of its source.
-    """
-
-    edge: Edge
-    source: str
-    target: str
-    kind: Kind = Kind.CLASS
-    name: str = ""
-    ordinal: int = -1
 
 
 # -- ids ---------------------------------------------------------------------------------------

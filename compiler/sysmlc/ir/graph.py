@@ -9,8 +9,9 @@ from collections.abc import Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING, TypeVar, cast
 
 from sysmlc.diagnostics import Place, Subject
-from sysmlc.ir.element import AttrValue, Element, Reference
+from sysmlc.ir.element import AttrValue, Element
 from sysmlc.ir.kinds import Edge, Kind
+from sysmlc.ir.pending import Reference
 
 if TYPE_CHECKING:
     from networkx import DiGraph

@@ -11,9 +11,10 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import NoReturn, TypeVar
 
-from sysmlc.ir.element import AttrValue, Element, Reference
+from sysmlc.ir.element import AttrValue, Element
 from sysmlc.ir.graph import Graph
 from sysmlc.ir.kinds import Edge, Kind
+from sysmlc.ir.pending import Reference
 
 _E = TypeVar("_E", bound=StrEnum)
 _BARE = re.compile(r"[\w.:/#!+~%-]+")

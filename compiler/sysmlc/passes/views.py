@@ -7,8 +7,8 @@ from msgspec import Struct
 
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind
-from sysmlc.ir.drawing import Drawing
 from sysmlc.ir.element import derived_id
+from sysmlc.ir.pending import Drawing
 
 MISSING = rule(
     "SM162",

@@ -13,7 +13,7 @@ from sysmlc.frontends.xmi import namespaces
 from sysmlc.frontends.xmi.namespaces import default_namespace
 from sysmlc.frontends.xmi.snapshots.entries import is_snapshot
 from sysmlc.ir import Graph
-from sysmlc.ir.drawing import Drawing
+from sysmlc.ir.pending import Drawing
 from sysmlc.sources import Source, SourceError
 from sysmlc.sources.xml import make_parser, parse
 

@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 
 from sysmlc.frontends.xmi.diagrams import contents
-from sysmlc.ir.drawing import Drawing
+from sysmlc.ir.pending import Drawing
 from sysmlc.sources import Source
 from sysmlc.sources.xml import make_plain_parser, parse
 

@@ -7,7 +7,7 @@ from typing import TypeVar
 from sysmlc.diagnostics import Place, Severity, Sink, Subject, rule
 from sysmlc.frontends.xmi.diagrams import enterprise_architect, magicdraw, papyrus
 from sysmlc.frontends.xmi.diagrams.magicdraw import ShapeReader
-from sysmlc.ir.drawing import Drawing
+from sysmlc.ir.pending import Drawing
 from sysmlc.sources import Source, SourceError
 
 _T = TypeVar("_T")
