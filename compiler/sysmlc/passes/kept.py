@@ -1,14 +1,13 @@
 """Pass ``kept``: restores facts that UML cannot express from a comment of the back end ``uml``."""
 
-import json
 from collections.abc import Iterable, Iterator
-from typing import Any, ClassVar, NamedTuple
+from typing import ClassVar
 
 from msgspec import Struct
 
 from sysmlc.diagnostics import Severity, Sink, rule
-from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind
-from sysmlc.ir.round_trip import PREFIX
+from sysmlc.ir import Edge, Element, Graph, Kind
+from sysmlc.ir.round_trip import PREFIX, Record, StoredElement, decode_record
 
 UNREADABLE = rule(
     "SM189",
@@ -17,35 +16,6 @@ UNREADABLE = rule(
     "the comment that preserves facts which UML cannot express was changed: it is ignored",
     help="restore the comment, or remove it and save the plant again",
 )
-
-
-class _StoredElement(NamedTuple):
-    """An element that the UML model lacks.
-
-    References to it lead to the external element ``href`` in the UML model.
-    """
-
-    id: str
-    kind: Kind
-    name: str
-    owner: str | None
-    href: str | None
-
-
-class _Record(Struct, frozen=True):
-    """The content of the comment (metamodels/sysmlc-kept.schema.json).
-
-    ``made`` are the ids of elements that only the UML model has, and which are removed. ``applied``
-    are the ids of packages to which profiles were applied for the roles of their elements.
-    """
-
-    elements: list[_StoredElement]
-    attributes: dict[str, dict[str, AttrValue]]
-    names: dict[str, str]
-    owners: dict[str, str | None]
-    edges: list[tuple[Edge, str, str]]
-    made: list[str]
-    applied: list[str]
 
 
 class Kept(Struct, frozen=True):
@@ -60,67 +30,15 @@ class Kept(Struct, frozen=True):
             body = comment.attrs.get("body")
             if isinstance(body, str) and body.startswith(PREFIX):
                 try:
-                    record = _read_record(json.loads(body.removeprefix(PREFIX)))
-                except (ValueError, TypeError, KeyError, AttributeError):
+                    record = decode_record(body)
+                except ValueError:
                     sink.report(UNREADABLE, graph.subject(comment))
                 else:
                     graph.remove(comment)
                     _restore(graph, record)
 
 
-# -- reading -----------------------------------------------------------------------------------
-
-
-def _read_record(data: Any) -> _Record:  # noqa: ANN401 - JSON
-    """Return the record of the JSON data.
-
-    Raises ValueError, TypeError, KeyError or AttributeError for data of another form.
-    """
-    return _Record(
-        elements=[
-            _StoredElement(
-                _require_text(id),
-                Kind(kind),
-                _require_text(name),
-                _read_optional_text(owner),
-                _read_optional_text(href),
-            )
-            for id, kind, name, owner, href in data["elements"]
-        ],
-        attributes={
-            id: {_require_text(name): _read_value(value) for name, value in attrs.items()}
-            for id, attrs in data["attributes"].items()
-        },
-        names={id: _require_text(name) for id, name in data["names"].items()},
-        owners={id: _read_optional_text(owner) for id, owner in data["owners"].items()},
-        edges=[(Edge(edge), _require_text(a), _require_text(b)) for edge, a, b in data["edges"]],
-        made=[_require_text(id) for id in data["made"]],
-        applied=[_require_text(id) for id in data["applied"]],
-    )
-
-
-def _require_text(value: object) -> str:
-    if isinstance(value, str):
-        return value
-    raise TypeError(value)
-
-
-def _read_optional_text(value: object) -> str | None:
-    return None if value is None else _require_text(value)
-
-
-def _read_value(value: object) -> AttrValue:
-    if isinstance(value, list):
-        return tuple(_read_value(item) for item in value)
-    if value is None or isinstance(value, str | int | float):
-        return value
-    raise TypeError(value)
-
-
-# -- restoring ---------------------------------------------------------------------------------
-
-
-def _restore(graph: Graph, record: _Record) -> None:
+def _restore(graph: Graph, record: Record) -> None:
     for element in _list_present(graph, record.made):
         graph.remove(element)
     _remove_profiles(graph, record.applied)
@@ -139,7 +57,7 @@ def _list_present(graph: Graph, ids: Iterable[str]) -> Iterator[Element]:
     return (element for id in ids if (element := graph.get(id)) is not None)
 
 
-def _add_elements(graph: Graph, elements: list[_StoredElement]) -> None:
+def _add_elements(graph: Graph, elements: list[StoredElement]) -> None:
     for stored in elements:
         if stored.id and stored.id not in graph and (stored.owner is None or stored.owner in graph):
             graph.add(Element(stored.id, stored.kind, stored.name, stored.owner))
@@ -155,7 +73,7 @@ def _move_elements(graph: Graph, owners: dict[str, str | None]) -> None:
             graph.move(element, new_owner)
 
 
-def _redirect_references(graph: Graph, elements: list[_StoredElement]) -> None:
+def _redirect_references(graph: Graph, elements: list[StoredElement]) -> None:
     """Redirect references to external stubs to the restored elements that these stand for."""
     restored = {stored.id for stored in elements}
     external = [

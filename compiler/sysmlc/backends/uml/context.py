@@ -84,7 +84,7 @@ class Context:
         """Count an edge that UML cannot express."""
         facts = self.losses.round_trip
         if facts is not None and edge in _EDGES:
-            facts.store_edge(edge, holder, target)
+            facts.store_edge(Edge(edge), holder, target)
         kinds = {"kind": str(holder.kind), "target": str(target.kind)}
         self.losses.record(UNSUPPORTED_EDGE, holder, edge=edge, **kinds)
 

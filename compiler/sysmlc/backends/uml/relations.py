@@ -95,7 +95,7 @@ def _add_dependency(context: Context, element: Element, edge: Edge, target: Elem
         context.relation_stereotypes.append((stereotype, dependency.id))
     if context.losses.round_trip is not None:
         context.losses.round_trip.added.append(dependency.id)
-        context.losses.round_trip.store_edge(edge.value, element, target)
+        context.losses.round_trip.store_edge(edge, element, target)
     context.losses.record_approximation(element, f"'{edge}' from {element.kind}", metaclass)
 
 
@@ -222,7 +222,7 @@ def _write_part_with_port(context: Context, end: Element, targets: _Targets) -> 
     """Write the last part on the path to the port; SysML's stereotype has the whole path."""
     if context.losses.round_trip is not None:
         for target in targets:
-            context.losses.round_trip.store_edge("path", end, target)
+            context.losses.round_trip.store_edge(Edge.PATH, end, target)
     role = context.graph.target(end, Edge.ROLE)
     last = targets[-1]
     if role is None or role.kind is Kind.PORT or last is role or len(targets) == 1:

@@ -4,14 +4,13 @@ A model from AutomationML loses nothing: what UML cannot express is stored in a 
 pass ``kept`` restores it when the saved model is read.
 """
 
-import json
 from dataclasses import dataclass, field
 
 from sysmlc.backends.losses import LossCounter
 from sysmlc.backends.uml.hrefs import make_href
 from sysmlc.diagnostics import Rule, Severity, Sink, rule
 from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind
-from sysmlc.ir.round_trip import PREFIX
+from sysmlc.ir.round_trip import Record, StoredElement, encode_record
 
 UNSUPPORTED_KIND = rule(
     "SM720",
@@ -77,7 +76,6 @@ _UNSUPPORTED = frozenset({UNSUPPORTED_KIND, UNSUPPORTED_EDGE, UNSUPPORTED_ATTRIB
 
 _IMPLIED_EDGES = frozenset({Edge.OWNS, Edge.FEATURE})
 """Edges that containment expresses, or that passes add again."""
-_Json = str | int | float | bool | None | list["_Json"]
 
 
 def is_plant(graph: Graph) -> bool:
@@ -98,10 +96,10 @@ class RoundTripFacts:
     profiled: list[str] = field(default_factory=list)
     """Ids of packages that apply SysML only because the saved model does."""
     _elements: dict[str, Element] = field(default_factory=dict)
-    _attributes: dict[str, dict[str, _Json]] = field(default_factory=dict)
+    _attributes: dict[str, dict[str, AttrValue]] = field(default_factory=dict)
     _names: dict[str, str] = field(default_factory=dict)
     _owners: dict[str, str | None] = field(default_factory=dict)
-    _edges: dict[tuple[str, str, str], None] = field(default_factory=dict)
+    _edges: dict[tuple[Edge, str, str], None] = field(default_factory=dict)
 
     def store_attribute(self, element: Element, name: str) -> None:
         """Store an attribute; ``name`` is the name of an element that has none in UML."""
@@ -109,14 +107,14 @@ class RoundTripFacts:
             self._names[self.ids[element.id]] = element.name
         elif name in element.attrs:
             attributes = self._attributes.setdefault(self.ids[element.id], {})
-            attributes[name] = self._encode_value(element.attrs[name])
+            attributes[name] = self._replace_ids(element.attrs[name])
 
     def store_owner(self, element: Element) -> None:
         """Store the owner of an element that is saved with another owner."""
         owner = element.owner
         self._owners[self.ids[element.id]] = None if owner is None else self.ids[owner]
 
-    def store_edge(self, edge: str, source: Element, target: Element) -> None:
+    def store_edge(self, edge: Edge, source: Element, target: Element) -> None:
         """Store an edge."""
         self._edges[edge, self.ids[source.id], self.ids[target.id]] = None
 
@@ -129,7 +127,7 @@ class RoundTripFacts:
             self.store_attribute(element, name)
         for edge in Edge:
             for target in () if edge in _IMPLIED_EDGES else self.graph.targets(element, edge):
-                self.store_edge(edge.value, element, target)
+                self.store_edge(edge, element, target)
                 if "href" in target.attrs:
                     self.store_element(target)
 
@@ -145,29 +143,29 @@ class RoundTripFacts:
         # Owners come before the elements that they own, as the reader needs them.
         members = (item for root in self.graph.roots() for item in self.graph.subtree(root))
         elements = [item for item in members if item.id in self._elements]
-        record = {
-            "elements": [self._encode_element(element) for element in elements],
-            "attributes": self._attributes,
-            "names": self._names,
-            "owners": self._owners,
-            "edges": [list(edge) for edge in self._edges],
-            "made": self.added,
-            "applied": self.profiled,
-        }
-        return PREFIX + json.dumps(record, ensure_ascii=True, separators=(",", ":"))
+        record = Record(
+            elements=[self._describe_element(element) for element in elements],
+            attributes=self._attributes,
+            names=self._names,
+            owners=self._owners,
+            edges=list(self._edges),
+            made=self.added,
+            applied=self.profiled,
+        )
+        return encode_record(record)
 
-    def _encode_element(self, element: Element) -> list[str | None]:
-        """Return id, kind, name, owner and, for an external stub, the href."""
+    def _describe_element(self, element: Element) -> StoredElement:
+        """Return the element as the comment stores it; only an external stub has an href."""
         owner = None if element.owner is None else self.ids[element.owner]
         href = None
         if element.attrs.get("external"):
             href = str(element.attrs.get("href") or make_href(self.graph, element))
-        return [self.ids[element.id], element.kind.value, element.name, owner, href]
+        return StoredElement(self.ids[element.id], element.kind, element.name, owner, href)
 
-    def _encode_value(self, value: AttrValue) -> _Json:
-        """Return a value as JSON; ids become those of the file."""
+    def _replace_ids(self, value: AttrValue) -> AttrValue:
+        """Return a value in which ids of the graph are replaced by those of the file."""
         if isinstance(value, tuple):
-            return [self._encode_value(item) for item in value]
+            return tuple(self._replace_ids(item) for item in value)
         return self.ids.get(value, value) if isinstance(value, str) else value
 
 
