@@ -166,7 +166,7 @@ class FaultyBackend:
 
 
 def test_a_syntax_error_in_the_text_is_reported_at_its_element(monkeypatch):
-    monkeypatch.setattr("sysmlc.backends.sysmlx.backend.TEXT", FaultyBackend())
+    monkeypatch.setattr("sysmlc.backends.sysmlx.TEXT", FaultyBackend())
     graph = parse_text('Package plant "Plant"\n  Class gate "Gate"\n')
     output, sink = Output(), Sink()
     BACKEND.emit(graph, output, sink, EmitOptions())

@@ -1,7 +1,8 @@
-"""Interchange files of SysML v2 (XMI): from the syntax trees of v2 inputs, else from v2 text.
+"""Back end ``sysmlx``: the model as interchange files of SysML v2 (XMI).
 
-For other inputs, the back end ``sysml`` prints the graph as text, which is parsed again: the
-interchange form then contains what the text expresses.
+They are written from the syntax trees of SysML v2 inputs. For other inputs, the back end ``sysml``
+prints the graph as text, which is parsed again: the interchange form contains what the text
+expresses.
 """
 
 from collections.abc import Sequence
