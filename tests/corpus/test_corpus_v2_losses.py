@@ -11,7 +11,7 @@ import pytest
 from reported_losses import find_unreported
 from test_corpus_v2_text import read, units
 
-from sysmlc.backends.sysml.document import write_document
+from sysmlc.backends.sysml.backend import write_document
 from sysmlc.backends.sysml.printing import print_lines
 from sysmlc.diagnostics import Coverage, Severity, Sink
 from sysmlc.driver import Request, compile_model, select_backends

@@ -10,7 +10,7 @@ import gc
 import pytest
 from plants import baygate
 
-from sysmlc.backends.sysml.document import print_document
+from sysmlc.backends.sysml.backend import print_document
 from sysmlc.diagnostics import Coverage, Sink
 from sysmlc.driver import Request, compile_model, select_backends
 from sysmlc.frontends.sysml import FRONTEND

@@ -1,7 +1,6 @@
 """Writes graphs as SysML v2 text, for the tests of the back end ``sysml``."""
 
-from sysmlc.backends.sysml.backend import LIBRARY
-from sysmlc.backends.sysml.document import print_document
+from sysmlc.backends.sysml.backend import LIBRARY, print_document
 from sysmlc.diagnostics import Coverage, Sink
 from sysmlc.frontends.xmi import FRONTEND
 from sysmlc.ir import Graph, parse_text

@@ -1,12 +1,40 @@
-"""Back end ``sysml``: the compile unit as one text of SysML v2, with ``SysMLC.sysml`` if needed."""
+"""Back end ``sysml``: the compile unit as one text of SysML v2, with ``SysMLC.sysml`` if needed.
+
+The text is written in steps: ``placement`` decides where members stand, ``naming`` names them,
+``WRITERS`` write their lines, and ``rules`` counts the losses.
+"""
 
 from msgspec import Struct
 
 from sysmlc.backends.base import EmitOptions, name_compile_unit
-from sysmlc.backends.sysml.document import print_document
+from sysmlc.backends.sysml import (
+    actions,
+    activity_flows,
+    behaviours,
+    comments,
+    connections,
+    constraints,
+    definitions,
+    dependencies,
+    features,
+    instances,
+    interactions,
+    states,
+    use_cases,
+)
+from sysmlc.backends.sysml.annotations import make_annotation
+from sysmlc.backends.sysml.coverage import record_omissions
+from sysmlc.backends.sysml.naming import assign_names, rename_hiding_members
+from sysmlc.backends.sysml.placement import make_plan
+from sysmlc.backends.sysml.plan import Member
+from sysmlc.backends.sysml.printing import Line, print_lines, quote_name
+from sysmlc.backends.sysml.profiles import define_stereotypes
+from sysmlc.backends.sysml.rules import Losses
+from sysmlc.backends.sysml.writer import WriteMember, Writer
 from sysmlc.diagnostics import Sink
-from sysmlc.ir import Graph
+from sysmlc.ir import Graph, Kind
 from sysmlc.support import resources
+from sysmlc.support.interpreter import allow_recursion
 from sysmlc.support.output import Output, assign_file_names
 
 LIBRARY = "SysMLC.sysml"
@@ -29,5 +57,118 @@ class SysmlBackend(Struct, frozen=True):
             library = resources.read_text("metamodels", LIBRARY)
             output.add(f"sysml/{LIBRARY}", library, (), self.name)
 
+
+def print_document(graph: Graph, sink: Sink) -> tuple[str, bool]:
+    """Return the text of a graph, and whether it uses the library ``SysMLC``. Report the losses."""
+    writer, lines = write_document(graph)
+    writer.losses.report(sink)
+    return print_lines(lines), writer.uses_library
+
+
+def write_document(graph: Graph) -> tuple[Writer, list[Line]]:
+    """Return the lines of the text, and the writer with the losses of each element.
+
+    The text is written again until no reference leads to a private or a dropped element: whether
+    the text refers to an element is known only after it is written.
+    """
+    public_ids: frozenset[str] = frozenset()
+    dropped: dict[str, str] = {}
+    while True:
+        writer, lines = _write_once(graph, public_ids, frozenset(dropped))
+        exposed = writer.plan.exposed
+        if public_ids >= exposed and dropped.keys() >= writer.dropped.keys():
+            break
+        public_ids, dropped = public_ids | exposed, dropped | writer.dropped
+    record_omissions(writer, dropped)
+    return writer, lines
+
+
+def _write_once(
+    graph: Graph, public_ids: frozenset[str], dropped: frozenset[str]
+) -> tuple[Writer, list[Line]]:
+    losses = Losses(graph)
+    plan = make_plan(graph, losses, dropped)
+    plan.metadata_definitions = define_stereotypes(plan)
+    assign_names(plan)
+    rename_hiding_members(plan)
+    documents = graph.of_kind(Kind.DOCUMENT)
+    caex_files = frozenset(d.source for d in documents if d.subkind == "caex")
+    writer = Writer(graph, plan, losses, WRITERS, public_ids=public_ids, caex_files=caex_files)
+    dependencies.prewrite_dependencies(writer)
+    with allow_recursion(plan.depth):
+        return writer, [line for root in plan.roots for line in writer.write_member(root)]
+
+
+def _write_added_member(writer: Writer, member: Member) -> list[Line]:
+    """Write a member without an element: a package, a metadata definition or its attribute."""
+    if member.shape.keyword == "package":
+        return definitions.write_package(writer, member)
+    type_ = member.added_type
+    head = f"{member.shape.keyword} {quote_name(member.name)}{' : ' if type_ else ''}{type_}"
+    profile = member.profile_namespace
+    body = [make_annotation(writer, member, "External", {"href": profile})] if profile else []
+    return [Line(head, body + writer.write_members(member))]
+
+
+WRITERS: dict[str, WriteMember] = {
+    "": _write_added_member,
+    Kind.PACKAGE: definitions.write_package,
+    Kind.PROFILE: definitions.write_package,
+    Kind.IMPORT: definitions.write_import,
+    Kind.CLASS: definitions.write_class,
+    Kind.COMPONENT: definitions.write_definition,
+    Kind.ACTOR: definitions.write_definition,
+    Kind.INTERFACE: definitions.write_definition,
+    Kind.SIGNAL: definitions.write_definition,
+    Kind.ITEM: definitions.write_definition,
+    Kind.STEREOTYPE: definitions.write_definition,
+    Kind.DATA_TYPE: definitions.write_value_type,
+    Kind.ENUMERATION: definitions.write_enumeration,
+    Kind.ENUMERATION_LITERAL: definitions.write_enumeration_literal,
+    Kind.REQUIREMENT: definitions.write_requirement,
+    Kind.PROPERTY: features.write_property,
+    Kind.FLOW_PROPERTY: features.write_feature,
+    Kind.PORT: features.write_port,
+    Kind.OPERATION: features.write_operation,
+    Kind.RECEPTION: features.write_reception,
+    Kind.PARAMETER: features.write_parameter,
+    Kind.PIN: features.write_pin,
+    Kind.ACTIVITY_PARAMETER: features.write_pin,
+    Kind.OBJECT_NODE: features.write_object_node,
+    Kind.DATA_STORE: features.write_object_node,
+    Kind.ASSOCIATION: connections.write_association,
+    Kind.CONNECTOR: connections.write_connector,
+    Kind.ITEM_FLOW: connections.write_item_flow,
+    Kind.INSTANCE: instances.write_instance,
+    Kind.CONSTRAINT: constraints.write_constraint,
+    Kind.DEPENDENCY: dependencies.write_dependency,
+    Kind.COMMENT: comments.write_comment,
+    Kind.DOCUMENT: comments.write_document,
+    Kind.METADATA: comments.write_document,
+    Kind.ALIAS: comments.write_document,
+    Kind.FACET: comments.write_group,
+    Kind.GROUP: comments.write_group,
+    Kind.ACTIVITY: behaviours.write_behaviour,
+    Kind.STATE_MACHINE: behaviours.write_behaviour,
+    Kind.TEST_CASE: behaviours.write_behaviour,
+    Kind.INTERACTION: behaviours.write_behaviour,
+    Kind.ACTION: actions.write_action,
+    Kind.STRUCTURED: actions.write_structured_node,
+    Kind.CONTROL: actions.write_control_node,
+    Kind.CONTROL_FLOW: actions.write_control_flow,
+    Kind.OBJECT_FLOW: activity_flows.write_object_flow,
+    Kind.STATE: states.write_state,
+    Kind.REGION: states.write_region,
+    Kind.PSEUDOSTATE: states.write_pseudostate,
+    Kind.TRANSITION: states.write_transition,
+    Kind.LIFELINE: interactions.write_lifeline,
+    Kind.MESSAGE: interactions.write_message,
+    Kind.FRAGMENT: interactions.write_fragment,
+    Kind.OPERAND: interactions.write_fragment,
+    Kind.USE_CASE: use_cases.write_use_case,
+    Kind.EXTEND: use_cases.write_extend,
+    Kind.EXTENSION_POINT: use_cases.write_extension_point,
+}
+"""Writer by kind of element; the empty kind is for members that the back end adds itself."""
 
 BACKEND = SysmlBackend()
