@@ -1,5 +1,6 @@
-"""The command line in a folder of its own, with one small pass that always finds the same."""
+"""A folder for each test, with the command line in it and one small pass instead of all."""
 
+import json
 from dataclasses import dataclass
 from pathlib import Path
 from typing import ClassVar
@@ -49,12 +50,12 @@ Package pkg "Plant"
       -> typed-by pallet
   Signal pallet "Pallet"
 """
-FAULTY = PLANT.replace('gate.in "in"', "gate.in")
+LOAD_ALL_PASSES = registry.load_passes
 
 
 @dataclass(frozen=True)
-class Ports:
-    """Wants names and types of ports."""
+class CheckPorts:
+    """Report ports without a name (an error) or without a type (a warning)."""
 
     name: ClassVar[str] = "ports"
     after: ClassVar[tuple[str, ...]] = ()
@@ -67,8 +68,8 @@ class Ports:
                 sink.report(UNTYPED, graph.subject(port), port=port.name)
 
 
-class Here:
-    """A working folder and the command line in it."""
+class Workspace:
+    """A folder and the command line that runs in it."""
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
@@ -82,26 +83,38 @@ class Here:
     def read(self, name: str) -> str:
         return (self.folder / name).read_text()
 
-    def files(self, name: str = "out") -> list[str]:
+    def list_files(self, name: str = "out") -> list[str]:
+        """Return the files in the folder *name*, relative to it."""
         folder = self.folder / name
-        found = [path for path in folder.rglob("*") if path.is_file()]
-        return sorted(path.relative_to(folder).as_posix() for path in found)
+        paths = [path for path in folder.rglob("*") if path.is_file()]
+        return sorted(path.relative_to(folder).as_posix() for path in paths)
+
+    def list_inputs(self, folder: str = "out") -> list[str]:
+        """Return the paths of the inputs in the manifest of an output folder."""
+        manifest = json.loads(self.read(f"{folder}/manifest.json"))
+        return [entry["path"] for entry in manifest["inputs"]]
 
     def sysmlc(self, *args: str, text: str = ""):
-        """Run the command line; ``exit_code``, ``stdout`` and ``stderr`` of what it did.
+        """Run the command line with *text* as its input.
 
-        ``text`` is what is typed.
+        Return the result of click: ``exit_code``, ``stdout`` and ``stderr``.
         """
         return CliRunner().invoke(group.sysmlc, list(args), input=text, catch_exceptions=False)
 
 
 @pytest.fixture
-def here(tmp_path, monkeypatch):
-    """A folder with a right model ``plant.ir``, in which the commands run."""
+def workspace(tmp_path, monkeypatch):
+    """A folder with ``plant.ir``, a model without errors. Commands run only the pass above."""
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(registry, "load_passes", lambda options: [Ports()])
+    monkeypatch.setattr(registry, "load_passes", lambda options: [CheckPorts()])
     monkeypatch.delenv("NO_COLOR", raising=False)
     (tmp_path / ".git").mkdir()
-    made = Here(tmp_path)
-    made.write("plant.ir", PLANT)
-    return made
+    workspace = Workspace(tmp_path)
+    workspace.write("plant.ir", PLANT)
+    return workspace
+
+
+@pytest.fixture
+def all_passes(workspace, monkeypatch):
+    """Let the commands in the workspace run all passes."""
+    monkeypatch.setattr(registry, "load_passes", LOAD_ALL_PASSES)

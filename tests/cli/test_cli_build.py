@@ -1,6 +1,5 @@
 """``sysmlc build`` and ``sysmlc check``: a model, the command, the expected lines."""
 
-import json
 import os
 
 import pytest
@@ -16,29 +15,29 @@ UNTYPED = FAULTY.replace("gate.in", 'gate.in "in"')
 OUTPUTS = ["coverage.json", "graph.json", "manifest.json", "trace.json"]
 
 
-def test_a_model_without_a_command_word_is_built(here):
-    done = here.sysmlc("plant.ir", "-o", "out", "--emit", "graph")
-    assert (done.exit_code, done.stdout, done.stderr) == (0, "out: 4 files, 4 changed\n", "")
-    assert here.files() == OUTPUTS
+def test_a_model_without_a_command_word_is_built(workspace):
+    result = workspace.sysmlc("plant.ir", "-o", "out", "--emit", "graph")
+    assert (result.exit_code, result.stdout, result.stderr) == (0, "out: 4 files, 4 changed\n", "")
+    assert workspace.list_files() == OUTPUTS
 
 
-def test_so_it_is_when_an_option_comes_first(here):
-    assert here.sysmlc("--emit", "graph", "plant.ir").exit_code == 0
-    assert here.files() == OUTPUTS
+def test_an_option_before_the_model_builds_it_too(workspace):
+    assert workspace.sysmlc("--emit", "graph", "plant.ir").exit_code == 0
+    assert workspace.list_files() == OUTPUTS
 
 
-def test_a_second_run_changes_nothing(here):
-    here.sysmlc("plant.ir", "--emit", "graph")
-    os.utime(here.folder / "out/graph.json", (1, 1))
-    assert here.sysmlc("plant.ir", "--emit", "graph").stdout == "out: 4 files, 0 changed\n"
-    assert (here.folder / "out/graph.json").stat().st_mtime == 1
+def test_a_second_run_changes_nothing(workspace):
+    workspace.sysmlc("plant.ir", "--emit", "graph")
+    os.utime(workspace.folder / "out/graph.json", (1, 1))
+    assert workspace.sysmlc("plant.ir", "--emit", "graph").stdout == "out: 4 files, 0 changed\n"
+    assert (workspace.folder / "out/graph.json").stat().st_mtime == 1
 
 
-def test_an_error_is_exit_code_1(here):
-    here.write("faulty.ir", FAULTY)
-    done = here.sysmlc("faulty.ir", "--emit", "graph")
-    assert done.exit_code == 1
-    assert done.stderr == (
+def test_an_error_is_exit_code_1(workspace):
+    workspace.write("faulty.ir", FAULTY)
+    result = workspace.sysmlc("faulty.ir", "--emit", "graph")
+    assert result.exit_code == 1
+    assert result.stderr == (
         "error[SM942 test-nameless-port]: a port of 'Gate' has no name\n"
         "  --> faulty.ir (Plant::Gate::<Port>)\n"
         "  help: name the port\n"
@@ -48,9 +47,9 @@ def test_an_error_is_exit_code_1(here):
 
 
 @pytest.mark.parametrize(("option", "code"), [([], 0), (["--strict"], 1)])
-def test_a_warning_is_exit_code_0_and_with_strict_1(here, option, code):
-    here.write("untyped.ir", UNTYPED)
-    assert here.sysmlc("check", "untyped.ir", *option).exit_code == code
+def test_a_warning_is_exit_code_0_and_with_strict_1(workspace, option, code):
+    workspace.write("untyped.ir", UNTYPED)
+    assert workspace.sysmlc("check", "untyped.ir", *option).exit_code == code
 
 
 @pytest.mark.parametrize(
@@ -71,135 +70,134 @@ def test_a_warning_is_exit_code_0_and_with_strict_1(here, option, code):
         (["plant.ir", "--config", "no.toml"], "no.toml: cannot be opened"),
     ],
 )
-def test_what_cannot_be_done_is_one_sentence_and_exit_code_2(here, args, sentence):
-    done = here.sysmlc(*args)
-    assert done.exit_code == 2
-    assert sentence in done.stderr
-    assert "Traceback" not in done.stderr
+def test_a_wrong_argument_is_one_sentence_and_exit_code_2(workspace, args, sentence):
+    result = workspace.sysmlc(*args)
+    assert result.exit_code == 2
+    assert sentence in result.stderr
+    assert "Traceback" not in result.stderr
 
 
-def test_nothing_is_written_when_a_file_is_missing(here):
-    here.sysmlc("plant.ir", "no.ir", "--emit", "graph")
-    assert not (here.folder / "out").exists()
+def test_nothing_is_written_when_a_file_is_missing(workspace):
+    workspace.sysmlc("plant.ir", "no.ir", "--emit", "graph")
+    assert not (workspace.folder / "out").exists()
 
 
-def test_a_misspelt_command_is_answered_with_the_right_one(here):
-    assert "did you mean 'check'?" in here.sysmlc("chekc", "plant.ir").stderr
+def test_a_misspelt_command_is_answered_with_a_suggestion(workspace):
+    assert "did you mean 'check'?" in workspace.sysmlc("chekc", "plant.ir").stderr
 
 
-def test_a_command_word_beats_a_folder_of_that_name(here):
-    here.write("check/plant.ir", here.read("plant.ir"))
-    assert "name a model" in here.sysmlc("check").stderr
-    assert here.sysmlc("./check", "--emit", "graph").exit_code == 0
+def test_a_command_word_takes_precedence_over_a_folder_of_that_name(workspace):
+    workspace.write("check/plant.ir", workspace.read("plant.ir"))
+    assert "name a model" in workspace.sysmlc("check").stderr
+    assert workspace.sysmlc("./check", "--emit", "graph").exit_code == 0
 
 
 # -- build --check -------------------------------------------------------------------------------
 
 
-def test_check_passes_when_the_committed_outputs_are_up_to_date(here):
-    here.sysmlc("plant.ir", "--emit", "graph")
-    assert here.sysmlc("build", "plant.ir", "--emit", "graph", "--check").exit_code == 0
+def test_check_passes_when_the_committed_outputs_are_up_to_date(workspace):
+    workspace.sysmlc("plant.ir", "--emit", "graph")
+    assert workspace.sysmlc("build", "plant.ir", "--emit", "graph", "--check").exit_code == 0
 
 
-def test_check_lists_what_is_stale_missing_or_too_much_and_writes_nothing(here):
-    here.sysmlc("plant.ir", "--emit", "graph,ir")
-    (here.folder / "out/graph.json").write_text("{}")
-    (here.folder / "out/trace.json").unlink()
-    done = here.sysmlc("build", "plant.ir", "--emit", "graph", "--check")
-    assert done.exit_code == 1
-    assert done.stderr == "".join(
+def test_check_lists_stale_missing_and_superfluous_files_and_writes_nothing(workspace):
+    workspace.sysmlc("plant.ir", "--emit", "graph,ir")
+    (workspace.folder / "out/graph.json").write_text("{}")
+    (workspace.folder / "out/trace.json").unlink()
+    result = workspace.sysmlc("build", "plant.ir", "--emit", "graph", "--check")
+    assert result.exit_code == 1
+    assert result.stderr == "".join(
         f"not up to date: out/{name}\n"
         for name in ("graph.ir", "graph.json", "manifest.json", "trace.json")
     )
-    assert here.read("out/graph.json") == "{}"
+    assert workspace.read("out/graph.json") == "{}"
 
 
 # -- what is emitted -----------------------------------------------------------------------------
 
 
-def test_plus_adds_and_plain_names_replace(here, monkeypatch):
+def test_emit_with_plus_adds_to_the_default_and_without_replaces_it(workspace, monkeypatch):
     monkeypatch.setattr(
         registry,
         "_BACKENDS",
         {"graph": "sysmlc.backends.graph:JSON", "ir": "sysmlc.backends.graph:TEXT"},
     )
-    here.sysmlc("plant.ir", "-o", "none")
-    here.sysmlc("plant.ir", "-o", "added", "--emit", "+ir")
-    here.sysmlc("plant.ir", "-o", "both", "--emit", "graph,+ir")
-    assert "graph.ir" not in here.files("none")
-    assert "graph.ir" in here.files("added")
-    assert {"graph.ir", "graph.json"} <= set(here.files("both"))
+    workspace.sysmlc("plant.ir", "-o", "none")
+    workspace.sysmlc("plant.ir", "-o", "added", "--emit", "+ir")
+    workspace.sysmlc("plant.ir", "-o", "both", "--emit", "graph,+ir")
+    assert "graph.ir" not in workspace.list_files("none")
+    assert "graph.ir" in workspace.list_files("added")
+    assert {"graph.ir", "graph.json"} <= set(workspace.list_files("both"))
 
 
-def test_backends_lists_them_with_the_default_ones_marked(here, monkeypatch):
+def test_backends_lists_the_back_ends(workspace, monkeypatch):
     monkeypatch.setattr(registry, "_BACKENDS", {"graph": "sysmlc.backends.graph:JSON"})
-    assert here.sysmlc("backends").stdout == "  graph  the refined graph as graph.json\n"
+    assert workspace.sysmlc("backends").stdout == "  graph  the refined graph as graph.json\n"
 
 
-def test_print_after_shows_the_graph_on_standard_output(here):
-    done = here.sysmlc("check", "plant.ir", "--emit", "graph", "--print-after", "read")
-    assert done.stdout.startswith('// after read\nPackage pkg "Plant" @plant.ir:-1\n')
+def test_print_after_shows_the_graph_on_standard_output(workspace):
+    result = workspace.sysmlc("check", "plant.ir", "--emit", "graph", "--print-after", "read")
+    assert result.stdout.startswith('// after read\nPackage pkg "Plant" @plant.ir:-1\n')
 
 
-def test_verbose_says_steps_and_files(here):
-    done = here.sysmlc("plant.ir", "--emit", "graph", "-v")
-    steps = [line.split("  ")[-1] for line in done.stderr.splitlines()]
+def test_verbose_lists_steps_and_changed_files(workspace):
+    result = workspace.sysmlc("plant.ir", "--emit", "graph", "-v")
+    steps = [line.split("  ")[-1] for line in result.stderr.splitlines()]
     assert steps[:3] == ["read 1 ir", "pass ports", "emit graph"]
     assert steps[3] == "changed out/graph.json"
 
 
-def test_strict_input_is_clean_when_everything_is_mapped(here):
-    assert here.sysmlc("check", "plant.ir", "--emit", "graph", "--strict-input").exit_code == 0
+def test_strict_input_is_clean_when_everything_is_mapped(workspace):
+    assert workspace.sysmlc("check", "plant.ir", "--emit", "graph", "--strict-input").exit_code == 0
 
 
 # -- configuration -------------------------------------------------------------------------------
 
 
-def test_the_configuration_sets_back_ends_folder_and_severities(here):
-    here.write(
+def test_the_configuration_sets_back_ends_folder_and_severities(workspace):
+    workspace.write(
         "sysmlc.toml",
         'output = "gen"\nemit = ["ir"]\nstrict = true\n\n[rules]\nmissing-file = "error"\n',
     )
-    here.write("models/plant.ir", here.read("plant.ir"))
-    done = here.sysmlc("models/plant.ir")
-    assert done.stdout == "gen: 4 files, 4 changed\n"
-    assert json.loads(here.read("gen/manifest.json"))["inputs"][0]["path"] == "models/plant.ir"
+    workspace.write("models/plant.ir", workspace.read("plant.ir"))
+    result = workspace.sysmlc("models/plant.ir")
+    assert result.stdout == "gen: 4 files, 4 changed\n"
+    assert workspace.list_inputs("gen") == ["models/plant.ir"]
 
 
-def test_the_command_line_beats_the_configuration(here):
-    here.write("sysmlc.toml", 'output = "gen"\nemit = ["ir"]\n')
-    here.sysmlc("plant.ir", "-o", "other", "--emit", "graph")
-    assert here.files("other") == OUTPUTS
+def test_options_take_precedence_over_the_configuration(workspace):
+    workspace.write("sysmlc.toml", 'output = "gen"\nemit = ["ir"]\n')
+    workspace.sysmlc("plant.ir", "-o", "other", "--emit", "graph")
+    assert workspace.list_files("other") == OUTPUTS
 
 
-def test_units_of_the_configuration_are_built_without_a_model(here):
-    here.write("b/extra.ir", 'Package b "B"\n')
-    here.write(
+def test_units_of_the_configuration_are_built_without_a_model(workspace):
+    workspace.write("b/extra.ir", 'Package b "B"\n')
+    workspace.write(
         "sysmlc.toml",
         'emit = ["graph"]\n\n[[model]]\nname = "a"\nfiles = ["plant.ir"]\n\n'
         '[[model]]\nname = "b"\nfiles = ["b/*.ir", "plant.ir"]\noutput = "gen/b"\n',
     )
-    done = here.sysmlc("build")
-    assert done.stdout == "out/a: 4 files, 4 changed\ngen/b: 4 files, 4 changed\n"
-    names = [entry["path"] for entry in json.loads(here.read("gen/b/manifest.json"))["inputs"]]
-    assert names == ["b/extra.ir", "plant.ir"]
+    result = workspace.sysmlc("build")
+    assert result.stdout == "out/a: 4 files, 4 changed\ngen/b: 4 files, 4 changed\n"
+    assert workspace.list_inputs("gen/b") == ["b/extra.ir", "plant.ir"]
 
 
-def test_a_file_of_a_unit_brings_the_unit_with_it(here):
-    here.write("extra.ir", 'Package b "B"\n')
-    here.write("sysmlc.toml", 'emit = ["graph"]\n[[model]]\nname = "all"\nfiles = ["*.ir"]\n')
-    here.sysmlc("plant.ir", "-o", "out")
-    assert len(json.loads(here.read("out/manifest.json"))["inputs"]) == 2
+def test_naming_a_file_of_a_unit_compiles_the_whole_unit(workspace):
+    workspace.write("extra.ir", 'Package b "B"\n')
+    workspace.write("sysmlc.toml", 'emit = ["graph"]\n[[model]]\nname = "all"\nfiles = ["*.ir"]\n')
+    workspace.sysmlc("plant.ir", "-o", "out")
+    assert workspace.list_inputs() == ["extra.ir", "plant.ir"]
 
 
-def test_an_accepted_finding_is_not_shown(here):
-    here.write("untyped.ir", UNTYPED)
-    here.write(
+def test_a_suppression_that_matches_nothing_is_reported(workspace):
+    workspace.write("untyped.ir", UNTYPED)
+    workspace.write(
         "sysmlc.toml",
         '[[suppress]]\nrule = "missing-file"\nelement = "Plant::*"\nreason = "test"\n',
     )
-    done = here.sysmlc("check", ".", "--emit", "graph", "--format", "concise")
-    assert "SM902 unused-suppression" in done.stderr
+    result = workspace.sysmlc("check", ".", "--emit", "graph", "--format", "concise")
+    assert "SM902 unused-suppression" in result.stderr
 
 
 @pytest.mark.parametrize(
@@ -213,17 +211,17 @@ def test_an_accepted_finding_is_not_shown(here):
         ("strict = \n", "sysmlc.toml:1:10: Invalid value"),
     ],
 )
-def test_a_wrong_configuration_says_where_and_what_was_meant(here, text, sentence):
-    here.write("sysmlc.toml", text)
-    done = here.sysmlc("plant.ir", "--emit", "graph")
-    assert done.exit_code == 2
-    assert sentence in done.stderr
+def test_a_fault_in_the_configuration_has_a_location_and_a_suggestion(workspace, text, sentence):
+    workspace.write("sysmlc.toml", text)
+    result = workspace.sysmlc("plant.ir", "--emit", "graph")
+    assert result.exit_code == 2
+    assert sentence in result.stderr
 
 
-def test_pyproject_serves_when_there_is_no_file_of_our_own(here):
-    here.write("pyproject.toml", '[tool.sysmlc]\noutput = "gen"\n')
-    here.sysmlc("plant.ir", "--emit", "graph")
-    assert here.files("gen") == OUTPUTS
-    here.write("sysmlc.toml", 'output = "own"\n')
-    here.sysmlc("plant.ir", "--emit", "graph")
-    assert here.files("own") == OUTPUTS
+def test_pyproject_is_used_when_there_is_no_sysmlc_toml(workspace):
+    workspace.write("pyproject.toml", '[tool.sysmlc]\noutput = "gen"\n')
+    workspace.sysmlc("plant.ir", "--emit", "graph")
+    assert workspace.list_files("gen") == OUTPUTS
+    workspace.write("sysmlc.toml", 'output = "own"\n')
+    workspace.sysmlc("plant.ir", "--emit", "graph")
+    assert workspace.list_files("own") == OUTPUTS

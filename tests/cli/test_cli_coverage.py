@@ -1,4 +1,4 @@
-"""``sysmlc coverage``: what became of every element, with places, reasons and shares."""
+"""``sysmlc coverage``: the verdict on every element, with locations, reasons and shares."""
 
 import json
 import re
@@ -58,29 +58,29 @@ uml:Class: 1 external, stands for an element in no file of the unit [SM160 exter
 """
 
 
-def squeezed(text):
+def collapse_blanks(text):
     return [" ".join(line.split()) for line in text.splitlines()]
 
 
 @pytest.fixture
-def plant(here):
-    here.write("plant.uml", PLANT)
-    return here
+def plant(workspace):
+    workspace.write("plant.uml", PLANT)
+    return workspace
 
 
-def test_types_come_worst_first_with_places_and_rules(plant):
-    done = plant.sysmlc("coverage", "plant.uml")
-    assert (done.exit_code, done.stderr) == (0, "")
-    assert squeezed(done.stdout) == squeezed(TEXT)
+def test_types_are_sorted_by_coverage_with_locations_and_rules(plant):
+    result = plant.sysmlc("coverage", "plant.uml")
+    assert (result.exit_code, result.stderr) == (0, "")
+    assert collapse_blanks(result.stdout) == collapse_blanks(TEXT)
 
 
-def test_columns_stand_below_each_other(plant):
+def test_columns_are_aligned(plant):
     lines = plant.sysmlc("coverage", "plant.uml").stdout.splitlines()
     table = lines[2 : lines.index("", 3)]
     assert {len(line) for line in table} == {len(table[0])}
 
 
-def test_colours_are_for_terminals_and_move_no_column(plant):
+def test_colours_are_optional_and_move_no_column(plant):
     files = measure_coverage(Request(inputs=(plant.folder / "plant.uml",))).files
     plain, coloured = coverage.render_text(files), coverage.render_text(files, color=True)
     assert "\x1b" not in plain
@@ -88,23 +88,23 @@ def test_colours_are_for_terminals_and_move_no_column(plant):
     assert re.sub(r"\x1b\[\d+m", "", coloured) == plain
 
 
-def test_what_a_front_end_only_counts_is_said_to_have_no_place():
+def test_elements_that_are_only_counted_are_shown_as_having_no_place():
     totals = {"mapped": 5, "approximated": 1, "unsupported": 2, "external": 0}
     totals["ignored_notation"] = 4
     file = FileReport("big.xml", totals, {"sysml.Slot": totals}, ())
-    last = coverage.render_text([file]).splitlines()[-1]
-    assert last == "big.xml: 3 of these elements without a place"
+    last_line = coverage.render_text([file]).splitlines()[-1]
+    assert last_line == "big.xml: 3 of these elements without a place"
 
 
-def test_three_examples_are_shown_unless_all_are_asked_for(here):
+def test_three_examples_are_shown_unless_all_elements_are_requested(workspace):
     many = "".join(f'<packagedElement xmi:type="uml:Nonsense" name="n{n}"/>' for n in range(5))
-    here.write("plant.uml", PLANT.replace("</uml:Model>", f"{many}</uml:Model>"))
-    few = here.sysmlc("coverage", "plant.uml").stdout
-    assert "  and 4 more\n" in few
-    assert "Plant::n4" not in few
-    every = here.sysmlc("coverage", "plant.uml", "--elements").stdout
-    assert "Plant::n4" in every
-    assert "more\n" not in every
+    workspace.write("plant.uml", PLANT.replace("</uml:Model>", f"{many}</uml:Model>"))
+    shortened = workspace.sysmlc("coverage", "plant.uml").stdout
+    assert "  and 4 more\n" in shortened
+    assert "Plant::n4" not in shortened
+    complete = workspace.sysmlc("coverage", "plant.uml", "--elements").stdout
+    assert "Plant::n4" in complete
+    assert "more\n" not in complete
 
 
 def test_json_follows_the_schema_of_coverage_json_and_adds_up(plant):
@@ -114,8 +114,10 @@ def test_json_follows_the_schema_of_coverage_json_and_adds_up(plant):
     assert list(Draft202012Validator(schema).iter_errors(content)) == []
     (file,) = content["files"]
     for verdict in ("approximated", "ignored_notation", "unsupported", "external"):
-        lost = [loss for loss in file["losses"] if loss["verdict"] == verdict]
-        assert sum(loss["elements"] for loss in lost) == file[verdict] == content["total"][verdict]
+        losses = [loss for loss in file["losses"] if loss["verdict"] == verdict]
+        assert (
+            sum(loss["elements"] for loss in losses) == file[verdict] == content["total"][verdict]
+        )
     assert sum(content["shares"].values()) == 100
     assert file["losses"][2] == {
         "type": "uml:Nonsense",
@@ -140,9 +142,9 @@ UNKNOWN = """<?xml version="1.0" encoding="UTF-8"?>
 <flows:FlowProperty xmi:id="f" base_Property="p" directon="in"/></xmi:XMI>"""
 
 
-def test_what_nobody_knows_has_its_own_rule_and_reason_also_inside_one_another(here):
-    here.write("m.uml", UNKNOWN)
-    (file,) = json.loads(here.sysmlc("coverage", "m.uml", "--format", "json").stdout)["files"]
+def test_unknown_attributes_features_and_tags_have_rules_of_their_own_even_when_nested(workspace):
+    workspace.write("m.uml", UNKNOWN)
+    (file,) = json.loads(workspace.sysmlc("coverage", "m.uml", "--format", "json").stdout)["files"]
     assert [(x["elements"], x["code"], x["element"], x["reason"]) for x in file["losses"]] == [
         (1, "SM124", "M::C::p", "read without 'colour'"),
         (1, "SM123", "M::C::p", "kept as text: no feature of UML has its name"),
@@ -160,7 +162,7 @@ def test_coverage_json_of_a_build_has_the_same_counts(plant):
     assert built == shown
 
 
-def test_sarif_has_one_result_for_each_element_that_is_lost(plant):
+def test_sarif_has_one_result_for_each_lost_element(plant):
     log = json.loads(plant.sysmlc("coverage", "plant.uml", "--format", "sarif").stdout)
     results = log["runs"][0]["results"]
     lines = [r["locations"][0]["physicalLocation"]["region"]["startLine"] for r in results]
@@ -172,7 +174,7 @@ def test_sarif_has_one_result_for_each_element_that_is_lost(plant):
     assert len({r["partialFingerprints"]["sysmlc/v1"] for r in results}) == 4
 
 
-def test_what_a_further_input_holds_is_not_external(plant):
+def test_an_element_in_another_input_is_not_external(plant):
     plant.write(
         "pallets.uml",
         '<uml:Model xmlns:uml="http://www.eclipse.org/uml2/5.0.0/UML"'
@@ -194,7 +196,7 @@ def test_an_impossible_limit_is_refused(plant):
     assert plant.sysmlc("coverage", "plant.uml", "--fail-under", "101").exit_code == 2
 
 
-def test_several_files_have_a_table_of_their_own_and_none_counts_twice(plant):
+def test_several_files_are_listed_and_none_counts_twice(plant):
     plant.write("good.uml", '<uml:Model xmlns:uml="http://www.eclipse.org/uml2/5.0.0/UML"/>')
     lines = plant.sysmlc("coverage", "plant.uml", "good.uml").stdout.splitlines()
     assert lines[0] == "60.0 % covered: 6 of 10 elements that mean something"
@@ -204,34 +206,34 @@ def test_several_files_have_a_table_of_their_own_and_none_counts_twice(plant):
 def test_a_long_name_leaves_room_for_the_numbers(plant):
     plant.write("good.uml", '<uml:Model xmlns:uml="http://www.eclipse.org/uml2/5.0.0/UML"/>')
     plant.write(f"a{'x' * 90}.uml", PLANT)
-    done = plant.sysmlc("coverage", "good.uml", f"a{'x' * 90}.uml")
-    assert done.stdout.splitlines()[3].startswith(f"a{'x' * 40}...{'x' * 16}.uml  ")
+    result = plant.sysmlc("coverage", "good.uml", f"a{'x' * 90}.uml")
+    assert result.stdout.splitlines()[3].startswith(f"a{'x' * 40}...{'x' * 16}.uml  ")
 
 
 def test_a_damaged_file_is_reported_and_exit_code_1(plant):
     plant.write("bad.uml", PLANT[:400])
-    done = plant.sysmlc("coverage", "plant.uml", "bad.uml", "--format", "json")
-    assert done.exit_code == 1
-    assert [file["file"] for file in json.loads(done.stdout)["files"]] == ["plant.uml"]
-    assert "error[SM100 malformed-file]" in done.stderr
+    result = plant.sysmlc("coverage", "plant.uml", "bad.uml", "--format", "json")
+    assert result.exit_code == 1
+    assert [file["file"] for file in json.loads(result.stdout)["files"]] == ["plant.uml"]
+    assert "error[SM100 malformed-file]" in result.stderr
 
 
-def test_a_missing_file_is_exit_code_2(here):
-    done = here.sysmlc("coverage", "nix.uml")
-    assert (done.exit_code, done.stdout) == (2, "")
-    assert "SM170" in done.stderr
+def test_a_missing_file_is_exit_code_2(workspace):
+    result = workspace.sysmlc("coverage", "nix.uml")
+    assert (result.exit_code, result.stdout) == (2, "")
+    assert "SM170" in result.stderr
 
 
-def test_a_folder_without_models_has_no_table(here):
-    (here.folder / "empty").mkdir()
-    done = here.sysmlc("coverage", "empty")
-    assert (done.exit_code, done.stdout) == (1, "")
-    assert "SM173" in done.stderr
+def test_a_folder_without_models_has_no_table(workspace):
+    (workspace.folder / "empty").mkdir()
+    result = workspace.sysmlc("coverage", "empty")
+    assert (result.exit_code, result.stdout) == (1, "")
+    assert "SM173" in result.stderr
 
 
-def test_a_name_cannot_steer_the_terminal(here):
-    here.write("plant.uml", PLANT.replace('name="settling"', 'name="&#x9b;2J"'))
-    assert "\x9b" not in here.sysmlc("coverage", "plant.uml").stdout
+def test_control_characters_of_names_do_not_reach_the_terminal(workspace):
+    workspace.write("plant.uml", PLANT.replace('name="settling"', 'name="&#x9b;2J"'))
+    assert "\x9b" not in workspace.sysmlc("coverage", "plant.uml").stdout
 
 
 @pytest.mark.parametrize(
@@ -241,7 +243,7 @@ def test_shares_add_up(counts):
     assert sum(compute_permille(counts).values()) == (1000 if sum(counts.values()) else 0)
 
 
-def test_a_loss_is_never_rounded_away():
+def test_a_small_loss_is_not_rounded_to_full_coverage():
     counts = {"mapped": 999_999, "approximated": 0, "unsupported": 1, "external": 0}
     assert compute_covered_permille(counts) == 999
     assert compute_covered_permille({"ignored_notation": 7}) == 1000

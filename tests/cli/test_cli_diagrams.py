@@ -5,7 +5,6 @@ import json
 import pytest
 
 from sysmlc.cli import group
-from sysmlc.passes import pipeline
 
 MODEL = """\
 <uml:Model xmlns:xmi="http://www.omg.org/spec/XMI/20131001"
@@ -27,21 +26,16 @@ AUTHORED = "diagrams/author/Plant.Gates.class.puml"
 
 
 @pytest.fixture
-def plant(here, monkeypatch):
-    from sysmlc.driver import registry
-
-    monkeypatch.setattr(
-        registry, "load_passes", lambda options: [*map(pipeline.load, pipeline.NAMES)]
-    )
-    here.write("plant.uml", MODEL)
-    here.write("plant.notation", NOTATION)
-    return here
+def plant(workspace, all_passes):
+    workspace.write("plant.uml", MODEL)
+    workspace.write("plant.notation", NOTATION)
+    return workspace
 
 
-def built(here, *args):
-    done = here.sysmlc("build", "plant.uml", "--emit", "plantuml", *args)
-    assert done.exit_code == 0, done.stderr
-    return [path for path in here.files() if path.endswith(".puml")]
+def build_diagrams(workspace, *args):
+    result = workspace.sysmlc("build", "plant.uml", "--emit", "plantuml", *args)
+    assert result.exit_code == 0, result.stderr
+    return [path for path in workspace.list_files() if path.endswith(".puml")]
 
 
 @pytest.mark.parametrize(
@@ -53,52 +47,53 @@ def built(here, *args):
         (("--diagrams", "both"), [DERIVED, AUTHORED]),
     ],
 )
-def test_derived_authored_or_both(plant, args, files):
-    assert built(plant, *args) == files
+def test_diagrams_are_derived_authored_or_both(plant, args, files):
+    assert build_diagrams(plant, *args) == files
 
 
-def test_the_configuration_chooses_and_the_option_goes_first(plant):
+def test_the_option_takes_precedence_over_the_configuration(plant):
     plant.write("sysmlc.toml", 'diagrams = "author"\n')
-    assert built(plant) == [AUTHORED]
-    assert built(plant, "--diagrams", "derived") == [DERIVED]
+    assert build_diagrams(plant) == [AUTHORED]
+    assert build_diagrams(plant, "--diagrams", "derived") == [DERIVED]
 
 
-def test_what_is_no_choice_is_refused(plant):
+def test_an_unknown_choice_is_refused(plant):
     assert plant.sysmlc("plant.uml", "--diagrams", "mine").exit_code == 2
     plant.write("sysmlc.toml", 'diagrams = "mine"\n')
     assert plant.sysmlc("plant.uml").exit_code == 2
 
 
-def test_an_author_who_draws_something_else_is_seen_at_once(plant):
-    built(plant, "--diagrams", "author")
+def test_a_changed_notation_file_changes_the_authored_diagram(plant):
+    build_diagrams(plant, "--diagrams", "author")
     assert "Gate" in plant.read(f"out/{AUTHORED}")
     plant.write("plant.notation", NOTATION.replace("#gate", "#lift"))
-    built(plant, "--diagrams", "author")
+    build_diagrams(plant, "--diagrams", "author")
     assert "Lift" in plant.read(f"out/{AUTHORED}")
     assert "**Gate**" not in plant.read(f"out/{AUTHORED}")
 
 
-def test_manifest_and_trace_lead_to_the_notation_file(plant):
-    built(plant, "--diagrams", "author")
-    inputs = [one["path"] for one in json.loads(plant.read("out/manifest.json"))["inputs"]]
-    assert inputs == ["plant.uml", "plant.notation"]
+def test_manifest_and_trace_name_the_notation_file(plant):
+    build_diagrams(plant, "--diagrams", "author")
+    assert plant.list_inputs() == ["plant.uml", "plant.notation"]
     elements = json.loads(plant.read("out/trace.json"))["elements"]
-    (view,) = [one for one in elements if one["qualified_name"] == "Plant::Gates"]
+    (view,) = [entry for entry in elements if entry["qualified_name"] == "Plant::Gates"]
     assert view["source"] == {"file": "plant.notation", "line": 1, "column": 1}
 
 
-def test_findings_are_the_same_from_the_cache(plant):
+def test_diagnostics_from_the_cache_are_the_same(plant):
     plant.write("plant.notation", NOTATION.replace("#gate", "#gone"))
     args = ("check", "plant.uml", "--diagrams", "author", "--format", "json")
     first, second = plant.sysmlc(*args), plant.sysmlc(*args)
     assert first.stdout == second.stdout
-    found = [one for one in json.loads(first.stdout)["diagnostics"] if one["code"] == "SM162"]
-    assert [(one["file"], one["line"], one["xpath"]) for one in found] == [
-        ("plant.notation", 1, "/notation:Diagram")
-    ]
+    diagnostics = json.loads(first.stdout)["diagnostics"]
+    assert [
+        (diagnostic["file"], diagnostic["line"], diagnostic["xpath"])
+        for diagnostic in diagnostics
+        if diagnostic["code"] == "SM162"
+    ] == [("plant.notation", 1, "/notation:Diagram")]
 
 
-def test_the_option_stands_where_diagrams_are_made():
+def test_the_commands_that_write_diagrams_have_the_option():
     for name in ("build", "check", "watch"):
         command = group.sysmlc.get_command(None, name)
-        assert "--diagrams" in {option for p in command.params for option in p.opts}
+        assert "--diagrams" in {option for parameter in command.params for option in parameter.opts}

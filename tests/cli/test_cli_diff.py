@@ -1,4 +1,4 @@
-"""``sysmlc diff``: forms, exit codes, and models of several formats."""
+"""``sysmlc diff``: output formats, exit codes, models in several languages."""
 
 import json
 from random import Random
@@ -7,7 +7,6 @@ import jsonschema
 import pytest
 
 from dialects.random_models import random_model
-from sysmlc.driver import registry
 from sysmlc.support import resources
 
 SCHEMA = json.loads(resources.read_text("metamodels", "sysmlc-diff.schema.json"))
@@ -48,7 +47,7 @@ NEW = (
 )
 
 
-TEXT = """\
+DIFFERENCES = """\
 Lib::Gate
   ~ connector link: rewired, ends: p_in -- st.in => outfeed -- st.in
   ~ port outfeed: renamed, was p_out
@@ -78,56 +77,62 @@ MARKDOWN = """\
 |---|---|---|---|---|
 | `~` | value `speed` | changed: default | `1.5` | `2.0` |
 """
-REAL_PASSES = registry.load_passes
 
 
 @pytest.fixture
-def plants(here, monkeypatch):
-    monkeypatch.setattr(registry, "load_passes", REAL_PASSES)
-    here.write("old.aml", OLD)
-    here.write("new.aml", NEW)
-    return here
+def plants(workspace, all_passes):
+    workspace.write("old.aml", OLD)
+    workspace.write("new.aml", NEW)
+    return workspace
 
 
-def test_equal_models_are_0(plants):
-    done = plants.sysmlc("diff", "old.aml", "old.aml")
-    assert (done.exit_code, done.stdout, done.stderr) == (0, "no differences\n", "")
+def test_equal_models_are_exit_code_0(plants):
+    result = plants.sysmlc("diff", "old.aml", "old.aml")
+    assert (result.exit_code, result.stdout, result.stderr) == (0, "no differences\n", "")
 
 
-def test_differences_are_1_and_stand_below_their_owners(plants):
-    done = plants.sysmlc("diff", "old.aml", "new.aml")
-    assert done.exit_code == 1
-    assert done.stdout == TEXT
+def test_differences_are_exit_code_1_and_grouped_by_owner(plants):
+    result = plants.sysmlc("diff", "old.aml", "new.aml")
+    assert result.exit_code == 1
+    assert result.stdout == DIFFERENCES
 
 
-def test_the_documentation_shows_what_is_printed(plants):
+def test_the_documentation_shows_the_printed_differences(plants):
     page = (resources.find_root() / "docs" / "compare-two-models.md").read_text("utf-8")
-    assert indented(TEXT) in page
+    assert indent(DIFFERENCES) in page
 
 
-def indented(text):
+def indent(text):
     return "".join(f"    {line}\n" if line else "\n" for line in text.splitlines())
 
 
 @pytest.mark.parametrize(
-    ("word", "found"),
+    ("name", "message"),
     [
         ("defualt", "'defualt': did you mean 'default'?"),
         ("colour", "'colour': these models have no such attribute"),
     ],
 )
-def test_a_word_that_nothing_is_called_cannot_be_ignored(plants, word, found):
-    done = plants.sysmlc("diff", "old.aml", "new.aml", "--ignore", f"id,{word}")
-    assert done.exit_code == 2
-    assert f"Error: Invalid value for '--ignore': {found}" in done.stderr
+def test_an_unknown_attribute_cannot_be_ignored(plants, name, message):
+    result = plants.sysmlc("diff", "old.aml", "new.aml", "--ignore", f"id,{name}")
+    assert result.exit_code == 2
+    assert f"Error: Invalid value for '--ignore': {message}" in result.stderr
 
 
-WORDS = ["id", "default", "default_value", "unit", "typed-by", "Comment", "id,source,trace"]
+IGNORABLE_NAMES = [
+    "id",
+    "default",
+    "default_value",
+    "unit",
+    "typed-by",
+    "Comment",
+    "id,source,trace",
+]
 
 
-@pytest.mark.parametrize("word", WORDS)
-def test_what_a_model_may_say_can_be_ignored(plants, word):
-    assert plants.sysmlc("diff", "old.aml", "old.aml", "--ignore", word).exit_code == 0
+@pytest.mark.parametrize("name", IGNORABLE_NAMES)
+def test_attributes_relations_and_kinds_can_be_ignored(plants, name):
+    assert plants.sysmlc("diff", "old.aml", "old.aml", "--ignore", name).exit_code == 0
 
 
 UNITS = """\
@@ -142,8 +147,8 @@ Types
 """
 
 
-def test_another_unit_is_told_once(plants):
-    """And not as another type and another quantity, too; nothing of it counts when ignored."""
+def test_a_changed_unit_is_one_difference(plants):
+    """Type and quantity follow from the unit, so they are no differences of their own."""
     body = (
         '<CAEXFile SchemaVersion="3.0" FileName="p.aml"><SystemUnitClassLib Name="Lib">'
         '<SystemUnitClass Name="C"><Attribute Name="plain" AttributeDataType="xs:double" Unit="m"/>'
@@ -158,32 +163,32 @@ def test_another_unit_is_told_once(plants):
     assert plants.sysmlc("diff", "m.aml", "mm.aml", "--ignore", "unit").exit_code == 0
 
 
-def test_another_type_with_another_unit_is_told_too(plants):
+def test_a_changed_type_is_a_difference_beside_the_changed_unit(plants):
     body = (
         '<CAEXFile SchemaVersion="3.0" FileName="p.aml"><SystemUnitClassLib Name="Lib">'
         '<SystemUnitClass Name="C"><Attribute Name="v" AttributeDataType="xs:double" Unit="m"/>'
         "</SystemUnitClass></SystemUnitClassLib></CAEXFile>"
     )
     plants.folder.joinpath("m.aml").write_text(body)
-    changed = body.replace('"m"', '"kg"').replace("xs:double", "xs:int")
-    plants.folder.joinpath("kg.aml").write_text(changed)
-    told = plants.sysmlc("diff", "m.aml", "kg.aml").stdout
-    assert "  ~ value v: unit: m => kg\n" in told
-    assert "  ~ value v: retyped, type: length[m] => Integer mass[kg]\n" in told
+    changed_body = body.replace('"m"', '"kg"').replace("xs:double", "xs:int")
+    plants.folder.joinpath("kg.aml").write_text(changed_body)
+    output = plants.sysmlc("diff", "m.aml", "kg.aml").stdout
+    assert "  ~ value v: unit: m => kg\n" in output
+    assert "  ~ value v: retyped, type: length[m] => Integer mass[kg]\n" in output
 
 
 def test_markdown_is_a_table_for_each_owner(plants):
-    done = plants.sysmlc("diff", "old.aml", "new.aml", "--format", "markdown")
-    assert done.stdout == MARKDOWN
+    result = plants.sysmlc("diff", "old.aml", "new.aml", "--format", "markdown")
+    assert result.stdout == MARKDOWN
 
 
-def test_names_with_the_signs_of_markdown_are_shown_as_they_are(here):
-    """In a heading a bar is a bar; a fence is longer than what it holds (CommonMark 6.1)."""
-    here.write("a.ir", 'Package p "P|q``"\n  Class c "C|d"\n')
-    here.write("b.ir", 'Package p "P|q``"\n')
-    done = here.sysmlc("diff", "a.ir", "b.ir", "--format", "markdown").stdout
-    assert "\n#### ``` P|q`` ```\n" in done
-    assert "\n| `-` | class `C\\|d` | removed |  |  |\n" in done
+def test_names_with_markdown_characters_are_quoted(workspace):
+    """A heading needs no escaped bar; a code fence is longer than its content (CommonMark 6.1)."""
+    workspace.write("a.ir", 'Package p "P|q``"\n  Class c "C|d"\n')
+    workspace.write("b.ir", 'Package p "P|q``"\n')
+    result = workspace.sysmlc("diff", "a.ir", "b.ir", "--format", "markdown").stdout
+    assert "\n#### ``` P|q`` ```\n" in result
+    assert "\n| `-` | class `C\\|d` | removed |  |  |\n" in result
 
 
 V2 = """\
@@ -205,7 +210,7 @@ V2_NEW = (
     .replace("connect q", "connect r")
     .replace(" attribute speed = 1.5;", "")
 )
-V2_TOLD = """\
+V2_DIFFERENCES = """\
 Plant
   ~ block Conveyor: renamed, was Belt
   + signal Pallet: added
@@ -221,22 +226,27 @@ Plant::Motor
 """
 
 
-def test_texts_of_v2_and_the_xmi_made_of_them_differ_alike(plants):
-    """Renamed, retyped, rewired ..., whether ids come from names (v2) or are kept (XMI)."""
+def test_v2_texts_and_the_xmi_compiled_from_them_have_the_same_differences(plants):
+    """Ids are derived from names in v2 and stored in XMI; the comparison depends on neither."""
     plants.write("old.sysml", V2)
     plants.write("new.sysml", V2_NEW)
     for name in ("old", "new"):
         assert plants.sysmlc(f"{name}.sysml", "-o", name, "--emit", "uml").exit_code == 0
-    assert plants.sysmlc("diff", "old.sysml", "new.sysml").stdout == V2_TOLD
-    assert plants.sysmlc("diff", "old/uml/old.uml", "new/uml/new.uml").stdout == V2_TOLD
+    assert plants.sysmlc("diff", "old.sysml", "new.sysml").stdout == V2_DIFFERENCES
+    assert plants.sysmlc("diff", "old/uml/old.uml", "new/uml/new.uml").stdout == V2_DIFFERENCES
 
 
-def test_json_has_a_schema_and_the_places_of_both(plants):
-    done = plants.sysmlc("diff", "old.aml", "new.aml", "--format", "json")
-    made = json.loads(done.stdout)
-    jsonschema.validate(made, SCHEMA)
-    assert made["summary"]["renamed"] == 1
-    renamed = next(c for o in made["owners"] for c in o["changes"] if c["what"] == "renamed")
+def test_json_follows_its_schema_and_has_the_locations_in_both_models(plants):
+    result = plants.sysmlc("diff", "old.aml", "new.aml", "--format", "json")
+    document = json.loads(result.stdout)
+    jsonschema.validate(document, SCHEMA)
+    assert document["summary"]["renamed"] == 1
+    renamed = next(
+        change
+        for owner in document["owners"]
+        for change in owner["changes"]
+        if change["what"] == "renamed"
+    )
     assert renamed["new"] == {
         "id": "e2",
         "qualified_name": "Lib::Gate::outfeed",
@@ -250,48 +260,48 @@ def test_json_has_a_schema_and_the_places_of_both(plants):
     )
 
 
-def test_json_of_equal_models_fits_the_schema_too(plants):
-    made = json.loads(plants.sysmlc("diff", "old.aml", "old.aml", "--format", "json").stdout)
-    jsonschema.validate(made, SCHEMA)
-    assert made["owners"] == []
+def test_json_of_equal_models_follows_the_schema_too(plants):
+    document = json.loads(plants.sysmlc("diff", "old.aml", "old.aml", "--format", "json").stdout)
+    jsonschema.validate(document, SCHEMA)
+    assert document["owners"] == []
 
 
-def test_a_model_that_cannot_be_read_is_2(here):
-    here.write("bad.ir", "Klass x\n")
-    done = here.sysmlc("diff", "plant.ir", "bad.ir")
-    assert (done.exit_code, done.stdout) == (2, "")
-    assert "bad.ir" in done.stderr
-    assert here.sysmlc("diff", "plant.ir", "missing.ir").exit_code == 2
+def test_a_model_that_cannot_be_read_is_exit_code_2(workspace):
+    workspace.write("bad.ir", "Klass x\n")
+    result = workspace.sysmlc("diff", "plant.ir", "bad.ir")
+    assert (result.exit_code, result.stdout) == (2, "")
+    assert "bad.ir" in result.stderr
+    assert workspace.sysmlc("diff", "plant.ir", "missing.ir").exit_code == 2
 
 
-def test_what_is_wrong_inside_a_model_is_no_hindrance(plants):
+def test_models_with_errors_can_be_compared(plants):
     plants.write("dangling.aml", NEW.replace('RefPartnerSideA="e2"', 'RefPartnerSideA="gone"'))
-    done = plants.sysmlc("diff", "new.aml", "dangling.aml")
-    assert (done.exit_code, done.stderr) == (1, "")
-    assert "dependency link: retyped, kind: Connector => Dependency" in done.stdout
+    result = plants.sysmlc("diff", "new.aml", "dangling.aml")
+    assert (result.exit_code, result.stderr) == (1, "")
+    assert "dependency link: retyped, kind: Connector => Dependency" in result.stdout
 
 
-def test_a_plant_that_is_saved_in_another_format_is_the_same_plant(plants):
-    done = plants.sysmlc("new.aml", "-o", "saved", "--emit", "uml,aml")
-    assert done.exit_code == 0
-    for other in ("saved/uml/new.uml", "saved/aml/new.aml"):
-        assert plants.sysmlc("diff", "new.aml", other).stdout == "no differences\n"
+def test_a_model_saved_in_another_format_has_no_differences(plants):
+    result = plants.sysmlc("new.aml", "-o", "saved", "--emit", "uml,aml")
+    assert result.exit_code == 0
+    for saved in ("saved/uml/new.uml", "saved/aml/new.aml"):
+        assert plants.sysmlc("diff", "new.aml", saved).stdout == "no differences\n"
 
 
-def test_overlays_count_when_both_have_one(plants):
+def test_overlays_are_compared_too(plants):
     overlay = "overlay: 1\nblocks:\n  Lib/Gate:\n    operations:\n      readId:\n"
     plants.write("old.overlay.yaml", overlay)
     plants.write("same.aml", OLD)
     assert plants.sysmlc("diff", "old.aml", "same.aml").exit_code == 0
     plants.write("same.overlay.yaml", overlay.replace("readId", "getInPallet"))
-    done = plants.sysmlc("diff", "old.aml", "same.aml")
-    assert done.stdout == (
+    result = plants.sysmlc("diff", "old.aml", "same.aml")
+    assert result.stdout == (
         "Lib::Gate\n  + operation getInPallet: added\n  - operation readId: removed\n"
         "\n1 added, 1 removed\n"
     )
 
 
-def test_colours_on_a_terminal_only(plants, monkeypatch):
+def test_output_is_coloured_on_a_terminal_only(plants, monkeypatch):
     plain = plants.sysmlc("diff", "old.aml", "new.aml").stdout
     monkeypatch.setattr("sysmlc.cli.reports.has_color", lambda stream: True)
     coloured = plants.sysmlc("diff", "old.aml", "new.aml").stdout
@@ -299,29 +309,29 @@ def test_colours_on_a_terminal_only(plants, monkeypatch):
     assert "\x1b[32m+ value width|mm: added\x1b[0m" in coloured
 
 
-def test_long_texts_show_what_differs(here):
+def test_long_texts_are_shortened_to_the_difference(workspace):
     body = "x" * 300
-    here.write("a.ir", f'Class c "C" body="{body}y{body}"\n')
-    here.write("b.ir", f'Class c "C" body="{body}z{body}"\n')
-    line = here.sysmlc("diff", "a.ir", "b.ir").stdout.splitlines()[1]
+    workspace.write("a.ir", f'Class c "C" body="{body}y{body}"\n')
+    workspace.write("b.ir", f'Class c "C" body="{body}z{body}"\n')
+    line = workspace.sysmlc("diff", "a.ir", "b.ir").stdout.splitlines()[1]
     cut = "..." + "x" * 40
     assert line.startswith(f"  ~ class C: body: {cut}y")
     assert f"=> {cut}z" in line
 
 
-def test_folders_and_other_formats_are_compared_too(plants):
+def test_folders_with_models_can_be_compared(plants):
     model = random_model(Random(3)).decode()
     plants.write("old/plant.uml", model)
     plants.write("new/plant.uml", model.replace('name="Random plant"', 'name="Plant"'))
-    done = plants.sysmlc("diff", "old", "new")
-    assert (done.exit_code, done.stdout) == (
+    result = plants.sysmlc("diff", "old", "new")
+    assert (result.exit_code, result.stdout) == (
         1,
         "(model)\n  ~ package Plant: renamed, was Random plant\n\n1 renamed\n",
     )
 
 
-def test_the_comparison_does_not_depend_on_what_else_is_refined(here, monkeypatch):
-    """Only what completes the model runs: the pass of these tests finds fault with the port."""
-    here.write("faulty.ir", here.read("plant.ir").replace('gate.in "in"', "gate.in"))
-    done = here.sysmlc("diff", "plant.ir", "faulty.ir")
-    assert (done.exit_code, done.stderr) == (1, "")
+def test_the_comparison_skips_passes_that_only_check(workspace, monkeypatch):
+    """The pass of these tests would report the port without a name as an error."""
+    workspace.write("faulty.ir", workspace.read("plant.ir").replace('gate.in "in"', "gate.in"))
+    result = workspace.sysmlc("diff", "plant.ir", "faulty.ir")
+    assert (result.exit_code, result.stderr) == (1, "")

@@ -1,4 +1,4 @@
-"""The shipped examples through the installed command, in processes of their own."""
+"""The example lego-recipe, compiled by ``python -m sysmlc`` in a process of its own."""
 
 import os
 import subprocess
@@ -11,34 +11,39 @@ ROOT = Path(__file__).parents[2]
 LEGO = ROOT / "examples/lego-recipe/lego-recipe.uml"
 
 
-def sysmlc(folder, *args, **env):
+def run_sysmlc(folder, *args, **env):
     run = [sys.executable, "-m", "sysmlc", *map(str, args)]
     return subprocess.run(
         run, cwd=folder, env={**os.environ, **env}, capture_output=True, text=True
     )
 
 
-def contents(folder):
-    return {p.relative_to(folder): p.read_bytes() for p in folder.rglob("*") if p.is_file()}
+def read_files(folder):
+    return {
+        path.relative_to(folder): path.read_bytes() for path in folder.rglob("*") if path.is_file()
+    }
 
 
-def test_the_same_model_gives_the_same_bytes_whatever_the_hash_seed_and_the_folder(tmp_path):
+def test_outputs_depend_neither_on_the_hash_seed_nor_on_the_folder(tmp_path):
     copy = tmp_path / "elsewhere" / "lego-recipe.uml"
     copy.parent.mkdir()
     copy.write_bytes(LEGO.read_bytes())
-    first = sysmlc(tmp_path, LEGO, "-o", "a", "--emit", "+graph,+ir,+ecore", PYTHONHASHSEED="1")
+    emit = ("--emit", "+graph,+ir,+ecore")
+    first = run_sysmlc(tmp_path, LEGO, "-o", "a", *emit, PYTHONHASHSEED="1")
     assert first.returncode == 0, first.stderr
-    second = sysmlc(tmp_path, copy, "-o", "b", "--emit", "+graph,+ir,+ecore", PYTHONHASHSEED="2")
+    second = run_sysmlc(
+        tmp_path, copy, "-o", "b", "--emit", "+graph,+ir,+ecore", PYTHONHASHSEED="2"
+    )
     assert second.returncode == 0
     assert {"contracts", "diagrams", "recipes"} <= {
         path.name for path in (tmp_path / "a").iterdir()
     }
-    assert contents(tmp_path / "a") == contents(tmp_path / "b")
+    assert read_files(tmp_path / "a") == read_files(tmp_path / "b")
 
 
-def test_no_output_names_a_path_of_this_machine(tmp_path):
-    sysmlc(tmp_path, LEGO, "-o", "out")
-    for path, data in contents(tmp_path / "out").items():
+def test_no_output_contains_a_path_of_this_machine(tmp_path):
+    run_sysmlc(tmp_path, LEGO, "-o", "out")
+    for path, data in read_files(tmp_path / "out").items():
         assert str(ROOT).encode() not in data, path
         assert str(tmp_path).encode() not in data, path
 
@@ -53,17 +58,17 @@ def test_no_output_names_a_path_of_this_machine(tmp_path):
     ],
     ids=["cut off", "DOCTYPE", "no model", "missing"],
 )
-def test_bad_input_is_findings_and_never_a_traceback(tmp_path, content, code):
+def test_a_damaged_input_is_a_diagnostic_and_not_a_traceback(tmp_path, content, code):
     if content is not None:
         (tmp_path / "model.uml").write_bytes(content)
-    done = sysmlc(tmp_path, "model.uml", "-o", "out")
-    assert done.returncode == code
-    assert done.stderr.startswith("error[SM1")
-    assert "Traceback" not in done.stderr
+    result = run_sysmlc(tmp_path, "model.uml", "-o", "out")
+    assert result.returncode == code
+    assert result.stderr.startswith("error[SM1")
+    assert "Traceback" not in result.stderr
 
 
-def test_a_reader_that_goes_away_is_no_fault(tmp_path):
+def test_a_closed_pipe_is_not_reported(tmp_path):
     run = f"{sys.executable} -m sysmlc show {LEGO} | head -n 1"
-    done = subprocess.run(run, shell=True, cwd=tmp_path, capture_output=True, text=True)
-    assert done.stdout.startswith("Package ")
-    assert "fault of sysmlc" not in done.stderr
+    result = subprocess.run(run, shell=True, cwd=tmp_path, capture_output=True, text=True)
+    assert result.stdout.startswith("Package ")
+    assert "fault of sysmlc" not in result.stderr

@@ -1,4 +1,4 @@
-"""``sysmlc format``: files laid out in place, checked or compared."""
+"""``sysmlc format``: files formatted in place, checked or compared."""
 
 from pathlib import Path
 
@@ -12,8 +12,8 @@ UGLY = "package P{part def A;}\n"
 NEAT = "package P {\n    part def A;\n}\n"
 
 
-def run(*arguments, given=None):
-    return CliRunner().invoke(sysmlc, ["format", *map(str, arguments)], input=given)
+def run_format(*arguments, text=None):
+    return CliRunner().invoke(sysmlc, ["format", *map(str, arguments)], input=text)
 
 
 @pytest.fixture
@@ -24,25 +24,25 @@ def folder(tmp_path):
     return tmp_path
 
 
-def test_files_of_a_folder_are_laid_out_in_place(folder):
-    made = run(folder)
-    assert (made.exit_code, made.stderr) == (0, "1 of 2 files reformatted\n")
+def test_files_of_a_folder_are_formatted_in_place(folder):
+    result = run_format(folder)
+    assert (result.exit_code, result.stderr) == (0, "1 of 2 files reformatted\n")
     assert (folder / "ugly.sysml").read_text() == NEAT
     assert (folder / "other.txt").read_text() == UGLY
-    assert run(folder).stderr == "0 of 2 files reformatted\n"
+    assert run_format(folder).stderr == "0 of 2 files reformatted\n"
 
 
-def test_check_names_what_would_change_and_writes_nothing(folder):
-    made = run(folder, "--check")
-    assert (made.exit_code, made.stdout) == (1, f"{folder.as_posix()}/ugly.sysml\n")
+def test_check_lists_the_files_to_format_and_writes_nothing(folder):
+    result = run_format(folder, "--check")
+    assert (result.exit_code, result.stdout) == (1, f"{folder.as_posix()}/ugly.sysml\n")
     assert (folder / "ugly.sysml").read_text() == UGLY
-    assert run(folder / "neat.kerml", "--check").exit_code == 0
+    assert run_format(folder / "neat.kerml", "--check").exit_code == 0
 
 
-def test_diff_shows_what_would_change_and_writes_nothing(folder):
-    made = run(folder / "ugly.sysml", "--diff")
-    assert made.exit_code == 1
-    assert made.stdout.splitlines()[3:] == [
+def test_diff_shows_the_changes_and_writes_nothing(folder):
+    result = run_format(folder / "ugly.sysml", "--diff")
+    assert result.exit_code == 1
+    assert result.stdout.splitlines()[3:] == [
         "-package P{part def A;}",
         "+package P {",
         "+    part def A;",
@@ -51,22 +51,22 @@ def test_diff_shows_what_would_change_and_writes_nothing(folder):
     assert (folder / "ugly.sysml").read_text() == UGLY
 
 
-def test_a_diff_tells_of_a_missing_line_end(tmp_path):
+def test_diff_marks_a_missing_line_end(tmp_path):
     (tmp_path / "a.sysml").write_text("part a ;")
-    assert "\\ No newline at end of file\n" in run(tmp_path / "a.sysml", "--diff").stdout
+    assert "\\ No newline at end of file\n" in run_format(tmp_path / "a.sysml", "--diff").stdout
 
 
 def test_standard_input_goes_to_standard_output():
-    made = run("-", given=UGLY)
-    assert (made.exit_code, made.stdout, made.stderr) == (0, NEAT, "")
-    assert run("-", "--language", "kerml", given="class A ;").stdout == "class A;\n"
+    result = run_format("-", text=UGLY)
+    assert (result.exit_code, result.stdout, result.stderr) == (0, NEAT, "")
+    assert run_format("-", "--language", "kerml", text="class A ;").stdout == "class A;\n"
 
 
-def test_a_file_with_syntax_errors_is_left_alone_and_the_others_are_not(folder):
+def test_a_file_with_syntax_errors_is_not_changed_while_the_rest_is_formatted(folder):
     (folder / "wrong.sysml").write_text("package P{part def ;;}")
-    made = run(folder)
-    assert made.exit_code == 1
-    assert "wrong.sysml:1:21" in made.stderr
+    result = run_format(folder)
+    assert result.exit_code == 1
+    assert "wrong.sysml:1:21" in result.stderr
     assert (folder / "wrong.sysml").read_text() == "package P{part def ;;}"
     assert (folder / "ugly.sysml").read_text() == NEAT
 
@@ -79,60 +79,60 @@ def test_a_file_with_syntax_errors_is_left_alone_and_the_others_are_not(folder):
         ("latin.sysml", b"part '\xe4';", "is not UTF-8: byte 6 does not start a character"),
     ],
 )
-def test_what_cannot_be_read_is_exit_code_2(tmp_path, name, content, message):
+def test_a_file_that_cannot_be_read_is_exit_code_2(tmp_path, name, content, message):
     if content is not None:
         (tmp_path / name).write_bytes(content)
-    made = run(tmp_path / name)
-    assert (made.exit_code, made.stderr) == (
+    result = run_format(tmp_path / name)
+    assert (result.exit_code, result.stderr) == (
         2,
         f"sysmlc: {(tmp_path / name).as_posix()} {message}\n",
     )
 
 
-def test_a_link_stays_a_link_and_rights_stay(tmp_path):
+def test_symbolic_links_and_permissions_are_preserved(tmp_path):
     real, link = tmp_path / "real.sysml", tmp_path / "link.sysml"
     real.write_text(UGLY)
     real.chmod(0o600)
     link.symlink_to(real)
-    run(link)
+    run_format(link)
     assert (link.is_symlink(), real.read_text(), real.stat().st_mode & 0o777) == (True, NEAT, 0o600)
 
 
-def test_a_folder_without_models_is_told(tmp_path):
-    made = run(tmp_path, "--check")
+def test_a_folder_without_models_is_exit_code_2(tmp_path):
+    result = run_format(tmp_path, "--check")
     message = f"sysmlc: {tmp_path.as_posix()} holds no .sysml or .kerml file\n"
-    assert (made.exit_code, made.stderr) == (2, message)
+    assert (result.exit_code, result.stderr) == (2, message)
 
 
-def test_suffixes_of_files_in_folders_may_be_capitals(tmp_path):
+def test_suffixes_in_capitals_are_recognised(tmp_path):
     (tmp_path / "PLANT.SYSML").write_text(UGLY)
-    assert run(tmp_path).stderr == "1 of 1 files reformatted\n"
+    assert run_format(tmp_path).stderr == "1 of 1 files reformatted\n"
 
 
-def test_a_file_that_nobody_may_write_is_left_alone(tmp_path):
+def test_a_read_only_file_is_not_changed(tmp_path):
     file = tmp_path / "plant.sysml"
     file.write_text(UGLY)
     file.chmod(0o444)
-    made = run(file)
-    assert (made.exit_code, made.stderr) == (2, f"sysmlc: {file.as_posix()} is read-only\n")
+    result = run_format(file)
+    assert (result.exit_code, result.stderr) == (2, f"sysmlc: {file.as_posix()} is read-only\n")
     assert file.read_text() == UGLY
 
 
-def test_a_disk_without_space_is_no_fault_of_ours(tmp_path, monkeypatch):
-    def full(*_):
+def test_a_full_disk_leaves_the_file_unchanged(tmp_path, monkeypatch):
+    def raise_disk_full(*_):
         raise OSError(28, "No space left on device")
 
     file = tmp_path / "plant.sysml"
     file.write_text(UGLY)
-    monkeypatch.setattr("sysmlc.support.atomic_files._write_all", full)
-    made = run(file)
+    monkeypatch.setattr("sysmlc.support.atomic_files._write_all", raise_disk_full)
+    result = run_format(file)
     message = f"sysmlc: {file.as_posix()} cannot be written: No space left on device\n"
-    assert (made.exit_code, made.stderr) == (2, message)
-    assert [one.name for one in tmp_path.iterdir()] == ["plant.sysml"]
+    assert (result.exit_code, result.stderr) == (2, message)
+    assert [path.name for path in tmp_path.iterdir()] == ["plant.sysml"]
     assert file.read_text() == UGLY
 
 
-def test_the_example_of_the_documentation_is_what_comes_out():
+def test_the_example_of_the_documentation_is_the_output():
     page = (ROOT / "docs/format-sysml-v2.md").read_text(encoding="utf-8")
     before, after = (part.partition("```")[0] for part in page.split("```sysml\n")[1:])
-    assert run("-", given=before).stdout == after
+    assert run_format("-", text=before).stdout == after

@@ -26,26 +26,28 @@ FORMATS = {
 @pytest.mark.parametrize("model", MODELS, ids=lambda path: path.name)
 def test_documents_of_an_example_follow_their_schemas(model, tmp_path):
     documents = list(compile_documents(model, tmp_path / "out"))
-    assert {"sysmlc-manifest", "sysmlc-graph", "sarif"} <= {each.schema for each in documents}
-    assert [line for each in documents for line in find_violations(each)] == []
+    assert {"sysmlc-manifest", "sysmlc-graph", "sarif"} <= {
+        document.schema for document in documents
+    }
+    assert [line for document in documents for line in find_violations(document)] == []
 
 
 def test_documents_of_other_commands_follow_their_schemas(tmp_path):
     documents = list(command_documents(tmp_path))
     assert {"gr1c-strategy", "sysmlc-machine", "sysmlc-controller", "sysmlc-diff"} <= {
-        each.schema for each in documents
+        document.schema for document in documents
     }
-    assert [line for each in documents for line in find_violations(each)] == []
+    assert [line for document in documents for line in find_violations(document)] == []
 
 
-def test_a_violation_names_the_document_and_the_place():
+def test_a_violation_names_the_document_and_the_property():
     manifest = {"format": "sysmlc-manifest/2", "files": 1}
     lines = find_violations(Document("manifest.json", "sysmlc-manifest", manifest))
     assert "manifest.json: $.files: 1 is not of type 'array'" in lines
 
 
 @pytest.mark.parametrize("name", SCHEMAS)
-def test_a_schema_is_a_schema_and_its_id_names_its_format(name):
+def test_a_schema_is_valid_and_its_id_names_its_format(name):
     schema = SCHEMAS[name]
     Draft202012Validator.check_schema(schema)
     assert schema["$id"].startswith(f"urn:sysmlc:{name.removeprefix('sysmlc-')}:")
@@ -53,7 +55,7 @@ def test_a_schema_is_a_schema_and_its_id_names_its_format(name):
         assert f"{name}/{schema['$id'].rpartition(':')[2]}" in FORMATS
 
 
-def test_the_languages_of_inputs_are_those_of_the_front_ends():
+def test_schemas_list_the_languages_of_the_front_ends():
     languages = [frontend.name for frontend in registry.load_frontends()] + ["overlay", "diagrams"]
     manifest, recipe = SCHEMAS["sysmlc-manifest"], SCHEMAS["sysmlc-recipe"]
     for inputs in (manifest["properties"]["inputs"], recipe["properties"]["source"]):

@@ -1,4 +1,4 @@
-"""``sysmlc robots``: from a model to a mission that is validated, or to what goes wrong."""
+"""``sysmlc robots``: from a model to a validated mission, or to the reason why it fails."""
 
 import pytest
 from click.testing import CliRunner
@@ -24,17 +24,17 @@ package Plant {
 """
 
 
-def run(tmp_path, text, *arguments):
+def run_robots(tmp_path, text, *arguments):
     (tmp_path / ".git").mkdir(exist_ok=True)
     path = tmp_path / "hall.sysml"
     path.write_text(text, encoding="utf-8")
     return CliRunner().invoke(sysmlc, ["robots", str(path), *arguments])
 
 
-def test_a_mission_that_is_done_ends_with_0_and_is_told_in_files(tmp_path):
-    made = run(tmp_path, HALL, "--no-relations", "-o", str(tmp_path / "out"))
-    assert made.exit_code == 0, made.output
-    assert made.stdout == (
+def test_a_successful_mission_is_exit_code_0_and_described_in_files(tmp_path):
+    result = run_robots(tmp_path, HALL, "--no-relations", "-o", str(tmp_path / "out"))
+    assert result.exit_code == 0, result.output
+    assert result.stdout == (
         "Plant::Hall: 6 cells, 2 robots, 2 targets: done in 7 steps at most, from 1 start\n"
     )
     assert sorted(path.name for path in (tmp_path / "out" / "robots").iterdir()) == [
@@ -45,82 +45,84 @@ def test_a_mission_that_is_done_ends_with_0_and_is_told_in_files(tmp_path):
     ]
 
 
-def test_what_the_thesis_claims_is_decided_and_told(tmp_path):
-    made = run(tmp_path, HALL)
-    assert made.exit_code == 0, made.output
-    assert "SM570 environment-shares-cells" in made.stderr
-    assert "SM573 claim-does-not-hold" in made.stderr
-    assert "C_E discharges what C_R assumes of it" in made.stderr
+def test_the_claims_of_the_thesis_are_decided_and_reported(tmp_path):
+    result = run_robots(tmp_path, HALL)
+    assert result.exit_code == 0, result.output
+    assert "SM570 environment-shares-cells" in result.stderr
+    assert "SM573 claim-does-not-hold" in result.stderr
+    assert "C_E discharges what C_R assumes of it" in result.stderr
 
 
-def test_one_robot_shares_no_cell(tmp_path):
+def test_the_cells_of_a_single_robot_are_not_shared(tmp_path):
     alone = HALL.replace("part r2 : Robot { :>> row = 0; :>> column = 2; }", "")
-    made = run(tmp_path, alone)
-    assert made.exit_code == 0, made.output
-    assert "SM570" not in made.stderr
+    result = run_robots(tmp_path, alone)
+    assert result.exit_code == 0, result.output
+    assert "SM570" not in result.stderr
 
 
-def test_without_time_no_controller_is_made(tmp_path):
-    made = run(tmp_path, HALL, "--question-limit", "0.0001")
-    assert made.exit_code == 2
-    assert "SM531" in made.stderr
-    assert made.stdout.endswith("no controller\n")
+def test_no_controller_is_synthesised_without_time(tmp_path):
+    result = run_robots(tmp_path, HALL, "--question-limit", "0.0001")
+    assert result.exit_code == 2
+    assert "SM531" in result.stderr
+    assert result.stdout.endswith("no controller\n")
 
 
-def test_a_deadline_that_no_allocation_keeps_is_an_error(tmp_path):
-    made = run(tmp_path, HALL.replace("deadline = 20", "deadline = 3"), "--no-relations")
-    assert made.exit_code == 1
-    assert "SM572 no-allocation" in made.stderr
-    assert "the best one that was found takes" in made.stderr
+def test_a_deadline_that_no_allocation_meets_is_an_error(tmp_path):
+    result = run_robots(tmp_path, HALL.replace("deadline = 20", "deadline = 3"), "--no-relations")
+    assert result.exit_code == 1
+    assert "SM572 no-allocation" in result.stderr
+    assert "the best one that was found takes" in result.stderr
 
 
-def test_robots_that_cannot_pass_one_another_fail_with_a_run(tmp_path):
-    made = run(tmp_path, HALL.replace("rows = 2", "rows = 1"), "--no-relations")
-    assert made.exit_code == 1
-    assert "SM571 mission-fails" in made.stderr
-    assert "'left' is not reached within 20 steps" in made.stderr
-    assert "note: step 0: 'r1' is at 'left'; 'r2' is at 'right'" in made.stderr
-    assert "(2 allocations tried)" in made.stdout
+def test_robots_that_cannot_pass_one_another_fail_and_a_run_shows_why(tmp_path):
+    result = run_robots(tmp_path, HALL.replace("rows = 2", "rows = 1"), "--no-relations")
+    assert result.exit_code == 1
+    assert "SM571 mission-fails" in result.stderr
+    assert "'left' is not reached within 20 steps" in result.stderr
+    assert "note: step 0: 'r1' is at 'left'; 'r2' is at 'right'" in result.stderr
+    assert "(2 allocations tried)" in result.stdout
 
 
-def test_a_model_without_a_floor_cannot_be_studied(tmp_path):
-    made = run(tmp_path, "package Plant { part def Hall; }")
-    assert made.exit_code == 2
-    assert "nothing specialises 'Floors::Floor'" in made.stderr
+def test_a_model_without_a_floor_is_exit_code_2(tmp_path):
+    result = run_robots(tmp_path, "package Plant { part def Hall; }")
+    assert result.exit_code == 2
+    assert "nothing specialises 'Floors::Floor'" in result.stderr
 
 
-def test_an_error_in_the_model_ends_with_1(tmp_path):
-    made = run(tmp_path, HALL.replace("row = 0; :>> column = 2; }", "row = 9; :>> column = 2; }"))
-    assert made.exit_code == 1
-    assert "SM564 place-off-floor" in made.stderr
+def test_an_error_in_the_model_is_exit_code_1(tmp_path):
+    result = run_robots(
+        tmp_path, HALL.replace("row = 0; :>> column = 2; }", "row = 9; :>> column = 2; }")
+    )
+    assert result.exit_code == 1
+    assert "SM564 place-off-floor" in result.stderr
 
 
 @pytest.mark.parametrize("option", ["--help", "-h"])
 def test_help_has_examples(option):
-    made = CliRunner().invoke(sysmlc, ["robots", option])
-    assert "sysmlc robots hall.sysml" in made.output
-    assert "Exit codes" in made.output
+    result = CliRunner().invoke(sysmlc, ["robots", option])
+    assert "sysmlc robots hall.sysml" in result.output
+    assert "Exit codes" in result.output
 
 
-def test_new_targets_take_the_robots_of_the_run_before(tmp_path, tmp_path_factory, monkeypatch):
-    """Through the cache folder, as the compiler uses it; without it all is made anew."""
+def test_new_targets_reuse_the_controllers_in_the_cache(tmp_path, tmp_path_factory, monkeypatch):
+    """The controllers come from the cache folder; ``--no-cache`` synthesises them again."""
     from sysmlc.driver import outcome_cache
     from sysmlc.robots import outcome
 
     monkeypatch.setattr(outcome_cache, "compute_tool_digest", lambda: "this version")
     monkeypatch.setenv("SYSMLC_CACHE", str(tmp_path_factory.mktemp("user") / "cache"))
-    assert run(tmp_path, HALL).exit_code == 0
+    assert run_robots(tmp_path, HALL).exit_code == 0
 
-    def fail(*given):
+    def refuse_synthesis(*arguments):
         raise AssertionError("synthesised again")
 
-    monkeypatch.setattr(outcome, "synthesise_robot", fail)
-    other = HALL.replace("part left : Target { :>> row = 0;", "part left : Target { :>> row = 1;")
-    made = run(tmp_path, other, "-o", str(tmp_path / "out"))
-    assert made.exit_code == 0, made.output
-    assert "done in 6 steps at most" in made.stdout
-    assert "SM573 claim-does-not-hold" in made.stderr
+    monkeypatch.setattr(outcome, "synthesise_robot", refuse_synthesis)
+    changed = HALL.replace("part left : Target { :>> row = 0;", "part left : Target { :>> row = 1;")
+    result = run_robots(tmp_path, changed, "-o", str(tmp_path / "out"))
+    assert result.exit_code == 0, result.output
+    assert "done in 6 steps at most" in result.stdout
+    assert "SM573 claim-does-not-hold" in result.stderr
     machine = (tmp_path / "out" / "robots" / "Plant.Hall.robot.machine.json").read_text()
     assert '"sysmlc-machine/2"' in machine
-    anew = run(tmp_path, other, "--no-cache")
-    assert isinstance(anew.exception, AssertionError)
+    uncached = run_robots(tmp_path, changed, "--no-cache")
+    assert isinstance(uncached.exception, AssertionError)

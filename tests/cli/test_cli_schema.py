@@ -1,4 +1,4 @@
-"""``--schema DIR``: inputs against the schemas of the user."""
+"""``--schema DIR``: inputs are validated against XML schemas of the user."""
 
 import json
 
@@ -20,38 +20,38 @@ PLANT = """<CAEXFile xmlns="http://www.dke.de/CAEX" SchemaVersion="3.0" FileName
 
 
 @pytest.fixture
-def folder(here):
-    here.write("schemas/caex.xsd", XSD)
-    here.write("plant.aml", PLANT.format(""))
-    here.write("wrong.aml", PLANT.format('<InstanceHierarchy Nam="Other"/>'))
-    return here
+def folder(workspace):
+    workspace.write("schemas/caex.xsd", XSD)
+    workspace.write("plant.aml", PLANT.format(""))
+    workspace.write("wrong.aml", PLANT.format('<InstanceHierarchy Nam="Other"/>'))
+    return workspace
 
 
 @pytest.mark.parametrize("command", [("check",), ("build",), ()])
-def test_violations_are_warnings_at_their_places(folder, command):
-    made = folder.sysmlc(*command, "wrong.aml", "--schema", "schemas", "--format", "concise")
-    told = [line for line in made.stderr.splitlines() if "SM186" in line]
-    assert told == [
+def test_violations_are_warnings_at_their_locations(folder, command):
+    result = folder.sysmlc(*command, "wrong.aml", "--schema", "schemas", "--format", "concise")
+    violations = [line for line in result.stderr.splitlines() if "SM186" in line]
+    assert violations == [
         "wrong.aml:3:3: warning[SM186 schema-violation]: 'InstanceHierarchy' does not conform "
         "to caex.xsd: 'InstanceHierarchy' has no attribute 'Name' (InstanceHierarchy)",
         "wrong.aml:3:3: warning[SM186 schema-violation]: 'InstanceHierarchy' does not conform "
         "to caex.xsd: 'InstanceHierarchy' must not have the attribute 'Nam' (InstanceHierarchy)",
     ]
-    assert made.exit_code == 0
+    assert result.exit_code == 0
 
 
-def test_a_valid_file_has_no_findings(folder):
-    made = folder.sysmlc("check", "plant.aml", "--schema", "schemas")
-    assert made.stderr == "no findings\n"
+def test_a_valid_file_has_no_diagnostics(folder):
+    result = folder.sysmlc("check", "plant.aml", "--schema", "schemas")
+    assert result.stderr == "no findings\n"
 
 
-def test_without_the_option_nothing_is_validated(folder):
-    made = folder.sysmlc("check", "wrong.aml", "--format", "json")
-    codes = [found["code"] for found in json.loads(made.stdout)["diagnostics"]]
+def test_files_are_not_validated_without_the_option(folder):
+    result = folder.sysmlc("check", "wrong.aml", "--format", "json")
+    codes = [diagnostic["code"] for diagnostic in json.loads(result.stdout)["diagnostics"]]
     assert "SM186" not in codes
 
 
-def test_strict_makes_a_violation_an_exit_code(folder):
+def test_a_violation_is_exit_code_1_with_strict(folder):
     assert folder.sysmlc("check", "wrong.aml", "--schema", "schemas", "--strict").exit_code == 1
     assert folder.sysmlc("check", "plant.aml", "--schema", "schemas", "--strict").exit_code == 0
 
@@ -59,28 +59,28 @@ def test_strict_makes_a_violation_an_exit_code(folder):
 def test_the_cache_does_not_hide_a_changed_schema(folder):
     assert folder.sysmlc("check", "plant.aml", "--schema", "schemas").stderr == "no findings\n"
     folder.write("schemas/caex.xsd", XSD.replace('name="InstanceHierarchy"', 'name="Other"'))
-    made = folder.sysmlc("check", "plant.aml", "--schema", "schemas", "--format", "concise")
-    assert "'InstanceHierarchy' stands where 'Other' should" in made.stderr
+    result = folder.sysmlc("check", "plant.aml", "--schema", "schemas", "--format", "concise")
+    assert "'InstanceHierarchy' stands where 'Other' should" in result.stderr
 
 
-def test_a_file_without_a_schema_is_told(folder):
-    made = folder.sysmlc("check", "plant.ir", "--schema", "schemas", "--format", "concise")
+def test_a_file_without_a_schema_is_reported(folder):
+    result = folder.sysmlc("check", "plant.ir", "--schema", "schemas", "--format", "concise")
     expected = "SM187 no-schema-for-file]: 'plant.ir' was not validated: 'schemas' has no schema"
-    assert expected in made.stderr
+    assert expected in result.stderr
 
 
-def test_a_damaged_file_is_told_once(folder):
+def test_a_damaged_file_is_reported_once(folder):
     folder.write("plant.aml", PLANT.format("<InstanceHierarchy>"))
-    made = folder.sysmlc("check", "plant.aml", "--schema", "schemas", "--format", "json")
-    codes = [found["code"] for found in json.loads(made.stdout)["diagnostics"]]
+    result = folder.sysmlc("check", "plant.aml", "--schema", "schemas", "--format", "json")
+    codes = [diagnostic["code"] for diagnostic in json.loads(result.stdout)["diagnostics"]]
     assert codes == ["SM142"]
 
 
-def test_of_many_violations_the_first_are_told_and_the_others_counted(folder):
+def test_the_first_200_violations_are_reported_and_the_rest_is_counted(folder):
     folder.write("plant.aml", PLANT.format("<InstanceHierarchy/>" * 250))
-    made = folder.sysmlc("check", "plant.aml", "--schema", "schemas", "--format", "concise")
-    assert made.stderr.count("SM186") == 200
-    assert "'plant.aml' does not conform to caex.xsd in 50 more places" in made.stderr
+    result = folder.sysmlc("check", "plant.aml", "--schema", "schemas", "--format", "concise")
+    assert result.stderr.count("SM186") == 200
+    assert "'plant.aml' does not conform to caex.xsd in 50 more places" in result.stderr
 
 
 @pytest.mark.parametrize(
@@ -93,12 +93,12 @@ def test_of_many_violations_the_first_are_told_and_the_others_counted(folder):
          "the schema 'caex.xsd' asks for '../x.xsd', which is not inside 'out'"),
     ],
 )  # fmt: skip
-def test_schemas_that_cannot_be_used_end_the_run(folder, name, text, message):
+def test_an_unusable_schema_is_one_sentence_and_exit_code_2(folder, name, text, message):
     if name != "gone":
         (folder.folder / name).mkdir()
     if text is not None:
         folder.write(f"{name}/caex.xsd", text)
-    made = folder.sysmlc("check", "plant.aml", "--schema", name)
-    assert made.exit_code == 2
-    assert message in made.stderr
-    assert len(made.stderr.splitlines()) == 1
+    result = folder.sysmlc("check", "plant.aml", "--schema", name)
+    assert result.exit_code == 2
+    assert message in result.stderr
+    assert len(result.stderr.splitlines()) == 1

@@ -1,10 +1,9 @@
-"""``sysmlc watch`` as a process of its own, beside tools that save in all the ways they do.
+"""``sysmlc watch`` as a process of its own, while modelling tools save files in various ways.
 
-Pauses are what the tools do between two writes. What is waited for is always an output, with a
-bound; no test asserts how long something takes.
+The pauses are those of the tools between two writes. A test waits for an output, with a bound; no
+test asserts how long something takes.
 """
 
-import gc
 import io
 import os
 import signal
@@ -16,12 +15,9 @@ from functools import partial
 
 import pytest
 
-from sysmlc.cli import session, watching
-from sysmlc.cli.session import Settings
-from sysmlc.cli.watching import Watch
-
 BOUND = 60
-HEAD = (
+"""Seconds that a test waits for an output."""
+MODEL = (
     '<?xml version="1.0" encoding="UTF-8"?>\n<uml:Model xmi:version="20131001"'
     ' xmlns:xmi="http://www.omg.org/spec/XMI/20131001"'
     ' xmlns:uml="http://www.eclipse.org/uml2/5.0.0/UML" xmi:id="{id}" name="M">\n'
@@ -29,19 +25,22 @@ HEAD = (
 ENTRY = "com.nomagic.magicdraw.uml_model.model"
 
 
-def model(name, more="", id="m"):
-    one = f'<packagedElement xmi:type="uml:Class" xmi:id="{id}c" name="{name}">{more}'
-    return (HEAD.format(id=id) + one + "</packagedElement>\n</uml:Model>\n").encode()
+def format_model(name, content="", id="m"):
+    """Return a UML model with a class *name*; the ids in it start with *id*."""
+    class_start = f'<packagedElement xmi:type="uml:Class" xmi:id="{id}c" name="{name}">'
+    end = "</packagedElement>\n</uml:Model>\n"
+    return (MODEL.format(id=id) + class_start + content + end).encode()
 
 
-def mdzip(name):
-    made = io.BytesIO()
-    with zipfile.ZipFile(made, "w", zipfile.ZIP_DEFLATED) as opened:
-        opened.writestr(ENTRY, model(name))
-    return made.getvalue()
+def pack_mdzip(name):
+    """Return an archive of MagicDraw with such a model."""
+    data = io.BytesIO()
+    with zipfile.ZipFile(data, "w", zipfile.ZIP_DEFLATED) as archive:
+        archive.writestr(ENTRY, format_model(name))
+    return data.getvalue()
 
 
-class Watching:
+class WatchProcess:
     """A running ``sysmlc watch`` in a folder."""
 
     def __init__(self, folder, *args):
@@ -56,35 +55,35 @@ class Watching:
             stdout=self.lines,
             stderr=self.errors,
             env={**os.environ, "SYSMLC_CACHE": "off", "PYTHONUNBUFFERED": "1"},
-            # A shell starts what runs in the background deaf to SIGINT, and that is inherited.
+            # Background processes of a shell ignore SIGINT, and children inherit that.
             preexec_fn=partial(signal.signal, signal.SIGINT, signal.SIG_DFL),
         )
 
-    def until(self, what):
-        """Wait until something holds; fail when it does not."""
-        end = time.monotonic() + BOUND
-        while not what():
-            assert self.process.poll() is None, self.said()
-            assert time.monotonic() < end, f"{self.built()} {self.said()}"
+    def wait_until(self, condition):
+        """Wait until *condition* returns a true value; fail after BOUND seconds."""
+        deadline = time.monotonic() + BOUND
+        while not condition():
+            assert self.process.poll() is None, self.read_errors()
+            assert time.monotonic() < deadline, f"{self.read_lines()} {self.read_errors()}"
             time.sleep(0.02)
 
-    def until_built(self, name):
-        """Wait until the outputs show a class of this name."""
-        self.until(lambda: f'"{name}"' in self.graph())
+    def wait_until_built(self, name):
+        """Wait until the output names an element *name*."""
+        self.wait_until(lambda: f'"{name}"' in self.read_graph())
 
-    def graph(self):
+    def read_graph(self):
         path = self.folder / "out" / "graph.json"
         return path.read_text() if path.exists() else ""
 
-    def built(self):
-        """The lines that say that something was written or kept."""
+    def read_lines(self):
+        """Return the lines about written outputs, one for each build."""
         return (self.folder / "lines.txt").read_text().splitlines()
 
-    def said(self):
-        """Findings so far."""
+    def read_errors(self):
+        """Return the diagnostics so far."""
         return (self.folder / "errors.txt").read_text()
 
-    def end(self):
+    def stop(self):
         self.process.send_signal(signal.SIGINT)
         self.process.wait(BOUND)
         self.errors.close()
@@ -92,25 +91,25 @@ class Watching:
 
 
 @pytest.fixture
-def watch(tmp_path):
-    """Starts ``sysmlc watch`` with files and waits until they are built."""
-    started = []
+def start_watch(tmp_path):
+    """Return a function that writes files and starts ``sysmlc watch``, up to the first build."""
+    processes = []
 
     def start(files, *args):
         for name, data in files.items():
             (tmp_path / name).write_bytes(data)
-        made = Watching(tmp_path, *args)
-        started.append(made)
-        made.until(lambda: made.built())
-        return made
+        watch = WatchProcess(tmp_path, *args)
+        processes.append(watch)
+        watch.wait_until(watch.read_lines)
+        return watch
 
     yield start
-    for made in started:
-        made.end()
+    for watch in processes:
+        watch.stop()
 
 
-def in_pieces(path, data, pause, count=4):
-    """Save as a tool that empties the file and writes bit by bit."""
+def write_in_pieces(path, data, pause, count=4):
+    """Save a file like a tool that truncates it and writes it in pieces."""
     size = len(data) // count + 1
     with path.open("wb") as stream:
         for start in range(0, len(data), size):
@@ -120,65 +119,65 @@ def in_pieces(path, data, pause, count=4):
 
 
 @pytest.mark.parametrize("pause", [0.05, 0.35])
-def test_a_file_that_is_written_in_pieces_is_no_error(watch, pause):
-    """The longer pause is longer than the settling time: half a file is compiled, and not told."""
-    watched = watch({"plant.uml": model("Old")}, "plant.uml")
-    in_pieces(watched.folder / "plant.uml", model("New"), pause)
-    watched.until_built("New")
-    assert watched.said() == ""
+def test_a_file_written_in_pieces_is_not_reported(start_watch, pause):
+    """The longer pause exceeds the settling time, so half a file is compiled but not reported."""
+    watch = start_watch({"plant.uml": format_model("Old")}, "plant.uml")
+    write_in_pieces(watch.folder / "plant.uml", format_model("New"), pause)
+    watch.wait_until_built("New")
+    assert watch.read_errors() == ""
 
 
-def test_a_file_that_is_replaced_or_gone_for_a_moment_is_no_error(watch):
-    watched = watch({"plant.uml": model("Old")}, "plant.uml")
-    path = watched.folder / "plant.uml"
-    path.rename(watched.folder / "plant.uml.bak")
+def test_a_file_that_is_missing_for_a_moment_is_not_reported(start_watch):
+    watch = start_watch({"plant.uml": format_model("Old")}, "plant.uml")
+    path = watch.folder / "plant.uml"
+    path.rename(watch.folder / "plant.uml.bak")
     time.sleep(0.4)
-    path.write_bytes(model("Back"))
-    watched.until_built("Back")
-    (watched.folder / "new.tmp").write_bytes(model("Renamed"))
-    (watched.folder / "new.tmp").replace(path)
-    watched.until_built("Renamed")
-    assert watched.said() == ""
+    path.write_bytes(format_model("Back"))
+    watch.wait_until_built("Back")
+    (watch.folder / "new.tmp").write_bytes(format_model("Renamed"))
+    (watch.folder / "new.tmp").replace(path)
+    watch.wait_until_built("Renamed")
+    assert watch.read_errors() == ""
 
 
-def test_a_text_that_is_empty_or_gone_for_a_moment_clears_no_outputs(watch):
-    """An empty text is no error, and neither is a folder with one file less."""
+def test_a_text_that_is_empty_or_missing_for_a_moment_clears_no_outputs(start_watch):
+    """Neither an empty text nor a folder with one file less is an error, so nothing is reported."""
     files = {"a.sysml": b"package A;\n", "b.sysml": b"package B;\n"}
-    watched = watch(files, ".")
-    path = watched.folder / "a.sysml"
+    watch = start_watch(files, ".")
+    path = watch.folder / "a.sysml"
     path.write_bytes(b"")
     time.sleep(0.6)
     path.write_bytes(b"package Written;\n")
-    watched.until_built("Written")
-    path.rename(watched.folder / "a.bak")
+    watch.wait_until_built("Written")
+    path.rename(watch.folder / "a.bak")
     time.sleep(0.6)
     path.write_bytes(b"package Replaced;\n")
-    watched.until_built("Replaced")
-    watched.until(lambda: len(watched.built()) > 2)
-    assert len(watched.built()) == 3
+    watch.wait_until_built("Replaced")
+    watch.wait_until(lambda: len(watch.read_lines()) > 2)
+    assert len(watch.read_lines()) == 3
 
 
-def test_an_archive_that_is_saved_in_place_is_no_error(watch):
-    watched = watch({"plant.mdzip": mdzip("Old")}, "plant.mdzip")
-    in_pieces(watched.folder / "plant.mdzip", mdzip("New"), 0.3)
-    watched.until_built("New")
-    (watched.folder / "x.tmp").write_bytes(mdzip("Renamed"))
-    (watched.folder / "x.tmp").replace(watched.folder / "plant.mdzip")
-    watched.until_built("Renamed")
-    assert watched.said() == ""
+def test_an_archive_saved_in_place_is_not_reported(start_watch):
+    watch = start_watch({"plant.mdzip": pack_mdzip("Old")}, "plant.mdzip")
+    write_in_pieces(watch.folder / "plant.mdzip", pack_mdzip("New"), 0.3)
+    watch.wait_until_built("New")
+    (watch.folder / "x.tmp").write_bytes(pack_mdzip("Renamed"))
+    (watch.folder / "x.tmp").replace(watch.folder / "plant.mdzip")
+    watch.wait_until_built("Renamed")
+    assert watch.read_errors() == ""
 
 
-def test_layout_files_of_papyrus_start_no_run(watch):
-    watched = watch({"plant.uml": model("Old")}, "plant.uml")
+def test_layout_files_of_papyrus_start_no_build(start_watch):
+    watch = start_watch({"plant.uml": format_model("Old")}, "plant.uml")
     for name in ("plant.notation", "plant.di", "plant.sash"):
-        (watched.folder / name).write_bytes(b"<notation/>")
+        (watch.folder / name).write_bytes(b"<notation/>")
     time.sleep(1.5)
-    (watched.folder / "plant.notation").write_bytes(b"<other/>")
-    (watched.folder / "plant.uml").write_bytes(model("New"))
-    (watched.folder / "plant.di").write_bytes(b"<other/>")
-    watched.until_built("New")
-    watched.until(lambda: len(watched.built()) > 1)
-    assert len(watched.built()) == 2
+    (watch.folder / "plant.notation").write_bytes(b"<other/>")
+    (watch.folder / "plant.uml").write_bytes(format_model("New"))
+    (watch.folder / "plant.di").write_bytes(b"<other/>")
+    watch.wait_until_built("New")
+    watch.wait_until(lambda: len(watch.read_lines()) > 1)
+    assert len(watch.read_lines()) == 2
 
 
 NOTATION = """<?xml version="1.0" encoding="UTF-8"?>
@@ -194,237 +193,84 @@ NOTATION = """<?xml version="1.0" encoding="UTF-8"?>
 """
 
 
-def test_drawings_of_authors_are_waited_for_too(watch):
-    """First the model is new and the drawing shows what is gone, then there is half a drawing."""
+def test_the_build_waits_for_authored_diagrams_too(start_watch):
+    """First the diagram shows a class that the new model lacks, then only half of it is saved."""
     files = {
-        "plant.uml": model("Old"),
+        "plant.uml": format_model("Old"),
         "plant.notation": NOTATION.format("First", "mc").encode(),
         "plant.di": b"<di/>",
     }
-    watched = watch(files, "plant.uml", "--diagrams", "author")
-    (watched.folder / "plant.uml").write_bytes(model("New", id="m").replace(b'"mc"', b'"mn"'))
-    in_pieces(watched.folder / "plant.notation", NOTATION.format("Second", "mn").encode(), 0.35)
-    (watched.folder / "plant.di").write_bytes(b"<other/>")
-    watched.until_built("Second")
-    assert watched.said() == ""
-    (watched.folder / "plant.notation").write_text(NOTATION.format("Alone", "mn"))
-    watched.until_built("Alone")
-    assert watched.said() == ""
+    watch = start_watch(files, "plant.uml", "--diagrams", "author")
+    (watch.folder / "plant.uml").write_bytes(format_model("New", id="m").replace(b'"mc"', b'"mn"'))
+    write_in_pieces(watch.folder / "plant.notation", NOTATION.format("Second", "mn").encode(), 0.35)
+    (watch.folder / "plant.di").write_bytes(b"<other/>")
+    watch.wait_until_built("Second")
+    assert watch.read_errors() == ""
+    (watch.folder / "plant.notation").write_text(NOTATION.format("Alone", "mn"))
+    watch.wait_until_built("Alone")
+    assert watch.read_errors() == ""
 
 
-def test_files_that_refer_to_one_another_are_saved_one_after_the_other(watch):
-    """Between the two saves a reference leads nowhere; that is not told."""
-    refers = '<generalization xmi:id="g" general="{}"/>'
+def test_a_reference_to_a_file_that_is_saved_next_is_not_reported(start_watch):
+    """Between the two saves the target of the reference does not exist."""
+    generalization = '<generalization xmi:id="g" general="{}"/>'
     files = {
-        "a.uml": model("A", refers.format("bc"), "a"),
-        "b.uml": model("B", id="b"),
+        "a.uml": format_model("A", generalization.format("bc"), "a"),
+        "b.uml": format_model("B", id="b"),
     }
-    watched = watch(files, "a.uml", "b.uml")
-    (watched.folder / "a.uml").write_bytes(model("A2", refers.format("dc"), "a"))
+    watch = start_watch(files, "a.uml", "b.uml")
+    (watch.folder / "a.uml").write_bytes(format_model("A2", generalization.format("dc"), "a"))
     time.sleep(0.5)
-    (watched.folder / "b.uml").write_bytes(model("D", id="d"))
-    watched.until_built("D")
-    watched.until_built("A2")
-    assert watched.said() == ""
+    (watch.folder / "b.uml").write_bytes(format_model("D", id="d"))
+    watch.wait_until_built("D")
+    watch.wait_until_built("A2")
+    assert watch.read_errors() == ""
 
 
-def test_a_checkout_that_changes_many_files_is_built_whole(watch):
+def test_a_checkout_of_many_files_is_built_completely(start_watch):
     files = {f"f{n}.sysml": f"package Old{n};".encode() for n in range(20)}
-    watched = watch(files, ".")
-    (watched.folder / "f3.sysml").unlink()
+    watch = start_watch(files, ".")
+    (watch.folder / "f3.sysml").unlink()
     for n in range(20):
         if n != 3:
-            (watched.folder / f"f{n}.sysml").write_text(f"package New{n};")
+            (watch.folder / f"f{n}.sysml").write_text(f"package New{n};")
             time.sleep(0.01)
-    (watched.folder / "more.sysml").write_text("package More;")
-    watched.until_built("More")
-    watched.until_built("New19")
-    assert "Old" not in watched.graph()
-    assert watched.said() == ""
+    (watch.folder / "more.sysml").write_text("package More;")
+    watch.wait_until_built("More")
+    watch.wait_until_built("New19")
+    assert "Old" not in watch.read_graph()
+    assert watch.read_errors() == ""
 
 
-def test_the_last_of_many_saves_is_built(watch):
-    """Saves come faster than compilations end."""
-    watched = watch({"plant.uml": model("Old")}, "plant.uml")
+def test_the_last_of_many_saves_is_built(start_watch):
+    """Saves follow each other faster than builds end."""
+    watch = start_watch({"plant.uml": format_model("Old")}, "plant.uml")
     for number in range(30):
-        (watched.folder / "plant.uml").write_bytes(model(f"Save{number}"))
+        (watch.folder / "plant.uml").write_bytes(format_model(f"Save{number}"))
         time.sleep(0.05)
-    watched.until_built("Save29")
-    assert watched.said() == ""
+    watch.wait_until_built("Save29")
+    assert watch.read_errors() == ""
 
 
-def test_a_true_error_is_told_and_the_outputs_kept_until_it_is_mended(watch):
-    watched = watch({"plant.uml": model("Old")}, "plant.uml")
-    kept = watched.graph()
-    (watched.folder / "plant.uml").write_bytes(model("New")[:-20])
-    watched.until(lambda: "malformed-file" in watched.said())
-    watched.until(lambda: watched.built()[-1] == "out: not updated because the model has errors")
-    assert watched.graph() == kept
-    (watched.folder / "plant.uml").write_bytes(model("Mended"))
-    watched.until_built("Mended")
-    assert watched.said().count("malformed-file") == 1
+def test_an_error_is_reported_once_and_outputs_stay_until_it_is_corrected(start_watch):
+    watch = start_watch({"plant.uml": format_model("Old")}, "plant.uml")
+    graph = watch.read_graph()
+    (watch.folder / "plant.uml").write_bytes(format_model("New")[:-20])
+    watch.wait_until(lambda: "malformed-file" in watch.read_errors())
+    watch.wait_until(
+        lambda: watch.read_lines()[-1] == "out: not updated because the model has errors"
+    )
+    assert watch.read_graph() == graph
+    (watch.folder / "plant.uml").write_bytes(format_model("Mended"))
+    watch.wait_until_built("Mended")
+    assert watch.read_errors().count("malformed-file") == 1
 
 
-def test_the_configuration_is_watched_too(watch):
-    files = {"plant.uml": model("Old"), "sysmlc.toml": b'output = "out"\n'}
-    watched = watch(files, "plant.uml")
-    (watched.folder / "sysmlc.toml").write_bytes(b'output = "made"\n')
-    watched.until(lambda: (watched.folder / "made" / "graph.json").exists())
-    in_pieces(watched.folder / "sysmlc.toml", b'output = "again"\n', 0.35)
-    watched.until(lambda: (watched.folder / "again" / "graph.json").exists())
-    assert watched.said() == ""
-
-
-def test_findings_that_were_told_before_are_not_waited_for(tmp_path, monkeypatch):
-    """A model with known errors is compiled as soon as any other."""
-    waited = []
-    real = watching.wait_until_stable
-
-    def rested(paths, seconds):
-        waited.append(seconds)
-        return real(paths, 0)
-
-    monkeypatch.setattr(watching, "wait_until_stable", rested)
-    path = tmp_path / "plant.uml"
-    path.write_bytes(model("Old")[:-20])
-    watched = Watch((path,), tmp_path / "out", Settings(has_cache=False), 0.05)
-    watched.build()
-    path.write_bytes(model("Others")[:-20])
-    watched.build()
-    assert waited == [0.05, 1.5, 0.05]
-
-
-class Clock:
-    """Time that passes only when somebody sleeps; at some times something is saved."""
-
-    def __init__(self, path, saves):
-        self.now = 0.0
-        self._path, self._saves = path, saves
-
-    def monotonic(self):
-        return self.now
-
-    def sleep(self, seconds):
-        self.now += seconds
-        while self._saves and self._saves[0] <= self.now:
-            self._path.write_bytes(self._path.read_bytes() + b"x")
-            del self._saves[0]
-
-
-CELL = """package Cells {{ part def Cell {{ part {0} : Robot; }} part def Robot; }}
-package Lines {{ part def Line {{ part cell : {1}; }} }}
-"""
-
-
-def test_who_keeps_going_gets_what_no_error_concerns(tmp_path, capsys):
-    path, drawn = tmp_path / "cell.sysml", tmp_path / "out" / "diagrams"
-    settings = Settings(emit=("plantuml",), has_cache=False)
-    watched = Watch((path,), tmp_path / "out", settings, 0, keep_going=True)
-    path.write_text(CELL.format("arm", "Cells::Cell"))
-    watched.build()
-    assert {one.name for one in drawn.iterdir()} == {"Cells.bdd.puml", "Lines.bdd.puml"}
-    path.write_text(CELL.format("gripper", "Cells::Nowhere"))
-    watched.build()
-    assert [one.name for one in drawn.iterdir()] == ["Cells.bdd.puml"]
-    assert "gripper" in (drawn / "Cells.bdd.puml").read_text()
-    assert "1 withheld because of errors" in capsys.readouterr().out
-
-
-@pytest.mark.parametrize(("saves", "pauses"), [(3, 1), pytest.param(8, 0, marks=pytest.mark.long)])
-def test_what_was_compiled_is_let_go(saves, pauses, tmp_path, monkeypatch):
-    """Front ends freeze what they made, so that no collection looks at it later.
-
-    In a pause it is let go, and after many saves without one.
-    """
-    monkeypatch.setenv("SYSMLC_CACHE", str(tmp_path / "cache"))
-    path = tmp_path / "cell.sysml"
-    path.write_text("package P;")
-    watched = Watch((path,), tmp_path / "out", Settings(), 0)
-    for number in range(saves):
-        path.write_text(f"package P {{ part def Cell{number} {{ part arm : Cell{number}; }} }}")
-        watched.build()
-    for _ in range(pauses):
-        watched.clean_up()
-    gc.unfreeze()
-    assert gc.collect() < 50
-
-
-def test_what_is_saved_during_the_first_compilation_is_not_lost(tmp_path, monkeypatch):
-    """What a folder holds is not known before it was read: nobody looked at the files then."""
-    path, more = tmp_path / "a.sysml", tmp_path / "b.sysml"
-    path.write_text("package A;")
-    saves = {path: "package Edited;", more: "package More;"}
-    real = session.compute_outcome
-
-    def saving(*args):
-        made = real(*args)
-        while saves:
-            path, text = saves.popitem()
-            path.write_text(text)
-        return made
-
-    monkeypatch.setattr(session, "compute_outcome", saving)
-    settings = Settings(emit=("graph",), has_cache=False)
-    Watch((tmp_path,), tmp_path / "out", settings, 0).build()
-    written = (tmp_path / "out" / "graph.json").read_text()
-    assert '"Edited"' in written
-    assert '"More"' in written
-
-
-def test_a_file_that_came_before_the_system_told_of_saves_is_not_lost(tmp_path):
-    (tmp_path / "a.sysml").write_text("package A;")
-    settings = Settings(emit=("graph",), has_cache=False)
-    watched = Watch((tmp_path,), tmp_path / "out", settings, 0)
-    watched.build()
-    (tmp_path / "b.sysml").write_text("package More;")
-    watched.build_if_changed(())
-    assert '"More"' in (tmp_path / "out" / "graph.json").read_text()
-
-
-def spied(real, calls):
-    """A compilation that is noted with its inputs."""
-
-    def compiling(request, *rest):
-        calls.append(request.inputs)
-        return real(request, *rest)
-
-    return compiling
-
-
-def test_rest_begins_anew_with_each_save(tmp_path, monkeypatch):
-    path = tmp_path / "a"
-    path.write_bytes(b"")
-    clock = Clock(path, [0.2, 0.4, 0.6, 2.0])
-    monkeypatch.setattr(watching, "time", clock)
-    seen = watching.wait_until_stable([path], 0.3)
-    assert seen[path][0] == 3
-    assert 0.9 <= clock.now < 1.1
-
-
-def test_files_that_never_rest_are_taken_as_they_are(tmp_path, monkeypatch):
-    path = tmp_path / "a"
-    path.write_bytes(b"")
-    clock = Clock(path, [n / 10 for n in range(1000)])
-    monkeypatch.setattr(watching, "time", clock)
-    watching.wait_until_stable([path], 0.3)
-    assert 30 <= clock.now < 31
-
-
-def test_rest_is_told_by_size_and_time(tmp_path):
-    path, missing = tmp_path / "a", tmp_path / "b"
-    path.write_bytes(b"x")
-    os.utime(path, (0, 0))
-    seen = watching.wait_until_stable([path, missing, tmp_path], 0)
-    assert seen == {path: (1, 0), missing: None, tmp_path: (0, 0)}
-    assert not watching.is_fresh({path: (1, 0)}, 1)
-    assert watching.is_fresh({missing: None}, 1)
-    path.write_bytes(b"xy")
-    assert watching.read_stamps([path]) != {path: (1, 0)}
-    assert watching.find_empty_files(seen) == {missing}
-    path.write_bytes(b"")
-    assert watching.find_empty_files(watching.read_stamps([path, missing, tmp_path])) == {
-        path,
-        missing,
-    }
-    path.write_bytes(b"xy")
-    assert watching.is_fresh(watching.read_stamps([path]), 3600)
+def test_a_changed_configuration_starts_a_build(start_watch):
+    files = {"plant.uml": format_model("Old"), "sysmlc.toml": b'output = "out"\n'}
+    watch = start_watch(files, "plant.uml")
+    (watch.folder / "sysmlc.toml").write_bytes(b'output = "first"\n')
+    watch.wait_until(lambda: (watch.folder / "first" / "graph.json").exists())
+    write_in_pieces(watch.folder / "sysmlc.toml", b'output = "second"\n', 0.35)
+    watch.wait_until(lambda: (watch.folder / "second" / "graph.json").exists())
+    assert watch.read_errors() == ""

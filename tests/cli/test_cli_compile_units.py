@@ -1,4 +1,4 @@
-"""Commands on folders with several compile units."""
+"""Commands on folders that contain several compile units."""
 
 import json
 
@@ -21,56 +21,52 @@ reason = "test"
 
 
 @pytest.fixture
-def models(here):
-    """A folder with two models that have nothing to do with one another."""
-    (here.folder / "plant.ir").unlink()
-    here.write("models/one.ir", TYPED.format(name="One"))
-    here.write("models/two.ir", UNTYPED.format(name="Two"))
-    return here
+def models(workspace):
+    """A folder with two independent models; the port in ``two.ir`` has no type."""
+    (workspace.folder / "plant.ir").unlink()
+    workspace.write("models/one.ir", TYPED.format(name="One"))
+    workspace.write("models/two.ir", UNTYPED.format(name="Two"))
+    return workspace
 
 
-def inputs(here, manifest):
-    return [entry["path"] for entry in json.loads(here.read(manifest))["inputs"]]
-
-
-def test_check_reports_findings_of_all_units_in_their_files(models):
-    done = models.sysmlc("check", "models", "--format", "json")
-    (finding,) = json.loads(done.stdout)["diagnostics"]
+def test_check_reports_diagnostics_of_all_units(models):
+    result = models.sysmlc("check", "models", "--format", "json")
+    (finding,) = json.loads(result.stdout)["diagnostics"]
     assert (finding["name"], finding["file"]) == ("test-untyped-port", "models/two.ir")
-    assert done.exit_code == 0
+    assert result.exit_code == 0
     assert models.sysmlc("check", "models", "--strict").exit_code == 1
 
 
 def test_build_writes_several_units_to_folders_of_their_own(models):
-    done = models.sysmlc("build", "models", "-o", "gen", "--emit", "graph")
-    assert done.stdout == "gen/one.ir: 4 files, 4 changed\ngen/two.ir: 4 files, 4 changed\n"
-    assert inputs(models, "gen/two.ir/manifest.json") == ["two.ir"]
+    result = models.sysmlc("build", "models", "-o", "gen", "--emit", "graph")
+    assert result.stdout == "gen/one.ir: 4 files, 4 changed\ngen/two.ir: 4 files, 4 changed\n"
+    assert models.list_inputs("gen/two.ir") == ["two.ir"]
     models.sysmlc("build", "models/one.ir", "-o", "one", "--emit", "graph")
-    assert "manifest.json" in models.files("one")
+    assert "manifest.json" in models.list_files("one")
 
 
-def test_outputs_of_earlier_units_are_mentioned(models):
+def test_outputs_of_a_unit_that_no_longer_exists_are_reported(models):
     models.sysmlc("build", "models", "-o", "gen", "--emit", "graph")
     (models.folder / "models/two.ir").rename(models.folder / "models/three.ir")
-    done = models.sysmlc("build", "models", "-o", "gen", "--emit", "graph")
-    assert "gen/two.ir: outputs of an earlier run; no model has this name now" in done.stderr
-    assert "gen/one.ir: outputs" not in done.stderr
-    checked = models.sysmlc("build", "models", "-o", "gen", "--emit", "graph", "--check")
-    assert checked.exit_code == 1
+    result = models.sysmlc("build", "models", "-o", "gen", "--emit", "graph")
+    assert "gen/two.ir: outputs of an earlier run; no model has this name now" in result.stderr
+    assert "gen/one.ir: outputs" not in result.stderr
+    result = models.sysmlc("build", "models", "-o", "gen", "--emit", "graph", "--check")
+    assert result.exit_code == 1
 
 
-def test_commands_for_one_model_ask_for_the_files_of_one_unit(models):
-    done = models.sysmlc("show", "models")
-    assert done.exit_code == 2
-    assert done.stderr == (
+def test_a_command_for_one_model_lists_the_units_to_choose_from(models):
+    result = models.sysmlc("show", "models")
+    assert result.exit_code == 2
+    assert result.stderr == (
         "sysmlc: the models are 2 compile units; name the files of one, such as "
         "models/one.ir, models/two.ir\n"
     )
 
 
 def test_coverage_counts_the_files_of_all_units(models):
-    done = models.sysmlc("coverage", "models", "--format", "json")
-    assert [file["file"] for file in json.loads(done.stdout)["files"]] == [
+    result = models.sysmlc("coverage", "models", "--format", "json")
+    assert [file["file"] for file in json.loads(result.stdout)["files"]] == [
         "models/one.ir",
         "models/two.ir",
     ]
@@ -80,23 +76,23 @@ def test_diff_compares_the_units_of_two_folders(models):
     models.write("changed/one.ir", TYPED.format(name="One"))
     models.write("changed/two.ir", UNTYPED.format(name="Two").replace("Gate", "Door"))
     models.write("changed/three.ir", TYPED.format(name="Three"))
-    done = models.sysmlc("diff", "models", "changed")
-    assert done.exit_code == 1
-    assert "Door: renamed, was Gate" in done.stdout
-    assert "Three: added" in done.stdout
-    assert "One" not in done.stdout
+    result = models.sysmlc("diff", "models", "changed")
+    assert result.exit_code == 1
+    assert "Door: renamed, was Gate" in result.stdout
+    assert "Three: added" in result.stdout
+    assert "One" not in result.stdout
 
 
-def test_units_of_a_named_folder_that_the_configuration_declares(models):
+def test_units_declared_in_the_configuration_are_separate_units_of_a_named_folder(models):
     models.write("models/extra.ir", TYPED.format(name="Extra"))
     models.write(
         "sysmlc.toml",
         '[[model]]\nname = "both"\nfiles = ["models/one.ir", "models/two.ir"]\nemit = ["graph"]\n',
     )
-    done = models.sysmlc("build", "models", "--emit", "graph")
-    assert done.stdout == "out/both: 4 files, 4 changed\nout/models: 4 files, 4 changed\n"
-    assert inputs(models, "out/both/manifest.json") == ["models/one.ir", "models/two.ir"]
-    assert inputs(models, "out/models/manifest.json") == ["models/extra.ir"]
+    result = models.sysmlc("build", "models", "--emit", "graph")
+    assert result.stdout == "out/both: 4 files, 4 changed\nout/models: 4 files, 4 changed\n"
+    assert models.list_inputs("out/both") == ["models/one.ir", "models/two.ir"]
+    assert models.list_inputs("out/models") == ["models/extra.ir"]
 
 
 # -- projects below a named folder ---------------------------------------------------------------
@@ -105,20 +101,20 @@ def test_units_of_a_named_folder_that_the_configuration_declares(models):
 def test_a_folder_with_its_own_configuration_is_compiled_with_it(models):
     models.write("models/cells/a.ir", UNTYPED.format(name="A"))
     models.write("models/cells/sysmlc.toml", '[rules]\ntest-untyped-port = "error"\n')
-    done = models.sysmlc("check", "models", "--format", "concise")
-    assert done.exit_code == 1
-    assert "models/cells/a.ir: error[SM943" in done.stderr
-    assert "models/two.ir: warning[SM943" in done.stderr
+    result = models.sysmlc("check", "models", "--format", "concise")
+    assert result.exit_code == 1
+    assert "models/cells/a.ir: error[SM943" in result.stderr
+    assert "models/two.ir: warning[SM943" in result.stderr
 
 
 def test_a_nested_project_writes_to_its_own_output_folder(models):
     models.write("models/cells/a.ir", TYPED.format(name="A"))
     models.write("models/cells/sysmlc.toml", 'output = "gen"\n')
     (models.folder / "models/two.ir").unlink()
-    done = models.sysmlc("build", "models", "--emit", "graph")
-    assert done.stdout == "out: 4 files, 4 changed\nmodels/cells/gen: 4 files, 4 changed\n"
-    done = models.sysmlc("build", "models", "--emit", "graph", "-o", "all")
-    assert done.stdout == "all/models: 4 files, 4 changed\nall/cells: 4 files, 4 changed\n"
+    result = models.sysmlc("build", "models", "--emit", "graph")
+    assert result.stdout == "out: 4 files, 4 changed\nmodels/cells/gen: 4 files, 4 changed\n"
+    result = models.sysmlc("build", "models", "--emit", "graph", "-o", "all")
+    assert result.stdout == "all/models: 4 files, 4 changed\nall/cells: 4 files, 4 changed\n"
 
 
 def test_a_named_configuration_replaces_those_of_nested_projects(models):
@@ -130,29 +126,29 @@ def test_a_named_configuration_replaces_those_of_nested_projects(models):
     assert "models/cells/a.ir: warning[SM943" in isolated.stderr
 
 
-# -- findings about the configuration ------------------------------------------------------------
+# -- diagnostics about the configuration ---------------------------------------------------------
 
 
 def test_a_suppression_of_one_unit_is_not_unused_in_another(models):
     models.write("sysmlc.toml", SUPPRESS.format(name="Two"))
-    done = models.sysmlc("check", ".", "--strict")
-    assert (done.exit_code, done.stderr) == (0, "no findings\n")
+    result = models.sysmlc("check", ".", "--strict")
+    assert (result.exit_code, result.stderr) == (0, "no findings\n")
 
 
-def test_a_suppression_for_another_file_is_no_finding_about_a_single_file(models):
+def test_a_suppression_for_another_file_is_not_unused_when_one_file_is_compiled(models):
     models.write("sysmlc.toml", SUPPRESS.format(name="Two"))
-    done = models.sysmlc("check", "models/one.ir", "--strict")
-    assert (done.exit_code, done.stderr) == (0, "no findings\n")
+    result = models.sysmlc("check", "models/one.ir", "--strict")
+    assert (result.exit_code, result.stderr) == (0, "no findings\n")
 
 
 def test_a_suppression_that_no_unit_uses_is_reported_once(models):
     models.write("sysmlc.toml", SUPPRESS.format(name="Gone"))
     models.write("notes.xml", "<notes/>")
-    done = models.sysmlc("check", "models", "--format", "concise")
-    assert done.stderr.count("SM902") == 1
+    result = models.sysmlc("check", "models", "--format", "concise")
+    assert result.stderr.count("SM902") == 1
 
 
-def test_suppressions_of_declared_models_are_judged_together(models):
+def test_suppressions_are_unused_only_if_no_declared_unit_uses_them(models):
     units = "".join(
         f'[[model]]\nname = "{name}"\nfiles = ["models/{name}.ir"]\n' for name in ("one", "two")
     )
@@ -163,7 +159,7 @@ def test_suppressions_of_declared_models_are_judged_together(models):
     assert models.sysmlc("check", "--format", "concise").stderr.count("SM902") == 1
 
 
-def test_levels_of_elements_of_another_unit_are_known(models):
+def test_levels_of_elements_of_another_unit_are_no_errors(models):
     models.write("sysmlc.toml", '[recipe.levels]\n"Two::Gate" = "task"\n')
     assert "SM903" not in models.sysmlc("check", ".").stderr
     assert "SM903" not in models.sysmlc("check", "models/one.ir").stderr

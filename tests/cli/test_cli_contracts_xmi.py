@@ -1,9 +1,8 @@
-"""Contracts of models in SysML v1 as XMI, from the file to the verdict and the controller."""
+"""Contracts of SysML v1 models in XMI: verdicts and synthesised controllers."""
 
 import pytest
 
-from sysmlc.driver import registry
-from sysmlc.passes import pipeline
+pytestmark = pytest.mark.usefixtures("all_passes")
 
 MODEL = """\
 <xmi:XMI xmlns:xmi="http://www.omg.org/spec/XMI/20131001" xmi:version="20131001"
@@ -115,40 +114,38 @@ CLOSES = "G (state=OpenedUnit &amp; event=close -> X state=Closed)"
 STAYS_OPEN = "G (state=OpenedUnit -> X state=OpenedUnit)"
 
 
-@pytest.fixture(autouse=True)
-def all_passes(here, monkeypatch):
-    every = [pipeline.load(name) for name in pipeline.NAMES]
-    monkeypatch.setattr(registry, "load_passes", lambda options: every)
-
-
 @pytest.fixture
-def checked(here):
-    """The verdicts on a model, and what is told beside suspicions."""
+def check_contracts(workspace):
+    """Return a function that checks the contracts: exit code, verdicts and errors."""
 
     def run(text, rule):
-        here.write("plant.uml", MODEL.format(text.replace("{rule}", rule)))
-        made = here.sysmlc("contracts", "check", "plant.uml")
-        errors = [line for line in made.stderr.splitlines() if line.startswith("error")]
-        return made.exit_code, made.stdout.splitlines(), errors
+        workspace.write("plant.uml", MODEL.format(text.replace("{rule}", rule)))
+        result = workspace.sysmlc("contracts", "check", "plant.uml")
+        errors = [line for line in result.stderr.splitlines() if line.startswith("error")]
+        return result.exit_code, result.stdout.splitlines(), errors
 
     return run
 
 
-def test_a_state_machine_is_compared_with_the_requirement_that_its_block_satisfies(checked):
-    kept = ["Plant::Door: realizable, satisfies its requirements"]
-    broken = ["Plant::Door: realizable, violates its requirements"]
-    alone = ["Plant::Door.requirements: realizable"]
-    assert checked(DOOR, CLOSES) == (0, [*kept, *alone], [])
-    code, said, (error,) = checked(DOOR, STAYS_OPEN)
-    assert (code, said) == (1, [*broken, *alone])
+def test_a_state_machine_is_compared_with_the_requirement_that_its_block_satisfies(check_contracts):
+    satisfied = ["Plant::Door: realizable, satisfies its requirements"]
+    violated = ["Plant::Door: realizable, violates its requirements"]
+    requirements = ["Plant::Door.requirements: realizable"]
+    assert check_contracts(DOOR, CLOSES) == (0, [*satisfied, *requirements], [])
+    code, verdicts, (error,) = check_contracts(DOOR, STAYS_OPEN)
+    assert (code, verdicts) == (1, [*violated, *requirements])
     assert error.endswith("('closes' of 'Obeys' demands it)")
 
 
-def test_two_blocks_are_composed_along_the_connector_of_their_ports(checked):
+def test_two_blocks_are_composed_along_the_connector_of_their_ports(check_contracts):
     parts = ["Plant::Feeder: realizable", "Plant::Picker: realizable"]
-    assert checked(CELL, "G F ready") == (0, [*parts, "Plant::Cell: its 2 parts fit together"], [])
-    code, said, (error,) = checked(CELL, "G (ready -> X !ready)")
-    assert (code, said) == (1, [*parts, "Plant::Cell: its 2 parts do not fit together"])
+    assert check_contracts(CELL, "G F ready") == (
+        0,
+        [*parts, "Plant::Cell: its 2 parts fit together"],
+        [],
+    )
+    code, verdicts, (error,) = check_contracts(CELL, "G (ready -> X !ready)")
+    assert (code, verdicts) == (1, [*parts, "Plant::Cell: its 2 parts do not fit together"])
     assert "part 'picker' of 'Plant::Cell' assumes 'feeder.ready', which neither" in error
 
 
@@ -159,20 +156,20 @@ def test_two_blocks_are_composed_along_the_connector_of_their_ports(checked):
         (CELL, "G F ready", "Plant::Picker", "2 states, 3 moves, checked"),
     ],
 )
-def test_a_controller_is_made_of_each_contract(here, text, rule, component, machine):
-    here.write("plant.uml", MODEL.format(text.replace("{rule}", rule)))
-    made = here.sysmlc("synth", "plant.uml", "-c", component, "-o", "out")
-    assert made.exit_code == 0
-    assert made.stdout.startswith(f"{component}: realizable (")
-    assert made.stdout.endswith(f"machine: {machine}\n")
-    assert (here.folder / "out" / f"{component.replace('::', '.')}.machine.json").is_file()
+def test_a_controller_is_synthesised_from_each_contract(workspace, text, rule, component, machine):
+    workspace.write("plant.uml", MODEL.format(text.replace("{rule}", rule)))
+    result = workspace.sysmlc("synth", "plant.uml", "-c", component, "-o", "out")
+    assert result.exit_code == 0
+    assert result.stdout.startswith(f"{component}: realizable (")
+    assert result.stdout.endswith(f"machine: {machine}\n")
+    assert (workspace.folder / "out" / f"{component.replace('::', '.')}.machine.json").is_file()
 
 
 @pytest.mark.parametrize(("rule", "code"), [("G F state=Closed", 0), ("G F state=Shut", 1)])
-def test_a_requirement_that_is_not_understood_is_no_success(here, rule, code):
-    """What is left out of the contract could be what cannot be kept."""
-    here.write("plant.uml", MODEL.format(DOOR.replace("{rule}", rule)))
-    made = here.sysmlc("synth", "plant.uml", "-c", "Plant::Door", "--realizable")
-    assert made.stdout.startswith("Plant::Door: realizable")
-    assert made.exit_code == code
-    assert ("error[SM522" in made.stderr) is (code == 1)
+def test_a_requirement_that_cannot_be_read_is_an_error(workspace, rule, code):
+    """The contract lacks the requirement, which might be the one that makes it unrealizable."""
+    workspace.write("plant.uml", MODEL.format(DOOR.replace("{rule}", rule)))
+    result = workspace.sysmlc("synth", "plant.uml", "-c", "Plant::Door", "--realizable")
+    assert result.stdout.startswith("Plant::Door: realizable")
+    assert result.exit_code == code
+    assert ("error[SM522" in result.stderr) is (code == 1)
