@@ -10,11 +10,11 @@ from test_reductions import bit_rules, ltl
 from long_runs import examples
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import BooleanDomain, IntegerDomain
+from sysmlc.logic.formal_texts import read_sentence
 from sysmlc.logic.infix import parse_formula
 from sysmlc.logic.reduction.formula_reduction import NotReducibleError, reduce_formula
 from sysmlc.logic.reduction.history import History
 from sysmlc.logic.syntax import FormulaError, line_and_column
-from sysmlc.logic.texts.formal import read_sentence
 
 DOMAINS = {name: BooleanDomain() for name in "pqrs"} | {"n": IntegerDomain(0, 3)}
 SCOPES = {

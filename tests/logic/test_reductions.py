@@ -9,13 +9,13 @@ from test_formats_spot import print_for_spot
 from long_runs import examples
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import BooleanDomain, Class, Conjunct, Contract, Owner, Variable
+from sysmlc.logic.formal_texts import read_temporal_logic
 from sysmlc.logic.formula import Apply, Op, Var
 from sysmlc.logic.infix import parse_formula
 from sysmlc.logic.printing import print_formula
 from sysmlc.logic.reduction.contract_reduction import reduce_contract
 from sysmlc.logic.reduction.formula_reduction import NotReducibleError, reduce_formula
 from sysmlc.logic.reduction.history import History
-from sysmlc.logic.texts.formal import read_temporal_logic
 
 DOMAINS = {name: BooleanDomain() for name in "abcd"}
 SAFE, LIVE, INIT = "safety", "liveness", "init"

@@ -22,6 +22,7 @@ from sysmlc.logic.classification import classify
 from sysmlc.logic.contract import Class, Conjunct, Contract, Owner
 from sysmlc.logic.expressions.context import context_of
 from sysmlc.logic.feature_writes import WriterIndex
+from sysmlc.logic.formal_texts import describe_error, is_formal, read_formal
 from sysmlc.logic.formula import Formula
 from sysmlc.logic.machines import derivation as statemachine
 from sysmlc.logic.machines.reader import MachineOptions, read_machine
@@ -32,7 +33,6 @@ from sysmlc.logic.requirements.scope import Scope, scope_of
 from sysmlc.logic.requirements.statements import component_of, definition_of
 from sysmlc.logic.services import derivation as services
 from sysmlc.logic.syntax import FormulaError
-from sysmlc.logic.texts.formal import describe_error, is_formal, read_formal
 
 SAME_COMPONENT = rule(
     "SM500",

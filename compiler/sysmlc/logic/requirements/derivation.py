@@ -13,6 +13,7 @@ from sysmlc.logic.expressions.context import context_of, report_range
 from sysmlc.logic.expressions.elaboration import ElaborationError, Fault, elaborate_condition
 from sysmlc.logic.expressions.expression import ExpressionError
 from sysmlc.logic.expressions.parsing import parse_expression
+from sysmlc.logic.formal_texts import describe_error, is_formal, read_formal
 from sysmlc.logic.formula import Formula, Literal
 from sysmlc.logic.printing import print_literal
 from sysmlc.logic.reduction.contract_reduction import add_history_bits
@@ -25,7 +26,6 @@ from sysmlc.logic.requirements.statements import (
     find_redefining_operation,
 )
 from sysmlc.logic.syntax import FormulaError
-from sysmlc.logic.texts.formal import describe_error, is_formal, read_formal
 
 NOT_A_FORMULA = rule(
     "SM522",

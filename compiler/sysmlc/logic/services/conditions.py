@@ -19,9 +19,9 @@ from sysmlc.logic.expressions.elaboration import (
 from sysmlc.logic.expressions.expression import Binary, Expression, ExpressionError
 from sysmlc.logic.expressions.features import Feature
 from sysmlc.logic.expressions.parsing import parse_expression
+from sysmlc.logic.formal_texts import is_formal
 from sysmlc.logic.formula import Formula
 from sysmlc.logic.simplify import simplify_constant
-from sysmlc.logic.texts.formal import is_formal
 
 NOT_FORMAL = rule(
     "SM505",

@@ -12,11 +12,13 @@ from typing import NoReturn
 from msgspec.structs import replace
 
 from sysmlc.logic import formula as f
+from sysmlc.logic import property_patterns as patterns
 from sysmlc.logic.classification import has_future
 from sysmlc.logic.contract import Domain
 from sysmlc.logic.evaluate import has_primes
 from sysmlc.logic.formula import Formula, Op
 from sysmlc.logic.infix import FormulaReader, Term
+from sysmlc.logic.property_patterns import Scope
 from sysmlc.logic.syntax import (
     NEUTRAL,
     PAST,
@@ -26,8 +28,6 @@ from sysmlc.logic.syntax import (
     line_and_column,
     tokenize,
 )
-from sysmlc.logic.texts import patterns
-from sysmlc.logic.texts.patterns import Scope
 
 _LANGUAGES = ("ltl", "spin", "promela", "pattern")
 _SENTENCE = re.compile(

@@ -1,1 +1,0 @@
-"""Formal texts in models: temporal logic with the past, and property patterns as sentences."""
