@@ -168,14 +168,17 @@ def test_the_user_can_play_the_component_against_the_counter_strategy(workspace)
     workspace.write("lamp.gr1.json", rules.UNREALIZABLE.read_page().wrong)
     result = workspace.sysmlc("synth", "lamp.gr1.json", "--play", text="lamp=true\nlamp=false\n\n")
     assert result.exit_code == 1
-    assert result.stdout.startswith("You are 'lamp'.")
+    assert result.stdout.startswith("You play 'lamp'.")
     assert "You have lost." in result.stdout
 
 
 def test_a_realizable_contract_cannot_be_played(workspace):
     workspace.write("lamp.gr1.json", rules.UNREALIZABLE.read_page().right)
     result = workspace.sysmlc("synth", "lamp.gr1.json", "--play")
-    assert [result.exit_code, result.stdout] == [0, "lamp: realizable, nothing defeats it\n"]
+    assert [result.exit_code, result.stdout] == [
+        0,
+        "lamp: realizable, so no environment defeats it\n",
+    ]
 
 
 def test_a_counter_strategy_that_is_too_large_is_reported(workspace, monkeypatch):

@@ -94,7 +94,7 @@ def test_a_loop_that_the_environment_decides_has_one_traced_exit_assumption():
     assert exit_.origin == "d"
     assert exit_.text == (
         "The loop through decision 1 is left sooner or later: whenever it goes on, ok holds there "
-        "at last."
+        "eventually."
     )
     assert temporal(exit_).endswith("| (at_work_to_decision_1 & ok))")
 

@@ -113,7 +113,7 @@ def test_a_bound_that_the_values_have_already_is_a_condition_all_the_same():
     assert amount.domain == IntegerDomain(1, 4)
     bounds = [one for one in contract.assumptions if one.origin == "k0"]
     assert lines(bounds) == ["init: call -> amount>0", "safety: call' -> amount'>0"]
-    assert bounds[0].text == "Who asks for 'fill' sees to it that 'amount > 0' holds."
+    assert bounds[0].text == "The caller of 'fill' ensures that 'amount > 0' holds."
 
 
 def test_of_an_output_a_bound_is_what_is_promised():

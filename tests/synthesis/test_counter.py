@@ -204,25 +204,25 @@ def test_the_game_reports_violated_guarantees_and_its_end():
     assert has_ended
     assert output[1:] == [
         "step 1: go=false",
-        "That breaks 'at=0'.",
+        "This answer violates 'at=0'.",
         "     at=0",
         "step 2: go=true",
         "     at=0",
         "'at' is one of 0, 1",
-        "'up' is not yours; yours are at",
-        "That breaks 'go' -> at'=at'.",
+        "'up' is not an output; the outputs are at",
+        "This answer violates 'go' -> at'=at'.",
         "     at=0",
         "step 3: nothing changes",
         "     at=0",
-        "Step 3 is step 2 again, and the environment can go on so for ever:\n"
-        "'at=1' does not come about again. You have lost.",
+        "Step 3 equals step 2, and the environment can repeat this for ever:\n"
+        "'at=1' never holds again. You have lost.",
     ]
 
 
 def test_the_game_ends_without_answers_or_when_the_player_quits():
     has_ended, output = play_lines(STUCK, "", "", "", "")
     assert has_ended
-    assert output[-1] == "You have no answer: each one breaks what you promise. You have lost."
+    assert output[-1] == "No answer is allowed: each one violates a guarantee. You have lost."
     assert play_lines(STUCK)[0] is False
     assert play_lines(STUCK, "quit")[0] is False
 
@@ -231,14 +231,14 @@ def test_the_game_names_the_guarantee_that_the_last_answer_violates():
     text = "env go: bool\nsys at: 0..1\npromise always !go -> at=0\npromise recurs at=1"
     _, output = play_lines(text, "at=1", "", "")
     assert output[1:3] == ["step 1: go=false", "     at=1"]
-    assert output[-1] == "Your last answer breaks '!go -> at=0'. You have lost."
+    assert output[-1] == "Your last answer violates '!go -> at=0'. You have lost."
 
 
 def test_the_game_shows_a_formula_as_it_was_written():
     _, output = play_lines(
         "env go: bool\nsys at: 0..1\npromise G (go -> F at=1)\n" + STAY, *[""] * 9
     )
-    assert output[-1].endswith("'G (go -> F at=1)' is not kept. You have lost.")
+    assert output[-1].endswith("'G (go -> F at=1)' is violated. You have lost.")
 
 
 STAY = "promise at first at=0\npromise always at'=at"

@@ -227,8 +227,8 @@ def test_many_conditions_are_cut():
 def test_a_diagram_explains_its_registers():
     text = machine_diagram(machines.build_controller(COUNTER), COUNTER)
     assert "S1 --> S1 : last_n<=19 & go\\n/ n=last_n + 1" in text
-    assert "/ as before" in text
-    assert "  last_n is what n was in the step before" in text
+    assert "/ unchanged" in text
+    assert "  last_n is the value of n in the previous step" in text
 
 
 def test_large_machines_have_no_diagram():

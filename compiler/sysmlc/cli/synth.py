@@ -235,7 +235,7 @@ def _play(contract_file: "ContractFile", component: str, options: "Options") -> 
     try:
         environment = find_environment_strategy(contracts[0], options)
     except NotLostError:
-        terminal.echo(f"{contracts[0].component}: realizable, nothing defeats it")
+        terminal.echo(f"{contracts[0].component}: realizable, so no environment defeats it")
         return 0
     except (LimitError, OutsideGr1Error) as problem:
         fail(str(problem))

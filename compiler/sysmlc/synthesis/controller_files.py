@@ -204,13 +204,15 @@ def _describe_answer(move: Move, machine: Machine, names: Mapping[str, str]) -> 
         for variable, value in pairs
         if value != Var(variable.name)
     ]
-    return " ".join(outputs) or "as before"
+    return " ".join(outputs) or "unchanged"
 
 
 def _legend(names: Mapping[str, str]) -> Iterator[str]:
     if names:
         yield "legend"
-        yield from (f"  {name} is what {of} was in the step before" for of, name in names.items())
+        yield from (
+            f"  {name} is the value of {of} in the previous step" for of, name in names.items()
+        )
         yield "  an output that is not listed keeps its value"
         yield "endlegend"
 

@@ -263,7 +263,7 @@ def _frame_condition(variable: Variable) -> Formula:
 
 def _makes_realizable(game: Game, assumption: Conjunct) -> bool:
     """Return whether the assumption makes the game won, and not only because it can be violated."""
-    game.manager.check("looking for assumptions that would help")
+    game.manager.check("searching for assumptions that would help")
     part = Constraint(game.symbols.bdd(assumption.formula), assumption)
     if assumption.class_ is Class.LIVENESS:
         extended_game = replace(game, fairness=(*game.fairness, part))

@@ -28,14 +28,14 @@ _TITLES = {
 _PREFIXES = {
     "at_": "a token is on the flow",
     "run_": "the action is running",
-    "done_": "the environment says that it is done",
-    "receive_": "the signal comes",
+    "done_": "the environment reports that it is done",
+    "receive_": "the signal is received",
     "send_": "the signal is sent",
-    "do_": "the behaviour of the state is being done",
-    "ticks_": "steps that the state has been active",
+    "do_": "the do behaviour of the state is running",
+    "ticks_": "steps for which the state has been active",
     "taken_": "which of several possible transitions was taken",
-    "last_": "what the region was when it was last active",
-    "was_": "what the condition was in the step before",
+    "last_": "the state of the region when it was last active",
+    "was_": "whether the condition held in the previous step",
 }
 """Meanings of variables that stand for a part of a diagram, by the start of their names."""
 _UNSET = re.compile(r"!\w+$")

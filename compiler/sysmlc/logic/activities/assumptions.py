@@ -184,7 +184,7 @@ def _loop_assumption(formulas: StepFormulas, loop: Loop) -> Iterator[Conjunct]:
     guards = " or ".join(dict.fromkeys(edge.guard.text for edge in loop.exits if edge.guard))
     text = (
         f"The loop through {names} is left sooner or later: whenever it goes on, "
-        f"{guards} holds there at last."
+        f"{guards} holds there eventually."
     )
     formula = f.either(f.both(*map(f.negate, tokens_inside)), exit)
     yield Conjunct(formula, Class.LIVENESS, nodes[0].origin, text)

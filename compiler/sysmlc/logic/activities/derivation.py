@@ -143,7 +143,7 @@ def _derive_edge_update(formulas: StepFormulas, edge: TokenEdge) -> Conjunct:
 def _derive_completion(formulas: StepFormulas, region: str, name: str) -> Conjunct:
     label = _label_of(formulas.graph, region)
     text = (
-        f"'{name}' says that {label} is over: a token is at a final node, "
+        f"'{name}' is true when {label} has ended: a token is at a final node, "
         "or nothing in it can move."
     )
     value = f.iff(f.var(name), formulas.completion_formula(region))

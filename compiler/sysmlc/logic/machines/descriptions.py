@@ -17,14 +17,14 @@ from sysmlc.logic.machines.machine import (
 from sysmlc.logic.machines.symbolic_path import Path
 from sysmlc.logic.printing import print_formula, print_literal
 
-CLOCK_RUNS = "'{clock}' counts the steps that '{state}' has been active."
-CLOCK_STOPS = "'{clock}' stops counting when no transition waits for more."
+CLOCK_RUNS = "'{clock}' counts the steps for which '{state}' has been active."
+CLOCK_STOPS = "'{clock}' stops at the longest time that a transition waits for."
 CLOCK_RESETS = "'{clock}' is 0 when '{state}' is entered and while it is not active."
-UPDATES_MEMORY = "'{memory}' says what '{region}' was, one step later."
+UPDATES_MEMORY = "'{memory}' takes the value of '{region}' in the next step."
 KEEPS_MEMORY = (
-    "'{memory}' keeps what it says while '{state}' is not active: history leads back to it."
+    "'{memory}' does not change while '{state}' is not active, so history can restore it."
 )
-INITIAL_ALTERNATIVES = "The initial transition is taken on one of the ways that are open."
+INITIAL_ALTERNATIVES = "The initial transition takes one of the branches whose guards hold."
 
 
 def name_transition(transition: Transition) -> str:
@@ -53,7 +53,7 @@ def describe_transition(
     branch_conditions = [] if condition == TRUE else [print_formula(condition)]
     conditions = " and ".join([when, *guards, *branch_conditions])
     preempting_names = " or ".join(dict.fromkeys(name_transition(other) for other in preempting))
-    unless = f", unless {preempting_names} goes first" if preempting_names else ""
+    unless = f", unless {preempting_names} is taken instead" if preempting_names else ""
     return (
         f"In '{source}', when {conditions}{unless}: {_describe_outcome(machine, transition, path)}."
     )
@@ -87,10 +87,10 @@ def _describe_outcome(machine: Machine, transition: Transition, path: Path) -> s
 def _describe_next_state(machine: Machine, transition: Transition, path: Path) -> str:
     literals = [literal for literal in path.entered.values() if literal != "inactive"]
     if transition.kind == "internal":
-        return "the state stays"
+        return "the state does not change"
     source = machine.vertices[transition.source].literal
     if literals == [source]:
-        return f"'{source}' is left and entered again"
+        return f"'{source}' is exited and entered again"
     return "the next state is " + " with ".join(f"'{literal}'" for literal in literals)
 
 
@@ -100,13 +100,13 @@ def _print_value(value: Formula) -> str:
 
 def describe_branches(transition: Transition) -> str:
     """Describe that a transition through a choice takes one of the open branches."""
-    return f"Transition '{transition.words}' takes one of the branches that are open."
+    return f"Transition '{transition.words}' takes one of the branches whose guards hold."
 
 
 def describe_choice(machine: Machine, state: Vertex) -> str:
     """Describe that a state with competing transitions takes one of them."""
     names = ", ".join(f"'{transition.words}'" for transition in machine.outgoing[state.id])
-    return f"When several of {names} can be taken, '{state.pick}' says which one is."
+    return f"When several of {names} can be taken, '{state.pick}' selects the one that is taken."
 
 
 def describe_start(formula: Formula) -> str:
@@ -117,22 +117,22 @@ def describe_start(formula: Formula) -> str:
 def describe_frame(machine: Machine, name: str) -> str:
     """Describe the frame condition of a variable."""
     if name in machine.outputs:
-        return f"'{name}' is done only by the transitions and states that name it."
+        return f"'{name}' is done only by transitions and states that refer to it."
     if any(vertex.pick == name for vertex in machine.vertices.values()):
-        return f"'{name}' is none when no choice was made."
-    return f"'{name}' changes only by transitions that change it."
+        return f"'{name}' is none unless a choice was made."
+    return f"'{name}' does not change unless a transition changes it."
 
 
 def describe_memory(name: str, truth: Formula) -> str:
     """Describe a memory: it stores whether a condition was true in the previous step."""
-    return f"'{name}' says whether {print_formula(truth)} held in the step before."
+    return f"'{name}' is true if {print_formula(truth)} held in the previous step."
 
 
 def describe_do_behaviour(state: Vertex) -> str:
     """Describe when the do behaviour of a state runs."""
-    return f"'{state.do}' is done exactly while '{state.literal}' is active."
+    return f"'{state.do}' runs exactly while '{state.literal}' is active."
 
 
 def describe_end(state: Vertex) -> str:
     """Describe the assumption that a do behaviour ends."""
-    return f"'{state.do}' does not go on for ever: '{state.done}' is reported again and again."
+    return f"'{state.do}' does not run for ever: '{state.done}' is reported again and again."

@@ -116,7 +116,7 @@ def _derive_assumptions(call: _ServiceCall) -> Iterator[Conjunct]:
         condition.variable: f.prime(f.var(condition.variable)) for condition in call.inputs
     }
     for condition in call.conditions(is_before=True):
-        text = f"Who asks for '{name}' sees to it that {_name_of(condition)} holds."
+        text = f"The caller of '{name}' ensures that {_name_of(condition)} holds."
         if not _reads_any(condition.formula, call.outputs):
             first = f.implies(call.call, condition.formula)
             yield Conjunct(first, Class.INIT, condition.constraint.id, text)
@@ -124,11 +124,11 @@ def _derive_assumptions(call: _ServiceCall) -> Iterator[Conjunct]:
         yield Conjunct(later, Class.SAFETY, condition.constraint.id, text)
     waiting = f.both(call.runs, f.negate(call.done))
     no_repetition = f.implies(waiting, f.negate(f.prime(call.call)))
-    text = f"'{name}' is not asked for again before it is done."
+    text = f"'{name}' is not called again before it is done."
     yield Conjunct(no_repetition, Class.SAFETY, id, text)
     for feature in call.inputs:
         value = f.var(feature.variable)
-        text = f"'{feature.element.name}' stays as it is until '{name}' is done."
+        text = f"'{feature.element.name}' does not change until '{name}' is done."
         unchanged = f.implies(waiting, _equality(f.prime(value), value, feature))
         yield Conjunct(unchanged, Class.SAFETY, feature.element.id, text)
 
@@ -139,10 +139,10 @@ def _derive_guarantees(call: _ServiceCall) -> Iterator[Conjunct]:
     idle = f.both(f.negate(call.busy), f.negate(call.done))
     yield Conjunct(idle, Class.INIT, id, f"'{name}' is not running at the start.")
     runs = f.iff(after_busy, f.both(call.runs, f.negate(call.done), f.negate(after_done)))
-    text = f"'{name}' runs from when it is asked for until it is done."
+    text = f"'{name}' runs from its call until it is done."
     yield Conjunct(runs, Class.SAFETY, id, text)
     ends = f.implies(after_done, f.both(call.runs, f.negate(call.done)))
-    yield Conjunct(ends, Class.SAFETY, id, f"'{name}' is done only when it was asked for.")
+    yield Conjunct(ends, Class.SAFETY, id, f"'{name}' is done only after it was called.")
     for condition in call.conditions(is_before=False):
         text = f"When '{name}' is done, {_name_of(condition)} holds."
         conjunct = f.implies(after_done, f.prime(condition.formula))
@@ -150,9 +150,9 @@ def _derive_guarantees(call: _ServiceCall) -> Iterator[Conjunct]:
     for feature in call.outputs:
         value = f.var(feature.variable)
         unchanged = f.implies(f.negate(after_done), _equality(f.prime(value), value, feature))
-        text = f"What '{name}' makes of '{feature.element.name}' is seen when it is done."
+        text = f"'{feature.element.name}' changes only in steps in which '{name}' is done."
         yield Conjunct(unchanged, Class.SAFETY, feature.element.id, text)
-    text = f"'{name}' is done in the end, whenever it is asked for."
+    text = f"Whenever '{name}' is called, it is done sooner or later."
     finishes = f.either(call.done, f.negate(call.runs))
     yield Conjunct(finishes, Class.LIVENESS, id, text)
 

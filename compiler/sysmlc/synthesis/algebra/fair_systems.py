@@ -158,7 +158,7 @@ class Runs:
             if shrunk == result:
                 return result
             result = shrunk
-            self.manager.check("looking for fair runs")
+            self.manager.check("searching for fair runs")
 
     @property
     def goals(self) -> tuple[Node, ...]:
@@ -193,7 +193,7 @@ class Runs:
         while frontier != self.manager.false:
             frontier = self.successors(frontier) & ~reached
             reached = reached | frontier
-            self.manager.check("exploring what can be reached")
+            self.manager.check("exploring the reachable states")
         return reached
 
 

@@ -148,7 +148,7 @@ class _ConditionWriter:
         ]
         while (values := find_least_assignment(self._manager, remaining, bits)) is not None:
             self._cases_left -= 1
-            self._manager.check("writing the conditions of a machine")
+            self._manager.check("computing the conditions of the machine")
             if self._cases_left < 0:
                 raise TooLargeError(
                     "cases in the conditions of the machine", f"{self._max_cases:,}"

@@ -278,6 +278,6 @@ class _StateEnumeration:
         return states_with_value(self._strategy, outputs, name, value)
 
     def _check_count(self, kind: str, number: int, limit: int) -> None:
-        self._manager.check("listing the states of a machine")
+        self._manager.check("listing the states of the machine")
         if number > limit:
             raise TooLargeError(f"{kind} of the machine", f"{limit:,}")

@@ -85,7 +85,7 @@ class _StateMerger:
         for state in range(len(self._states)):
             if self._comparisons_left <= 0:
                 break
-            self._manager.check("joining the states of a machine")
+            self._manager.check("merging states of the machine")
             if self._find(state) != state or any(
                 self._merge(representative, state) for representative in representatives
             ):

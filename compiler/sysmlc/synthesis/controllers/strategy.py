@@ -252,7 +252,7 @@ def choose_targets(
     # wins at once. So the empty layer comes first.
     empty_layer = Layer(manager.false, ())
     for layer in (empty_layer, *solution.layers[goal]):
-        manager.check("looking for what to do")
+        manager.check("computing the strategy")
         for waiting_states, target_states in _states_that_wait(
             solution, operator, goal, layer, previous
         ):

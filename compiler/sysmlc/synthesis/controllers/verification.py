@@ -252,7 +252,7 @@ def has_fair_run(runs: Runs | QuickCheck, within: Node) -> bool:
         if shrunk == states:
             return True
         states = shrunk
-        runs.manager.check("looking for runs that never come to a goal")
+        runs.manager.check("searching for runs that never reach a goal")
     return False
 
 

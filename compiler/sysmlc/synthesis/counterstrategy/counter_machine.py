@@ -111,7 +111,7 @@ class _Exploration:
 
     def _count(self) -> None:
         self._moves_left -= 1
-        self._symbols.manager.check("listing what the environment does")
+        self._symbols.manager.check("listing the moves of the environment")
         if self._moves_left < 0:
             raise LimitError("answers of the system", f"{self._max_moves:,}")
 

@@ -103,7 +103,7 @@ class _RankSearch:
             if extended == layers[-1]:
                 return tuple(layers)
             layers.append(extended)
-            self._arena.manager.check("looking how the environment wins")
+            self._arena.manager.check("computing how the environment wins")
 
 
 Bits = Mapping[str, bool]

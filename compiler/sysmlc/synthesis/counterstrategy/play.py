@@ -16,9 +16,9 @@ MAX_ANSWERS = 2_000
 """Allowed answers that are examined in one step; further answers cannot be given."""
 _MAX_SHOWN_OPTIONS = 10
 _INTRODUCTION = """\
-You are '{component}'. In each step the environment gives its values, then you answer with yours:
-name=value, separated by blanks. What you leave out stays as it is, when it may.
-'options' shows what you may answer, 'quit' ends the game."""
+You play '{component}'. In each step the environment chooses its inputs, then you answer with
+outputs: name=value, separated by blanks. An output that you omit keeps its value if possible.
+'options' shows the allowed answers, 'quit' ends the game."""
 
 Values = Mapping[str, Literal]
 
@@ -124,7 +124,7 @@ class Player:
         for word in line.replace(",", " ").split():
             name, _, text = word.partition("=")
             if name not in variables:
-                self._write(f"'{name}' is not yours; yours are {', '.join(variables)}")
+                self._write(f"'{name}' is not an output; the outputs are {', '.join(variables)}")
                 return None
             value = _parse_value(variables[name], text)
             if value is None:
@@ -137,7 +137,9 @@ class Player:
     def _explain_refusal(self, previous: Values, current: Values) -> None:
         """Show the guarantees that a refused answer violates."""
         messages = list(dict.fromkeys(self._violated_guarantees(previous, current)))
-        for message in messages or ["That is not allowed here; 'options' shows what is."]:
+        for message in messages or [
+            "This answer is not allowed here; 'options' shows the allowed answers."
+        ]:
             self._write(message)
 
     def _violated_guarantees(self, previous: Values, current: Values) -> Iterator[str]:
@@ -149,7 +151,7 @@ class Player:
             values = (previous, current) if previous else (current, None)
             if guarantee.class_ is class_ and not is_true(guarantee.formula, *values):
                 text = _text_in_parentheses(guarantee)
-                yield f"That breaks '{print_formula(guarantee.formula)}'{text}."
+                yield f"This answer violates '{print_formula(guarantee.formula)}'{text}."
 
     def _describe_dead_end(self, state: Bits | None) -> str:
         """Return why no answer is allowed.
@@ -167,14 +169,14 @@ class Player:
                 and not is_true(guarantee.formula, values)
             ):
                 violated = f"'{print_formula(guarantee.formula)}'{_text_in_parentheses(guarantee)}"
-                return f"Your last answer breaks {violated}. You have lost."
-        return "You have no answer: each one breaks what you promise. You have lost."
+                return f"Your last answer violates {violated}. You have lost."
+        return "No answer is allowed: each one violates a guarantee. You have lost."
 
     def _describe_loop(self, state: Bits, step: int, earlier: int) -> str:
         lost = self._environment.lost_game
         rank = self._environment.rank(state)
         introduction = (
-            f"Step {step} is step {earlier} again, and the environment can go on so for ever"
+            f"Step {step} equals step {earlier}, and the environment can repeat this for ever"
         )
         if not lost.game.goals:
             return f"{introduction}. You have lost."
@@ -183,7 +185,7 @@ class Player:
             return f"{introduction}. You have lost."
         (goal,) = original_conjuncts([conjunct], self._contract)
         guarantee = f"'{print_formula(goal.formula)}'{_text_in_parentheses(goal)}"
-        end = "is not kept" if goal.class_ is Class.OTHER else "does not come about again"
+        end = "is violated" if goal.class_ is Class.OTHER else "never holds again"
         return f"{introduction}:\n{guarantee} {end}. You have lost."
 
 
