@@ -24,7 +24,7 @@ from sysmlc.logic import formula as f
 from sysmlc.logic.activities import interpreter as token_game
 from sysmlc.logic.activities.token_graph import TokenGraph
 from sysmlc.logic.contract import Class, Contract, Owner
-from sysmlc.logic.evaluate import has_primes
+from sysmlc.logic.formula import has_primes
 from sysmlc.passes import pipeline
 from sysmlc.synthesis.algebra.fair_systems import Universe
 from sysmlc.synthesis.bdd.manager import Manager

@@ -1,13 +1,10 @@
 """Classes of GR(1): the class of an LTL formula, and its form in that class (thesis, 2.2.3)."""
 
 from collections.abc import Iterator
-from functools import lru_cache
 
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import Class
-from sysmlc.logic.evaluate import has_primes
-from sysmlc.logic.formula import Apply, Formula, Op
-from sysmlc.logic.syntax import TEMPORAL
+from sysmlc.logic.formula import FUTURE, Apply, Formula, Op, has_future, has_primes
 
 
 def classify(formula: Formula) -> Iterator[tuple[Class, Formula]]:
@@ -56,7 +53,7 @@ def replace_next_by_primes(formula: Formula) -> Formula | None:
         case Apply(Op.NEXT, (inner,)):
             is_one_step = not has_future(inner) and not has_primes(inner)
             return f.prime(inner) if is_one_step else None
-        case Apply(op, _) if op in TEMPORAL:
+        case Apply(op, _) if op in FUTURE:
             return None
         case Apply(op, args):
             parts = [replace_next_by_primes(arg) for arg in args]
@@ -74,13 +71,3 @@ def _apply(op: Op, args: tuple[Formula, ...]) -> Formula:
             return f.either(*args)
         case _:
             return Apply(op, args)
-
-
-@lru_cache(1 << 14)
-def has_future(formula: Formula) -> bool:
-    """Whether the formula has temporal operators of the future; primes do not count."""
-    match formula:
-        case Apply(op, args):
-            return op in TEMPORAL or any(has_future(arg) for arg in args)
-        case _:
-            return False

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Mapping, Sequence
 
 from sysmlc.logic.contract import Class, Conjunct
-from sysmlc.logic.formula import Apply, Const, Formula, Literal, Op, Var
+from sysmlc.logic.formula import Apply, Const, Formula, Literal, Op, Var, has_primes
 
 Valuation = Mapping[str, Literal]
 
@@ -81,17 +81,6 @@ def _any_true(parts: tuple[Evaluation, ...], now: Valuation, then: Valuation | N
 def is_true(formula: Formula, now: Valuation, then: Valuation | None = None) -> bool:
     """Return whether a formula without temporal operators holds in one step."""
     return bool(value_of(formula, now, then))
-
-
-def has_primes(formula: Formula) -> bool:
-    """Return whether the formula refers to the next step."""
-    match formula:
-        case Var(_, primed):
-            return primed
-        case Apply(_, args):
-            return any(has_primes(arg) for arg in args)
-        case _:
-            return False
 
 
 def find_violation(

@@ -13,15 +13,12 @@ from msgspec.structs import replace
 
 from sysmlc.logic import formula as f
 from sysmlc.logic import property_patterns as patterns
-from sysmlc.logic.classification import has_future
 from sysmlc.logic.contract import Domain
-from sysmlc.logic.evaluate import has_primes
-from sysmlc.logic.formula import Formula, Op
+from sysmlc.logic.formula import PAST, Formula, Op, has_future, has_primes
 from sysmlc.logic.infix import FormulaReader, Term
 from sysmlc.logic.property_patterns import Scope
 from sysmlc.logic.syntax import (
     NEUTRAL,
-    PAST,
     PAST_WORDS,
     Cursor,
     FormulaError,

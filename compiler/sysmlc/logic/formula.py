@@ -1,7 +1,7 @@
 """Linear temporal logic over variables with finite domains, as immutable values.
 
-The functions at the end (``var``, ``eq``, ``both``, ``always`` ...) build formulas; they flatten
-chains and fold constants. The classes build exactly the formula that is given.
+The functions ``var``, ``eq``, ``both``, ``always`` and others build formulas; they flatten chains
+and fold constants. The classes build exactly the formula that is given.
 """
 
 from dataclasses import dataclass
@@ -47,6 +47,11 @@ class Op(StrEnum):
 
     # Enum.__hash__ is written in Python, and operators are keys of every table here.
     __hash__ = str.__hash__
+
+
+FUTURE = frozenset([Op.NEXT, Op.ALWAYS, Op.EVENTUALLY, Op.UNTIL, Op.RELEASE, Op.WEAK_UNTIL])
+PAST = frozenset([Op.PREVIOUS, Op.ONCE, Op.HISTORICALLY, Op.SINCE])
+"""Temporal operators."""
 
 
 # In Python 3.11, looking up a member of an enumeration takes twice as long as a global name.
@@ -211,18 +216,6 @@ def _apply(op: Op, args: tuple[Formula, ...]) -> Apply:
 
 
 @lru_cache(_CACHED_FORMULAS)
-def variables(formula: Formula) -> tuple[Var, ...]:
-    """Return every variable of the formula from left to right, with repetitions."""
-    match formula:
-        case Var():
-            return (formula,)
-        case Apply(_, args):
-            return tuple(variable for arg in args for variable in variables(arg))
-        case _:
-            return ()
-
-
-@lru_cache(_CACHED_FORMULAS)
 def _flatten(op: Op, formulas: tuple[Formula, ...], unit: Const, zero: Const) -> Formula:
     """Return the chain of *op* with each operand once; *unit* is neutral, *zero* absorbs."""
     parts: dict[Formula, None] = {}
@@ -237,3 +230,49 @@ def _flatten(op: Op, formulas: tuple[Formula, ...], unit: Const, zero: Const) ->
     if len(parts) <= 1:
         return next(iter(parts), unit)
     return Apply(op, tuple(parts))
+
+
+# -- properties of formulas ------------------------------------------------------------------------
+
+
+@lru_cache(_CACHED_FORMULAS)
+def variables(formula: Formula) -> tuple[Var, ...]:
+    """Return every variable of the formula from left to right, with repetitions."""
+    match formula:
+        case Var():
+            return (formula,)
+        case Apply(_, args):
+            return tuple(variable for arg in args for variable in variables(arg))
+        case _:
+            return ()
+
+
+def split_conjunction(formula: Formula) -> tuple[Formula, ...]:
+    """Return the operands of a conjunction, or a tuple of any other formula alone."""
+    return formula.args if isinstance(formula, Apply) and formula.op is _AND else (formula,)
+
+
+def has_primes(formula: Formula) -> bool:
+    """Return whether the formula has primed variables, which have their values in the next step."""
+    match formula:
+        case Var(_, primed):
+            return primed
+        case Apply(_, args):
+            return any(map(has_primes, args))
+        case _:
+            return False
+
+
+@lru_cache(_CACHED_FORMULAS)
+def has_future(formula: Formula) -> bool:
+    """Return whether the formula has temporal operators of the future; primes do not count."""
+    if not isinstance(formula, Apply):
+        return False
+    return formula.op in FUTURE or any(map(has_future, formula.args))
+
+
+def has_past(formula: Formula) -> bool:
+    """Return whether the formula has temporal operators of the past."""
+    if not isinstance(formula, Apply):
+        return False
+    return formula.op in PAST or any(map(has_past, formula.args))

@@ -7,8 +7,7 @@ from sysmlc.logic import domains
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import Domain
 from sysmlc.logic.evaluate import compile_evaluation, value_of
-from sysmlc.logic.formula import Apply, Const, Formula, Literal, Op, Var
-from sysmlc.logic.syntax import PAST, TEMPORAL
+from sysmlc.logic.formula import FUTURE, PAST, Apply, Const, Formula, Literal, Op, Var
 
 _MAX_VALUATIONS = 4096
 """Most valuations tried; above this number a formula counts as satisfiable."""
@@ -31,7 +30,7 @@ def substitute(formula: Formula, values: Mapping[str, Formula]) -> Formula:
 
 def rebuild(op: Op, args: tuple[Formula, ...]) -> Formula:
     """Apply the operator to the operands and fold constants."""
-    if all(isinstance(arg, Const) for arg in args) and op not in TEMPORAL and op not in PAST:
+    if all(isinstance(arg, Const) for arg in args) and op not in FUTURE and op not in PAST:
         return Const(value_of(Apply(op, args), {}))
     if op in _CONNECTIVES:
         return _CONNECTIVES[op](*args)
@@ -116,7 +115,7 @@ def _split_any_conjunction(formula: Formula) -> tuple[Formula, ...]:
         case Apply(Op.NOT, (Apply(Op.OR, args),)):
             return tuple(map(f.negate, args))
         case _:
-            return _split_conjunction(formula)
+            return f.split_conjunction(formula)
 
 
 def _is_part_satisfiable(
@@ -258,7 +257,7 @@ def _select_facts(
     limit.
     """
     selected_variables = set(f.variables(formula))
-    parts = [part for fact in facts for part in _split_conjunction(fact)]
+    parts = [part for fact in facts for part in f.split_conjunction(fact)]
     candidates = [(set(f.variables(part)), part) for part in parts]
     chosen: list[Formula] = []
     for variables, part in sorted(candidates, key=lambda candidate: len(candidate[0])):
@@ -269,11 +268,6 @@ def _select_facts(
             selected_variables |= variables
             chosen.append(part)
     return f.both(*chosen)
-
-
-def _split_conjunction(formula: Formula) -> tuple[Formula, ...]:
-    is_and = isinstance(formula, Apply) and formula.op is Op.AND
-    return formula.args if is_and and isinstance(formula, Apply) else (formula,)
 
 
 _CONNECTIVES: dict[Op, Callable[..., Formula]] = {

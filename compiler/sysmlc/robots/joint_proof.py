@@ -14,7 +14,7 @@ from msgspec.structs import replace
 
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import Class, Conjunct, Contract, Part
-from sysmlc.logic.evaluate import has_primes
+from sysmlc.logic.formula import has_primes
 from sysmlc.robots import contract_terms as terms
 from sysmlc.robots.joint_contracts import (
     JointContracts,

@@ -167,7 +167,9 @@ def _derive_transition(exploration: Exploration, move: Move) -> Iterator[Conjunc
         taken = remove_redundant(f.both(move.fires, path.when, *choices), exploration.domains)
         formula = f.implies(taken, f.both(*_effect_formulas(exploration, path)))
         if formula != f.TRUE:
-            branch = remove_redundant(path.when, exploration.domains, _conjuncts(move.fires))
+            branch = remove_redundant(
+                path.when, exploration.domains, f.split_conjunction(move.fires)
+            )
             preempting = [item.transition for item in _find_overtaking(exploration, move, path)]
             text = texts.describe_transition(
                 exploration.machine, move.transition, path, branch, preempting
@@ -220,21 +222,18 @@ def _derive_choices(exploration: Exploration) -> Iterator[Conjunct]:
         # ``fires`` contains the primed choice variable. As a premise it would make the conjunct
         # trivially true, so only its unprimed part is used.
         eligibility = [
-            f.both(*(conjunct for conjunct in _conjuncts(move.fires) if not _has_primes(conjunct)))
+            f.both(
+                *(
+                    conjunct
+                    for conjunct in f.split_conjunction(move.fires)
+                    if not f.has_primes(conjunct)
+                )
+            )
             for move in moves
         ]
         formula = f.implies(f.either(*eligibility), f.either(*(move.fires for move in moves)))
         origin = element_id(state.id)
         yield Conjunct(formula, Class.SAFETY, origin, texts.describe_choice(machine, state))
-
-
-def _conjuncts(formula: Formula) -> tuple[Formula, ...]:
-    is_and = isinstance(formula, f.Apply) and formula.op is Op.AND
-    return formula.args if is_and and isinstance(formula, f.Apply) else (formula,)
-
-
-def _has_primes(formula: Formula) -> bool:
-    return any(variable.primed for variable in f.variables(formula))
 
 
 # -- frames ------------------------------------------------------------------------------------

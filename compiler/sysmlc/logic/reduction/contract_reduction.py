@@ -7,13 +7,11 @@ from msgspec.structs import replace
 
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import Class, Conjunct, Contract
-from sysmlc.logic.evaluate import has_primes
-from sysmlc.logic.formula import Formula
+from sysmlc.logic.formula import Formula, has_past, has_primes
 from sysmlc.logic.printing import print_formula
 from sysmlc.logic.reduction.formula_reduction import (
     FormulaReduction,
     NotReducibleError,
-    has_past,
     reduce_formula,
 )
 from sysmlc.logic.reduction.history import History

@@ -8,12 +8,10 @@ patterns). Every rule is an equivalence in all traces in which the bits follow t
 from collections.abc import Iterator
 
 from sysmlc.logic import formula as f
-from sysmlc.logic.classification import classify, has_future
+from sysmlc.logic.classification import classify
 from sysmlc.logic.contract import Class
-from sysmlc.logic.evaluate import has_primes
-from sysmlc.logic.formula import Apply, Formula, Op
+from sysmlc.logic.formula import FUTURE, PAST, Apply, Formula, Op, has_future, has_primes
 from sysmlc.logic.reduction.history import History
-from sysmlc.logic.syntax import PAST, TEMPORAL
 
 _MAX_NEXT_DEPTH = 64
 """Most nested X of a formula; each level needs a history bit."""
@@ -167,7 +165,7 @@ class FormulaReduction:
             goal = f.eventually(self._last_step(has_occurred))
             yield from self._require(self._shift_back(trigger, depth), goal)
             return
-        parts = inner.args if isinstance(inner, Apply) and inner.op is Op.AND else (inner,)
+        parts = f.split_conjunction(inner)
         future = [part for part in parts if has_future(part)]
         if (
             len(future) != 1
@@ -265,13 +263,6 @@ _DUAL = {
 }
 
 
-def has_past(formula: Formula) -> bool:
-    """Whether the formula has operators of the past."""
-    if not isinstance(formula, Apply):
-        return False
-    return formula.op in PAST or any(map(has_past, formula.args))
-
-
 def _push_negation(body: Formula) -> Formula:
     """Return ``not body`` with the negation moved to the operands (De Morgan, duality)."""
     if not isinstance(body, Apply) or body.op not in _DUAL:
@@ -312,7 +303,7 @@ def _next_depth(formula: Formula) -> int | None:
     """Return the deepest nesting of X; None if the formula has other operators of the future."""
     if not isinstance(formula, Apply):
         return 0
-    if formula.op in TEMPORAL and formula.op is not Op.NEXT:
+    if formula.op in FUTURE and formula.op is not Op.NEXT:
         return None
     deepest = 0
     for arg in formula.args:

@@ -9,8 +9,7 @@ from collections.abc import Iterable
 
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import BooleanDomain, Class, Conjunct, Owner, Variable
-from sysmlc.logic.evaluate import has_primes
-from sysmlc.logic.formula import Formula, Var
+from sysmlc.logic.formula import Formula, Var, has_primes
 from sysmlc.logic.printing import print_formula
 
 

@@ -15,7 +15,7 @@ from msgspec import Struct
 from msgspec.structs import replace
 
 from sysmlc.logic.contract import Class, Composite, Conjunct, Owner, Part
-from sysmlc.logic.evaluate import has_primes
+from sysmlc.logic.formula import has_primes
 from sysmlc.synthesis.algebra.fair_systems import Runs, Trace, Universe, build_lasso, shortest_path
 from sysmlc.synthesis.algebra.instantaneous_dependencies import (
     DependencyGraph,

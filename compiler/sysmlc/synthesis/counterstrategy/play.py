@@ -5,10 +5,9 @@ from itertools import islice
 
 from sysmlc.logic.contract import Class, Conjunct, Contract, Owner, Variable
 from sysmlc.logic.domains import values
-from sysmlc.logic.evaluate import has_primes, is_true
-from sysmlc.logic.formula import Literal
+from sysmlc.logic.evaluate import is_true
+from sysmlc.logic.formula import Literal, has_past, has_primes
 from sysmlc.logic.printing import print_formula, print_literal
-from sysmlc.logic.reduction.formula_reduction import has_past
 from sysmlc.synthesis.counterstrategy.environment_strategy import Bits, EnvironmentStrategy
 from sysmlc.synthesis.unrealizable import original_conjuncts
 
