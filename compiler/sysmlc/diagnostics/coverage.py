@@ -1,4 +1,4 @@
-"""Coverage: the verdict on every element of the inputs."""
+"""Coverage: which elements of the inputs are represented in the graph, and how well."""
 
 from collections import Counter
 from collections.abc import Iterable, Mapping
@@ -49,7 +49,7 @@ class Loss(Struct, frozen=True):
 
 @dataclass(slots=True)
 class FileCoverage:
-    """Number of elements of one file by type and verdict; every element is counted once."""
+    """Numbers of elements of one file by type and verdict; each element is counted once."""
 
     file: str
     losses: list[Loss] = field(default_factory=list)
@@ -73,7 +73,7 @@ class FileCoverage:
         return totals
 
     def by_type(self) -> dict[str, dict[str, int]]:
-        """Return the number of elements by type, and below it by verdict, without zeros."""
+        """Return for each type the number of elements by verdict, without zeros."""
         table: dict[str, dict[str, int]] = {}
         for (name, verdict), number in sorted(self._counts.items()):
             table.setdefault(name, {})[verdict.value] = number
@@ -83,7 +83,7 @@ class FileCoverage:
 class Coverage:
     """Coverage of all files of one compilation.
 
-    If *is_detailed*, front ends also list each element that is not mapped.
+    If *is_detailed* is true, front ends also list each element that is not mapped.
     """
 
     def __init__(self, is_detailed: bool = False) -> None:
@@ -127,7 +127,7 @@ def count_meaningful(counts: Counts) -> int:
 
 
 def count_covered(counts: Counts) -> int:
-    """Return the number of elements whose whole meaning is in the graph, with external stubs."""
+    """Return the number of elements that the graph represents wholly, external stubs included."""
     return counts.get(Verdict.MAPPED.value, 0) + counts.get(Verdict.EXTERNAL.value, 0)
 
 

@@ -12,13 +12,14 @@ from sysmlc.diagnostics.coverage import (
     compute_covered_permille,
     sum_counts,
 )
-from sysmlc.diagnostics.diagnostic import Place
+from sysmlc.diagnostics.diagnostic import Place, format_position
 from sysmlc.diagnostics.locations import Location, locate
 from sysmlc.sources import Source
 
 LOSSES = (Verdict.UNSUPPORTED, Verdict.APPROXIMATED, Verdict.EXTERNAL)
 """Verdicts that are listed as losses, the worst first."""
-_WORST_FIRST = (*LOSSES, Verdict.MAPPED, Verdict.IGNORED_NOTATION)
+WORST_FIRST = (*LOSSES, Verdict.MAPPED, Verdict.IGNORED_NOTATION)
+"""All verdicts."""
 
 
 class LostElement(Struct, frozen=True):
@@ -34,7 +35,7 @@ class LostElement(Struct, frozen=True):
     @property
     def where(self) -> str:
         """``file:line:column`` as far as they are known."""
-        return ":".join([self.file, *(str(n) for n in (self.line, self.column) if n)])
+        return format_position(self.file, self.line, self.column)
 
 
 class FileReport(Struct, frozen=True):
@@ -85,8 +86,8 @@ def _locate_losses(
 def make_type_reports(files: Iterable[FileReport]) -> list[TypeReport]:
     """Return the reports of the types of all files.
 
-    They are sorted by the numbers of elements with the worst verdict, the second worst and so on,
-    and then by name.
+    The type with most elements of the worst verdict comes first. The second worst verdict decides
+    between types with equally many, and so on, and finally the name.
     """
     files = list(files)
     losses: dict[str, list[LostElement]] = {}
@@ -106,7 +107,7 @@ def make_type_reports(files: Iterable[FileReport]) -> list[TypeReport]:
 
 
 def _make_type_key(report: TypeReport) -> tuple[int | str, ...]:
-    return (*(-report.counts[verdict.value] for verdict in _WORST_FIRST), report.name)
+    return (*(-report.counts[verdict.value] for verdict in WORST_FIRST), report.name)
 
 
 def sort_by_coverage(files: Iterable[FileReport]) -> list[FileReport]:

@@ -1,4 +1,4 @@
-"""Diagnostics: a rule, a message, and the element and the place that they are about."""
+"""Diagnostics: a rule, a message, and the element and the place that the message is about."""
 
 from msgspec import Struct
 
@@ -19,6 +19,11 @@ class Place(Struct, frozen=True):
     offset: int = -1
     line: int = 0
     column: int = 0
+
+
+def format_position(file: str, line: int, column: int) -> str:
+    """Return ``file:line:column``; a line or column of 0 is unknown and omitted."""
+    return ":".join([file, *(str(number) for number in (line, column) if number)])
 
 
 class Subject(Struct, frozen=True):

@@ -1,4 +1,4 @@
-"""Locations of places: lines, columns and XPaths, computed only when they are shown."""
+"""Computes line, column, excerpt and XPath of places in inputs, only when they are shown."""
 
 import re
 from bisect import bisect_right
@@ -93,11 +93,11 @@ def _locate_in_file(
 def _find_offsets_only(source: Source, places: Sequence[Place]) -> dict[Place, tuple[int, str]]:
     """Return the offsets of the places that can be found, with empty XPaths."""
     offsets = _find_offsets(source, {place.ordinal for place in places if place.ordinal >= 0})
-    found = (
+    offsets_by_place = (
         (place, offsets.get(place.ordinal, -1) if place.ordinal >= 0 else place.offset)
         for place in places
     )
-    return {place: (offset, "") for place, offset in found if offset >= 0}
+    return {place: (offset, "") for place, offset in offsets_by_place if offset >= 0}
 
 
 def _find_offsets_with_xpaths(
@@ -109,20 +109,21 @@ def _find_offsets_with_xpaths(
     ordinals = {place.ordinal for place in places if place.ordinal >= 0}
     offsets = {place.offset for place in places if place.ordinal < 0 <= place.offset}
     xpaths = find_xpaths(source, ordinals, offsets)
-    found: dict[Place, tuple[int, str]] = {}
+    offsets_with_xpaths: dict[Place, tuple[int, str]] = {}
     for place in places:
         if place.ordinal in xpaths.by_ordinal:
-            found[place] = xpaths.by_ordinal[place.ordinal]
+            offsets_with_xpaths[place] = xpaths.by_ordinal[place.ordinal]
         elif place.ordinal < 0 <= place.offset:
-            found[place] = place.offset, xpaths.by_offset.get(place.offset, "")
-    return found
+            xpath = xpaths.by_offset.get(place.offset, "")
+            offsets_with_xpaths[place] = place.offset, xpath
+    return offsets_with_xpaths
 
 
 # -- offsets of elements -----------------------------------------------------------------------
 
 
 def _find_offsets(source: Source, ordinals: set[int]) -> dict[int, int]:
-    """Return the offsets of elements by ordinal; in text the ordinal is the offset."""
+    """Return the offsets of elements by ordinal; in text, the ordinal is itself the offset."""
     if not ordinals:
         return {}
     if not is_xml(source.data):
@@ -171,9 +172,9 @@ def _parse_offsets(source: Source, ordinals: set[int]) -> dict[int, int]:
 
 
 class _SourceText:
-    """The text of a source; offsets must be converted in ascending order.
+    """The text of a source, which converts offsets to locations, in ascending order of offsets.
 
-    Only the bytes between two offsets are decoded to count their characters.
+    To count characters, only the bytes since the previous offset are decoded.
     """
 
     def __init__(self, source: Source) -> None:
@@ -195,7 +196,7 @@ class _SourceText:
         return self._make_location(place.line, max(place.column, 1))
 
     def iter_positions(self, offsets: Mapping[int, int]) -> Iterator[tuple[int, tuple[int, int]]]:
-        """Yield the keys of *offsets*, in any order, with line and column of their offset."""
+        """Yield each key of *offsets* with the line and column of its offset, in any order."""
         if not self._is_ascii:
             for key, offset in sorted(offsets.items(), key=itemgetter(1)):
                 yield key, self._find_position(offset)
@@ -224,7 +225,7 @@ class _SourceText:
         return data.decode(self._codec, "replace")
 
     def _find_line(self, line: int) -> tuple[int, int]:
-        """Return the start of a line and of the next one; an empty range for a missing line."""
+        """Return the index at which a line starts and the next one starts, 0 and 0 for no line."""
         starts = self._line_starts
         if line > len(starts):
             return 0, 0

@@ -36,7 +36,10 @@ class Severity(StrEnum):
 
 
 class RulePage(Struct, frozen=True):
-    """The texts of a page; ``language`` is that of the examples, empty for sentences."""
+    """The texts of a page.
+
+    ``language`` is the language of the examples, empty if they are sentences.
+    """
 
     title: str = ""
     why: str = ""
@@ -61,7 +64,7 @@ class Rule(Struct, frozen=True):
     page: str = ""
 
     def read_page(self) -> RulePage:
-        """Return the page of the rule, empty if nobody wrote one."""
+        """Return the page of the rule, with empty texts if the rule has no page."""
         if self.page:
             return parse_page(self.page)
         try:
@@ -99,7 +102,7 @@ def catalogue() -> dict[str, Rule]:
 
 
 def parse_page(text: str) -> RulePage:
-    """Return the texts of a page; lines of a paragraph are joined, code stays as it is."""
+    """Return the texts of a page. Lines of a paragraph are joined, lines of code are not."""
     head, *parts = _SECTION.split(text)
     sections = dict(zip(parts[::2], parts[1::2], strict=True))
     language, wrong = _read_example(sections.get("Wrong", ""))

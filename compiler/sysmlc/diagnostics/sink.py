@@ -1,4 +1,4 @@
-"""The sink that collects the diagnostics of one compilation, and what projects suppress."""
+"""The sink that collects the diagnostics of one compilation, and suppressions of projects."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from fnmatch import fnmatchcase
@@ -12,6 +12,7 @@ from sysmlc.diagnostics.rule import Rule, Severity
 _MAX_TEXT = 2_000
 """Characters of a message or a note; longer facts and notes are cut."""
 _MAX_FACT = 200
+"""Characters of a fact in a message that would be longer than ``_MAX_TEXT``."""
 
 
 class Sink:
@@ -31,8 +32,8 @@ class Sink:
     ) -> None:
         """Set severities by code for diagnostics in *files*; those of the project take precedence.
 
-        A front end calls this method for rules that its language states differently, and with None
-        for rules that its own checks replace.
+        A front end calls this method for rules that have another severity in its language. None
+        switches off rules that checks of the front end replace.
         """
         self._file_severities.update(dict.fromkeys(files, severities))
 
@@ -68,7 +69,7 @@ class Sink:
         return sink
 
     def set_element(self, diagnostic: Diagnostic, id: str) -> None:
-        """Add the id of the graph element to a diagnostic that was reported with a place only."""
+        """Add the id of an element to a diagnostic that was reported with only a place."""
         subject = replace(diagnostic.subject, id=id)
         self._diagnostics[_make_key(diagnostic)] = replace(diagnostic, subject=subject)
 

@@ -1,4 +1,4 @@
-"""XPaths of the elements of an XML file, computed in the pass that finds their offsets.
+"""XPaths and offsets of elements of an XML file, computed in one pass over the file.
 
 A path has the file's own prefixes and the position of each element among its siblings of the
 same name: ``/xmi:XMI/uml:Model[1]/packagedElement[3]``. XPath 1.0 can name neither an element in a
@@ -24,7 +24,7 @@ class ElementPosition(NamedTuple):
 
 @dataclass(slots=True)
 class XPaths:
-    """The result of a search."""
+    """The XPaths that ``find_xpaths`` found."""
 
     by_ordinal: dict[int, ElementPosition] = field(default_factory=dict)
     by_offset: dict[int, str] = field(default_factory=dict)
@@ -39,8 +39,7 @@ def is_xml(data: bytes) -> bool:
 def find_xpaths(source: Source, ordinals: Collection[int], offsets: Collection[int]) -> XPaths:
     """Return the XPaths of the elements with these ordinals, and of those around these offsets.
 
-    The result of a damaged file covers the part before the damage. A file that is not XML has no
-    XPaths.
+    In a damaged file, only elements before the damage have XPaths. A file that is not XML has none.
     """
     if not is_xml(source.data):
         return XPaths()
@@ -64,7 +63,10 @@ class _OpenElement:
 
 
 class _Search:
-    """One pass over a file; ``offsets`` descend, so that the next offset is the last item."""
+    """Handlers of a parser that find the XPaths in one pass over a file.
+
+    ``offsets`` are in descending order, so that the next one is taken from the end of the list.
+    """
 
     def __init__(self, ordinals: frozenset[int], offsets: list[int]) -> None:
         self.xpaths = XPaths()
@@ -130,7 +132,10 @@ class _Search:
 
 
 def _split_name(name: str) -> tuple[str, str, str]:
-    """Split ``namespace}local}prefix``, ``namespace}local`` or ``local``, the names of expat."""
+    """Return namespace, local name and prefix of a name as expat writes it.
+
+    Expat writes ``namespace}local}prefix``, ``namespace}local`` or ``local``.
+    """
     parts = name.split(SEPARATOR)
     if len(parts) == 1:
         return "", name, ""

@@ -1,6 +1,5 @@
 """Coverage as a table for people, as JSON, and as SARIF."""
 
-import json
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
 from sysmlc.diagnostics.coverage import (
@@ -13,6 +12,7 @@ from sysmlc.diagnostics.coverage import (
 )
 from sysmlc.diagnostics.coverage_report import (
     LOSSES,
+    WORST_FIRST,
     FileReport,
     LostElement,
     TypeReport,
@@ -24,8 +24,8 @@ from sysmlc.diagnostics.renderers.json_documents import render_sarif as render_f
 from sysmlc.diagnostics.renderers.report import Finding, Report
 from sysmlc.diagnostics.renderers.text import paint_text
 from sysmlc.support.escapes import escape_invisible
+from sysmlc.support.output import encode_json
 
-_COLUMNS = (*LOSSES, Verdict.MAPPED, Verdict.IGNORED_NOTATION)
 _TITLES = {Verdict.IGNORED_NOTATION: "notation"}
 _COLORS = {Verdict.UNSUPPORTED: "31", Verdict.APPROXIMATED: "33", Verdict.EXTERNAL: "36"}
 _MAX_EXAMPLES = 3
@@ -70,7 +70,7 @@ def _format_file_table(files: Sequence[FileReport], total: Mapping[str, int], co
 def _format_type_table(types: Sequence[TypeReport], total: Mapping[str, int], color: bool) -> str:
     rows = [_make_row(escape_invisible(report.name), report.counts) for report in types]
     permille = compute_permille(total)
-    shares = [_format_percent(permille[verdict.value]) for verdict in _COLUMNS]
+    shares = [_format_percent(permille[verdict.value]) for verdict in WORST_FIRST]
     last_row = ["per cent", "", *shares, "100.0"]
     return _format_table("type", [*rows, _make_row("total", total), last_row], color)
 
@@ -84,12 +84,12 @@ def _shorten(name: str) -> str:
 def _make_row(name: str, counts: Mapping[str, int]) -> list[str]:
     has_meaning = count_meaningful(counts) > 0
     share = f"{_format_percent(compute_covered_permille(counts))} %" if has_meaning else "-"
-    numbers = [f"{counts[v.value]:,}" if counts[v.value] else "-" for v in _COLUMNS]
+    numbers = [f"{counts[v.value]:,}" if counts[v.value] else "-" for v in WORST_FIRST]
     return [name, share, *numbers, f"{sum(counts.values()):,}"]
 
 
 def _format_table(title: str, rows: Sequence[list[str]], color: bool) -> str:
-    head = [title, "covered", *(_TITLES.get(v, v.value) for v in _COLUMNS), "elements"]
+    head = [title, "covered", *(_TITLES.get(v, v.value) for v in WORST_FIRST), "elements"]
     widths = [max(map(len, column)) for column in zip(head, *rows, strict=True)]
     lines = [_format_line(head, widths), *(_format_line(row, widths, color) for row in rows)]
     return "\n".join(lines)
@@ -99,7 +99,7 @@ def _format_line(cells: Sequence[str], widths: Sequence[int], color: bool = Fals
     padded = [cells[0].ljust(widths[0])]
     padded += [cell.rjust(width) for cell, width in zip(cells[1:], widths[1:], strict=True)]
     if color:
-        for column, verdict in enumerate(_COLUMNS, 2):
+        for column, verdict in enumerate(WORST_FIRST, 2):
             if cells[column] != "-" and verdict in _COLORS:
                 padded[column] = paint_text(padded[column], _COLORS[verdict])
     return "  ".join(padded).rstrip()
@@ -109,7 +109,7 @@ def _format_line(cells: Sequence[str], widths: Sequence[int], color: bool = Fals
 
 
 def _iter_losses(report: TypeReport, color: bool, with_all_losses: bool) -> Iterator[str]:
-    """Yield a block for each verdict, rule and reason of the losses of a type."""
+    """Yield a block of text for each group of losses with the same verdict, rule and reason."""
     groups: dict[tuple[Verdict, str, str], list[LostElement]] = {}
     for lost in report.losses:
         if lost.loss.verdict in LOSSES:
@@ -126,7 +126,10 @@ def _iter_losses(report: TypeReport, color: bool, with_all_losses: bool) -> Iter
 
 
 def _generalize_reason(lost: LostElement) -> str:
-    """Return the reason; the reason of an external stub names the missing element."""
+    """Return the reason of a loss as a heading for several losses.
+
+    The reason of an external stub names the missing element, so that all would differ.
+    """
     is_external = lost.loss.verdict is Verdict.EXTERNAL and lost.loss.rule is not None
     return "stands for an element in no file of the unit" if is_external else lost.loss.reason
 
@@ -141,7 +144,7 @@ def _iter_examples(members: Sequence[LostElement], limit: int) -> Iterator[str]:
 
 
 def _iter_unlisted_losses(files: Sequence[FileReport]) -> Iterator[str]:
-    """Yield the number of losses of each file that front ends counted without a location."""
+    """Yield a line for each file with losses that its front end counted without a location."""
     for file in files:
         counted = sum(file.totals[verdict.value] for verdict in LOSSES)
         listed = sum(x.loss.elements for x in file.losses if x.loss.verdict in LOSSES)
@@ -154,7 +157,10 @@ def _iter_unlisted_losses(files: Sequence[FileReport]) -> Iterator[str]:
 
 
 def render_json(files: Sequence[FileReport]) -> str:
-    """Return ``sysmlc-coverage/2``: ``coverage.json`` with all losses and shares in per cent."""
+    """Return the format ``sysmlc-coverage/2`` (metamodels/sysmlc-coverage.schema.json).
+
+    Unlike ``Coverage.as_json``, it lists all losses, and shares in per cent.
+    """
     total = sum_counts(file.totals for file in files)
     content = {
         "format": "sysmlc-coverage/2",
@@ -166,7 +172,7 @@ def render_json(files: Sequence[FileReport]) -> str:
         "total": _describe_counts(total),
         "shares": {name: share / 10 for name, share in compute_permille(total).items()},
     }
-    return json.dumps(content, ensure_ascii=False, indent=1) + "\n"
+    return encode_json(content)
 
 
 def _describe_file(file: FileReport) -> dict[str, object]:
@@ -199,7 +205,7 @@ def _describe_loss(lost: LostElement) -> dict[str, object]:
 
 
 def render_sarif(files: Sequence[FileReport]) -> str:
-    """Return one SARIF result for each loss; notation is no loss."""
+    """Return a SARIF log with one result for each loss that a diagnostic reports."""
     losses = (lost for file in files for lost in file.losses)
     return render_findings_as_sarif(Report(tuple(_iter_findings(losses))))
 

@@ -1,30 +1,26 @@
 """Findings as JSON documents for programs: our own format ``json``, and SARIF 2.1.0."""
 
 import hashlib
-import json
 from urllib.parse import quote
 
 from sysmlc import __version__
 from sysmlc.diagnostics.renderers.report import Finding, Report
 from sysmlc.diagnostics.rule import Rule, Severity
+from sysmlc.support.output import encode_json
 
 SARIF_SCHEMA = "https://json.schemastore.org/sarif-2.1.0.json"
 _SARIF_LEVELS = {Severity.ERROR: "error", Severity.WARNING: "warning", Severity.INFO: "note"}
 
 
 def render_json(report: Report) -> str:
-    """Return ``sysmlc-diagnostics/2`` (metamodels/sysmlc-diagnostics.schema.json)."""
-    return _encode(
+    """Return the format ``sysmlc-diagnostics/2`` (metamodels/sysmlc-diagnostics.schema.json)."""
+    return encode_json(
         {
             "format": "sysmlc-diagnostics/2",
             "diagnostics": [_describe_finding(finding) for finding in report.findings],
             "summary": report.summary(),
         }
     )
-
-
-def _encode(content: object) -> str:
-    return json.dumps(content, ensure_ascii=False, indent=1) + "\n"
 
 
 def _describe_finding(finding: Finding) -> dict[str, object]:
@@ -48,7 +44,7 @@ def _describe_finding(finding: Finding) -> dict[str, object]:
 
 
 def render_sarif(report: Report) -> str:
-    """Return a SARIF log with one run, which code scanning services read."""
+    """Return a SARIF log with one run, for code scanning services."""
     rules_by_code = {f.diagnostic.rule.code: f.diagnostic.rule for f in report.findings}
     rules = [rules_by_code[code] for code in sorted(rules_by_code)]
     rule_index = {rule.code: index for index, rule in enumerate(rules)}
@@ -57,7 +53,7 @@ def render_sarif(report: Report) -> str:
         "columnKind": "unicodeCodePoints",
         "results": [_describe_result(finding, rule_index) for finding in report.findings],
     }
-    return _encode({"$schema": SARIF_SCHEMA, "version": "2.1.0", "runs": [run]})
+    return encode_json({"$schema": SARIF_SCHEMA, "version": "2.1.0", "runs": [run]})
 
 
 def _describe_tool(rules: list[Rule]) -> dict[str, object]:

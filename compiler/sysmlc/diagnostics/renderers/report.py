@@ -1,11 +1,11 @@
-"""Diagnostics with everything that a renderer shows: file, line, column, excerpt, counts."""
+"""Findings: diagnostics with what renderers show, such as line, column and excerpt."""
 
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping
 
 from msgspec import Struct
 
-from sysmlc.diagnostics.diagnostic import Diagnostic, Place
+from sysmlc.diagnostics.diagnostic import Diagnostic, Place, format_position
 from sysmlc.diagnostics.locations import Location, locate
 from sysmlc.diagnostics.rule import Severity
 from sysmlc.sources import Source
@@ -27,9 +27,8 @@ class Finding(Struct, frozen=True):
 
     @property
     def where(self) -> str:
-        """``file:line:column`` as far as they are known."""
-        known = [self.file, *(str(n) for n in (self.line, self.column) if n)]
-        return ":".join(known) if self.file else ""
+        """``file:line:column`` as far as they are known, empty without a file."""
+        return format_position(self.file, self.line, self.column) if self.file else ""
 
 
 class Report(Struct, frozen=True):
@@ -70,8 +69,8 @@ def make_report(
 ) -> Report:
     """Return the diagnostics with lines, columns, excerpts and XPaths.
 
-    *shown_name* converts the name of a file in the unit to the name for the reader, which is
-    usually relative to the working folder.
+    *shown_name* converts the name of a file in the compile unit to the name that users see, which
+    is usually relative to the working folder.
     """
     diagnostics = list(diagnostics)
     places = [d.subject.place for d in diagnostics if d.subject.place]
