@@ -1,4 +1,4 @@
-"""Archives (.mdzip, .kpar, .amlx): entries are read in memory, within limits of size."""
+"""Reads entries of archives (.mdzip, .kpar, .amlx) in memory, within limits of size."""
 
 import io
 import zipfile
@@ -29,8 +29,8 @@ def read_entries(
 
     Sizes are counted while reading, because the sizes that an archive declares may be wrong.
     Raises SourceError for a damaged archive, for a name that is absolute, leads upwards or occurs
-    twice, for an encrypted entry, for a method other than stored and deflate, and for a size above
-    the limits.
+    twice, for an encrypted entry, for a compression method other than stored and deflate, and for
+    a size above the limits.
     """
     with _open_archive(archive) as zip_file:
         return list(_iter_entries(archive, zip_file, wanted, limits))

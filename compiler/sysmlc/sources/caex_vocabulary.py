@@ -1,9 +1,9 @@
 """The vocabulary of CAEX (IEC 62424): names, attributes and order of elements.
 
-The reader and the writer of AutomationML share these tables, which agree with the schemas of both
-versions. CAEX 2.15 has no AttributeTypeLib, SourceDocumentInformation, SourceObjectInformation and
-InterfaceIDMapping, CAEX 3.0 no InterfaceNameMapping. A MappingObject is below an InternalElement in
-CAEX 2.15, and below a RoleRequirements in CAEX 3.0.
+The reader and the writer of AutomationML share these tables, which agree with the XML schemas of
+CAEX 2.15 and 3.0. CAEX 2.15 has no AttributeTypeLib, SourceDocumentInformation,
+SourceObjectInformation and InterfaceIDMapping, CAEX 3.0 no InterfaceNameMapping. A MappingObject is
+below an InternalElement in CAEX 2.15, and below a RoleRequirements in CAEX 3.0.
 """
 
 NAMESPACE = "http://www.dke.de/CAEX"

@@ -1,7 +1,8 @@
 """Encodings of XML files; sources in an encoding unknown to expat are converted to UTF-8.
 
-Only the byte order mark and the XML declaration decide, nothing is guessed. Expat does not know
-encodings with several bytes a character (Enterprise Architect writes Shift_JIS in Japan).
+The encoding is the one that the byte order mark or the XML declaration states; it is never
+guessed. Expat does not know encodings with several bytes for a character: Enterprise Architect
+writes Shift_JIS in Japan.
 """
 
 import codecs
@@ -40,7 +41,7 @@ _NOT_FOR_FILES = frozenset(
         "oem",
     }
 )
-"""Codecs of Python for other purposes than files, and UTF-7, which can hide markup."""
+"""Codecs of Python that are not made for files, and UTF-7, which can hide markup."""
 
 
 def find_declared_encoding(data: bytes) -> str:
@@ -66,8 +67,8 @@ def find_codec(data: bytes) -> tuple[int, str]:
 def convert_to_utf8(source: Source) -> Source:
     """Return the source in UTF-8 if expat does not know its encoding, else the source itself.
 
-    The digest stays that of the file. Bytes that the declared encoding cannot decode are not
-    converted: ``find_encoding_fault`` reports them when the source is parsed.
+    The digest of the result is that of the original file. A source that its declared encoding
+    cannot decode is not converted: ``find_encoding_fault`` explains why when it is parsed.
     """
     mark, name = find_codec(source.data)
     if name.replace("-", "_") not in _UNKNOWN_TO_EXPAT:
@@ -86,7 +87,7 @@ def has_known_encoding(data: bytes) -> bool:
 
 
 def find_encoding_fault(data: bytes) -> tuple[str, int] | None:
-    """Return why the bytes cannot be decoded, with the offset; None if they can."""
+    """Return why the bytes cannot be decoded, and the offset of the fault; None if they can."""
     declared = find_declared_encoding(data)
     if not has_known_encoding(data):
         return f"its encoding '{declared}' is unknown", data.find(declared.encode())

@@ -13,7 +13,7 @@ from sysmlc.sources.encoding import convert_to_utf8
 from sysmlc.sources.source import DEFAULT_LIMITS, Fault, Limits, Source, SourceError
 
 _PAUSE = 0.1
-"""Seconds before a file that changed while it was read is read again."""
+"""Seconds to wait before a file that changed while it was read is read again."""
 
 _State = tuple[int, int]
 """Size and time of modification of a file."""
@@ -120,15 +120,16 @@ def load(
 ) -> list[Source]:
     """Return a file as one source, or the *wanted* entries of an archive.
 
-    An archive is recognised by its content. *name* is the name of the file in outputs. Without
-    wanted entries, plain XML entries are returned. Raises SourceError.
+    An archive is recognised by its content. *name* is the name of the file in outputs. An archive
+    without wanted entries may be a compressed export: its XML entries are returned. Raises
+    SourceError.
     """
     source = Source(name, read_whole(path, name, limits))
     if not is_archive(source.data):
         return [convert_to_utf8(source)]
     entry_names = list_entry_names(source)
     if package.is_package(name, entry_names):
-        relationships = read_entries(source, package.is_relationships, limits)
+        relationships = read_entries(source, package.holds_relationships, limits)
         package.check_package(name, entry_names, relationships)
     sources = read_entries(source, wanted, limits) or read_entries(source, _is_plain_entry, limits)
     if all(_is_auxiliary_entry(source.name.partition("!")[2]) for source in sources):

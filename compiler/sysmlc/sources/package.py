@@ -16,7 +16,10 @@ _RELATIONSHIP = "http://schemas.openxmlformats.org/package/2006/relationships}Re
 
 
 class Relationship(NamedTuple):
-    """A relationship of a package to one of its parts: location, type and target."""
+    """A relationship of a package to one of its parts.
+
+    ``offset`` is the position of the relationship in ``file``, ``target`` the entry of the part.
+    """
 
     file: str
     offset: int
@@ -24,8 +27,8 @@ class Relationship(NamedTuple):
     target: str
 
 
-def is_relationships(entry: str) -> bool:
-    """Whether an entry of an archive holds relationships."""
+def holds_relationships(entry: str) -> bool:
+    """Whether an entry of an archive lists relationships."""
     return entry.endswith(".rels") and posixpath.basename(posixpath.dirname(entry)) == "_rels"
 
 
@@ -41,7 +44,7 @@ def check_package(archive: str, entries: Sequence[str], files: Sequence[Source])
     *files* are the entries that hold relationships. Raises SourceError, located in one of these
     files if a relationship is wrong.
     """
-    relationships = [relationship for file in files for relationship in _read_file(file)]
+    relationships = [relationship for file in files for relationship in _read_relationships(file)]
     _check_root(archive, [r for r in relationships if r.type == _ROOT_DOCUMENT])
     parts = {entry for entry in entries if not entry.endswith("/")}
     for relationship in relationships:
@@ -50,7 +53,7 @@ def check_package(archive: str, entries: Sequence[str], files: Sequence[Source])
             raise SourceError(message, relationship.file, relationship.offset)
     targets = {relationship.target for relationship in relationships}
     for entry in sorted(parts - targets - {_CONTENT_TYPES}):
-        if not is_relationships(entry):
+        if not holds_relationships(entry):
             message = f"no relationship of the package leads to its part '{entry}'"
             raise SourceError(message, f"{archive}!{entry}", 0)
 
@@ -65,7 +68,7 @@ def _check_root(archive: str, roots: Sequence[Relationship]) -> None:
         raise SourceError(message, roots[1].file, roots[1].offset)
 
 
-def _read_file(source: Source) -> list[Relationship]:
+def _read_relationships(source: Source) -> list[Relationship]:
     """Return the relationships in a file; their targets are entries of the archive."""
     relationships: list[Relationship] = []
     parser = make_parser()

@@ -1,4 +1,4 @@
-"""Confinement: folders that references in a model may lead into."""
+"""Roots: the folders outside which references in a model cannot open files."""
 
 import os
 import re

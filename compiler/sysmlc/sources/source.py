@@ -8,7 +8,7 @@ from msgspec import Struct
 
 
 class Limits(Struct, frozen=True):
-    """Limits of one input; sizes in bytes. Real archives stay below a ratio of 18."""
+    """Limits of one input; sizes in bytes. Real archives have a ratio below 18."""
 
     file_size: int = 2 << 30
     depth: int = 500
@@ -68,7 +68,7 @@ class SourceError(Exception):
 
     @property
     def exit_code(self) -> int:
-        """1 if the model is wrong, 2 if the tool could not do its work."""
+        """The exit code of the command: 1 for a fault of the input, 2 if it could not be read."""
         return 2 if self.fault in (Fault.LIMIT, Fault.MISSING, Fault.CHANGING) else 1
 
 

@@ -1,4 +1,7 @@
-"""XML Schemas of a user: loaded from one folder and nowhere else; violations of a source."""
+"""Validates sources against XML Schemas of the user.
+
+The schemas of one folder are compiled; files outside the folder are never opened.
+"""
 
 import re
 from collections.abc import Iterable, Iterator
@@ -22,7 +25,10 @@ class SchemaError(Exception):
 
 
 class Violation(Struct, frozen=True):
-    """A violation of a schema: ordinal of the element, names from the root to it, and message."""
+    """A violation of a schema.
+
+    ``ordinal`` is the position of the element in document order, ``element`` its qualified name.
+    """
 
     ordinal: int
     element: str
@@ -30,7 +36,11 @@ class Violation(Struct, frozen=True):
 
 
 class Schema(Struct, frozen=True):
-    """A compiled schema: namespace, root elements, and the versions that its files may state."""
+    """A compiled schema.
+
+    ``roots`` are the elements with which a document may start, ``versions`` the values that the
+    schema fixes for the attribute ``SchemaVersion``; without such a value it is for any version.
+    """
 
     name: str
     namespace: str
@@ -46,7 +56,7 @@ class Schemas(Struct, frozen=True):
     schemas: tuple[Schema, ...]
 
     def find_violations(self, source: Source) -> tuple[Schema | None, list[Violation]]:
-        """Return the schema of a source, None if no schema fits, and the violations of it.
+        """Return the schema that fits a source, or None, and the violations of that schema.
 
         Raises ValueError for XML that is damaged or refused; the front end reports the reason.
         """
@@ -71,7 +81,10 @@ class Schemas(Struct, frozen=True):
 
 
 def _rank_version(schema: Schema, version: str) -> int:
-    """Rank a schema for the version first, then one for any version, then one for another."""
+    """Return a number that is lower for a schema that fits a version better.
+
+    The best schema is one for this version, the next best one for any version.
+    """
     if version in schema.versions:
         return 0
     return 2 if schema.versions else 1
@@ -83,7 +96,7 @@ _Tree = etree._ElementTree
 
 
 def load_schemas(folder: Path) -> Schemas:
-    """Compile the schemas in a folder and below it that no other one includes.
+    """Compile the schemas in a folder and below it that no other schema includes.
 
     Raises SchemaError.
     """
@@ -102,7 +115,10 @@ def load_schemas(folder: Path) -> Schemas:
 
 
 def _parse_closure(top: Path, folder: Path) -> dict[Path, _Tree]:
-    """Parse a schema and all that it includes or imports; nothing outside *folder* is opened."""
+    """Parse a schema and all that it includes or imports, directly or indirectly.
+
+    Raises SchemaError for a reference that leads out of *folder*.
+    """
     trees: dict[Path, _Tree] = {}
     worklist = [top]
     while worklist:
@@ -116,7 +132,7 @@ def _parse_closure(top: Path, folder: Path) -> dict[Path, _Tree]:
                 target = Roots((folder,)).resolve(path, location)
                 if target is None:
                     raise SchemaError(
-                        f"the schema '{_shown_name(path, folder)}' asks for '{location}', "
+                        f"the schema '{_relative_name(path, folder)}' asks for '{location}', "
                         f"which is not inside '{folder}'"
                     )
                 worklist.append(target)
@@ -124,7 +140,7 @@ def _parse_closure(top: Path, folder: Path) -> dict[Path, _Tree]:
 
 
 def _parse_schema(path: Path, folder: Path) -> _Tree:
-    name = _shown_name(path, folder)
+    name = _relative_name(path, folder)
     parser = etree.XMLParser(resolve_entities=False, no_network=True, load_dtd=False)
     try:
         tree = etree.parse(str(path), parser)
@@ -137,7 +153,7 @@ def _parse_schema(path: Path, folder: Path) -> _Tree:
     return tree
 
 
-def _shown_name(path: Path, folder: Path) -> str:
+def _relative_name(path: Path, folder: Path) -> str:
     return str(path.relative_to(folder)) if path.is_relative_to(folder) else path.name
 
 
@@ -183,7 +199,8 @@ def _parse_source(source: Source) -> etree._Element:
 
 def _iter_violations(root: etree._Element, schema: Schema) -> Iterator[Violation]:
     tree = root.getroottree()
-    # The proxies that lxml creates must live as long as they are keys.
+    # lxml creates a proxy for each access to an element: as keys, the proxies stay alive, so that
+    # _find_element returns the same ones.
     ordinals = {element: number for number, element in enumerate(root.iter(etree.Element))}
     for entry in cast("Iterable[etree._LogEntry]", schema.compiled.error_log):
         element = _find_element(tree, entry.path)
@@ -195,59 +212,60 @@ def _iter_violations(root: etree._Element, schema: Schema) -> Iterator[Violation
 
 def _find_element(tree: _Tree, path: str | None) -> "etree._Element | None":
     nodes = tree.xpath(path) if path else None
-    first = nodes[0] if isinstance(nodes, list) and nodes else None
-    return first if isinstance(first, etree._Element) else None
+    node = nodes[0] if isinstance(nodes, list) and nodes else None
+    return node if isinstance(node, etree._Element) else None
 
 
 def _qualify_name(element: etree._Element) -> str:
-    """Return the names of the elements from below the root to *element*, joined by ``::``."""
-    names = [_find_name(ancestor) for ancestor in (element, *element.iterancestors())]
+    """Return the names of *element* and its ancestors, joined by ``::``, without the root."""
+    names = [_name_element(ancestor) for ancestor in (element, *element.iterancestors())]
     return "::".join(reversed(names[:-1] or names))
 
 
-def _find_name(element: etree._Element) -> str:
+def _name_element(element: etree._Element) -> str:
     name = element.get("Name") or element.get("name") or element.get("Alias")
     return name or etree.QName(element).localname
 
 
+_ELEMENT = r"Element '(?P<element>[^']*)'"
+_ATTRIBUTE = rf"{_ELEMENT}, attribute '(?P<attribute>[^']*)'"
+_EXPECTED = r"Expected is (?P<expected>.*?)\.?$"
+_INVALID = (
+    r"'(?P<value>.*)' is not a valid value of the (?:\w+ )?(?:atomic )?type '(?P<type>[^']*)'\.?$"
+)
 _TRANSLATIONS = (
     (
-        r"Element '(?P<a>[^']*)': This element is not expected\. Expected is (?P<b>.*?)\.?$",
-        "'{a}' stands where {b} should",
+        rf"{_ELEMENT}: This element is not expected\. {_EXPECTED}",
+        "'{element}' stands where {expected} should",
     ),
-    (r"Element '(?P<a>[^']*)': This element is not expected\.?$", "'{a}' must not stand here"),
+    (rf"{_ELEMENT}: This element is not expected\.?$", "'{element}' must not stand here"),
+    (rf"{_ELEMENT}: Missing child element\(s\)\. {_EXPECTED}", "'{element}' lacks {expected}"),
     (
-        r"Element '(?P<a>[^']*)': Missing child element\(s\)\. Expected is (?P<b>.*?)\.?$",
-        "'{a}' lacks {b}",
-    ),
-    (
-        r"Element '(?P<a>[^']*)': The attribute '(?P<b>[^']*)' is required but missing\.?$",
-        "'{a}' has no attribute '{b}'",
+        rf"{_ELEMENT}: The attribute '(?P<attribute>[^']*)' is required but missing\.?$",
+        "'{element}' has no attribute '{attribute}'",
     ),
     (
-        r"Element '(?P<a>[^']*)', attribute '(?P<b>[^']*)': "
-        r"The attribute '[^']*' is not allowed\.?$",
-        "'{a}' must not have the attribute '{b}'",
+        rf"{_ATTRIBUTE}: The attribute '[^']*' is not allowed\.?$",
+        "'{element}' must not have the attribute '{attribute}'",
     ),
     (
-        r"Element '(?P<a>[^']*)', attribute '(?P<b>[^']*)': '(?P<c>.*)' is not a valid value "
-        r"of the (?:\w+ )?(?:atomic )?type '(?P<d>[^']*)'\.?$",
-        "the attribute '{b}' of '{a}' is '{c}', which is not a valid {d}",
+        rf"{_ATTRIBUTE}: {_INVALID}",
+        "the attribute '{attribute}' of '{element}' is '{value}', which is not a valid {type}",
     ),
     (
-        r"Element '(?P<a>[^']*)': '(?P<c>.*)' is not a valid value "
-        r"of the (?:\w+ )?(?:atomic )?type '(?P<d>[^']*)'\.?$",
-        "the text of '{a}' is '{c}', which is not a valid {d}",
+        rf"{_ELEMENT}: {_INVALID}",
+        "the text of '{element}' is '{value}', which is not a valid {type}",
     ),
     (
-        r"Element '(?P<a>[^']*)', attribute '(?P<b>[^']*)': The value '(?P<c>.*)' does not match "
-        r"the fixed value constraint '(?P<d>[^']*)'\.?$",
-        "the attribute '{b}' of '{a}' is '{c}', and must be '{d}'",
+        rf"{_ATTRIBUTE}: The value '(?P<value>.*)' does not match the fixed value constraint "
+        r"'(?P<fixed>[^']*)'\.?$",
+        "the attribute '{attribute}' of '{element}' is '{value}', and must be '{fixed}'",
     ),
-    (r"Element '(?P<a>[^']*)': Character content .*$", "'{a}' must not hold text"),
+    (rf"{_ELEMENT}: Character content .*$", "'{element}' must not hold text"),
 )
-"""Messages of libxml2 2.9 to 2.14, and the messages for users; ``b`` of some is a choice."""
+"""Messages of libxml2 2.9 to 2.14 as patterns, and the messages for users."""
 _CHOICE = re.compile(r"^(?:one of )?\( (.*) \)$")
+"""Elements that libxml2 expects: ``( a )`` or ``one of ( a, b )``."""
 
 
 def _translate_message(message: str) -> str:
@@ -256,14 +274,14 @@ def _translate_message(message: str) -> str:
         match = re.match(pattern, plain, re.DOTALL)
         if match:
             facts = match.groupdict()
-            if "should" in translation or "lacks" in translation:
-                facts["b"] = _format_choice(facts["b"])
+            if "expected" in facts:
+                facts["expected"] = _format_choice(facts["expected"])
             return translation.format(**facts)
     return plain.rstrip(".")
 
 
 def _format_choice(text: str) -> str:
-    """Return the elements that libxml2 lists as ``one of ( a, b )`` as ``'a' or 'b'``."""
+    """Return ``'a' or 'b'`` for ``one of ( a, b )``."""
     match = _CHOICE.match(text)
     names = [name.strip() for name in (match[1] if match else text).split(",")]
     quoted = [f"'{name}'" for name in names]

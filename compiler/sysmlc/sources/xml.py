@@ -15,7 +15,7 @@ from sysmlc.sources.encoding import (
 from sysmlc.sources.source import DEFAULT_LIMITS, Fault, Limits, Source, SourceError
 
 SEPARATOR = "}"
-"""Stands between namespace and local name in the names that handlers receive."""
+"""Separates namespace and local name in the names that handlers receive."""
 
 _BUFFER = 1 << 20
 """Bytes of text that a handler receives at once; the default would cut texts into thousands."""
@@ -37,7 +37,7 @@ def make_parser() -> Parser:
 def make_plain_parser(names: dict[str, str] | None = None) -> Parser:
     """Return an expat parser that does not resolve namespaces, for XML with unbound prefixes.
 
-    Handlers receive the value of a name in *names*, and other names as they are written.
+    Handlers receive names as they are written, or the value of the name in *names* if it has one.
     """
     return _configure(expat.ParserCreate(intern={} if names is None else names))
 
@@ -52,8 +52,8 @@ def _configure(parser: Parser) -> Parser:
 def parse(source: Source, parser: Parser) -> None:
     """Run *parser* over the whole source.
 
-    Raises SourceError, located, for XML that is not well-formed, has a DOCTYPE, or has an encoding
-    that cannot be read.
+    Raises SourceError, with the offset of the fault, for XML that is not well-formed, has a
+    DOCTYPE, or has an encoding that cannot be read.
     """
     try:
         if not has_known_encoding(source.data):
