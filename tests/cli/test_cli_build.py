@@ -60,7 +60,9 @@ def test_a_warning_is_exit_code_0_and_with_strict_1(workspace, option, code):
         (["plant.ir", "--emit", "+recipes"], "unknown back end 'recipes'; did you mean 'recipe'?"),
         (["plant.ir", "--templates", "no"], "there is no folder 'no' for templates"),
         (["plant.ir", "--print-after", "port"], "unknown pass 'port'; did you mean 'ports'?"),
+        (["plan.ir"], "did you mean 'plant.ir'?"),
         (["plant.ir", "--fromat", "json"], "No such option"),
+        (["plant.ir", "--emt", "graph"], "Did you mean one of: '--emit'"),
         (["plant.ir", "--format", "xml"], "is not one of"),
         (["explain", "missing-fiel"], "did you mean 'missing-file'?"),
         (["show", "plant.ir", "-e", "Gata"], "no element 'Gata'; did you mean 'Gate'?"),
@@ -80,6 +82,12 @@ def test_a_wrong_argument_is_one_sentence_and_exit_code_2(workspace, args, sente
 def test_nothing_is_written_when_a_file_is_missing(workspace):
     workspace.sysmlc("plant.ir", "no.ir", "--emit", "graph")
     assert not (workspace.folder / "out").exists()
+
+
+def test_an_output_folder_that_is_a_file_is_not_overwritten(workspace):
+    model = workspace.read("plant.ir")
+    assert workspace.sysmlc("plant.ir", "-o", "plant.ir").exit_code == 2
+    assert workspace.read("plant.ir") == model
 
 
 def test_a_misspelt_command_is_answered_with_a_suggestion(workspace):
@@ -128,6 +136,23 @@ def test_emit_with_plus_adds_to_the_default_and_without_replaces_it(workspace, m
     assert "graph.ir" not in workspace.list_files("none")
     assert "graph.ir" in workspace.list_files("added")
     assert {"graph.ir", "graph.json"} <= set(workspace.list_files("both"))
+
+
+@pytest.mark.parametrize(
+    ("options", "present", "absent"),
+    [
+        (["--emit", "graph", "--emit", "ir"], {"graph.json", "graph.ir"}, {"contracts"}),
+        (["--emit", "graph", "--emit", "+ir"], {"graph.json", "graph.ir"}, {"contracts"}),
+        (["--emit", "+graph", "--emit", "+ir"], {"graph.json", "graph.ir", "diagrams"}, set()),
+        (["--emit", "ir"], {"graph.ir"}, {"graph.json", "diagrams"}),
+    ],
+)
+def test_repeated_emit_options_add_up(workspace, all_passes, options, present, absent):
+    workspace.write("m.sysml", "package P { part def A { part b : B; } part def B; }")
+    assert workspace.sysmlc("build", "m.sysml", *options).exit_code == 0
+    names = {path.name for path in (workspace.folder / "out").iterdir()}
+    assert present <= names
+    assert not absent & names
 
 
 def test_backends_lists_the_back_ends(workspace, monkeypatch):

@@ -1,69 +1,78 @@
-"""AutomationML through the driver: files that aliases lead to, folders, external data, diagrams."""
+"""AutomationML: files that aliases refer to, folders, external data, diagrams."""
+
+from driver_helpers import list_inputs
 
 from sysmlc.driver import Request, compile_model, select_backends
 
 HEAD = '<CAEXFile xmlns="http://www.dke.de/CAEX" SchemaVersion="3.0" FileName="{}">'
 ROLES = '<RoleClassLib Name="Shared"><RoleClass Name="Base"/></RoleClassLib>'
-USER = (
+REFERRING_ROLES = (
     '<ExternalReference Path="libs/roles.aml" Alias="Al"/><RoleClassLib Name="Roles">'
     '<RoleClass Name="Gate" RefBaseClassPath="Al@Shared/Base"/></RoleClassLib>'
 )
 
 
-def write(folder, name, body):
+def write_file(folder, name, text):
     path = folder / name
     path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(f"{HEAD.format(path.name)}{body}</CAEXFile>")
+    path.write_text(f"{HEAD.format(path.name)}{text}</CAEXFile>")
     return path
 
 
-def build(*paths, backends=()):
-    chosen = tuple(select_backends(backends)) if backends else ()
-    return compile_model(Request(inputs=paths, backends=chosen))
+def compile_paths(*paths, backends=()):
+    selected = tuple(select_backends(backends)) if backends else ()
+    return compile_model(Request(inputs=paths, backends=selected))
 
 
-def told(made):
-    """The diagnostics, without the one that these files have no plant (SM158)."""
-    rows = [f"{diagnostic.rule.code}: {diagnostic.message}" for diagnostic in made.diagnostics]
-    return [row for row in rows if not row.startswith("SM158")]
+def compile_plant(folder, text, backends=()):
+    """Compile a file ``main.aml`` with this content."""
+    return compile_paths(write_file(folder, "main.aml", text), backends=backends)
 
 
-def test_files_that_aliases_lead_to_are_part_of_the_unit(tmp_path):
-    write(tmp_path, "libs/roles.aml", ROLES)
-    made = build(write(tmp_path, "main.aml", USER))
-    assert [(file.path, file.language) for file in made.inputs] == [
+def list_messages(compilation):
+    """Return the diagnostics except SM158, because most files here contain libraries only."""
+    messages = [
+        f"{diagnostic.rule.code}: {diagnostic.message}" for diagnostic in compilation.diagnostics
+    ]
+    return [message for message in messages if not message.startswith("SM158")]
+
+
+def test_files_that_aliases_refer_to_join_the_unit(tmp_path):
+    write_file(tmp_path, "libs/roles.aml", ROLES)
+    compilation = compile_plant(tmp_path, REFERRING_ROLES)
+    assert [(file.path, file.language) for file in compilation.inputs] == [
         ("libs/roles.aml", "caex"),
         ("main.aml", "caex"),
     ]
-    assert told(made) == []
+    assert list_messages(compilation) == []
 
 
 def test_files_outside_of_the_folder_of_the_model_are_not_opened(tmp_path):
-    write(tmp_path, "roles.aml", ROLES)
-    user = USER.replace("libs/roles.aml", "../roles.aml")
-    made = build(write(tmp_path, "plant/main.aml", user))
-    assert [file.path for file in made.inputs] == ["main.aml"]
-    assert told(made) == [
+    write_file(tmp_path, "roles.aml", ROLES)
+    referring = REFERRING_ROLES.replace("libs/roles.aml", "../roles.aml")
+    compilation = compile_paths(write_file(tmp_path, "plant/main.aml", referring))
+    assert list_inputs(compilation) == ["main.aml"]
+    assert list_messages(compilation) == [
         "SM132: the file '../roles.aml' is not part of the compile unit; "
         "1 element refers to classes of it"
     ]
 
 
-def test_aliases_that_lead_round_in_a_circle_end(tmp_path):
-    back = '<ExternalReference Path="../main.aml" Alias="Back"/>'
-    write(tmp_path, "libs/roles.aml", back + ROLES)
-    made = build(write(tmp_path, "main.aml", USER))
-    assert [file.path for file in made.inputs] == ["libs/roles.aml", "main.aml"]
-    assert told(made) == []
+def test_aliases_may_form_a_cycle(tmp_path):
+    back_reference = '<ExternalReference Path="../main.aml" Alias="Back"/>'
+    write_file(tmp_path, "libs/roles.aml", back_reference + ROLES)
+    compilation = compile_plant(tmp_path, REFERRING_ROLES)
+    assert list_inputs(compilation) == ["libs/roles.aml", "main.aml"]
+    assert list_messages(compilation) == []
 
 
 def test_a_folder_is_searched_for_automationml(tmp_path):
-    write(tmp_path, "a.aml", ROLES)
-    write(tmp_path, "b.caex", USER.replace("libs/roles.aml", "a.aml"))
-    assert [file.path for file in build(tmp_path).inputs] == ["a.aml", "b.caex"]
+    write_file(tmp_path, "a.aml", ROLES)
+    write_file(tmp_path, "b.caex", REFERRING_ROLES.replace("libs/roles.aml", "a.aml"))
+    assert list_inputs(compile_paths(tmp_path)) == ["a.aml", "b.caex"]
 
 
-DATA = (
+EXTERNAL_DATA = (
     '<InstanceHierarchy Name="P"><InternalElement Name="i" ID="1"><ExternalInterface Name="d" '
     'ID="2" RefBaseClassPath="AutomationMLInterfaceClassLib/AutomationMLBaseInterface/'
     'ExternalDataConnector/COLLADAInterface"><Attribute Name="refURI" '
@@ -72,22 +81,24 @@ DATA = (
 )
 
 
-def test_external_data_that_is_not_there_is_told_at_its_place(tmp_path):
-    made = build(write(tmp_path, "main.aml", DATA.format("file:///geo/gate.dae#n1")))
-    assert told(made) == ["SM148: the model refers to a file that does not exist: 'geo/gate.dae'"]
-    (found,) = made.diagnostics
-    data = made.sources[0].data
-    assert data[found.subject.place.offset :].startswith(b'<Attribute Name="refURI"')
+def test_missing_external_data_is_reported_at_its_attribute(tmp_path):
+    compilation = compile_plant(tmp_path, EXTERNAL_DATA.format("file:///geo/gate.dae#n1"))
+    assert list_messages(compilation) == [
+        "SM148: the model refers to a file that does not exist: 'geo/gate.dae'"
+    ]
+    (diagnostic,) = compilation.diagnostics
+    data = compilation.sources[0].data
+    assert data[diagnostic.subject.place.offset :].startswith(b'<Attribute Name="refURI"')
 
 
-def test_external_data_that_is_there_or_elsewhere_is_nothing_to_tell(tmp_path):
+def test_existing_or_remote_external_data_is_not_reported(tmp_path):
     (tmp_path / "geo").mkdir()
     (tmp_path / "geo" / "gate.dae").write_text("<COLLADA/>")
     for href in ("file:///geo/gate.dae#n1", "geo/gate.dae", "https://a.b/gate.dae", "Skill 1"):
-        assert told(build(write(tmp_path, "main.aml", DATA.format(href)))) == []
+        assert list_messages(compile_plant(tmp_path, EXTERNAL_DATA.format(href))) == []
 
 
-GATE = (
+LINE = (
     '<InstanceHierarchy Name="Site"><InternalElement Name="line" ID="1" '
     'RefBaseSystemUnitPath="Lib/Line"><ExternalInterface Name="way" ID="2"/>'
     '<InternalElement Name="gate" ID="3"><ExternalInterface Name="p" ID="4"/></InternalElement>'
@@ -102,9 +113,9 @@ GATE = (
 )
 
 
-def test_an_instance_with_links_frames_an_internal_block_diagram(tmp_path):
-    made = build(write(tmp_path, "main.aml", GATE), backends=("plantuml",))
-    (ibd,) = [a for a in made.artefacts if a.path.endswith(".ibd.puml")]
+def test_an_instance_with_links_is_the_frame_of_an_internal_block_diagram(tmp_path):
+    compilation = compile_plant(tmp_path, LINE, backends=("plantuml",))
+    (ibd,) = [artefact for artefact in compilation.artefacts if artefact.path.endswith(".ibd.puml")]
     lines = ibd.text[ibd.text.index("mainframe ibd") :].splitlines()
     assert lines[0] == "mainframe ibd [block] line : Line"
     assert [line for line in lines if line.startswith(("port", "rectangle"))] == [
@@ -114,41 +125,43 @@ def test_an_instance_with_links_frames_an_internal_block_diagram(tmp_path):
         'portin "<back:#FFFFFF>p</back>" as p_1',
     ]
     assert "way_1 -- p_1 : l" in lines
-    assert told(made) == []
+    assert list_messages(compilation) == []
 
 
-def test_values_of_an_instance_and_its_parts_stand_in_its_diagram(tmp_path):
+def test_the_diagram_of_an_instance_shows_its_values_and_those_of_its_parts(tmp_path):
     length = '<Attribute Name="length" AttributeDataType="xs:double">{}</Attribute>'
     value = length.format("<Value>1.2</Value>")
-    body = GATE
-    for id, text in (
+    plant = LINE
+    for interface_id, attribute in (
         ("5", length.format("")),
         ("7", length.format("")),
         ("2", value),
         ("4", value),
     ):
-        name = "way" if id in "52" else "p"
-        port = f'<ExternalInterface Name="{name}" ID="{id}"'
-        body = body.replace(port, text + port)
-    made = build(write(tmp_path, "main.aml", body), backends=("plantuml",))
-    (ibd,) = [a for a in made.artefacts if a.path.endswith(".ibd.puml")]
-    boxes = [line for line in ibd.text.splitlines() if line.startswith("rectangle")]
-    assert ["length = 1.2" in box for box in boxes] == [True, True]
-    assert not [a for a in made.artefacts if "Site.bdd" in a.path]
-    assert told(made) == []
+        name = "way" if interface_id in "52" else "p"
+        port = f'<ExternalInterface Name="{name}" ID="{interface_id}"'
+        plant = plant.replace(port, attribute + port)
+    compilation = compile_plant(tmp_path, plant, backends=("plantuml",))
+    (ibd,) = [artefact for artefact in compilation.artefacts if artefact.path.endswith(".ibd.puml")]
+    frames = [line for line in ibd.text.splitlines() if line.startswith("rectangle")]
+    assert ["length = 1.2" in frame for frame in frames] == [True, True]
+    assert not [artefact for artefact in compilation.artefacts if "Site.bdd" in artefact.path]
+    assert list_messages(compilation) == []
 
 
-def test_an_instance_without_links_frames_none(tmp_path):
-    body = GATE.replace('<InternalLink Name="l" RefPartnerSideA="2" RefPartnerSideB="4"/>', "")
-    made = build(write(tmp_path, "main.aml", body), backends=("plantuml",))
-    assert not [a for a in made.artefacts if a.path.endswith(".ibd.puml")]
+def test_an_instance_without_links_has_no_diagram(tmp_path):
+    plant = LINE.replace('<InternalLink Name="l" RefPartnerSideA="2" RefPartnerSideB="4"/>', "")
+    compilation = compile_plant(tmp_path, plant, backends=("plantuml",))
+    assert not [
+        artefact for artefact in compilation.artefacts if artefact.path.endswith(".ibd.puml")
+    ]
 
 
-def test_standard_libraries_that_a_plant_holds_are_not_drawn(tmp_path):
+def test_standard_libraries_in_a_plant_are_not_drawn(tmp_path):
     libraries = (
         '<RoleClassLib Name="AutomationMLBaseRoleClassLib"><RoleClass Name="AutomationMLBaseRole"/>'
         "</RoleClassLib>" + ROLES
     )
-    made = build(write(tmp_path, "main.aml", libraries), backends=("plantuml",))
-    assert [a.path for a in made.artefacts] == ["diagrams/Shared.bdd.puml"]
-    assert told(made) == []
+    compilation = compile_plant(tmp_path, libraries, backends=("plantuml",))
+    assert [artefact.path for artefact in compilation.artefacts] == ["diagrams/Shared.bdd.puml"]
+    assert list_messages(compilation) == []

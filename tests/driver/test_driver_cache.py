@@ -1,14 +1,12 @@
-"""The cache: what did not change is not compiled again, and nothing shows that it was not."""
+"""The cache: an unchanged model is not compiled again, and the results are the same."""
 
 import json
 import os
 from pathlib import Path
 
 import pytest
-from click.testing import CliRunner
-from driver_fakes import FAULTY, PLANT
+from driver_helpers import FAULTY, PLANT, run_sysmlc
 
-from sysmlc.cli import group
 from sysmlc.driver import compilation, outcome_cache
 from sysmlc.support import cache
 from sysmlc.support.cache import Cache
@@ -16,69 +14,64 @@ from sysmlc.support.cache import Cache
 
 @pytest.fixture
 def cache_folder(tmp_path_factory):
-    """A folder outside of the project."""
+    """A folder for the cache outside of the project."""
     return tmp_path_factory.mktemp("user") / "cache"
 
 
 @pytest.fixture
-def runs(monkeypatch, tmp_path, cache_folder):
-    """A cache of its own; the list of runs in which the passes really ran."""
+def compilations(monkeypatch, tmp_path, cache_folder):
+    """Use an empty cache; return the list of compilations that were not answered from it."""
     monkeypatch.setenv(cache.VARIABLE, str(cache_folder))
     monkeypatch.chdir(tmp_path)
-    happened = []
+    compilations = []
     monkeypatch.setattr(outcome_cache, "_PACKAGE", tmp_path / "tool")
     outcome_cache.compute_tool_digest.cache_clear()
-    real = compilation._CompilationRun.compile
+    compile_unit = compilation._CompilationRun.compile
 
-    def counted(run):
-        happened.append(run)
-        return real(run)
+    def record_compilation(run):
+        compilations.append(run)
+        return compile_unit(run)
 
-    monkeypatch.setattr(compilation._CompilationRun, "compile", counted)
-    yield happened
+    monkeypatch.setattr(compilation._CompilationRun, "compile", record_compilation)
+    yield compilations
     outcome_cache.compute_tool_digest.cache_clear()
 
 
-def sysmlc(*arguments):
-    result = CliRunner().invoke(group.sysmlc, list(arguments))
-    return result.exit_code, result.stdout, result.stderr
+def read_files(folder: Path) -> dict[str, str]:
+    return {path.relative_to(folder).as_posix(): path.read_text() for path in folder.rglob("*.*")}
 
 
-def out_files(folder: Path) -> dict[str, str]:
-    return {p.relative_to(folder).as_posix(): p.read_text() for p in folder.rglob("*.*")}
-
-
-@pytest.mark.parametrize("form", ["text", "json", "sarif", "github", "concise"])
-def test_the_second_run_says_and_writes_the_same_without_compiling(runs, form):
+@pytest.mark.parametrize("format_name", ["text", "json", "sarif", "github", "concise"])
+def test_the_second_run_has_the_same_results_without_compiling(compilations, format_name):
     Path("plant.ir").write_text(FAULTY)
-    first = sysmlc("plant.ir", "-o", "one", "--format", form)
-    second = sysmlc("plant.ir", "-o", "two", "--format", form)
-    assert len(runs) == 1
+    first = run_sysmlc("plant.ir", "-o", "one", "--format", format_name)
+    second = run_sysmlc("plant.ir", "-o", "two", "--format", format_name)
+    assert len(compilations) == 1
     assert (second[0], second[1].replace("two:", "one:"), second[2]) == first
-    assert out_files(Path("two")) == out_files(Path("one"))
+    assert read_files(Path("two")) == read_files(Path("one"))
 
 
-def test_a_changed_file_is_compiled_again(runs):
+def test_a_changed_file_is_compiled_again(compilations):
     Path("plant.ir").write_text(PLANT)
-    sysmlc("plant.ir")
+    run_sysmlc("plant.ir")
     Path("plant.ir").write_text(PLANT.replace("Robot", "Arm"))
-    sysmlc("plant.ir")
-    assert len(runs) == 2
+    run_sysmlc("plant.ir")
+    assert len(compilations) == 2
 
 
-def test_another_tool_compiles_again(runs):
+def test_a_changed_compiler_compiles_again(compilations):
     Path("plant.ir").write_text(PLANT)
     Path("tool").mkdir()
     Path("tool/pass.py").write_text("first")
-    sysmlc("plant.ir")
+    run_sysmlc("plant.ir")
     Path("tool/pass.py").write_text("a correction")
-    outcome_cache.compute_tool_digest.cache_clear()  # as another process does
-    sysmlc("plant.ir")
-    assert len(runs) == 2
+    outcome_cache.compute_tool_digest.cache_clear()  # like another process
+    run_sysmlc("plant.ir")
+    assert len(compilations) == 2
 
 
-def test_the_digest_of_an_installed_tool_is_that_of_its_record(tmp_path, monkeypatch):
-    """Times of files differ between installations of the same wheel, as in CI."""
+def test_the_digest_of_an_installed_compiler_is_the_digest_of_its_record(tmp_path, monkeypatch):
+    """The times of the files differ between installations of the same wheel, for example in CI."""
     monkeypatch.setattr(outcome_cache, "_PACKAGE", tmp_path / "sysmlc")
     record = tmp_path / "sysmlc-1.0.dist-info" / "RECORD"
     record.parent.mkdir()
@@ -96,18 +89,18 @@ def test_the_digest_of_a_checkout_covers_all_files():
         assert f"{name} " in digested
 
 
-def test_files_that_are_gone_are_written_again_from_the_cache(runs):
+def test_missing_outputs_are_restored_from_the_cache(compilations):
     Path("plant.ir").write_text(PLANT)
-    sysmlc("plant.ir")
-    before = out_files(Path("out"))
+    run_sysmlc("plant.ir")
+    before = read_files(Path("out"))
     Path("out/trace.json").unlink()
     Path("out/coverage.json").unlink()
-    assert sysmlc("plant.ir")[1] == f"out: {len(before)} files, 2 changed\n"
-    assert (out_files(Path("out")), len(runs)) == (before, 1)
+    assert run_sysmlc("plant.ir")[1] == f"out: {len(before)} files, 2 changed\n"
+    assert (read_files(Path("out")), len(compilations)) == (before, 1)
 
 
 @pytest.mark.parametrize(
-    "further",
+    "options",
     [
         ("--emit", "+graph"),
         ("--strict-input",),
@@ -119,71 +112,75 @@ def test_files_that_are_gone_are_written_again_from_the_cache(runs):
         ("-v",),
     ],
 )
-def test_what_else_is_asked_for_is_not_answered_from_the_cache(runs, further):
+def test_other_options_are_not_answered_from_the_cache(compilations, options):
     Path("plant.ir").write_text(PLANT)
     Path("own").mkdir()
     Path("own/note.txt").write_text("a template")
     Path("other.toml").write_text('[rules]\nSM300 = "off"\n')
-    sysmlc("plant.ir")
-    assert sysmlc("plant.ir", *further)[0] == 0
-    assert len(runs) == 2
+    run_sysmlc("plant.ir")
+    assert run_sysmlc("plant.ir", *options)[0] == 0
+    assert len(compilations) == 2
 
 
-def test_check_is_content_with_findings_and_build_is_not(runs):
+def test_build_does_not_reuse_the_cache_entry_of_check(compilations):
     Path("plant.ir").write_text(PLANT)
-    sysmlc("check", "plant.ir")
-    sysmlc("check", "plant.ir")
-    assert len(runs) == 1
-    sysmlc("build", "plant.ir")
-    assert len(runs) == 2
+    run_sysmlc("check", "plant.ir")
+    run_sysmlc("check", "plant.ir")
+    assert len(compilations) == 1
+    run_sysmlc("build", "plant.ir")
+    assert len(compilations) == 2
 
 
-def test_another_working_folder_sees_its_own_names_of_files(runs, monkeypatch):
+def test_paths_of_cached_diagnostics_are_relative_to_the_working_folder(compilations, monkeypatch):
     Path("models").mkdir()
     Path("models/plant.ir").write_text(FAULTY)
-    there = sysmlc("check", "models/plant.ir", "--format", "json")[1]
+    seen_from_parent = run_sysmlc("check", "models/plant.ir", "--format", "json")[1]
     monkeypatch.chdir("models")
-    here = sysmlc("check", "plant.ir", "--format", "json")[1]
-    assert {found["file"] for found in json.loads(there)["diagnostics"]} == {"models/plant.ir"}
-    assert {found["file"] for found in json.loads(here)["diagnostics"]} == {"plant.ir"}
-    assert len(runs) == 1
+    seen_from_folder = run_sysmlc("check", "plant.ir", "--format", "json")[1]
+    assert {diagnostic["file"] for diagnostic in json.loads(seen_from_parent)["diagnostics"]} == {
+        "models/plant.ir"
+    }
+    assert {diagnostic["file"] for diagnostic in json.loads(seen_from_folder)["diagnostics"]} == {
+        "plant.ir"
+    }
+    assert len(compilations) == 1
 
 
 @pytest.mark.parametrize("damage", [b"", b"no zip", b"\x78\x9c", None])
-def test_a_damaged_cache_costs_time_only(runs, cache_folder, damage):
+def test_a_damaged_cache_entry_is_ignored(compilations, cache_folder, damage):
     Path("plant.ir").write_text(PLANT)
-    sysmlc("plant.ir")
-    before = out_files(Path("out"))
+    run_sysmlc("plant.ir")
+    before = read_files(Path("out"))
     for entry in cache_folder.rglob("*.entry"):
-        whole = entry.read_bytes()
-        entry.write_bytes(whole[:-3] + b"abc" if damage is None else damage)
+        data = entry.read_bytes()
+        entry.write_bytes(data[:-3] + b"abc" if damage is None else damage)
     Path("out/trace.json").unlink()
-    assert sysmlc("plant.ir")[0] == 0
-    assert (out_files(Path("out")), len(runs)) == (before, 2)
+    assert run_sysmlc("plant.ir")[0] == 0
+    assert (read_files(Path("out")), len(compilations)) == (before, 2)
 
 
-def test_a_cache_that_cannot_be_written_costs_time_only(runs, cache_folder, monkeypatch):
+def test_a_cache_that_cannot_be_written_is_ignored(compilations, cache_folder, monkeypatch):
     cache_folder.write_text("no folder")
     monkeypatch.setenv(cache.VARIABLE, str(cache_folder / "below"))
     Path("plant.ir").write_text(PLANT)
-    assert sysmlc("plant.ir")[0] == 0
-    assert sysmlc("plant.ir")[0] == 0
-    assert len(runs) == 2
+    assert run_sysmlc("plant.ir")[0] == 0
+    assert run_sysmlc("plant.ir")[0] == 0
+    assert len(compilations) == 2
 
 
-def test_a_missing_file_is_reported_every_time(runs):
-    assert sysmlc("check", "plant.ir")[0] == 2
-    assert sysmlc("check", "plant.ir")[0] == 2
-    assert len(runs) == 2
+def test_a_missing_file_is_reported_every_time(compilations):
+    assert run_sysmlc("check", "plant.ir")[0] == 2
+    assert run_sysmlc("check", "plant.ir")[0] == 2
+    assert len(compilations) == 2
 
 
-def test_what_was_not_used_for_longest_goes_first(tmp_path):
+def test_the_least_recently_used_entry_is_evicted(tmp_path):
     store = Cache(tmp_path, limit=1500)
-    noise = [bytes((i * 7919 + k * k * 31) % 251 for k in range(600)) for i in range(3)]
-    store.put("aa1", noise[0])
-    store.put("bb2", noise[1])
+    values = [bytes((i * 7919 + k * k * 31) % 251 for k in range(600)) for i in range(3)]
+    store.put("aa1", values[0])
+    store.put("bb2", values[1])
     os.utime(tmp_path / "aa/aa1.entry", (1, 1))
     os.utime(tmp_path / "bb/bb2.entry", (2, 2))
-    assert store.get("aa1") == noise[0]
-    store.put("cc3", noise[2])
-    assert (store.get("aa1"), store.get("bb2"), store.get("cc3")) == (noise[0], None, noise[2])
+    assert store.get("aa1") == values[0]
+    store.put("cc3", values[2])
+    assert (store.get("aa1"), store.get("bb2"), store.get("cc3")) == (values[0], None, values[2])

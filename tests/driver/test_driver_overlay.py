@@ -1,13 +1,12 @@
-"""Overlays through the driver and the command line: found, named, refused, watched, cached."""
+"""Overlays: where the driver looks for them, what it reports, what depends on them."""
 
 import json
 import os
 
 import pytest
-from click.testing import CliRunner
+from driver_helpers import list_codes, list_inputs, list_published, run_sysmlc
 from jsonschema import Draft202012Validator
 
-from sysmlc.cli import group
 from sysmlc.cli.watch import _is_input
 from sysmlc.driver import Request, compile_model, select_backends
 from sysmlc.ir import Kind
@@ -58,170 +57,164 @@ def folder(tmp_path):
     return tmp_path
 
 
-def write(folder, name, text):
+def write_file(folder, name, text):
     path = folder / name
     path.parent.mkdir(parents=True, exist_ok=True)
     path.write_text(text)
     return path
 
 
-def build(*paths, overlays=(), emit=()):
+def compile_paths(*paths, overlays=(), emit=()):
     backends = tuple(select_backends(emit)) if emit else ()
     return compile_model(Request(tuple(paths), overlays=tuple(overlays), backends=backends))
 
 
-def items(made):
-    return [made.graph.qualified_name(one) for one in made.graph.of_kind(Kind.ITEM_FLOW)]
+def list_item_flows(compilation):
+    graph = compilation.graph
+    return [graph.qualified_name(flow) for flow in graph.of_kind(Kind.ITEM_FLOW)]
 
 
-def told(made):
-    return [(f.rule.code, f.subject.place.file, f.subject.place.line) for f in made.diagnostics]
+# -- which overlays are applied ---------------------------------------------------------------
 
 
-def sysmlc(*arguments):
-    result = CliRunner().invoke(group.sysmlc, [str(one) for one in arguments])
-    return result.exit_code, result.stdout, result.stderr
-
-
-# -- where overlays are ------------------------------------------------------------------------
-
-
-def test_the_overlay_beside_a_model_is_laid_over_it(folder):
-    write(folder, "line.overlay.yaml", FLOW)
-    made = build(folder / "line.ir")
-    assert items(made) == ["Plant::<ItemFlow>"]
-    assert [(one.path, one.language) for one in made.inputs] == [
+def test_an_overlay_in_the_folder_of_its_model_is_applied(folder):
+    write_file(folder, "line.overlay.yaml", FLOW)
+    compilation = compile_paths(folder / "line.ir")
+    assert list_item_flows(compilation) == ["Plant::<ItemFlow>"]
+    assert [(file.path, file.language) for file in compilation.inputs] == [
         ("line.ir", "ir"),
         ("line.overlay.yaml", "overlay"),
     ]
 
 
-def test_models_of_a_folder_have_their_overlays(folder):
-    write(folder, "line.overlay.yaml", FLOW)
-    assert items(build(folder)) == ["Plant::<ItemFlow>"]
+def test_overlays_of_models_in_a_folder_are_applied(folder):
+    write_file(folder, "line.overlay.yaml", FLOW)
+    assert list_item_flows(compile_paths(folder)) == ["Plant::<ItemFlow>"]
 
 
-def test_an_overlay_elsewhere_is_named(folder):
-    other = write(folder, "refined/flows.yaml", FLOW)
-    assert items(build(folder / "line.ir")) == []
-    made = build(folder / "line.ir", overlays=[other])
-    assert items(made) == ["Plant::<ItemFlow>"]
-    assert [one.path for one in made.inputs] == ["line.ir", "refined/flows.yaml"]
+def test_an_overlay_in_another_folder_is_applied_if_it_is_named(folder):
+    overlay = write_file(folder, "refined/flows.yaml", FLOW)
+    assert list_item_flows(compile_paths(folder / "line.ir")) == []
+    compilation = compile_paths(folder / "line.ir", overlays=[overlay])
+    assert list_item_flows(compilation) == ["Plant::<ItemFlow>"]
+    assert list_inputs(compilation) == ["line.ir", "refined/flows.yaml"]
 
 
-def test_an_overlay_may_stand_among_the_models(folder):
-    other = write(folder, "refined/flows.overlay.yaml", FLOW)
-    assert items(build(folder / "line.ir", other)) == ["Plant::<ItemFlow>"]
+def test_an_overlay_can_be_named_like_a_model(folder):
+    overlay = write_file(folder, "refined/flows.overlay.yaml", FLOW)
+    assert list_item_flows(compile_paths(folder / "line.ir", overlay)) == ["Plant::<ItemFlow>"]
 
 
-def test_an_overlay_that_is_found_and_named_counts_once(folder):
-    beside = write(folder, "line.overlay.yaml", FLOW)
-    made = build(folder / "line.ir", overlays=[beside])
-    assert items(made) == ["Plant::<ItemFlow>"]
-    assert len(made.inputs) == 2
+def test_an_overlay_that_is_found_and_named_is_applied_once(folder):
+    overlay = write_file(folder, "line.overlay.yaml", FLOW)
+    compilation = compile_paths(folder / "line.ir", overlays=[overlay])
+    assert list_item_flows(compilation) == ["Plant::<ItemFlow>"]
+    assert len(compilation.inputs) == 2
 
 
 def test_models_that_an_overlay_names_join_the_unit(folder):
-    write(folder, "line.overlay.yaml", HOLD)
-    write(folder, "models/stopping.ir", MODEL)
-    made = build(folder / "line.ir")
-    assert [one.path for one in made.inputs] == [
+    write_file(folder, "line.overlay.yaml", HOLD)
+    write_file(folder, "models/stopping.ir", MODEL)
+    compilation = compile_paths(folder / "line.ir")
+    assert list_inputs(compilation) == [
         "line.ir",
         "models/stopping.ir",
         "line.overlay.yaml",
     ]
-    (activity,) = made.graph.of_kind(Kind.ACTIVITY)
-    assert made.graph.qualified_name(activity) == "Plant::Line::Hold"
+    (activity,) = compilation.graph.of_kind(Kind.ACTIVITY)
+    assert compilation.graph.qualified_name(activity) == "Plant::Line::Hold"
 
 
 def test_a_model_outside_of_the_folder_is_not_opened(folder):
-    write(folder, "stopping.ir", MODEL)
-    write(folder, "in/line.ir", PLANT)
-    write(folder, "in/line.overlay.yaml", HOLD.replace("models/", "../"))
-    made = build(folder / "in/line.ir")
-    assert [one.path for one in made.inputs] == ["line.ir", "line.overlay.yaml"]
-    (found,) = (diagnostic for diagnostic in made.diagnostics if diagnostic.rule.code == "SM324")
-    assert found.help == "the file '../stopping.ir' is not part of the compile unit"
+    write_file(folder, "stopping.ir", MODEL)
+    write_file(folder, "in/line.ir", PLANT)
+    write_file(folder, "in/line.overlay.yaml", HOLD.replace("models/", "../"))
+    compilation = compile_paths(folder / "in/line.ir")
+    assert list_inputs(compilation) == ["line.ir", "line.overlay.yaml"]
+    (diagnostic,) = (
+        reported for reported in compilation.diagnostics if reported.rule.code == "SM324"
+    )
+    assert diagnostic.help == "the file '../stopping.ir' is not part of the compile unit"
 
 
-# -- what can be wrong with them ---------------------------------------------------------------
+# -- wrong overlays ---------------------------------------------------------------
 
 
-def test_a_broken_overlay_is_an_error_and_the_model_is_compiled_without(folder):
-    write(folder, "line.overlay.yaml", FLOW.replace("items: {", "items: {{"))
-    made = build(folder / "line.ir")
-    assert [one[:2] for one in told(made)] == [
-        ("SM300", "line.ir"),
-        ("SM300", "line.ir"),
-        ("SM320", "line.overlay.yaml"),
-    ]
-    assert made.exit_code() == 1
-    assert not made.is_complete
+def test_a_malformed_overlay_is_an_error_and_the_model_is_compiled_without_it(folder):
+    write_file(folder, "line.overlay.yaml", FLOW.replace("items: {", "items: {{"))
+    compilation = compile_paths(folder / "line.ir")
+    assert [
+        (diagnostic.rule.code, diagnostic.subject.place.file)
+        for diagnostic in compilation.diagnostics
+    ] == [("SM300", "line.ir"), ("SM300", "line.ir"), ("SM320", "line.overlay.yaml")]
+    assert compilation.exit_code() == 1
+    assert not compilation.is_complete
 
 
-def test_an_overlay_that_is_not_there_ends_with_exit_code_2(folder):
-    code, _, errors = sysmlc("check", folder / "line.ir", "--overlay", folder / "gone.yaml")
+def test_a_missing_overlay_is_exit_code_2(folder):
+    code, _, errors = run_sysmlc("check", folder / "line.ir", "--overlay", folder / "gone.yaml")
     assert code == 2
     assert "error[SM170 missing-file]: there is no file or folder" in errors
     assert "gone.yaml" in errors
 
 
-def test_a_model_is_no_overlay_though_it_is_an_input_too(folder):
-    code, _, errors = sysmlc("check", folder / "line.ir", "--overlay", folder / "line.ir")
+def test_a_model_named_as_overlay_is_an_error(folder):
+    code, _, errors = run_sysmlc("check", folder / "line.ir", "--overlay", folder / "line.ir")
     assert code == 1
     assert "error[SM321 overlay-shape]" in errors
 
 
-def test_what_rests_on_an_entry_that_is_wrong_is_withheld(folder):
-    """The diagram with the connector whose flow has no item; the other diagrams are written."""
-    write(folder, "line.overlay.yaml", FLOW.replace("item: Pallet", "item: Palette"))
-    made = build(folder / "line.ir", emit=("plantuml",))
-    assert [one[0] for one in told(made)] == ["SM300", "SM300", "SM324"]
-    assert [path.rpartition("/")[2] for path in made.withheld] == ["Plant.Line.ibd.puml"]
-    assert any(one.path.endswith("bdd.puml") for one in made.list_published())
+def test_outputs_that_depend_on_a_wrong_entry_are_withheld(folder):
+    """The flow has no item, so only the diagram with its connector is withheld."""
+    write_file(folder, "line.overlay.yaml", FLOW.replace("item: Pallet", "item: Palette"))
+    compilation = compile_paths(folder / "line.ir", emit=("plantuml",))
+    assert list_codes(compilation) == ["SM300", "SM300", "SM324"]
+    assert [path.rpartition("/")[2] for path in compilation.withheld] == ["Plant.Line.ibd.puml"]
+    assert any(path.endswith("bdd.puml") for path in list_published(compilation))
 
 
-def test_a_link_beside_a_model_that_leads_out_of_the_folder_is_not_followed(folder):
-    secret = write(folder, "secret.yaml", FLOW)
-    write(folder, "in/line.ir", PLANT)
-    (folder / "in/line.overlay.yaml").symlink_to(secret)
-    made = build(folder / "in/line.ir")
-    assert items(made) == []
-    assert "SM180" in [one[0] for one in told(made)]
+def test_an_overlay_linked_from_outside_of_the_folder_is_not_read(folder):
+    outside = write_file(folder, "secret.yaml", FLOW)
+    write_file(folder, "in/line.ir", PLANT)
+    (folder / "in/line.overlay.yaml").symlink_to(outside)
+    compilation = compile_paths(folder / "in/line.ir")
+    assert list_item_flows(compilation) == []
+    assert "SM180" in list_codes(compilation)
 
 
-def test_a_pipe_is_no_overlay(folder):
+def test_a_pipe_named_like_an_overlay_is_reported(folder):
     os.mkfifo(folder / "line.overlay.yaml")
-    made = build(folder / "line.ir")
-    assert "SM179" in [one[0] for one in told(made)]
+    compilation = compile_paths(folder / "line.ir")
+    assert "SM179" in list_codes(compilation)
 
 
-def test_a_finding_shows_the_line_of_the_overlay(folder):
-    write(folder, "line.overlay.yaml", FLOW.replace("to: bt", "to: st/belt"))
-    code, _, errors = sysmlc("check", folder / "line.ir", "--no-cache")
+def test_a_diagnostic_shows_the_line_of_the_overlay(folder):
+    write_file(folder, "line.overlay.yaml", FLOW.replace("to: bt", "to: st/belt"))
+    code, _, errors = run_sysmlc("check", folder / "line.ir", "--no-cache")
     assert code == 1
     assert "line.overlay.yaml:5:32 (st/belt)\n" in errors
     assert "    flows: [{item: Pallet, to: st/belt}]\n" in errors
     assert "help: did you mean 'st/out'?" in errors
 
 
-def test_a_finding_about_an_added_flow_shows_the_line_of_the_overlay(folder):
+def test_a_diagnostic_about_an_added_flow_shows_the_line_of_the_overlay(folder):
     text = FLOW + "ports: {Plant/Belt/in: {direction: out}}\n"
-    write(folder, "line.overlay.yaml", text)
-    code, out, _ = sysmlc("check", folder / "line.ir", "--no-cache", "--format", "json")
-    found = [one for one in json.loads(out)["diagnostics"] if one["code"] == "SM310"]
-    assert [(one["file"].rpartition("/")[2], one["line"], one["column"]) for one in found] == [
-        ("line.overlay.yaml", 5, 20)
+    write_file(folder, "line.overlay.yaml", text)
+    code, out, _ = run_sysmlc("check", folder / "line.ir", "--no-cache", "--format", "json")
+    (diagnostic,) = [
+        reported for reported in json.loads(out)["diagnostics"] if reported["code"] == "SM310"
     ]
+    assert diagnostic["file"].endswith("line.overlay.yaml")
+    assert (diagnostic["line"], diagnostic["column"]) == (5, 20)
     assert code == 0
 
 
 # -- outputs -----------------------------------------------------------------------------------
 
 
-def test_the_manifest_lists_the_overlay_and_the_trace_leads_into_it(folder):
-    write(folder, "line.overlay.yaml", FLOW)
-    code, _, _ = sysmlc(folder / "line.ir", "-o", folder / "out", "--no-cache")
+def test_manifest_trace_and_diagram_contain_the_overlay(folder):
+    write_file(folder, "line.overlay.yaml", FLOW)
+    code, _, _ = run_sysmlc(folder / "line.ir", "-o", folder / "out", "--no-cache")
     assert code == 0
     manifest = json.loads((folder / "out/manifest.json").read_text())
     schema = json.loads(resources.read_text("metamodels", "sysmlc-manifest.schema.json"))
@@ -229,12 +222,12 @@ def test_the_manifest_lists_the_overlay_and_the_trace_leads_into_it(folder):
     assert "line.overlay.yaml" in json.dumps(manifest["inputs"])
     trace = (folder / "out/trace.json").read_text()
     assert '"line.overlay.yaml"' in trace
-    drawn = (folder / "out/diagrams/Plant.Line.ibd.puml").read_text()
-    assert "-[$physical_line]->" in drawn
-    assert "<color:$physical>Pallet</color>" in drawn
+    diagram = (folder / "out/diagrams/Plant.Line.ibd.puml").read_text()
+    assert "-[$physical_line]->" in diagram
+    assert "<color:$physical>Pallet</color>" in diagram
 
 
-def test_a_shipped_overlay_has_the_shape_of_the_schema():
+def test_the_overlays_of_the_examples_follow_the_schema():
     from ruamel.yaml import YAML
 
     schema = json.loads(resources.read_text("metamodels", "sysmlc-overlay.schema.json"))
@@ -243,56 +236,45 @@ def test_a_shipped_overlay_has_the_shape_of_the_schema():
         Draft202012Validator(schema).validate(YAML(typ="safe").load(path.read_text()))
 
 
-def test_a_changed_overlay_is_compiled_again_and_an_unchanged_one_is_not(folder, monkeypatch):
+def test_a_changed_overlay_invalidates_the_cache(folder, monkeypatch):
     monkeypatch.setenv(cache.VARIABLE, str(folder / "cache"))
-    path = write(folder, "line.overlay.yaml", FLOW)
-    assert "Pallet" in drawn_after(folder)
-    assert "Pallet" in drawn_after(folder)
+    path = write_file(folder, "line.overlay.yaml", FLOW)
+    assert "Pallet" in build_diagram(folder)
+    assert "Pallet" in build_diagram(folder)
     path.write_text(FLOW.replace("Pallet", "Tray"))
-    assert "Tray" in drawn_after(folder)
+    assert "Tray" in build_diagram(folder)
     path.unlink()
-    assert "Tray" not in drawn_after(folder)
+    assert "Tray" not in build_diagram(folder)
 
 
-def drawn_after(folder):
-    sysmlc(folder / "line.ir", "-o", folder / "out")
+def build_diagram(folder):
+    run_sysmlc(folder / "line.ir", "-o", folder / "out")
     return (folder / "out/diagrams/Plant.Line.ibd.puml").read_text()
 
 
-def test_a_saved_overlay_wakes_the_watch():
+def test_the_watch_reacts_to_a_saved_overlay():
     assert _is_input(None, "/models/line.overlay.yaml")
     assert not _is_input(None, "/models/scenario.yaml")
-
-
-def test_without_an_overlay_no_yaml_reader_is_loaded(folder):
-    import subprocess
-    import sys
-
-    script = (
-        "import sys; from sysmlc.cli.group import sysmlc\n"
-        "try: sysmlc(['check', 'line.ir', '--no-cache'])\n"
-        "except SystemExit: pass\n"
-        "print('ruamel' in ''.join(sys.modules))"
-    )
-    run = [sys.executable, "-c", script]
-    done = subprocess.run(run, cwd=folder, capture_output=True, text=True)
-    assert done.stdout.splitlines()[-1] == "False"
 
 
 def test_the_overlay_of_the_documentation_refines_the_example(tmp_path):
     root = resources.path("metamodels").parent
     page = (root / "docs" / "refine-a-plant.md").read_text()
-    shown = page.partition("<!-- overlay -->\n```yaml\n")[2].partition("```")[0]
-    plant = write(tmp_path, "baygate.aml", (root / "examples/baygate/baygate.aml").read_text())
-    write(tmp_path, "baygate.overlay.yaml", shown)
-    made = build(plant)
-    assert [one for one in made.diagnostics if one.severity != "info"] == []
-    assert len(items(made)) == 3
+    overlay = page.partition("<!-- overlay -->\n```yaml\n")[2].partition("```")[0]
+    plant = write_file(tmp_path, "baygate.aml", (root / "examples/baygate/baygate.aml").read_text())
+    write_file(tmp_path, "baygate.overlay.yaml", overlay)
+    compilation = compile_paths(plant)
+    assert [
+        diagnostic for diagnostic in compilation.diagnostics if diagnostic.severity != "info"
+    ] == []
+    assert len(list_item_flows(compilation)) == 3
 
 
-def test_a_flow_both_ways_is_two_flows_in_sysml_v2_and_one_in_uml(folder):
-    write(folder, "line.overlay.yaml", FLOW.replace("to: bt", "both-ways: true"))
-    made = build(folder / "line.ir", emit=("sysml", "uml"))
-    texts = {one.path.partition("/")[0]: one.text for one in made.list_published()}
+def test_a_flow_in_both_directions_is_two_flows_in_sysml_v2_and_one_in_uml(folder):
+    write_file(folder, "line.overlay.yaml", FLOW.replace("to: bt", "both-ways: true"))
+    compilation = compile_paths(folder / "line.ir", emit=("sysml", "uml"))
+    texts = {
+        artefact.path.partition("/")[0]: artefact.text for artefact in compilation.list_published()
+    }
     assert len([line for line in texts["sysml"].splitlines() if "flow of" in line]) == 2
     assert texts["uml"].count("uml:InformationFlow") == 1

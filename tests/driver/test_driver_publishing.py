@@ -1,44 +1,50 @@
-"""The output folder: only changes are written, stale files go, schemas hold."""
+"""The output folder: only changes are written, obsolete files are removed, schemas are followed."""
 
 import json
 import os
 
 import pytest
-from driver_fakes import FAULTY, PLANT, Outlines, compiled
+from driver_helpers import FAULTY, PLANT, OutlineBackend, compile_files
 from jsonschema import Draft202012Validator
 
 from sysmlc.driver import Target, compare, publish, summarize
 from sysmlc.support import resources
 
 
-def build(folder, text=PLANT, **given):
-    """Compile a text and bring ``folder/out`` up to date; return what changed."""
-    publication = publication_of(folder, text, **given)
+def build(folder, text=PLANT, **options):
+    """Compile a text, update ``folder/out`` and return the changed files."""
+    publication = publish_text(folder, text, **options)
     assert publication.diagnostics == ()
     return list(publication.changed)
 
 
-def publication_of(folder, text=PLANT, **given):
+def publish_text(folder, text=PLANT, **options):
     (folder / "plant.ir").write_text(text)
-    return publish(summarize(compiled(folder / "plant.ir", **given)), Target(folder / "out"))
+    return publish(summarize(compile_files(folder / "plant.ir", **options)), Target(folder / "out"))
 
 
-def files(folder):
+def list_files(folder):
     out = folder / "out"
     return sorted(path.relative_to(out).as_posix() for path in out.rglob("*") if path.is_file())
 
 
-ALL = ["coverage.json", "manifest.json", "outlines/Gate.txt", "outlines/Robot.txt", "trace.json"]
+ALL_FILES = [
+    "coverage.json",
+    "manifest.json",
+    "outlines/Gate.txt",
+    "outlines/Robot.txt",
+    "trace.json",
+]
 
 
-def test_the_folder_holds_what_was_made_and_three_files_about_it(tmp_path):
-    assert sorted(build(tmp_path)) == ALL
-    assert files(tmp_path) == ALL
+def test_the_folder_contains_the_outputs_manifest_coverage_and_trace(tmp_path):
+    assert sorted(build(tmp_path)) == ALL_FILES
+    assert list_files(tmp_path) == ALL_FILES
 
 
 @pytest.mark.parametrize("name", ["manifest", "coverage", "trace"])
 @pytest.mark.parametrize("text", [PLANT, FAULTY, "Klass gate\n"])
-def test_they_follow_their_schemas(tmp_path, name, text):
+def test_manifest_coverage_and_trace_follow_their_schemas(tmp_path, name, text):
     build(tmp_path, text)
     schema = json.loads(resources.read_text("metamodels", f"sysmlc-{name}.schema.json"))
     Draft202012Validator.check_schema(schema)
@@ -54,7 +60,7 @@ def test_a_second_run_writes_nothing(tmp_path):
     assert {path.stat().st_mtime for path in (tmp_path / "out").rglob("*")} == {1}
 
 
-def test_only_what_changed_is_written(tmp_path):
+def test_only_changed_files_are_written(tmp_path):
     build(tmp_path)
     os.utime(tmp_path / "out/outlines/Robot.txt", (1, 1))
     changed = build(tmp_path, PLANT.replace('gate.in "in"', 'gate.in "entry"'))
@@ -66,28 +72,28 @@ def test_the_manifest_is_written_last(tmp_path):
     assert build(tmp_path)[-1] == "manifest.json"
 
 
-def test_what_is_no_longer_made_is_removed_and_what_others_made_stays(tmp_path):
+def test_obsolete_outputs_are_removed_and_foreign_files_stay(tmp_path):
     build(tmp_path)
     (tmp_path / "out/outlines/own.txt").write_text("by hand")
     build(tmp_path, PLANT.replace("Robot", "Arm"))
-    assert "outlines/Robot.txt" not in files(tmp_path)
-    assert {"outlines/Arm.txt", "outlines/own.txt"} <= set(files(tmp_path))
+    assert "outlines/Robot.txt" not in list_files(tmp_path)
+    assert {"outlines/Arm.txt", "outlines/own.txt"} <= set(list_files(tmp_path))
 
 
-def test_folders_that_become_empty_go_too(tmp_path):
+def test_folders_that_become_empty_are_removed(tmp_path):
     build(tmp_path)
     build(tmp_path, backends=())
-    assert files(tmp_path) == ["coverage.json", "manifest.json", "trace.json"]
+    assert list_files(tmp_path) == ["coverage.json", "manifest.json", "trace.json"]
     assert not (tmp_path / "out/outlines").exists()
 
 
 def test_a_withheld_file_is_removed_and_listed_with_the_reason(tmp_path):
     build(tmp_path)
     build(tmp_path, FAULTY)
-    assert "outlines/Gate.txt" not in files(tmp_path)
+    assert "outlines/Gate.txt" not in list_files(tmp_path)
     manifest = json.loads((tmp_path / "out/manifest.json").read_text())
-    listed = [entry["path"] for entry in manifest["files"]]
-    assert listed == ["outlines/Robot.txt", "coverage.json", "trace.json"]
+    published = [entry["path"] for entry in manifest["files"]]
+    assert published == ["outlines/Robot.txt", "coverage.json", "trace.json"]
     assert manifest["withheld"] == [
         {
             "path": "outlines/Gate.txt",
@@ -106,23 +112,23 @@ def test_a_withheld_file_is_removed_and_listed_with_the_reason(tmp_path):
 def test_a_model_that_cannot_be_read_removes_nothing(tmp_path):
     build(tmp_path)
     build(tmp_path, "Klass gate\n")
-    assert files(tmp_path) == ALL
+    assert list_files(tmp_path) == ALL_FILES
     manifest = json.loads((tmp_path / "out/manifest.json").read_text())
-    kept = ["outlines/Gate.txt", "outlines/Robot.txt"]
-    assert [entry["path"] for entry in manifest["kept"]] == kept
+    preserved = ["outlines/Gate.txt", "outlines/Robot.txt"]
+    assert [entry["path"] for entry in manifest["kept"]] == preserved
 
 
-def test_what_was_kept_is_removed_when_the_model_can_be_read_again(tmp_path):
+def test_preserved_outputs_are_removed_once_the_model_can_be_read(tmp_path):
     build(tmp_path)
     build(tmp_path, "Klass gate\n")
     build(tmp_path, PLANT.replace("Robot", "Arm"))
-    assert "outlines/Robot.txt" not in files(tmp_path)
+    assert "outlines/Robot.txt" not in list_files(tmp_path)
 
 
-def test_differences_are_what_publishing_would_change(tmp_path):
+def test_compare_returns_the_files_that_publishing_changes(tmp_path):
     build(tmp_path)
     (tmp_path / "plant.ir").write_text(PLANT.replace("Robot", "Arm"))
-    result, target = summarize(compiled(tmp_path / "plant.ir")), Target(tmp_path / "out")
+    result, target = summarize(compile_files(tmp_path / "plant.ir")), Target(tmp_path / "out")
     differences = compare(result, target)
     assert "outlines/Arm.txt" in differences
     assert sorted(publish(result, target).changed) == differences
@@ -131,33 +137,33 @@ def test_differences_are_what_publishing_would_change(tmp_path):
 
 def test_a_file_in_the_way_of_the_folder_is_reported(tmp_path):
     (tmp_path / "out").write_text("a file")
-    (diagnostic,) = publication_of(tmp_path).diagnostics
+    (diagnostic,) = publish_text(tmp_path).diagnostics
     assert (diagnostic.rule.name, "out" in diagnostic.message) == ("unwritable-output", True)
 
 
-def test_an_interrupted_write_leaves_the_old_file_and_no_other(tmp_path, monkeypatch):
+def test_an_interrupted_write_leaves_the_old_files(tmp_path, monkeypatch):
     build(tmp_path)
     before = (tmp_path / "out/outlines/Gate.txt").read_text()
 
-    def fails(*_):
+    def raise_disk_full(*_):
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr("os.write", fails)
-    (diagnostic,) = publication_of(tmp_path, PLANT.replace('"in"', '"entry"')).diagnostics
+    monkeypatch.setattr("os.write", raise_disk_full)
+    (diagnostic,) = publish_text(tmp_path, PLANT.replace('"in"', '"entry"')).diagnostics
     assert "No space left" in diagnostic.message
     assert (tmp_path / "out/outlines/Gate.txt").read_text() == before
-    assert files(tmp_path) == ALL
+    assert list_files(tmp_path) == ALL_FILES
 
 
-@pytest.mark.parametrize("backends", [(), (Outlines(),)])
-def test_trace_is_laid_out_as_all_our_json(tmp_path, backends):
+@pytest.mark.parametrize("backends", [(), (OutlineBackend(),)])
+def test_trace_is_formatted_like_the_other_json_outputs(tmp_path, backends):
     build(tmp_path, PLANT.replace('"Gate"', '"Ga\\"te ü"'), backends=backends)
     text = (tmp_path / "out/trace.json").read_text(encoding="utf-8")
     assert text == json.dumps(json.loads(text), ensure_ascii=False, indent=1) + "\n"
 
 
-def test_trace_leads_from_files_to_elements_to_lines(tmp_path):
-    build(tmp_path, backends=(Outlines(),))
+def test_trace_maps_files_to_elements_and_elements_to_lines(tmp_path):
+    build(tmp_path, backends=(OutlineBackend(),))
     trace = json.loads((tmp_path / "out/trace.json").read_text())
     assert trace["outputs"][0] == {"path": "outlines/Gate.txt", "elements": ["gate", "gate.in"]}
     assert trace["elements"][0] == {

@@ -1,24 +1,205 @@
-"""Which back ends run when none is named."""
+"""Which passes and back ends run, the options of passes, and plug-ins of other distributions."""
 
 import tomllib
+from dataclasses import dataclass
+from importlib import import_module
 from pathlib import Path
 
-from sysmlc.driver import list_backend_names, load_backends, registry, select_backends
+import pytest
+from msgspec import Struct
+
+from sysmlc import config
+from sysmlc.config import ConfigError
+from sysmlc.driver import (
+    BackendError,
+    list_backend_names,
+    load_backends,
+    registry,
+    select_backends,
+)
+from sysmlc.passes import pipeline
 
 _PROJECT = Path(__file__).parents[2] / "pyproject.toml"
 
 
-def test_without_a_name_the_default_back_ends_run():
-    every = load_backends(list_backend_names())
-    assert select_backends([]) == [one for one in every if one.is_default]
+def test_the_default_back_ends_run_if_none_is_named():
+    backends = load_backends(list_backend_names())
+    assert select_backends([]) == [backend for backend in backends if backend.is_default]
 
 
-def test_a_back_end_that_is_no_default_is_added_in_its_place():
-    names = [one.name for one in select_backends(["+graph"])]
-    assert names == sorted(["graph", *(one.name for one in select_backends([]))])
+def test_an_added_back_end_keeps_the_order_of_names():
+    names = [backend.name for backend in select_backends(["+graph"])]
+    assert names == sorted(["graph", *(backend.name for backend in select_backends([]))])
 
 
-def test_the_project_file_names_the_back_ends_that_ship():
+def test_the_entry_points_of_the_project_are_the_back_ends_of_the_registry():
     project = tomllib.loads(_PROJECT.read_text(encoding="utf-8"))["project"]
-    named = project["entry-points"][registry.BACKEND_GROUP]
-    assert named == registry._BACKENDS
+    entry_points = project["entry-points"][registry.BACKEND_GROUP]
+    assert entry_points == registry._BACKENDS
+
+
+# -- options of passes ----------------------------------------------------------------------------
+
+
+def load_passes_by_name(folder, text):
+    """Return the passes with the options of a configuration, by name."""
+    (folder / "sysmlc.toml").write_text(text)
+    options = config.read_config(folder / "sysmlc.toml").passes
+    return {loaded.name: loaded for loaded in registry.load_passes(options)}
+
+
+def test_options_are_fields_of_the_pass(tmp_path):
+    passes = load_passes_by_name(tmp_path, "[passes.activities]\nmax_markings = 7\n")
+    assert passes["activities"].max_markings == 7
+
+
+class StructPass(Struct, frozen=True):
+    name: str = "counting"
+    after: tuple[str, ...] = ()
+    limit: int = 1
+
+    def run(self, graph, sink):
+        """Change nothing."""
+
+
+@dataclass(frozen=True)
+class DataclassPass:
+    name: str = "counting"
+    after: tuple[str, ...] = ()
+    limit: int = 1
+
+    def run(self, graph, sink):
+        """Change nothing."""
+
+
+@pytest.mark.parametrize("original", [StructPass(), DataclassPass()])
+def test_passes_are_structs_or_dataclasses(monkeypatch, original):
+    monkeypatch.setattr(pipeline, "NAMES", ("counting",))
+    monkeypatch.setattr(pipeline, "load", lambda name: original)
+    (loaded,) = registry.load_passes({"counting": {"limit": 7}})
+    assert (type(loaded), loaded.limit, original.limit) == (type(original), 7, 1)
+    with pytest.raises(ConfigError, match="did you mean 'limit'"):
+        registry.load_passes({"counting": {"limits": 7}})
+
+
+def test_an_integer_is_accepted_as_a_number(tmp_path):
+    assert (
+        load_passes_by_name(tmp_path, "[passes.recipe]\ntolerance = 1\n")["recipe"].tolerance == 1
+    )
+
+
+def test_recipe_levels_are_an_option_of_the_recipe_pass(tmp_path):
+    passes = load_passes_by_name(tmp_path, '[recipe.levels]\n"Plant::Assemble" = "task"\n')
+    assert passes["recipe"].levels == {"Plant::Assemble": "task"}
+
+
+@pytest.mark.parametrize(
+    ("text", "sentence"),
+    [
+        ("[passes.activity]\nx = 1\n", "passes.activity: .* did you mean 'activities'?"),
+        ("[passes.activities]\nmax_marking = 1\n", "did you mean 'max_markings'?"),
+        ("[passes.activities]\nmax_markings = true\n", "True is no int"),
+        ('[passes.activities]\nmax_markings = "7"\n', "'7' is no int"),
+        ('[recipe.levels]\nA = "taks"\n', "'taks' is not one of"),
+    ],
+)
+def test_a_wrong_option_is_refused_with_a_suggestion(tmp_path, text, sentence):
+    with pytest.raises(ConfigError, match=sentence):
+        load_passes_by_name(tmp_path, text)
+
+
+def test_passes_run_in_the_order_that_they_declare():
+    order = [loaded.name for loaded in registry.load_passes({})]
+    assert order[:5] == ["resolve", "kept", "overlay", "inherit", "classify"]
+    assert order.index("activities") < order.index("contracts")
+
+
+# -- plug-ins -------------------------------------------------------------------------------------
+
+
+PASS_MODULE = """\
+from typing import ClassVar
+
+from msgspec import Struct
+
+
+class Census(Struct, frozen=True):
+    name: ClassVar[str] = "census"
+    after: ClassVar[tuple[str, ...]] = ("views",)
+    limit: int = 10
+
+    def run(self, graph, sink):
+        pass
+
+
+PASS = Census()
+"""
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    """A folder from which Python imports modules."""
+    monkeypatch.syspath_prepend(tmp_path)
+    return tmp_path
+
+
+def install_distribution(folder: Path, name: str, group: str, *entries: str) -> None:
+    info = folder / f"{name}-1.0.dist-info"
+    info.mkdir()
+    (info / "METADATA").write_text(f"Metadata-Version: 2.1\nName: {name}\nVersion: 1.0\n")
+    (info / "entry_points.txt").write_text("\n".join([f"[{group}]", *entries, ""]))
+
+
+def test_back_ends_of_other_distributions_are_found_and_not_loaded(folder):
+    install_distribution(folder, "shouting", "sysmlc.backends", "shout = shouting:BACKEND")
+    assert list(registry.find_plug_ins(registry.BACKEND_GROUP)) == ["shout"]
+    assert "shout" in list_backend_names()
+
+
+def test_back_ends_of_sysmlc_are_no_plug_ins(folder):
+    install_distribution(folder, "sysmlc", "sysmlc.backends", "uml = sysmlc.backends.uml:BACKEND")
+    assert registry.find_plug_ins(registry.BACKEND_GROUP) == {}
+
+
+def test_a_plug_in_cannot_take_the_name_of_a_back_end(folder):
+    install_distribution(folder, "shouting", "sysmlc.backends", "uml = shouting:BACKEND")
+    with pytest.raises(BackendError, match="shouting:BACKEND takes the name of back end 'uml'"):
+        list_backend_names()
+
+
+def test_a_pass_of_another_distribution_runs_after_its_predecessors(folder):
+    (folder / "counting_elements.py").write_text(PASS_MODULE)
+    install_distribution(folder, "counting", "sysmlc.passes", "census = counting_elements:PASS")
+    census = registry.load_passes({"census": {"limit": 3}})[-1]
+    assert (census.name, census.limit) == ("census", 3)
+
+
+@pytest.mark.parametrize(
+    ("entry", "message"),
+    [
+        ("inherit = counting:PASS", "counting:PASS takes the name of pass 'inherit'"),
+        ("census = no_such_module:PASS", "pass 'census' cannot be loaded: ModuleNotFoundError"),
+    ],
+)
+def test_a_plug_in_that_cannot_be_used_is_an_error_of_the_configuration(folder, entry, message):
+    install_distribution(folder, "counting", "sysmlc.passes", entry)
+    with pytest.raises(ConfigError, match=message):
+        registry.load_passes({})
+
+
+@pytest.fixture
+def restore_catalogue():
+    """Remove the rule of the plug-in after the test."""
+    yield
+    catalogue = import_module("sysmlc.diagnostics.rule")
+    catalogue._rules.pop("SM947", None)
+    catalogue._names.discard("long-name")
+
+
+def test_rules_of_a_pass_are_in_the_catalogue(folder, restore_catalogue):
+    (folder / "strict_names.py").write_text(
+        "from sysmlc.diagnostics import Severity, rule\n"
+        'LONG = rule("SM947", "long-name", Severity.INFO, "a long name")\n' + PASS_MODULE
+    )
+    install_distribution(folder, "strictness", "sysmlc.passes", "census = strict_names:PASS")
+    assert registry.load_full_catalogue()["SM947"].name == "long-name"

@@ -1,4 +1,4 @@
-"""What a model does not have is not imported: each of these would cost every run its time."""
+"""A compilation imports only the modules that its model needs, because imports take time."""
 
 import subprocess
 import sys
@@ -32,14 +32,14 @@ package Lamps {
     }
 }
 """
-"""A part, its states and its steps; nothing is wrong with the text."""
+"""A part with states and actions, without errors."""
 
 
-def imported(model: Path, folder: Path) -> set[str]:
-    """The modules that a compile of the model has imported."""
+def list_imported_modules(model: Path, folder: Path) -> set[str]:
+    """Compile the model in a process of its own; return the imported modules."""
     command = [sys.executable, "-c", PROGRAM, str(model), "-o", str(folder), "--no-cache"]
-    done = subprocess.run(command, capture_output=True, encoding="utf-8", check=True)
-    return set(done.stdout.rpartition("imported:")[2].split())
+    result = subprocess.run(command, capture_output=True, encoding="utf-8", check=True)
+    return set(result.stdout.rpartition("imported:")[2].split())
 
 
 @pytest.mark.parametrize(
@@ -51,7 +51,7 @@ def imported(model: Path, folder: Path) -> set[str]:
         "urllib.request",
     ],
 )
-def test_a_model_of_uml_brings_no_readers_of_other_things(uml_modules, module):
+def test_a_uml_model_imports_no_readers_of_other_formats(uml_modules, module):
     assert "sysmlc.frontends.xmi.lowering" in uml_modules
     assert module not in uml_modules
 
@@ -59,10 +59,10 @@ def test_a_model_of_uml_brings_no_readers_of_other_things(uml_modules, module):
 @pytest.fixture(scope="module")
 def uml_modules(tmp_path_factory):
     model = EXAMPLES / "baygate-behaviour" / "baygate-behaviour.uml"
-    return imported(model, tmp_path_factory.mktemp("out"))
+    return list_imported_modules(model, tmp_path_factory.mktemp("out"))
 
 
-NOT_IN_A_RUN_OF_SYSML = [
+NOT_NEEDED_FOR_SYSML_V2 = [
     "sysmlc.frontends.xmi.reading",
     "sysmlc.ir.text",
     "jsonschema",
@@ -73,14 +73,14 @@ NOT_IN_A_RUN_OF_SYSML = [
 ]
 
 
-def test_a_model_of_sysml_v2_brings_no_readers_of_what_it_does_not_have(tmp_path):
+def test_a_sysml_v2_model_imports_no_readers_of_other_formats(tmp_path):
     model = tmp_path / "lamp.sysml"
     model.write_text(LAMP, encoding="utf-8")
-    found = imported(model, tmp_path / "out")
-    assert {"sysmlc.frontends.sysml.states", "sysmlc.passes.contracts"} <= found
-    assert sorted(found.intersection(NOT_IN_A_RUN_OF_SYSML)) == []
+    modules = list_imported_modules(model, tmp_path / "out")
+    assert {"sysmlc.frontends.sysml.states", "sysmlc.passes.contracts"} <= modules
+    assert sorted(modules.intersection(NOT_NEEDED_FOR_SYSML_V2)) == []
 
 
-def test_a_plant_with_an_overlay_brings_both_readers(tmp_path):
-    found = imported(EXAMPLES / "baygate" / "baygate.aml", tmp_path)
-    assert {"sysmlc.frontends.caex.reading", "ruamel.yaml"} <= found
+def test_a_plant_with_an_overlay_imports_the_readers_of_both(tmp_path):
+    modules = list_imported_modules(EXAMPLES / "baygate" / "baygate.aml", tmp_path)
+    assert {"sysmlc.frontends.caex.reading", "ruamel.yaml"} <= modules
