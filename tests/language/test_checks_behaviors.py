@@ -1,25 +1,21 @@
-"""What is called or performed is given no more than it takes."""
+"""Constraints on arguments and parameters of performed actions and called functions."""
 
 import pytest
-from resolving import documents, library
+from small_models import check_text
 
-from sysmlc.diagnostics import Sink
-from sysmlc.language.checks import behaviors, check
-from sysmlc.language.names import resolve
+from sysmlc.language.checks import behaviors
 
 
-def found(text):
-    sink = Sink({"SM207": None})
-    check(resolve(documents(text), library(), sink), sink)
-    return [f"{one.rule.code} {one.message}" for one in sink]
+def list_violations(text):
+    return [f"{diagnostic.rule.code} {diagnostic.message}" for diagnostic in check_text(text)]
 
 
 @pytest.mark.parametrize(
     ("rule", "code"), [(behaviors.TOO_MANY, "SM248"), (behaviors.NO_PARAMETER, "SM249")]
 )
-def test_the_wrong_model_has_the_finding_and_the_right_one_nearly(rule, code):
-    assert [one[:5] for one in found(rule.read_page().wrong)] == [code]
-    assert found(rule.read_page().right) == []
+def test_the_wrong_example_breaks_the_rule_and_the_right_one_does_not(rule, code):
+    assert [violation[:5] for violation in list_violations(rule.read_page().wrong)] == [code]
+    assert list_violations(rule.read_page().right) == []
 
 
 FEED = """
@@ -42,8 +38,8 @@ part belt { action feed : %s }
         "Feed, Empty { in extra; in more; in most; }",
     ],
 )
-def test_a_step_repeats_what_it_likes_of_its_definition(usage):
-    assert found(FEED % usage) == []
+def test_a_usage_may_repeat_any_parameters_of_its_definition(usage):
+    assert list_violations(FEED % usage) == []
 
 
 @pytest.mark.parametrize(
@@ -55,22 +51,24 @@ def test_a_step_repeats_what_it_likes_of_its_definition(usage):
         ("Feed { in item piece; out late; }", "late"),
     ],
 )
-def test_a_parameter_that_the_definition_has_not_is_told(usage, name):
-    called = usage.split()[0]
-    assert found(FEED % usage) == [f"SM249 '{name}' of 'feed' is not a parameter of '{called}'"]
+def test_a_parameter_that_the_definition_lacks_is_reported(usage, name):
+    definition = usage.split()[0]
+    assert list_violations(FEED % usage) == [
+        f"SM249 '{name}' of 'feed' is not a parameter of '{definition}'"
+    ]
 
 
-def test_an_inout_may_be_given_in_or_out():
+def test_an_inout_parameter_may_be_redeclared_as_in_or_out():
     text = "action def W { inout a; inout b; }\naction w : W { in a = 1; out b; }\n"
-    assert found(text) == []
+    assert list_violations(text) == []
 
 
-def test_a_performed_action_is_judged_as_any_other():
+def test_parameters_of_a_performed_action_are_checked_too():
     text = "action def W { in a; }\npart b { perform action w : W { in a = 1; in z = 2; } }\n"
-    assert found(text) == ["SM249 'z' of 'w' is not a parameter of 'W'"]
+    assert list_violations(text) == ["SM249 'z' of 'w' is not a parameter of 'W'"]
 
 
-def test_arguments_are_counted_with_what_is_inherited_and_with_the_subject():
+def test_inherited_parameters_and_the_subject_count_as_parameters():
     text = """
         calc def Sum { in a; in b; return c; }
         calc def Mean :> Sum { in e; }
@@ -82,7 +80,7 @@ def test_arguments_are_counted_with_what_is_inherited_and_with_the_subject():
             attribute u = Light(gate, 4, 5);
         }
     """
-    assert found(text) == [
+    assert list_violations(text) == [
         "SM248 'Mean' takes 2 values, but 3 values are given",
         "SM248 'Light' takes 2 values, but 3 values are given",
     ]

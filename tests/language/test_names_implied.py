@@ -1,12 +1,12 @@
-"""What elements specialise though their text does not say so."""
+"""Specialisations that the language implies although the text does not state them."""
 
-from resolving import element, implied, leads, resolved
+from small_models import find_element, list_implied_relations, resolve_texts, target_name
 
 from sysmlc.language.names.implied_relations import implied_relations
 
 
-def test_definitions_and_usages_have_the_bases_of_their_metaclass():
-    model = resolved("""
+def test_definitions_and_usages_specialise_the_library_base_of_their_metaclass():
+    model = resolve_texts("""
         part def Gate;
         part entrance;
         action def Open;
@@ -14,27 +14,29 @@ def test_definitions_and_usages_have_the_bases_of_their_metaclass():
         attribute def Speed;
         requirement def Safe;
     """)
-    assert implied(model, "Gate") == ["Subclassification Parts::Part"]
-    assert implied(model, "entrance") == ["Subsetting Parts::parts"]
-    assert implied(model, "Open") == ["Subclassification Actions::Action"]
-    assert implied(model, "Power") == ["Subclassification Ports::Port"]
-    assert implied(model, "Speed") == ["Subclassification Base::DataValue"]
-    assert implied(model, "Safe") == ["Subclassification Requirements::RequirementCheck"]
+    assert list_implied_relations(model, "Gate") == ["Subclassification Parts::Part"]
+    assert list_implied_relations(model, "entrance") == ["Subsetting Parts::parts"]
+    assert list_implied_relations(model, "Open") == ["Subclassification Actions::Action"]
+    assert list_implied_relations(model, "Power") == ["Subclassification Ports::Port"]
+    assert list_implied_relations(model, "Speed") == ["Subclassification Base::DataValue"]
+    assert list_implied_relations(model, "Safe") == [
+        "Subclassification Requirements::RequirementCheck"
+    ]
 
 
-def test_what_a_general_already_specialises_is_not_said_again():
-    model = resolved("""
+def test_a_base_that_a_general_already_specialises_is_not_implied_again():
+    model = resolve_texts("""
         part def Gate;
         part def Big :> Gate;
         part entrance : Big;
     """)
-    assert implied(model, "Big") == []
-    assert model.specializes(element(model, "Big"), "Parts::Part")
-    assert implied(model, "entrance") == ["Subsetting Parts::parts"]
+    assert list_implied_relations(model, "Big") == []
+    assert model.specializes(find_element(model, "Big"), "Parts::Part")
+    assert list_implied_relations(model, "entrance") == ["Subsetting Parts::parts"]
 
 
-def test_where_a_usage_is_decides_what_it_specialises():
-    model = resolved("""
+def test_the_base_of_a_usage_depends_on_its_owner():
+    model = resolve_texts("""
         part def Plant {
             part gate;
             port power;
@@ -44,18 +46,24 @@ def test_where_a_usage_is_decides_what_it_specialises():
             ref part other;
         }
     """)
-    assert implied(model, "Plant::gate") == ["Subsetting Items::Item::subparts"]
-    assert implied(model, "Plant::power") == ["Subsetting Parts::Part::ownedPorts"]
-    assert implied(model, "Plant::open") == ["Subsetting Parts::Part::ownedActions"]
-    assert implied(model, "Plant::open::turn") == ["Subsetting Actions::Action::subactions"]
-    assert "Subsetting Parts::Part::exhibitedStates" in implied(model, "Plant::running")
-    assert implied(model, "Plant::running::on") == ["Subsetting States::StateAction::substates"]
-    assert implied(model, "Plant::speed") == ["Subsetting Base::dataValues"]
-    assert implied(model, "Plant::other") == ["Subsetting Parts::parts"]
+    assert list_implied_relations(model, "Plant::gate") == ["Subsetting Items::Item::subparts"]
+    assert list_implied_relations(model, "Plant::power") == ["Subsetting Parts::Part::ownedPorts"]
+    assert list_implied_relations(model, "Plant::open") == ["Subsetting Parts::Part::ownedActions"]
+    assert list_implied_relations(model, "Plant::open::turn") == [
+        "Subsetting Actions::Action::subactions"
+    ]
+    assert "Subsetting Parts::Part::exhibitedStates" in list_implied_relations(
+        model, "Plant::running"
+    )
+    assert list_implied_relations(model, "Plant::running::on") == [
+        "Subsetting States::StateAction::substates"
+    ]
+    assert list_implied_relations(model, "Plant::speed") == ["Subsetting Base::dataValues"]
+    assert list_implied_relations(model, "Plant::other") == ["Subsetting Parts::parts"]
 
 
 def test_connections_of_two_ends_are_binary_and_their_ends_redefine_by_position():
-    model = resolved("""
+    model = resolve_texts("""
         part a;
         part b;
         part c;
@@ -64,15 +72,19 @@ def test_connections_of_two_ends_are_binary_and_their_ends_redefine_by_position(
         interface plug connect a to b;
         connection def Wire { end part from1; end part to1; }
     """)
-    assert implied(model, "two") == ["Subsetting Connections::binaryConnections"]
-    assert implied(model, "three") == ["Subsetting Connections::connections"]
-    assert implied(model, "plug") == ["Subsetting Interfaces::binaryInterfaces"]
-    assert "Redefinition Connections::BinaryConnection::source" in implied(model, "Wire::from1")
-    assert "Redefinition Connections::BinaryConnection::target" in implied(model, "Wire::to1")
+    assert list_implied_relations(model, "two") == ["Subsetting Connections::binaryConnections"]
+    assert list_implied_relations(model, "three") == ["Subsetting Connections::connections"]
+    assert list_implied_relations(model, "plug") == ["Subsetting Interfaces::binaryInterfaces"]
+    assert "Redefinition Connections::BinaryConnection::source" in list_implied_relations(
+        model, "Wire::from1"
+    )
+    assert "Redefinition Connections::BinaryConnection::target" in list_implied_relations(
+        model, "Wire::to1"
+    )
 
 
-def test_parameters_results_subjects_and_objectives_redefine_those_of_the_general():
-    model = resolved("""
+def test_parameters_results_subjects_and_objectives_redefine_those_of_the_general_element():
+    model = resolve_texts("""
         action def Drill { in workpiece; out hole; }
         action drill : Drill { in w; out h; }
         calc def Time { return : ScalarValues::Real; }
@@ -82,24 +94,26 @@ def test_parameters_results_subjects_and_objectives_redefine_those_of_the_genera
         case def Study { objective found; }
         case study : Study { objective ours; }
     """)
-    assert implied(model, "drill::w")[0] == "Redefinition Drill::workpiece"
-    assert implied(model, "drill::h")[0] == "Redefinition Drill::hole"
-    assert implied(model, "Longer::seconds")[0] == "Redefinition Time::result"
-    assert implied(model, "safe::ours")[0] == "Redefinition Safe::plant"
-    assert implied(model, "study::ours")[0] == "Redefinition Study::found"
+    assert list_implied_relations(model, "drill::w")[0] == "Redefinition Drill::workpiece"
+    assert list_implied_relations(model, "drill::h")[0] == "Redefinition Drill::hole"
+    assert list_implied_relations(model, "Longer::seconds")[0] == "Redefinition Time::result"
+    assert list_implied_relations(model, "safe::ours")[0] == "Redefinition Safe::plant"
+    assert list_implied_relations(model, "study::ours")[0] == "Redefinition Study::found"
 
 
-def test_a_written_redefinition_leaves_no_room_for_one_by_position():
-    model = resolved("""
+def test_an_explicit_redefinition_replaces_the_one_by_position():
+    model = resolve_texts("""
         action def Drill { in workpiece; in tool; }
         action drill : Drill { in bit :>> tool; }
     """)
-    assert [line for line in implied(model, "drill::bit") if "Redefinition" in line] == []
-    assert leads(model, "drill::bit") == "Drill::tool"
+    assert [
+        line for line in list_implied_relations(model, "drill::bit") if "Redefinition" in line
+    ] == []
+    assert target_name(model, "drill::bit") == "Drill::tool"
 
 
 def test_control_nodes_and_special_actions_have_their_own_bases():
-    model = resolved("""
+    model = resolve_texts("""
         item def Call;
         action work {
             first start;
@@ -113,20 +127,22 @@ def test_control_nodes_and_special_actions_have_their_own_bases():
             while true { action a; }
         }
     """)
-    assert implied(model, "work::again") == ["Subsetting Actions::Action::merges"]
-    assert implied(model, "work::choice") == ["Subsetting Actions::Action::decisions"]
-    kinds = {member.kind: member for member in element(model, "work").members}
-    lines = {
-        kind: [str(r.reference) for r in implied_relations(model, kinds[kind])]
+    assert list_implied_relations(model, "work::again") == ["Subsetting Actions::Action::merges"]
+    assert list_implied_relations(model, "work::choice") == [
+        "Subsetting Actions::Action::decisions"
+    ]
+    members = {member.kind: member for member in find_element(model, "work").members}
+    targets = {
+        kind: [str(relation.reference) for relation in implied_relations(model, members[kind])]
         for kind in ("AcceptActionUsage", "SendActionUsage", "WhileLoopActionUsage")
     }
-    assert lines["AcceptActionUsage"] == ["Actions::Action::acceptSubactions"]
-    assert lines["SendActionUsage"] == ["Actions::Action::sendSubactions"]
-    assert lines["WhileLoopActionUsage"] == ["Actions::Action::whileLoops"]
+    assert targets["AcceptActionUsage"] == ["Actions::Action::acceptSubactions"]
+    assert targets["SendActionUsage"] == ["Actions::Action::sendSubactions"]
+    assert targets["WhileLoopActionUsage"] == ["Actions::Action::whileLoops"]
 
 
-def test_semantic_metadata_gives_its_base_type():
-    model = resolved("""
+def test_semantic_metadata_implies_its_base_type():
+    model = resolve_texts("""
         part def Machine;
         part machines : Machine[0..*];
         metadata def machine :> Metaobjects::SemanticMetadata {
@@ -136,26 +152,26 @@ def test_semantic_metadata_gives_its_base_type():
         #machine part def Lathe;
         #machine press { attribute power; }
     """)
-    assert implied(model, "mill") == ["Subsetting machines"]
-    assert implied(model, "Lathe") == ["Subclassification Machine"]
-    assert model.specializes(element(model, "press"), element(model, "Machine"))
+    assert list_implied_relations(model, "mill") == ["Subsetting machines"]
+    assert list_implied_relations(model, "Lathe") == ["Subclassification Machine"]
+    assert model.specializes(find_element(model, "press"), find_element(model, "Machine"))
 
 
-def test_constraints_of_requirements_are_assumptions_or_required():
-    model = resolved("""
+def test_constraints_of_requirements_subset_assumptions_or_required_constraints():
+    model = resolve_texts("""
         requirement def Safe {
             assume constraint closed { true }
             require constraint slow { true }
         }
     """)
     assumed = "Subsetting Requirements::RequirementCheck::assumptions"
-    assert implied(model, "Safe::closed") == [assumed]
+    assert list_implied_relations(model, "Safe::closed") == [assumed]
     required = "Subsetting Requirements::RequirementCheck::constraints"
-    assert implied(model, "Safe::slow") == [required]
+    assert list_implied_relations(model, "Safe::slow") == [required]
 
 
 def test_kerml_classifiers_and_features_have_bases_too():
-    model = resolved(
+    model = resolve_texts(
         """
         class Gate;
         struct Plant { composite feature gate : Gate; }
@@ -166,17 +182,17 @@ def test_kerml_classifiers_and_features_have_bases_too():
         """,
         language="kerml",
     )
-    assert implied(model, "Gate") == ["Subclassification Occurrences::Occurrence"]
-    assert implied(model, "Plant") == ["Subclassification Objects::Object"]
-    assert implied(model, "Open") == ["Subclassification Performances::Performance"]
-    assert implied(model, "Open::turn") == [
+    assert list_implied_relations(model, "Gate") == ["Subclassification Occurrences::Occurrence"]
+    assert list_implied_relations(model, "Plant") == ["Subclassification Objects::Object"]
+    assert list_implied_relations(model, "Open") == ["Subclassification Performances::Performance"]
+    assert list_implied_relations(model, "Open::turn") == [
         "Subsetting Performances::Performance::enclosedPerformances"
     ]
-    assert implied(model, "Wire") == ["Subclassification Links::BinaryLink"]
+    assert list_implied_relations(model, "Wire") == ["Subclassification Links::BinaryLink"]
 
 
-def test_features_specialise_what_all_of_their_types_have():
-    model = resolved(
+def test_features_subset_the_library_features_of_their_types():
+    model = resolve_texts(
         """
         class Gate;
         struct Plant;
@@ -196,7 +212,7 @@ def test_features_specialise_what_all_of_their_types_have():
         """,
         language="kerml",
     )
-    said = {
+    expected = {
         "gate": ["Occurrences::occurrences"],
         "plant": ["Objects::objects"],
         "speed": ["Base::dataValues"],
@@ -209,16 +225,17 @@ def test_features_specialise_what_all_of_their_types_have():
         "Site::same": [],
         "site::hall": ["Objects::Object::subobjects"],
     }
-    made = {name: sorted(implied(model, name)) for name in said}
-    assert made == {name: [f"Subsetting {one}" for one in ones] for name, ones in said.items()}
+    for name, targets in expected.items():
+        subsettings = [f"Subsetting {target}" for target in targets]
+        assert sorted(list_implied_relations(model, name)) == subsettings, name
 
 
-def test_references_specialise_what_all_of_their_types_have():
-    model = resolved("""
+def test_references_subset_the_library_features_of_their_types():
+    model = resolve_texts("""
         part def Gate;
         attribute def Speed;
         part def Plant { ref gate : Gate; ref speed : Speed; in start : Speed; }
     """)
-    assert implied(model, "Plant::gate") == ["Subsetting Objects::objects"]
-    assert implied(model, "Plant::speed") == ["Subsetting Base::dataValues"]
-    assert implied(model, "Plant::start") == ["Subsetting Base::dataValues"]
+    assert list_implied_relations(model, "Plant::gate") == ["Subsetting Objects::objects"]
+    assert list_implied_relations(model, "Plant::speed") == ["Subsetting Base::dataValues"]
+    assert list_implied_relations(model, "Plant::start") == ["Subsetting Base::dataValues"]

@@ -1,104 +1,86 @@
-"""Every name of the official models leads somewhere, and where the interchange files say."""
+"""Every name of the official models is resolved, to the target in the interchange files."""
 
-import os
 from functools import cache
 from pathlib import Path
 
 import pytest
+from official_models import (
+    FOLDER,
+    LIBRARY_FOLDER,
+    XMI_FILES,
+    load_standard_library,
+    parse_folder,
+    read_xmi_library,
+)
 
 from sysmlc.diagnostics import Severity, Sink
-from sysmlc.language.interchange import link
-from sysmlc.language.interchange import read as read_interchange
-from sysmlc.language.library import Library, find_library
+from sysmlc.language.library import Library
 from sysmlc.language.names import Model, resolve
-from sysmlc.language.text import parse
-from sysmlc.sources import Source
 
 pytestmark = pytest.mark.corpus
 
-_FOLDER = Path(os.environ.get("SYSMLC_CORPUS", "nowhere")) / "sysml2"
-_LIBRARY = _FOLDER / "omg-release" / "sysml.library"
-_XMI = _FOLDER / "interchange" / "xmi"
-XMI_FILES = sorted(path.relative_to(_XMI).as_posix() for path in _XMI.rglob("*.*mlx"))
 
-
-@cache
-def library():
-    return find_library(_LIBRARY)
-
-
-def documents(folder):
-    paths = sorted(path for path in folder.rglob("*") if path.suffix in (".sysml", ".kerml"))
-    names = [path.relative_to(folder).as_posix() for path in paths]
-    sources = [Source(name, path.read_bytes()) for name, path in zip(names, paths, strict=True)]
-    return [
-        parse(s.data.decode("utf-8-sig"), s.name, Path(s.name).suffix[1:], Sink(), s)
-        for s in sources
-    ]
-
-
-def unresolved(folder, beside):
-    """Path, line and name of each use that leads nowhere."""
+def list_unknown_names(documents, library):
+    """Return path, line and name of each name that is unknown."""
     sink = Sink()
-    made = documents(folder)
-    resolve(made, beside, sink)
-    texts = {document.path: document.text.encode() for document in made}
-    found = [f for f in sink if f.severity is Severity.ERROR]
-    places = [f.subject.place for f in found]
-    lines = [texts[p.file].count(b"\n", 0, p.offset) + 1 for p in places]
-    words = [f.message.split("'")[1] for f in found]
-    return sorted(zip((p.file for p in places), lines, words, strict=True))
+    resolve(documents, library, sink)
+    texts = {document.path: document.text.encode() for document in documents}
+    unknown = []
+    for diagnostic in sink:
+        if diagnostic.severity is Severity.ERROR:
+            place = diagnostic.subject.place
+            line = texts[place.file].count(b"\n", 0, place.offset) + 1
+            unknown.append((place.file, line, diagnostic.message.split("'")[1]))
+    return sorted(unknown)
 
 
 @pytest.mark.parametrize(("folder", "count"), [("training", 100), ("examples", 95)])
 def test_no_name_of_the_official_models_is_unknown(folder, count):
-    made = _FOLDER / "omg-release" / folder
-    assert len(documents(made)) == count
-    assert unresolved(made, library()) == []
+    documents = parse_folder(FOLDER / "omg-release" / folder)
+    assert len(documents) == count
+    assert list_unknown_names(documents, load_standard_library()) == []
 
 
 @pytest.mark.long
 def test_no_name_of_the_library_itself_is_unknown():
-    assert len(documents(_LIBRARY)) == 94
-    assert unresolved(_LIBRARY, Library([])) == []
+    documents = parse_folder(LIBRARY_FOLDER)
+    assert len(documents) == 94
+    assert list_unknown_names(documents, Library([])) == []
 
 
-def test_the_unknown_names_of_the_ice_laboratory_are_those_that_its_readme_tells():
-    found = unresolved(_FOLDER / "ice-lab", library())
-    plant = [line for file, line, name in found if name == "OpcUaConnection"]
-    assert len(plant) == 9
-    assert {file for file, _, name in found if name == "OpcUaConnection"} == {"plant/ice_lab.sysml"}
+def test_the_unknown_names_of_the_ice_laboratory_are_those_in_its_readme():
+    folder = FOLDER / "ice-lab"
+    unknown = list_unknown_names(parse_folder(folder), load_standard_library())
+    assert [path for path, _, name in unknown if name == "OpcUaConnection"] == [
+        "plant/ice_lab.sysml"
+    ] * 9
     cell = "equipment/state_machines/robotic_cell.sysml"
-    text = (_FOLDER / "ice-lab" / cell).read_text("utf-8").splitlines()
-    ports = [
+    port_uses = [
         number
-        for number, line in enumerate(text, 1)
-        if any(f in line for f in ("CmdPort;", "StatePort;", ".cmdPort", ".statePort"))
+        for number, line in enumerate((folder / cell).read_text("utf-8").splitlines(), 1)
+        if any(port in line for port in ("CmdPort;", "StatePort;", ".cmdPort", ".statePort"))
     ]
-    assert [line for file, line, _ in found if file == cell] == ports
-    assert len(ports) == 15
-    assert len(found) == 24
+    assert [line for path, line, _ in unknown if path == cell] == port_uses
+    assert len(port_uses) == 15
+    assert len(unknown) == 24
 
 
 def test_the_showcase_has_no_unknown_name():
-    assert unresolved(_FOLDER / "showcase", library()) == []
+    assert list_unknown_names(parse_folder(FOLDER / "showcase"), load_standard_library()) == []
 
 
 @cache
-def interchanged():
-    sink = Sink()
-    made = [read_interchange(Source(n, (_XMI / n).read_bytes()), sink) for n in XMI_FILES]
-    link(made, sink)
-    return Model(made, Library([]))
+def load_xmi_model():
+    return Model(read_xmi_library(), Library([]))
 
 
 @cache
-def written():
-    return resolve(documents(_LIBRARY), Library([]), Sink())
+def load_text_model():
+    return resolve(parse_folder(LIBRARY_FOLDER), Library([]), Sink())
 
 
-def described(model, node):
-    """Names from the root to an element; a nameless one is its number among its siblings."""
+def list_names_from_root(model, node):
+    """Return the names from the root to *node*; a nameless element counts by its position."""
     steps = []
     while node.owner is not None:
         name = model.name(node)
@@ -107,38 +89,44 @@ def described(model, node):
     return steps
 
 
-def pairs(left, right):
+def iter_pairs(left, right):
+    """Yield the nodes at the same positions of two trees."""
     yield left, right
-    for one, other in zip(left.members, right.members, strict=True):
-        yield from pairs(one, other)
+    for left_member, right_member in zip(left.members, right.members, strict=True):
+        yield from iter_pairs(left_member, right_member)
+
+
+def list_targets(model, relation):
+    return [list_names_from_root(model, target) for target in relation.reference.targets]
 
 
 @pytest.mark.parametrize("name", XMI_FILES)
-def test_each_name_leads_where_the_interchange_file_says(name):
-    theirs = next(d for d in interchanged().documents if d.path == name)
-    stem = Path(name).stem
-    ours = next(d for d in written().documents if Path(d.path).stem == stem)
+def test_each_name_has_the_target_of_the_interchange_file(name):
+    text_model, xmi_model = load_text_model(), load_xmi_model()
+    xmi = next(document for document in xmi_model.documents if document.path == name)
+    text = next(
+        document for document in text_model.documents if Path(document.path).stem == Path(name).stem
+    )
     wrong, count = [], 0
-    for mine, other in pairs(ours.root, theirs.root):
-        said = mine.relations
-        for relation, expected in zip(said, other.relations, strict=True):
+    for text_node, xmi_node in iter_pairs(text.root, xmi.root):
+        for relation, expected in zip(text_node.relations, xmi_node.relations, strict=True):
             if expected.reference.target is None:
                 continue
             count += 1
-            found = [described(written(), n) for n in relation.reference.targets]
-            wanted = [described(interchanged(), n) for n in expected.reference.targets]
-            if found != wanted:
-                wrong.append((str(relation.reference), found, wanted))
+            targets = list_targets(text_model, relation)
+            expected_targets = list_targets(xmi_model, expected)
+            if targets != expected_targets:
+                wrong.append((str(relation.reference), targets, expected_targets))
     assert wrong == []
     assert count or name.endswith("StandardViewDefinitions.sysmlx")
 
 
-def test_targets_in_other_files_are_the_only_ones_that_are_not_compared():
+def test_2829_targets_are_compared_and_288_are_in_files_that_are_not_there():
     relations = [
         relation
-        for document in interchanged().documents
+        for document in load_xmi_model().documents
         for node in document.root.walk()
         for relation in node.relations
     ]
-    known = sum(relation.reference.target is not None for relation in relations)
-    assert (known, len(relations) - known) == (2829, 288)
+    resolved = sum(relation.reference.target is not None for relation in relations)
+    assert (resolved, len(relations) - resolved) == (2829, 288)

@@ -1,11 +1,11 @@
-"""Which element a name leads to: owned, inherited, imported, around, in the global scope."""
+"""Lookup of names in scopes: owned, imported, enclosing and global members; filters."""
 
 import pytest
-from resolving import leads, resolved, told
+from small_models import list_name_errors, resolve_texts, target_name
 
 
-def test_a_name_is_looked_up_from_inside_outwards():
-    model = resolved("""
+def test_a_name_is_looked_up_in_the_innermost_namespace_first():
+    model = resolve_texts("""
         package Plant {
             part def Gate;
             package Hall {
@@ -15,12 +15,12 @@ def test_a_name_is_looked_up_from_inside_outwards():
             }
         }
     """)
-    assert leads(model, "Plant::Hall::near") == "Plant::Hall::Gate"
-    assert leads(model, "Plant::Hall::far") == "Plant::Gate"
+    assert target_name(model, "Plant::Hall::near") == "Plant::Hall::Gate"
+    assert target_name(model, "Plant::Hall::far") == "Plant::Gate"
 
 
-def test_the_global_scope_is_reached_from_everywhere_and_by_a_dollar():
-    model = resolved(
+def test_a_dollar_starts_a_name_in_the_global_scope():
+    model = resolve_texts(
         "package Doors { part def Gate; }",
         """
         package Plant {
@@ -30,12 +30,12 @@ def test_the_global_scope_is_reached_from_everywhere_and_by_a_dollar():
         }
         """,
     )
-    assert leads(model, "Plant::a") == "Plant::Doors::Gate"
-    assert leads(model, "Plant::b") == "Doors::Gate"
+    assert target_name(model, "Plant::a") == "Plant::Doors::Gate"
+    assert target_name(model, "Plant::b") == "Doors::Gate"
 
 
 def test_short_names_and_aliases_lead_to_the_same_element():
-    model = resolved("""
+    model = resolve_texts("""
         package Plant {
             part def <G> Gate;
             alias Door for Gate;
@@ -43,45 +43,45 @@ def test_short_names_and_aliases_lead_to_the_same_element():
             part b : Door;
         }
     """)
-    assert leads(model, "Plant::a") == leads(model, "Plant::b") == "Plant::Gate"
+    assert target_name(model, "Plant::a") == target_name(model, "Plant::b") == "Plant::Gate"
 
 
-def test_what_a_package_imports_is_known_in_it_and_only_public_imports_beyond():
-    model = resolved("""
+def test_only_public_imports_are_visible_outside_of_the_importing_package():
+    model = resolve_texts("""
         package Doors { part def Gate; }
         package Shown { public import Doors::*; }
         package Hidden { private import Doors::*; part own : Gate; }
         package Plant { part a : Shown::Gate; }
     """)
-    assert leads(model, "Hidden::own") == "Doors::Gate"
-    assert leads(model, "Plant::a") == "Doors::Gate"
-    assert told("""
+    assert target_name(model, "Hidden::own") == "Doors::Gate"
+    assert target_name(model, "Plant::a") == "Doors::Gate"
+    assert list_name_errors("""
         package Doors { part def Gate; }
         package Hidden { private import Doors::*; }
         package Plant { part a : Hidden::Gate; }
     """) == ["4: unknown name 'Hidden::Gate': 'Gate' is there by a private import only"]
 
 
-def test_an_import_of_a_member_brings_one_name_a_recursive_one_all_below():
-    model = resolved("""
+def test_a_recursive_import_imports_the_members_of_nested_packages():
+    model = resolve_texts("""
         package Doors { part def Gate; package Old { part def Flap; } }
         package One { private import Doors::Gate; part a : Gate; }
         package All { private import Doors::**; part a : Gate; part b : Flap; }
     """)
-    assert leads(model, "One::a") == "Doors::Gate"
-    assert leads(model, "All::b") == "Doors::Old::Flap"
+    assert target_name(model, "One::a") == "Doors::Gate"
+    assert target_name(model, "All::b") == "Doors::Old::Flap"
 
 
-def test_import_all_brings_private_members_too():
+def test_import_all_imports_private_members():
     doors = "package Doors { private part def Gate; }"
-    model = resolved(doors, "package Plant { private import all Doors::*; part a : Gate; }")
-    assert leads(model, "Plant::a") == "Doors::Gate"
-    assert told(doors, "package Plant { private import Doors::*; part a : Gate; }") == [
+    model = resolve_texts(doors, "package Plant { private import all Doors::*; part a : Gate; }")
+    assert target_name(model, "Plant::a") == "Doors::Gate"
+    assert list_name_errors(doors, "package Plant { private import Doors::*; part a : Gate; }") == [
         "1: unknown name 'Gate': known: Plant, a"
     ]
 
 
-def test_a_filter_keeps_out_what_has_not_the_metadata():
+def test_a_filter_excludes_elements_without_the_metadata():
     plant = """
         package Plant {
             metadata def Safety { attribute level : ScalarValues::Integer; }
@@ -93,14 +93,14 @@ def test_a_filter_keeps_out_what_has_not_the_metadata():
             part a : %s;
         }
     """
-    assert leads(resolved(plant % "Gate"), "Checked::a") == "Plant::Gate"
-    assert told(plant % "Table") == [
+    assert target_name(resolve_texts(plant % "Gate"), "Checked::a") == "Plant::Gate"
+    assert list_name_errors(plant % "Table") == [
         "9: unknown name 'Table': 'Table' is in 'Plant', which is not imported here"
     ]
 
 
 @pytest.mark.parametrize(
-    ("condition", "kept"),
+    ("condition", "imported_names"),
     [
         ('KerML::Element::name == "Gate"', {"Gate"}),
         ("KerML::Type::isAbstract", {"Table"}),
@@ -113,7 +113,7 @@ def test_a_filter_keeps_out_what_has_not_the_metadata():
         ("KerML::Element::qualifiedName != null", {"Gate", "Table", "leaf"}),
     ],
 )
-def test_a_filter_asks_what_elements_say_of_themselves(condition, kept):
+def test_a_filter_tests_attributes_of_elements_and_of_their_metadata(condition, imported_names):
     plant = """
         package Plant {
             metadata def Rated { attribute level : ScalarValues::Integer; }
@@ -123,12 +123,13 @@ def test_a_filter_asks_what_elements_say_of_themselves(condition, kept):
         }
     """
     uses = {"Gate": "part a : Gate;", "Table": "part a : Table;", "leaf": "part a :> leaf;"}
-    seen = f"package Seen {{ private import Plant::*; filter {condition}; %s }}"
-    assert {name for name, use in uses.items() if not told(plant, seen % use)} == kept
+    importing = f"package Seen {{ private import Plant::*; filter {condition}; %s }}"
+    resolved = {name for name, use in uses.items() if not list_name_errors(plant, importing % use)}
+    assert resolved == imported_names
 
 
-def test_what_features_a_feature_may_be_in_it():
-    model = resolved(
+def test_the_featuring_type_of_a_feature_may_be_its_member():
+    model = resolve_texts(
         """
         class Car {
             member feature driver featured by Car_snapshots {
@@ -138,25 +139,25 @@ def test_what_features_a_feature_may_be_in_it():
         """,
         language="kerml",
     )
-    assert leads(model, "Car::driver", "TypeFeaturing") == "Car::driver::Car_snapshots"
+    assert target_name(model, "Car::driver", "TypeFeaturing") == "Car::driver::Car_snapshots"
 
 
-def test_imports_in_a_circle_end():
-    model = resolved("""
+def test_cyclic_imports_terminate():
+    model = resolve_texts("""
         package A { public import B::*; part def Gate; }
         package B { public import A::*; part def Flap; }
         package C { private import A::*; part a : Gate; part b : Flap; }
     """)
-    assert leads(model, "C::b") == "B::Flap"
+    assert target_name(model, "C::b") == "B::Flap"
 
 
-def test_private_members_are_not_seen_from_outside_and_protected_ones_by_heirs():
-    model = resolved("""
+def test_private_members_are_invisible_and_protected_ones_visible_to_specialisations():
+    model = resolve_texts("""
         part def Gate { protected part motor; private part seal; part leaf; }
         part def Big :> Gate { part :>> motor; part :>> leaf; }
     """)
-    assert leads(model, "Big::motor") == "Gate::motor"
-    assert told("""
+    assert target_name(model, "Big::motor") == "Gate::motor"
+    assert list_name_errors("""
         part def Gate { protected part motor; private part seal; part leaf; }
         part def Big :> Gate { part :>> seal; }
         part def Other { part a :> Gate::motor; }
@@ -166,13 +167,15 @@ def test_private_members_are_not_seen_from_outside_and_protected_ones_by_heirs()
     ]
 
 
-def test_what_imports_a_library_name_may_call_it_by_that():
-    model = resolved("package Plant { private import ScalarValues::Real; attribute a : Real; }")
-    assert leads(model, "Plant::a") == "ScalarValues::Real"
+def test_an_imported_library_element_is_visible_by_its_simple_name():
+    model = resolve_texts(
+        "package Plant { private import ScalarValues::Real; attribute a : Real; }"
+    )
+    assert target_name(model, "Plant::a") == "ScalarValues::Real"
 
 
-def test_what_is_advised_is_neither_the_use_itself_nor_a_unit():
-    assert told(
+def test_advice_names_neither_the_unknown_use_itself_nor_a_unit():
+    assert list_name_errors(
         """\
         package Plant {
             perform grip;
@@ -186,3 +189,35 @@ def test_what_is_advised_is_neither_the_use_itself_nor_a_unit():
         "4: unknown name 'a': known: Cell, Plant, Tools, Use, grip",
         "4: unknown name 'N': known: Cell, Plant, Tools, Use, grip",
     ]
+
+
+FILTERED = """
+package Marks {{
+    metadata def Safe {{ attribute level : ScalarValues::Integer; }}
+    part def Two {{ @Safe {{ level = 2; }} part inner {{ @Safe {{ level = 5; }} }} }}
+    part def Plain;
+}}
+package User {{ {0} }}
+"""
+
+
+@pytest.mark.parametrize(
+    ("imports", "unknown"),
+    [
+        ("private import Marks::*;", []),
+        ("private import Marks::*[@Marks::Safe];", ["Plain"]),
+        ("private import Marks::*[@Marks::Safe and Marks::Safe::level > 3];", ["Two", "Plain"]),
+        ("private import Marks::**[@Marks::Safe and Marks::Safe::level > 3];", ["Two", "Plain"]),
+        ("private import Marks::*; filter @Marks::Safe;", ["Plain"]),
+    ],
+)
+def test_a_filter_excludes_elements_that_do_not_satisfy_its_condition(imports, unknown):
+    errors = list_name_errors(FILTERED.format(f"{imports} part two : Two; part plain : Plain;"))
+    assert [error.split("'")[1] for error in errors] == unknown
+
+
+@pytest.mark.parametrize(("level", "unknown"), [(3, []), (6, ["inner"])])
+def test_a_recursive_import_filters_nested_elements_too(level, unknown):
+    imports = f"private import Marks::**[@Marks::Safe and Marks::Safe::level > {level}];"
+    errors = list_name_errors(FILTERED.format(f"{imports} part mine :> inner;"))
+    assert [error.split("'")[1] for error in errors] == unknown

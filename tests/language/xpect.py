@@ -1,8 +1,22 @@
-"""The pilot's Xpect models: which files belong together, and what each expects of its names."""
+"""The test models of the pilot implementation: their files, and the results that they expect.
+
+The models contain expectations in the language Xpect, as comments.
+"""
 
 import re
 from dataclasses import dataclass
 from pathlib import Path
+
+from official_models import FOLDER
+
+from sysmlc.diagnostics import Diagnostic, Sink
+from sysmlc.language.text import parse
+from sysmlc.language.tree import Document
+
+XPECT_FOLDER = FOLDER / "pilot-xpect"
+XPECT_FILES = sorted(
+    path.relative_to(XPECT_FOLDER).as_posix() for path in XPECT_FOLDER.rglob("*.xt")
+)
 
 _FILE = re.compile(r'File\s*(?:\{\s*from\s*=\s*)?"([^"]+)"')
 _LINKED = re.compile(r"XPECT linkedName at\s+(.+?)\s*-+>\s*(\S+)")
@@ -98,12 +112,12 @@ HELPERS = {
     "DependencySamePackageName_A_Feature.kerml": _SAME.format(kind="feature", name="A"),
     "DependencySamePackageName_B_Feature.kerml": _SAME.format(kind="feature", name="B"),
 }
-"""Packages that models of the tests import and the corpus has not: what the expectations need."""
+"""Packages that the test models import and the corpus lacks, written from the expectations."""
 
 
 @dataclass(frozen=True)
 class Linked:
-    """A name at ``offset`` must lead to ``target`` (names with dots)."""
+    """The name at ``offset`` refers to ``target``, whose names are joined by dots."""
 
     line: int
     text: str
@@ -113,7 +127,7 @@ class Linked:
 
 @dataclass(frozen=True)
 class Scope:
-    """Names that are in the scope of the reference at ``offset``."""
+    """Names that are visible to the reference at ``offset``."""
 
     line: int
     text: str
@@ -123,7 +137,7 @@ class Scope:
 
 @dataclass(frozen=True)
 class Unresolved:
-    """A name at ``offset`` that leads nowhere."""
+    """The name at ``offset`` is unknown."""
 
     line: int
     text: str
@@ -132,7 +146,7 @@ class Unresolved:
 
 @dataclass(frozen=True)
 class Case:
-    """One .xt file: its text, the files beside it, its expectations."""
+    """One .xt file: its text, the files it needs, and its expectations."""
 
     path: Path
     text: str
@@ -147,44 +161,79 @@ class Case:
         """``sysml`` or ``kerml``."""
         return self.path.name.split(".")[-2]
 
-    def beside(self) -> dict[str, str]:
-        """Texts of the other files by name; those of the standard library are not among them."""
+    @property
+    def name(self) -> str:
+        """The path of the file in the folder of all test models."""
+        return self.path.relative_to(XPECT_FOLDER).as_posix()
+
+    def read_needed_files(self) -> dict[str, str]:
+        """Return the texts of the other files by name, without those of the standard library."""
         texts: dict[str, str] = {}
         for name in self.files:
-            near = self.path.parent / name
+            path = self.path.parent / name
             if name.startswith("/src/") and name[5:] in HELPERS:
                 texts[name[5:]] = HELPERS[name[5:]]
-            elif not name.startswith("/") and near.is_file():
-                texts[name] = near.read_text(encoding="utf-8")
+            elif not name.startswith("/") and path.is_file():
+                texts[name] = path.read_text(encoding="utf-8")
         return texts
 
     @property
     def is_complete(self) -> bool:
-        """Whether every file that it needs is there."""
-        own = [name for name in self.files if not name.startswith("/library")]
-        return len(self.beside()) == len(set(own))
+        """Whether every file that the model needs is in the corpus or among the helpers."""
+        needed = {name for name in self.files if not name.startswith("/library")}
+        return len(self.read_needed_files()) == len(needed)
+
+    def parse(self, sink: Sink) -> list[Document]:
+        """Parse the model and the files it needs; only the model's syntax errors are reported."""
+        needed = [
+            parse(text, name, name.rpartition(".")[2], Sink())
+            for name, text in sorted(self.read_needed_files().items())
+        ]
+        return [parse(self.text, self.path.name, self.language, sink), *needed]
+
+    def list_located(self, sink: Sink) -> list[tuple[int, Diagnostic]]:
+        """Return the diagnostics about the model, each with its offset in characters."""
+        data = self.text.encode()
+        return [
+            (len(data[: diagnostic.subject.place.offset].decode()), diagnostic)
+            for diagnostic in sink
+            if diagnostic.subject.place.file == self.path.name
+        ]
 
 
-def read(path: Path) -> Case:
-    """One test model with its expectations."""
+def read_cases() -> list[Case]:
+    """Return the complete test models; those of a query language that SysML lacks are skipped."""
+    cases = [
+        read_case(XPECT_FOLDER / name)
+        for name in XPECT_FILES
+        if not name.startswith("sysml/queryx/")
+    ]
+    return [case for case in cases if case.is_complete]
+
+
+def read_case(path: Path) -> Case:
+    """Return one test model with its expectations."""
     text = path.read_text(encoding="utf-8")
     setup, end, _ = text.partition("END_SETUP")
-    plain = model_text(text)
+    plain = blank_comments(text)
 
-    def place(match: re.Match[str], name: str) -> tuple[int, str, int]:
+    def locate(match: re.Match[str], name: str) -> tuple[int, str, int]:
         line = text.count("\n", 0, match.start()) + 1
-        return line, name, _next(plain, name, match.end())
+        return line, name, _find_name(plain, name, match.end())
 
-    linked = [Linked(*place(m, m[1]), m[2]) for m in _LINKED.finditer(text)]
+    linked = [Linked(*locate(match, match[1]), match[2]) for match in _LINKED.finditer(text)]
     scopes = [
-        Scope(*place(m, m[1]), frozenset(n.strip() for n in m[2].split(",") if n.strip()))
-        for m in _SCOPE.finditer(text)
+        Scope(
+            *locate(match, match[1]),
+            frozenset(name.strip() for name in match[2].split(",") if name.strip()),
+        )
+        for match in _SCOPE.finditer(text)
     ]
     unresolved = [
-        Unresolved(*place(m, e[2]))
-        for m in _ERRORS.finditer(text)
-        for e in _ERROR.finditer(m[1])
-        if _UNRESOLVED.match(e[1])
+        Unresolved(*locate(match, error[2]))
+        for match in _ERRORS.finditer(text)
+        for error in _ERROR.finditer(match[1])
+        if _UNRESOLVED.match(error[1])
     ]
     return Case(
         path,
@@ -197,18 +246,18 @@ def read(path: Path) -> Case:
     )
 
 
-def model_text(text: str) -> str:
-    """The text with its comments blanked: what is left is the model, at the same places."""
+def blank_comments(text: str) -> str:
+    """Return the text with spaces in place of its comments, so that offsets do not change."""
     return re.sub(
         r"//\*.*?\*/|/\*.*?\*/|//[^\n]*",
-        lambda m: re.sub(r"[^\n]", " ", m[0]),
+        lambda comment: re.sub(r"[^\n]", " ", comment[0]),
         text,
         flags=re.DOTALL,
     )
 
 
-def _next(text: str, name: str, after: int) -> int:
-    """Where ``name`` stands first after an expectation, as Xpect looks for it; -1 if nowhere."""
+def _find_name(text: str, name: str, after: int) -> int:
+    """Return the first offset of *name* behind an expectation, as Xpect finds it, or -1."""
     bounded = re.compile(rf"(?<![\w']){re.escape(name)}(?![\w'])")
     match = bounded.search(text, after)
     return match.start() if match else text.find(name, after)

@@ -1,0 +1,106 @@
+"""Diagnostics about names: the examples of the rules, their advice and their locations."""
+
+import pytest
+from small_models import list_name_errors, load_library, parse_texts
+
+from sysmlc.diagnostics import Place, Sink
+from sysmlc.language.names import resolve
+from sysmlc.language.names.resolution import CYCLE, NO_STANDARD_LIBRARY, TOO_DEEP
+from sysmlc.language.names.unresolved import UNRESOLVED
+from sysmlc.language.text import parse
+from sysmlc.language.tree import Document, Node, locate
+from sysmlc.sources import Source
+
+
+def list_codes(text):
+    sink = Sink()
+    resolve(parse_texts(text), load_library(), sink)
+    return {diagnostic.rule.code for diagnostic in sink}
+
+
+@pytest.mark.parametrize(
+    ("rule", "code"),
+    [(UNRESOLVED, "SM205"), (CYCLE, "SM206"), (NO_STANDARD_LIBRARY, "SM207")],
+)
+def test_the_wrong_example_breaks_the_rule_and_the_right_one_does_not(rule, code):
+    assert rule.code == code
+    assert code in list_codes(rule.read_page().wrong)
+    assert code not in list_codes(rule.read_page().right)
+
+
+def test_a_chain_of_thousands_of_aliases_is_reported():
+    aliases = [f"alias A{number} for A{number + 1};" for number in range(8000)]
+    codes = list_codes("\n".join([*aliases, "part def A8000;", "part gate : A0;"]))
+    assert codes == {"SM208", "SM205"}
+    assert TOO_DEEP.code == "SM208"
+    assert list_codes("\n".join([*aliases[-1:], "part def A8000;", "part gate : A7999;"])) == set()
+
+
+def test_packages_that_import_each_other_in_many_ways_terminate():
+    count = 60
+    packages = [
+        f"package P{n} {{ public import P{(7 * n + 1) % count}::*; "
+        f"public import P{(3 * n + 2) % count}::*; public import P{(5 * n + 3) % count}::*; }}"
+        for n in range(count)
+    ]
+    assert list_codes("\n".join([*packages, "part a : P0::X;"])) == {"SM205"}
+
+
+def test_the_help_about_a_missing_package_asks_for_its_file():
+    sink = Sink()
+    resolve(parse_texts("package P { private import Elsewhere::*; }"), load_library(), sink)
+    assert [diagnostic.help for diagnostic in sink] == [
+        "give the file that has it as an input too, or the folder of all files"
+    ]
+
+
+def test_the_help_about_a_library_name_says_which_package_to_import():
+    assert list_name_errors("""
+        package Plant {
+            private import ScalarValues;
+            attribute way = 5 [km];
+            attribute mass : MassValue;
+            attribute count : Real;
+            attribute a = b;
+            part x : A;
+        }
+    """) == [
+        "4: unknown name 'km': 'km' is in 'SI', which is not imported here",
+        "5: unknown name 'MassValue': 'MassValue' is in 'ISQ', which is not imported here",
+        "6: unknown name 'Real': 'Real' is in 'ScalarValues': import ScalarValues::*, not it alone",
+        "7: unknown name 'b': known: Plant, a, count, mass, way, x",
+        "8: unknown name 'A': did you mean 'a'?",
+    ]
+
+
+def test_namesakes_that_specialise_members_of_one_another_are_reported():
+    """Each leads to all the others, so there are too many paths to try all of them."""
+    codes = list_codes("\n".join(["part def A :> A::B;"] * 40))
+    assert codes == {"SM205", "SM240"}
+    assert list_codes("\n".join(["part def A :> A::B;"] * 2)) == {"SM205"}
+
+
+def text_at_diagnostics(text, *, mark=b""):
+    """Return the rest of the file from the location of each diagnostic."""
+    data = mark + text.encode()
+    sink, source = Sink({"SM207": None}), Source("plant.sysml", data)
+    resolve([parse(text, "plant.sysml", "sysml", sink, source)], load_library(), sink)
+    return [data[diagnostic.subject.place.offset :].decode() for diagnostic in sink]
+
+
+def test_a_byte_order_mark_and_wide_characters_do_not_shift_locations():
+    text, mark = "package 'Käse' { part cut : Knife; }", b"\xef\xbb\xbf"
+    assert text_at_diagnostics(text) == ["Knife; }"]
+    assert text_at_diagnostics(text, mark=mark) == ["Knife; }"]
+
+
+def test_names_with_escaped_quotes_do_not_shift_locations():
+    robot = r"part def Robot { part 'robot\'s arm' : Robot; }"
+    use = r"part robot : Robot; part tool = robot.'robot\'s arm'.tool;"
+    assert text_at_diagnostics(robot + use) == ["tool;"]
+
+
+def test_a_location_in_an_interchange_file_is_the_ordinal_of_its_element():
+    assert locate(Document("plant.sysmlx", "sysml", Node("Namespace")), 7) == Place(
+        "plant.sysmlx", ordinal=7
+    )
