@@ -1,11 +1,11 @@
-"""Damaged interchange files, archives and texts: findings, never a traceback."""
+"""Damaged interchange files, archives and texts have diagnostics and raise no exceptions."""
 
 import random
 import re
 
 import pytest
-from test_interchange_projects import archive
-from v2_trees import interchange, owning, relating
+from interchange_files import write_file, write_member, write_relationship
+from test_interchange_projects import write_archive
 
 from sysmlc.diagnostics import Sink
 from sysmlc.language.formatter import format_text
@@ -14,23 +14,23 @@ from sysmlc.language.text import parse
 from sysmlc.sources import Source, SourceError
 
 CHAIN = '<ownedRelatedElement xsi:type="sysml:Feature" xmi:id="c">' + (
-    relating("FeatureChaining", 'chainingFeature="f"') * 2 + "</ownedRelatedElement>"
+    write_relationship("FeatureChaining", 'chainingFeature="f"') * 2 + "</ownedRelatedElement>"
 )
-MODEL = interchange(
-    owning(
+MODEL = write_file(
+    write_member(
         "Package",
         'xmi:id="p" declaredName="P"',
-        relating("NamespaceImport", 'importedNamespace="p"')
-        + owning("PartDefinition", 'xmi:id="d" declaredName="D"')
-        + owning(
+        write_relationship("NamespaceImport", 'importedNamespace="p"')
+        + write_member("PartDefinition", 'xmi:id="d" declaredName="D"')
+        + write_member(
             "PartUsage",
             'xmi:id="f" declaredName="f" isComposite="true"',
-            relating("FeatureTyping", 'typedFeature="f" type="d"')
-            + relating("Subsetting", 'subsettingFeature="f" subsettedFeature="c"', CHAIN)
-            + owning("LiteralInteger", 'value="3"', membership="FeatureValue"),
+            write_relationship("FeatureTyping", 'typedFeature="f" type="d"')
+            + write_relationship("Subsetting", 'subsettingFeature="f" subsettedFeature="c"', CHAIN)
+            + write_member("LiteralInteger", 'value="3"', membership="FeatureValue"),
             "FeatureMembership",
         )
-        + relating("Membership", 'memberName="A" memberElement="d"'),
+        + write_relationship("Membership", 'memberName="A" memberElement="d"'),
     )
 )
 KINDS = ["PartUsage", "Membership", "Subsetting", "FeatureValue", "Package", "NamespaceImport"]
@@ -44,8 +44,8 @@ package P { // note
 """
 
 
-def damaged(text, seed):
-    """The text with some words, tags and characters taken out, doubled or exchanged."""
+def damage(text, seed):
+    """Return the text with some parts removed, repeated or replaced by a character."""
     dice = random.Random(seed)
     for _ in range(dice.randint(1, 4)):
         start = dice.randrange(len(text))
@@ -56,54 +56,56 @@ def damaged(text, seed):
     return text
 
 
-def rearranged(seed):
-    """The model with metaclasses and ids exchanged: well-formed, but not what was meant."""
+def exchange_kinds_and_ids(seed):
+    """Return the model with random metaclasses and ids: well-formed, but mostly invalid."""
     dice = random.Random(seed)
     text = re.sub(
-        r"sysml:\w+", lambda m: dice.choice([m[0]] * 3 + [f"sysml:{dice.choice(KINDS)}"]), MODEL
+        r"sysml:\w+",
+        lambda kind: dice.choice([kind[0]] * 3 + [f"sysml:{dice.choice(KINDS)}"]),
+        MODEL,
     )
     return re.sub(r'="([pdfc])"', lambda _: f'="{dice.choice("pdfcx")}"', text)
 
 
-@pytest.mark.parametrize("make", [lambda seed: damaged(MODEL, seed), rearranged])
-def test_damaged_interchange_files(make):
+@pytest.mark.parametrize("damage_model", [lambda seed: damage(MODEL, seed), exchange_kinds_and_ids])
+def test_damaged_interchange_files_raise_no_exception(damage_model):
     for seed in range(150):
         sink = Sink()
         try:
-            document = read(Source("m.sysmlx", make(seed).encode()), sink)
+            document = read(Source("m.sysmlx", damage_model(seed).encode()), sink)
         except SourceError:
             continue
         link([document], sink)
         write(document, [document], sink)
 
 
-def test_damaged_archives():
-    whole = archive().data
+def test_damaged_archives_raise_no_exception():
+    archive = write_archive().data
     for seed in range(100):
-        dice, data = random.Random(seed), bytearray(whole)
+        dice, data = random.Random(seed), bytearray(archive)
         for _ in range(dice.randint(1, 6)):
             data[dice.randrange(len(data))] = dice.randrange(256)
         open_archive(Source("a.kpar", bytes(data[: dice.randint(20, len(data))])), Sink())
 
 
-def test_damaged_texts_are_laid_out_or_left_alone():
-    done = 0
+def test_damaged_texts_are_formatted_canonically_or_rejected():
+    valid = 0
     for seed in range(200):
-        text, sink = damaged(TEXT, seed), Sink()
+        text, sink = damage(TEXT, seed), Sink()
         parse(text, "m.sysml", "sysml", sink)
         if not sink.has_errors():
-            made = format_text(text, "sysml")
-            assert format_text(made, "sysml") == made
-            done += 1
-    assert done > 5
+            formatted = format_text(text, "sysml")
+            assert format_text(formatted, "sysml") == formatted
+            valid += 1
+    assert valid > 5
 
 
-def test_a_reference_to_the_top_of_the_file_has_a_name():
-    text = interchange(
-        owning(
+def test_a_reference_to_the_root_namespace_has_a_name():
+    text = write_file(
+        write_member(
             "PartDefinition",
             'xmi:id="d" declaredName="D"',
-            relating("Subclassification", 'subclassifier="d" superclassifier="root"'),
+            write_relationship("Subclassification", 'subclassifier="d" superclassifier="root"'),
         )
     )
     document = read(Source("m.sysmlx", text.encode()), Sink())

@@ -1,62 +1,76 @@
-"""Interchange files read into the tree: folding, references, and what cannot be read."""
+"""Reading interchange files: folding of relationships, references, and faults."""
 
 import pytest
-from v2_trees import interchange, outline, owning, reading, reading_file, relating
+from interchange_files import (
+    list_messages,
+    read_content,
+    read_text,
+    write_file,
+    write_member,
+    write_relationship,
+)
+from tree_outlines import outline
 
 from sysmlc.diagnostics import Place, Sink
 from sysmlc.language.interchange import link, read
 from sysmlc.sources import Fault, Source, SourceError
 
 
-def tree(content):
-    document, messages = reading(content)
+def read_outline(content):
+    """Return the outline of a file that is read without diagnostics."""
+    document, messages = read_content(content)
     assert messages == []
     return outline(document.root)
 
 
-def argument(expression, said=""):
+def write_argument(expression, membership_attributes=""):
+    """Return an expression as the interchange format writes it as an argument."""
     value = f'<ownedRelationship xsi:type="sysml:FeatureValue">{expression}</ownedRelationship>'
-    return owning("Feature", 'direction="in"', value, "ParameterMembership", said)
+    return write_member(
+        "Feature", 'direction="in"', value, "ParameterMembership", membership_attributes
+    )
 
 
-def expression(kind, attributes="", content=""):
+def write_expression(kind, attributes="", content=""):
+    """Return an expression with the empty result that the interchange format demands."""
     start = f'<ownedRelatedElement xsi:type="sysml:{kind}" {attributes}>'
     return f"{start}{content}{RESULT}</ownedRelatedElement>"
 
 
-RESULT = owning("Feature", 'direction="out"', membership="ReturnParameterMembership")
+RESULT = write_member("Feature", 'direction="out"', membership="ReturnParameterMembership")
 ONE = '<ownedRelatedElement xsi:type="sysml:LiteralInteger" value="1"/>'
 ZERO = '<ownedRelatedElement xsi:type="sysml:LiteralInteger"/>'
 
 
-def value(content):
+def write_value(content):
+    """Return a feature with an expression as its value."""
     inner = f'<ownedRelationship xsi:type="sysml:FeatureValue">{content}</ownedRelationship>'
-    return owning("Feature", 'declaredName="x" xmi:id="x"', inner)
+    return write_member("Feature", 'declaredName="x" xmi:id="x"', inner)
 
 
 def test_memberships_are_folded_into_their_members():
-    part = owning(
+    part = write_member(
         "PartUsage",
         'declaredName="arm" declaredShortName="a" isComposite="true"',
         membership="FeatureMembership",
-        said='visibility="private"',
+        membership_attributes='visibility="private"',
     )
-    content = owning("PartDefinition", 'declaredName="Robot" isAbstract="true"', part)
-    assert tree(content) == [
+    content = write_member("PartDefinition", 'declaredName="Robot" isAbstract="true"', part)
+    assert read_outline(content) == [
         "OwningMembership PartDefinition Robot isAbstract=True",
         "  FeatureMembership private PartUsage <a> arm",
     ]
 
 
 def test_owned_relationships_are_relations_with_qualified_names():
-    general = owning("PartDefinition", 'xmi:id="d" declaredName="Machine"')
-    special = owning(
+    general = write_member("PartDefinition", 'xmi:id="d" declaredName="Machine"')
+    special = write_member(
         "PartDefinition",
         'xmi:id="r" declaredName="Robot"',
-        relating("Subclassification", 'subclassifier="r" superclassifier="d"'),
+        write_relationship("Subclassification", 'subclassifier="r" superclassifier="d"'),
     )
-    package = owning("Package", 'declaredName="Plant"', general + special)
-    assert tree(package) == [
+    package = write_member("Package", 'declaredName="Plant"', general + special)
+    assert read_outline(package) == [
         "OwningMembership Package Plant",
         "  OwningMembership PartDefinition Machine",
         "  OwningMembership PartDefinition Robot Subclassification->Plant::Machine",
@@ -66,20 +80,20 @@ def test_owned_relationships_are_relations_with_qualified_names():
 def test_a_feature_chain_is_one_reference_with_several_links():
     chain = (
         '<ownedRelatedElement xsi:type="sysml:Feature" xmi:id="c">'
-        + relating("FeatureChaining", 'chainingFeature="a"')
-        + relating("FeatureChaining", 'chainingFeature="b"')
+        + write_relationship("FeatureChaining", 'chainingFeature="a"')
+        + write_relationship("FeatureChaining", 'chainingFeature="b"')
         + "</ownedRelatedElement>"
     )
     features = (
-        owning("Feature", 'xmi:id="a" declaredName="a"')
-        + owning("Feature", 'xmi:id="b" declaredName="b"')
-        + owning(
+        write_member("Feature", 'xmi:id="a" declaredName="a"')
+        + write_member("Feature", 'xmi:id="b" declaredName="b"')
+        + write_member(
             "Feature",
             'xmi:id="x" declaredName="x"',
-            relating("Subsetting", 'subsettingFeature="x" subsettedFeature="c"', chain),
+            write_relationship("Subsetting", 'subsettingFeature="x" subsettedFeature="c"', chain),
         )
     )
-    document, messages = reading(features)
+    document, messages = read_content(features)
     assert messages == []
     assert outline(document.root)[2] == "OwningMembership Feature x Subsetting->a.b"
     reference = document.root.members[2].relations[0].reference
@@ -87,10 +101,12 @@ def test_a_feature_chain_is_one_reference_with_several_links():
 
 
 def test_arguments_and_empty_results_of_expressions_are_folded():
-    sum_ = expression(
-        "OperatorExpression", 'operator="+"', argument(ONE, 'visibility="private"') + argument(ZERO)
+    addition = write_expression(
+        "OperatorExpression",
+        'operator="+"',
+        write_argument(ONE, 'visibility="private"') + write_argument(ZERO),
     )
-    assert tree(value(sum_)) == [
+    assert read_outline(write_value(addition)) == [
         "OwningMembership Feature x",
         "  FeatureValue (=) OperatorExpression operator=+",
         "    ParameterMembership LiteralInteger value=1",
@@ -98,49 +114,58 @@ def test_arguments_and_empty_results_of_expressions_are_folded():
     ]
 
 
-def test_what_is_evaluated_late_has_the_role_expression():
-    late = expression(
+def test_an_operand_that_is_evaluated_conditionally_has_the_role_expression():
+    second = write_expression(
         "FeatureReferenceExpression",
         "",
-        owning("LiteralBoolean", 'value="true"', membership="FeatureMembership"),
+        write_member("LiteralBoolean", 'value="true"', membership="FeatureMembership"),
     )
-    both = argument('<ownedRelatedElement xsi:type="sysml:LiteralBoolean"/>') + argument(late)
-    assert tree(value(expression("OperatorExpression", 'operator="and"', both)))[2:] == [
+    operands = write_argument(
+        '<ownedRelatedElement xsi:type="sysml:LiteralBoolean"/>'
+    ) + write_argument(second)
+    assert read_outline(
+        write_value(write_expression("OperatorExpression", 'operator="and"', operands))
+    )[2:] == [
         "    ParameterMembership LiteralBoolean value=False",
         "    ParameterMembership (expression) LiteralBoolean value=True",
     ]
 
 
-def test_a_body_expression_that_is_an_argument_stays():
-    body = expression(
-        "FeatureReferenceExpression", "", owning("Expression", membership="FeatureMembership")
+def test_a_body_expression_that_is_an_argument_is_not_folded():
+    body = write_expression(
+        "FeatureReferenceExpression", "", write_member("Expression", membership="FeatureMembership")
     )
-    call = relating("Membership", 'memberElement="x"') + argument(body)
-    assert tree(value(expression("InvocationExpression", "", call)))[1:] == [
+    call = write_relationship("Membership", 'memberElement="x"') + write_argument(body)
+    assert read_outline(write_value(write_expression("InvocationExpression", "", call)))[1:] == [
         "  FeatureValue (=) InvocationExpression Membership->x",
         "    ParameterMembership FeatureReferenceExpression",
         "      FeatureMembership Expression",
     ]
 
 
-def test_a_referent_is_a_relation_and_an_owned_chain_too():
-    chain = owning("Feature", "", relating("FeatureChaining", 'chainingFeature="x"') * 2)
-    named = expression(
-        "FeatureReferenceExpression", "", relating("Membership", 'memberElement="x"')
+def test_referents_and_owned_chains_become_relations():
+    chain = write_member(
+        "Feature", "", write_relationship("FeatureChaining", 'chainingFeature="x"') * 2
     )
-    reaching = owning("Feature", 'declaredName=""', membership="FeatureMembership")
-    carried = (
-        f'<ownedRelationship xsi:type="sysml:FeatureValue">{named}</ownedRelationship>' + reaching
+    referent = write_expression(
+        "FeatureReferenceExpression", "", write_relationship("Membership", 'memberElement="x"')
     )
-    first = owning("Feature", 'direction="in"', carried, "ParameterMembership")
-    assert tree(value(expression("FeatureChainExpression", "", first + chain)))[1:] == [
+    empty_feature = write_member("Feature", 'declaredName=""', membership="FeatureMembership")
+    value = (
+        f'<ownedRelationship xsi:type="sysml:FeatureValue">{referent}</ownedRelationship>'
+        + empty_feature
+    )
+    operand = write_member("Feature", 'direction="in"', value, "ParameterMembership")
+    assert read_outline(
+        write_value(write_expression("FeatureChainExpression", "", operand + chain))
+    )[1:] == [
         "  FeatureValue (=) FeatureChainExpression Membership->x.x",
         "    ParameterMembership FeatureReferenceExpression Membership->x",
     ]
 
 
 @pytest.mark.parametrize(
-    ("said", "role"),
+    ("attributes", "role"),
     [
         ("", "="),
         ('isInitial="true"', ":="),
@@ -148,20 +173,22 @@ def test_a_referent_is_a_relation_and_an_owned_chain_too():
         ('isDefault="true" isInitial="true"', "default :="),
     ],
 )
-def test_a_feature_value_has_its_sign_as_role(said, role):
-    inner = f'<ownedRelationship xsi:type="sysml:FeatureValue" {said}>{ONE}</ownedRelationship>'
-    lines = tree(owning("Feature", 'declaredName="x"', inner))
+def test_the_role_of_a_feature_value_is_its_operator(attributes, role):
+    inner = (
+        f'<ownedRelationship xsi:type="sysml:FeatureValue" {attributes}>{ONE}</ownedRelationship>'
+    )
+    lines = read_outline(write_member("Feature", 'declaredName="x"', inner))
     assert lines[1] == f"  FeatureValue ({role}) LiteralInteger value=1"
 
 
 def test_imports_are_members_and_private_unless_stated():
-    package = owning("Package", 'xmi:id="p" declaredName="P"').replace(
+    package = write_member("Package", 'xmi:id="p" declaredName="P"').replace(
         "<ownedRelationship ", '<ownedRelationship xmi:id="m" '
     )
-    imports = relating("MembershipImport", 'importedMembership="m"') + relating(
+    imports = write_relationship("MembershipImport", 'importedMembership="m"') + write_relationship(
         "NamespaceImport", 'importedNamespace="p" isRecursive="true" visibility="public"'
     )
-    assert tree(package + owning("Package", 'declaredName="Q"', imports))[1:] == [
+    assert read_outline(package + write_member("Package", 'declaredName="Q"', imports))[1:] == [
         "OwningMembership Package Q",
         "  - private MembershipImport importedMembership->P",
         "  - public NamespaceImport isRecursive=True importedNamespace->P",
@@ -170,47 +197,53 @@ def test_imports_are_members_and_private_unless_stated():
 
 def test_an_alias_is_a_membership_that_names_another_element():
     documentation = '<ownedRelatedElement xsi:type="sysml:Documentation" body="why"/>'
-    alias = relating(
+    alias = write_relationship(
         "Membership",
         'memberName="A" memberShortName="a" memberElement="p"',
-        relating("Annotation", "", documentation),
+        write_relationship("Annotation", "", documentation),
     )
-    assert tree(owning("Package", 'xmi:id="p" declaredName="P"') + alias)[1:] == [
+    assert read_outline(write_member("Package", 'xmi:id="p" declaredName="P"') + alias)[1:] == [
         "- Membership <a> A Membership->P",
         "  Annotation Documentation body=why",
     ]
 
 
 def test_a_dependency_has_its_ends_as_relations():
-    packages = "".join(owning("Package", f'xmi:id="{n}" declaredName="{n}"') for n in "abc")
-    dependency = owning("Dependency", 'declaredName="d" client="a b" supplier="c"')
-    assert tree(packages + dependency)[3:] == [
+    packages = "".join(write_member("Package", f'xmi:id="{n}" declaredName="{n}"') for n in "abc")
+    dependency = write_member("Dependency", 'declaredName="d" client="a b" supplier="c"')
+    assert read_outline(packages + dependency)[3:] == [
         "OwningMembership Dependency d client->a client->b supplier->c"
     ]
 
 
-def test_conjugated_ports_and_empty_multiplicities_are_left_out():
-    conjugation = relating("PortConjugation", 'conjugatedType="c" originalPortDefinition="d"')
-    conjugate = owning("ConjugatedPortDefinition", 'xmi:id="c"', conjugation)
-    definition = owning("PortDefinition", 'xmi:id="d" declaredName="D"', conjugate)
-    typing = relating("ConjugatedPortTyping", 'typedFeature="u" conjugatedPortDefinition="c"')
-    port = owning("PortUsage", 'xmi:id="u" declaredName="u"', typing + owning("Multiplicity"))
-    assert tree(definition + port) == [
+def test_conjugated_port_definitions_and_empty_multiplicities_are_omitted():
+    conjugation = write_relationship(
+        "PortConjugation", 'conjugatedType="c" originalPortDefinition="d"'
+    )
+    conjugate = write_member("ConjugatedPortDefinition", 'xmi:id="c"', conjugation)
+    definition = write_member("PortDefinition", 'xmi:id="d" declaredName="D"', conjugate)
+    typing = write_relationship(
+        "ConjugatedPortTyping", 'typedFeature="u" conjugatedPortDefinition="c"'
+    )
+    port = write_member(
+        "PortUsage", 'xmi:id="u" declaredName="u"', typing + write_member("Multiplicity")
+    )
+    assert read_outline(definition + port) == [
         "OwningMembership PortDefinition D",
         "OwningMembership PortUsage u ConjugatedPortTyping->D",
     ]
 
 
-def test_a_usage_that_could_be_composite_and_is_not_is_a_reference():
+def test_a_usage_that_is_not_composite_is_a_reference_unless_it_is_directed_or_an_end():
     parts = (
-        owning("PartUsage", 'declaredName="a" isComposite="true"', "", "FeatureMembership")
-        + owning("PartUsage", 'declaredName="b"', "", "FeatureMembership")
-        + owning("PartUsage", 'declaredName="c" direction="in"', "", "FeatureMembership")
-        + owning(
+        write_member("PartUsage", 'declaredName="a" isComposite="true"', "", "FeatureMembership")
+        + write_member("PartUsage", 'declaredName="b"', "", "FeatureMembership")
+        + write_member("PartUsage", 'declaredName="c" direction="in"', "", "FeatureMembership")
+        + write_member(
             "PartUsage", 'declaredName="d" isEnd="true" isConstant="true"', "", "FeatureMembership"
         )
     )
-    assert tree(owning("PartDefinition", 'declaredName="P"', parts))[1:] == [
+    assert read_outline(write_member("PartDefinition", 'declaredName="P"', parts))[1:] == [
         "  FeatureMembership PartUsage a",
         "  FeatureMembership PartUsage b isReference=True",
         "  FeatureMembership PartUsage c direction=in",
@@ -218,135 +251,140 @@ def test_a_usage_that_could_be_composite_and_is_not_is_a_reference():
     ]
 
 
-def test_implied_relationships_are_left_to_the_rules_of_the_language():
-    implied = relating("Subclassification", 'isImplied="true" superclassifier="gone"')
-    assert tree(owning("PartDefinition", 'declaredName="P"', implied)) == [
+def test_implied_relationships_are_not_read():
+    implied = write_relationship("Subclassification", 'isImplied="true" superclassifier="gone"')
+    assert read_outline(write_member("PartDefinition", 'declaredName="P"', implied)) == [
         "OwningMembership PartDefinition P"
     ]
 
 
-def test_the_root_may_be_xmi_with_the_model_inside():
-    inner = interchange(owning("Package", 'declaredName="P"'))
+def test_the_root_element_may_be_xmi():
+    inner = write_file(write_member("Package", 'declaredName="P"'))
     file = f'<xmi:XMI xmlns:xmi="http://www.omg.org/spec/XMI/20131001">{inner}</xmi:XMI>'
-    document, messages = reading_file(file)
+    document, messages = read_text(file)
     assert (outline(document.root), messages) == (["OwningMembership Package P"], [])
 
 
-def test_features_may_be_elements():
-    comment = owning("Comment", "", "<body>two &lt; three</body><annotatedElement href='#p'/>")
-    lines = tree(owning("Package", 'xmi:id="p" declaredName="P"') + comment)
+def test_features_may_be_written_as_xml_elements():
+    comment = write_member(
+        "Comment", "", "<body>two &lt; three</body><annotatedElement href='#p'/>"
+    )
+    lines = read_outline(write_member("Package", 'xmi:id="p" declaredName="P"') + comment)
     assert lines[1] == "OwningMembership Comment body=two < three"
 
 
-BASE = interchange(owning("Classifier", 'xmi:id="k" declaredName="Thing"'))
-USE = interchange(
-    owning(
+BASE = write_file(write_member("Classifier", 'xmi:id="k" declaredName="Thing"'))
+USE = write_file(
+    write_member(
         "Class",
         'declaredName="C"',
-        relating(
+        write_relationship(
             "Subclassification", "", "<superclassifier href='../Core%20Library/Base.kermlx#k'/>"
         ),
     )
 )
 
 
-def linked(*files):
+def read_together(*files):
+    """Return the documents of files that refer to each other, and the messages."""
     sink = Sink()
     documents = [read(Source(path, text.encode()), sink) for path, text in files]
     link(documents, sink)
-    return documents, [f"{found.rule.code} {found.message}" for found in sink]
+    return documents, list_messages(sink)
 
 
-def test_references_lead_into_files_that_are_read_together():
+def test_references_to_files_that_are_read_together_are_resolved():
     files = [("a/Use.kermlx", USE), ("Core Library/Base.kermlx", BASE)]
-    (use, base), messages = linked(*files)
+    (use, base), messages = read_together(*files)
     reference = use.root.members[0].relations[0].reference
     assert messages == []
     assert (str(reference), reference.target) == ("Thing", base.root.members[0])
 
 
-def test_references_into_other_files_stay_as_hrefs():
-    (use,), messages = linked(("a/Use.kermlx", USE))
+def test_references_to_other_files_remain_hrefs():
+    (use,), messages = read_together(("a/Use.kermlx", USE))
     reference = use.root.members[0].relations[0].reference
     assert messages == []
     assert str(reference) == "../Core%20Library/Base.kermlx#k"
     assert reference.targets is None
 
 
-def test_an_id_that_the_other_file_lacks_is_reported_where_it_stands():
+def test_an_id_that_the_other_file_lacks_is_reported():
     files = [("a/Use.kermlx", USE), ("Core Library/Base.kermlx", BASE.replace('"k"', '"z"'))]
-    assert linked(*files)[1] == [
+    assert read_together(*files)[1] == [
         "SM165 'superclassifier' of 'Subclassification' refers to the id 'k', which does not "
         "exist in 'Core Library/Base.kermlx'"
     ]
 
 
-def test_a_name_of_a_redefined_feature_counts_where_there_is_no_own_one():
-    redefinition = relating("Redefinition", 'redefiningFeature="n" redefinedFeature="f"')
+def test_a_nameless_feature_is_referred_to_by_the_name_of_the_redefined_one():
+    redefinition = write_relationship("Redefinition", 'redefiningFeature="n" redefinedFeature="f"')
     content = (
-        owning("Feature", 'xmi:id="f" declaredName="f"')
-        + owning(
+        write_member("Feature", 'xmi:id="f" declaredName="f"')
+        + write_member(
             "Class",
             'declaredName="C"',
-            owning("Feature", 'xmi:id="n"', redefinition, "FeatureMembership"),
+            write_member("Feature", 'xmi:id="n"', redefinition, "FeatureMembership"),
         )
-        + owning("Feature", 'declaredName="g"', relating("Subsetting", 'subsettedFeature="n"'))
+        + write_member(
+            "Feature", 'declaredName="g"', write_relationship("Subsetting", 'subsettedFeature="n"')
+        )
     )
-    assert tree(content)[-1] == "OwningMembership Feature g Subsetting->C::f"
+    assert read_outline(content)[-1] == "OwningMembership Feature g Subsetting->C::f"
 
 
-WRONG = [
+FAULTS = [
     (
-        owning("PartDef", 'declaredName="P"'),
+        write_member("PartDef", 'declaredName="P"'),
         "SM163 'PartDef' is not a metaclass of SysML 2.0: the element is omitted with "
         "everything that it owns",
     ),
     (
-        owning("Usage", 'declaredName="u"') + owning("ControlNode"),
+        write_member("Usage", 'declaredName="u"') + write_member("ControlNode"),
         "SM163 'ControlNode' is not a metaclass of SysML 2.0: the element is omitted with "
         "everything that it owns",
     ),
     (
-        owning("PartDefinition", 'declaredName="P" isAbstrct="true"'),
+        write_member("PartDefinition", 'declaredName="P" isAbstrct="true"'),
         "SM164 'isAbstrct' of 'P' is not a feature of PartDefinition: it is ignored",
     ),
     (
-        owning("PartDefinition", 'declaredName="P"', "<operater>x</operater>"),
+        write_member("PartDefinition", 'declaredName="P"', "<operater>x</operater>"),
         "SM164 'operater' of 'P' is not a feature of PartDefinition: it is ignored",
     ),
     (
-        owning(
+        write_member(
             "PartDefinition",
             'declaredName="P"',
-            relating("Subclassification", 'superclassifier="q"'),
+            write_relationship("Subclassification", 'superclassifier="q"'),
         ),
         "SM165 'superclassifier' of 'Subclassification' refers to the id 'q', which does not "
         "exist in 'm.sysmlx'",
     ),
     (
-        owning("Package", 'xmi:id="p"') + owning("Package", 'xmi:id="p"'),
+        write_member("Package", 'xmi:id="p"') + write_member("Package", 'xmi:id="p"'),
         "SM751 the id 'p' is used by two elements",
     ),
     (
-        owning("PartDefinition", 'declaredName="P" isAbstract="yes"'),
+        write_member("PartDefinition", 'declaredName="P" isAbstract="yes"'),
         "SM756 'isAbstract' of 'P' is 'yes', which is not a valid truth value",
     ),
     (
-        value('<ownedRelatedElement xsi:type="sysml:LiteralInteger" value="1.5"/>'),
+        write_value('<ownedRelatedElement xsi:type="sysml:LiteralInteger" value="1.5"/>'),
         "SM756 'value' of 'LiteralInteger' is '1.5', which is not a valid number",
     ),
 ]
 
 
-@pytest.mark.parametrize(("content", "message"), WRONG)
-def test_what_cannot_be_understood_is_reported(content, message):
-    assert reading(content)[1] == [message]
+@pytest.mark.parametrize(("content", "message"), FAULTS)
+def test_a_fault_is_reported(content, message):
+    assert read_content(content)[1] == [message]
 
 
-def test_findings_are_located():
+def test_the_location_of_a_diagnostic_is_the_ordinal_of_the_element():
     sink = Sink()
-    read(Source("m.sysmlx", interchange(owning("PartDef")).encode()), sink)
-    assert [found.subject.place for found in sink] == [Place("m.sysmlx", ordinal=2)]
+    read(Source("m.sysmlx", write_file(write_member("PartDef")).encode()), sink)
+    assert [diagnostic.subject.place for diagnostic in sink] == [Place("m.sysmlx", ordinal=2)]
 
 
 @pytest.mark.parametrize(
@@ -364,13 +402,13 @@ def test_findings_are_located():
         ),
     ],
 )
-def test_files_that_are_no_models_give_an_empty_tree(file, message):
-    document, messages = reading_file(file)
+def test_a_file_that_is_not_a_model_has_an_empty_tree(file, message):
+    document, messages = read_text(file)
     assert (document.root.members, messages[-1:]) == ([], [message])
 
 
 def test_a_file_that_nests_too_deeply_is_refused():
     deep = '<ownedRelationship xsi:type="sysml:OwningMembership">' * 20_001
     with pytest.raises(SourceError) as raised:
-        reading_file(interchange(deep))
+        read_text(write_file(deep))
     assert raised.value.fault is Fault.LIMIT

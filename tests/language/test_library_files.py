@@ -1,4 +1,4 @@
-"""Where the library is found, that it is read lazily, and what a process reuses of it."""
+"""The library: where it is searched, lazy reading, and reuse within a process."""
 
 import importlib.metadata
 import sys
@@ -22,16 +22,17 @@ def folder(tmp_path):
     return tmp_path / "lib"
 
 
-def names(found):
-    return [(node.kind, node.name) for node in found]
+def list_roots(library, name):
+    """Return metaclass and name of the root elements called *name*."""
+    return [(node.kind, node.name) for node in library.roots(name)]
 
 
-def test_a_folder_is_searched_with_all_below_it(folder):
+def test_a_folder_is_searched_recursively(folder):
     library = find_library(folder)
     assert library.paths() == ["Doors.sysml", "deep/other.sysml"]
-    assert names(library.roots("Doors")) == [("Package", "Doors")]
-    assert names(library.roots("Halls")) == [("Package", "Halls")]
-    assert library.roots("Gate") == []
+    assert list_roots(library, "Doors") == [("Package", "Doors")]
+    assert list_roots(library, "Halls") == [("Package", "Halls")]
+    assert list_roots(library, "Gate") == []
 
 
 def test_only_the_file_named_like_the_package_is_read(folder):
@@ -40,7 +41,7 @@ def test_only_the_file_named_like_the_package_is_read(folder):
     assert [document.path for document in library.loaded_documents()] == ["Doors.sysml"]
 
 
-def test_an_archive_is_a_library_and_so_is_a_folder_of_them(folder, tmp_path):
+def test_an_archive_or_a_folder_of_archives_is_a_library(folder, tmp_path):
     path = tmp_path / "kpars" / "doors.kpar"
     path.parent.mkdir()
     with zipfile.ZipFile(path, "w") as archive:
@@ -48,19 +49,19 @@ def test_an_archive_is_a_library_and_so_is_a_folder_of_them(folder, tmp_path):
         archive.writestr(".project.json", "{}")
     assert find_library(path).paths() == ["doors.kpar!Doors.sysml"]
     assert find_library(path.parent).paths() == ["doors.kpar!Doors.sysml"]
-    assert names(find_library(path).roots("Doors")) == [("Package", "Doors")]
+    assert list_roots(find_library(path), "Doors") == [("Package", "Doors")]
 
 
-def test_the_option_comes_before_the_environment(folder, tmp_path):
-    other = tmp_path / "other"
-    other.mkdir()
-    (other / "Roofs.kerml").write_text("package Roofs;")
-    environment = {"SYSML_LIBRARY_PATH": str(other)}
+def test_the_option_takes_precedence_over_the_environment(folder, tmp_path):
+    environment_folder = tmp_path / "environment"
+    environment_folder.mkdir()
+    (environment_folder / "Roofs.kerml").write_text("package Roofs;")
+    environment = {"SYSML_LIBRARY_PATH": str(environment_folder)}
     assert find_library(folder, environment).paths() == ["Doors.sysml", "deep/other.sysml"]
     assert find_library(None, environment).paths() == ["Roofs.kerml"]
 
 
-def test_a_library_that_is_not_there_or_empty_is_an_error(tmp_path):
+def test_a_missing_or_empty_library_is_an_error(tmp_path):
     with pytest.raises(SourceError, match="No such file"):
         find_library(tmp_path / "nowhere")
     (tmp_path / "empty").mkdir()
@@ -68,7 +69,7 @@ def test_a_library_that_is_not_there_or_empty_is_an_error(tmp_path):
         find_library(tmp_path / "empty")
 
 
-def test_the_installed_distribution_is_read_as_data_and_not_imported(tmp_path, monkeypatch):
+def test_the_installed_distribution_is_read_without_being_imported(tmp_path, monkeypatch):
     models = tmp_path / "sysml" / "stdlib"
     models.mkdir(parents=True)
     (tmp_path / "sysml" / "__init__.py").write_text("raise RuntimeError('imported')")
@@ -81,7 +82,7 @@ def test_the_installed_distribution_is_read_as_data_and_not_imported(tmp_path, m
     assert not library.is_core
 
 
-def codes_without_library(text):
+def list_codes_without_library(text):
     sink = Sink()
     resolve([parse(text, "a.sysml", "sysml", sink)], find_library(None, {}), sink)
     return [diagnostic.rule.code for diagnostic in sink]
@@ -101,11 +102,11 @@ def test_the_core_replaces_a_distribution_without_models_which_is_reported_once(
 ):
     assert find_library(None, {}).is_core
     text = "attribute a : ScalarValues::Real; attribute b : ScalarValues::String;"
-    assert codes_without_library(text) == ["SM207"]
-    assert codes_without_library("attribute a;") == []
+    assert list_codes_without_library(text) == ["SM207"]
+    assert list_codes_without_library("attribute a;") == []
 
 
-def test_labels_of_libraries(folder, wheel_without_models):
+def test_the_label_of_a_library_says_where_it_was_found(folder, wheel_without_models):
     assert find_library(folder).label == f"{folder} (--library)"
     environment = {"SYSML_LIBRARY_PATH": str(folder)}
     assert find_library(None, environment).label == f"{folder} (SYSML_LIBRARY_PATH)"
@@ -121,15 +122,17 @@ def test_a_lost_type_is_looked_for_in_library_files_that_nobody_read():
     tools = Source("Tools.sysml", b"library package Tools { part def Drill; }")
     sink = Sink()
     resolve([parse("part d : Drill;", "a.sysml", "sysml", sink)], Library([tools]), sink)
-    assert [found.help for found in sink] == ["'Drill' is in 'Tools', which is not imported here"]
+    assert [diagnostic.help for diagnostic in sink] == [
+        "'Drill' is in 'Tools', which is not imported here"
+    ]
 
 
-def test_every_name_of_the_core_is_known_in_it():
+def test_every_name_in_the_core_is_resolved_within_the_core():
     library = load_core()
     sink = Sink()
     documents = [library.document(path) for path in library.paths()]
     resolve(documents, load_core(), sink)
-    assert [found.message for found in sink if found.rule.code != "SM207"] == []
+    assert [diagnostic.message for diagnostic in sink if diagnostic.rule.code != "SM207"] == []
     assert sum(1 for document in documents for _ in document.root.walk()) > 500
 
 
@@ -148,11 +151,11 @@ def test_a_name_with_escapes_is_found(tmp_path, text):
     assert [node.name for node in library.roots(name)] == [name]
 
 
-def test_a_second_model_of_a_process_uses_the_parsed_library(folder, monkeypatch):
+def test_a_second_model_reuses_the_parsed_library(folder, monkeypatch):
     first = find_library(folder)
     first.roots("Doors")
     monkeypatch.setattr("sysmlc.language.library.parse", None)
-    assert names(find_library(folder).roots("Doors")) == [("Package", "Doors")]
+    assert list_roots(find_library(folder), "Doors") == [("Package", "Doors")]
 
 
 def test_a_changed_library_file_is_parsed_again(folder):
@@ -162,17 +165,17 @@ def test_a_changed_library_file_is_parsed_again(folder):
     assert [member.name for member in members] == ["Flap"]
 
 
-def test_a_package_of_one_model_is_not_seen_by_the_next_model(folder):
-    """The library's ``Halls`` is the model's own in the first model, and the library's again."""
+def test_a_package_of_one_model_is_invisible_to_the_next_model(folder):
+    """The package ``Halls`` of the first model replaces the library's ``Halls`` for it alone."""
     (folder / "Doors.sysml").write_text("package Doors { part hall : Halls::Hall; }")
     text = "package Cell { part p :> Doors::hall; }"
-    own = "package Halls { part def Hall { part lamp; } }"
-    first = resolve([parse(text + own, "a.sysml", "sysml", Sink())], find_library(folder), Sink())
-    assert [node.owner.owner.members[0].name for node in hall_types(first)] == ["Cell"]
+    halls = "package Halls { part def Hall { part lamp; } }"
+    first = resolve([parse(text + halls, "a.sysml", "sysml", Sink())], find_library(folder), Sink())
+    assert [node.owner.owner.members[0].name for node in list_hall_types(first)] == ["Cell"]
     second = resolve([parse(text, "a.sysml", "sysml", Sink())], find_library(folder), Sink())
-    assert [node.owner.members[0].name for node in hall_types(second)] == ["Hall"]
-    assert [len(node.members) for node in hall_types(second)] == [0]
+    assert [node.owner.members[0].name for node in list_hall_types(second)] == ["Hall"]
+    assert [len(node.members) for node in list_hall_types(second)] == [0]
 
 
-def hall_types(model):
+def list_hall_types(model):
     return model.types(model.find("Doors::hall"))

@@ -1,9 +1,9 @@
-"""What is wrong with a text is said where it is, in words, once, and the rest is read."""
+"""Syntax errors: each is reported once, at its location, and the parser reads the rest."""
 
 from codecs import BOM_UTF8
 
 import pytest
-from texts_v2 import advised, parsed, said, understood
+from tree_outlines import list_advice, list_diagnostics, parse_outline, parse_with_diagnostics
 
 from sysmlc.diagnostics import Sink
 from sysmlc.language.text import parse, rules
@@ -23,13 +23,13 @@ EXAMPLES = [
 
 
 @pytest.mark.parametrize("rule", EXAMPLES, ids=lambda rule: rule.code)
-def test_the_wrong_text_has_it_and_the_right_one_nothing(rule):
-    assert [line.split()[1] for line in said(rule.read_page().wrong)] == [rule.code]
-    assert said(rule.read_page().right) == []
+def test_the_wrong_example_breaks_the_rule_and_the_right_one_does_not(rule):
+    assert [line.split()[1] for line in list_diagnostics(rule.read_page().wrong)] == [rule.code]
+    assert list_diagnostics(rule.read_page().right) == []
 
 
-def test_sm190_says_what_was_found_and_what_was_expected():
-    tree, messages = parsed("part a : ; part b = 1 +; part c;")
+def test_sm190_names_the_unexpected_and_the_expected_token():
+    tree, messages = parse_with_diagnostics("part a : ; part b = 1 +; part c;")
     assert messages == [
         "1:10 SM190 unexpected ';'; expected a name",
         "1:24 SM190 unexpected ';'; expected an expression",
@@ -42,8 +42,8 @@ def test_sm190_says_what_was_found_and_what_was_expected():
     ]
 
 
-def test_a_head_that_is_not_understood_keeps_its_body():
-    tree, messages = parsed("part a : : B { part c; part d : ; } part e;")
+def test_the_body_behind_a_faulty_head_is_read():
+    tree, messages = parse_with_diagnostics("part a : : B { part c; part d : ; } part e;")
     assert messages == [
         "1:10 SM190 unexpected ':'; expected a name",
         "1:33 SM190 unexpected ';'; expected a name",
@@ -56,8 +56,8 @@ def test_a_head_that_is_not_understood_keeps_its_body():
     ]
 
 
-def test_sm191_a_missing_semicolon_is_told_where_it_should_stand():
-    tree, messages = parsed("part a : A\npart b { part c }\npart d")
+def test_sm191_a_missing_semicolon_is_reported_where_it_belongs():
+    tree, messages = parse_with_diagnostics("part a : A\npart b { part c }\npart d")
     assert messages == [
         "1:10 SM191 ';' is missing after 'A'",
         "2:15 SM191 ';' is missing after 'c'",
@@ -66,75 +66,81 @@ def test_sm191_a_missing_semicolon_is_told_where_it_should_stand():
     assert len(tree) == 4
 
 
-def test_sm191_a_missing_bracket_is_put_in():
-    assert said("attribute a = (1 + 2;") == ["1:20 SM191 ')' is missing after '2'"]
-    assert said("part b[2;") == ["1:8 SM191 ']' is missing after '2'"]
+def test_sm191_a_missing_bracket_is_inserted():
+    assert list_diagnostics("attribute a = (1 + 2;") == ["1:20 SM191 ')' is missing after '2'"]
+    assert list_diagnostics("part b[2;") == ["1:8 SM191 ']' is missing after '2'"]
 
 
-def test_sm192_a_keyword_is_taken_as_the_name_that_it_was_meant_for():
-    tree, messages = parsed("part def Cell { port in : Input; attribute end = 3; }")
+def test_sm192_a_keyword_in_place_of_a_name_is_read_as_the_name():
+    tree, messages = parse_with_diagnostics("part def Cell { port in : Input; attribute end = 3; }")
     assert messages == [
         "1:22 SM192 'in' is a keyword of SysML; expected a name",
         "1:44 SM192 'end' is a keyword of SysML; expected a name",
     ]
     assert "  FeatureMembership PortUsage in FeatureTyping->Input" in tree
-    assert understood("port 'in' : Input;") == [
+    assert parse_outline("port 'in' : Input;") == [
         "OwningMembership PortUsage in FeatureTyping->Input"
     ]
-    assert understood("port step;") == ["OwningMembership PortUsage step"]
+    assert parse_outline("port step;") == ["OwningMembership PortUsage step"]
 
 
-def test_a_binding_where_an_assignment_is_meant():
+def test_a_binding_in_place_of_an_assignment_is_reported():
     text = "action a { assign x = 1; } attribute y := 2;"
-    assert said(text) == ["1:21 SM190 unexpected '='; expected ':='"]
-    assert "':='" in advised(text)[0]
+    assert list_diagnostics(text) == ["1:21 SM190 unexpected '='; expected ':='"]
+    assert "':='" in list_advice(text)[0]
 
 
-def test_sm193_the_innermost_open_brace_is_told_once():
-    assert said("part a { part b { part c; }") == ["1:8 SM193 this '{' is never closed"]
-    assert said("part a { part b { part c; ") == ["1:17 SM193 this '{' is never closed"]
+def test_sm193_the_innermost_open_brace_is_reported_once():
+    assert list_diagnostics("part a { part b { part c; }") == ["1:8 SM193 this '{' is never closed"]
+    assert list_diagnostics("part a { part b { part c; ") == ["1:17 SM193 this '{' is never closed"]
 
 
-def test_sm193_comments_and_quotes_that_never_close():
-    assert said("part a; /* b") == ["1:9 SM193 this comment is never closed"]
-    assert said("part 'a b : C;\npart d;") == ["1:6 SM193 this name in quotes is never closed"]
-    assert parsed("part 'abc;")[0] == ["OwningMembership PartUsage abc"]
-    assert said('attribute a = "b;') == ["1:15 SM193 this text in quotes is never closed"]
+def test_sm193_unclosed_comments_and_quotes_are_reported():
+    assert list_diagnostics("part a; /* b") == ["1:9 SM193 this comment is never closed"]
+    assert list_diagnostics("part 'a b : C;\npart d;") == [
+        "1:6 SM193 this name in quotes is never closed"
+    ]
+    assert parse_with_diagnostics("part 'abc;")[0] == ["OwningMembership PartUsage abc"]
+    assert list_diagnostics('attribute a = "b;') == [
+        "1:15 SM193 this text in quotes is never closed"
+    ]
 
 
-def test_sm194_letters_that_want_quotes_are_told_at_their_bytes():
-    assert said("part ä : Ö;") == [
+def test_sm194_letters_that_need_quotes_are_reported_at_their_location():
+    assert list_diagnostics("part ä : Ö;") == [
         "1:6 SM194 'ä' belongs to no name, symbol or text",
         "1:10 SM194 'Ö' belongs to no name, symbol or text",
     ]
-    assert understood("part 'ä' : 'Ö'; /* ü */ // ß") == [
+    assert parse_outline("part 'ä' : 'Ö'; /* ü */ // ß") == [
         "OwningMembership PartUsage ä FeatureTyping->Ö",
         "OwningMembership Comment body=ü ",
     ]
 
 
-def test_sm194_a_number_that_no_computer_holds():
-    assert said("attribute a = 1e999;") == ["1:15 SM194 '1e999' is too large a number"]
-    assert said("attribute a = 1e300;") == []
+def test_sm194_a_number_beyond_the_range_of_floats_is_reported():
+    assert list_diagnostics("attribute a = 1e999;") == ["1:15 SM194 '1e999' is too large a number"]
+    assert list_diagnostics("attribute a = 1e300;") == []
 
 
-def test_a_comment_between_words_should_be_a_note():
-    tree, messages = parsed("part a /* b */ : C;")
+def test_a_comment_within_a_declaration_is_reported_with_the_notation_of_a_note():
+    tree, messages = parse_with_diagnostics("part a /* b */ : C;")
     assert messages == ["1:8 SM190 unexpected a comment /* */; expected something else"]
     assert tree == ["OwningMembership PartUsage a FeatureTyping->C"]
-    assert "//* ... */" in advised("part a /* b */ : C;")[0]
+    assert "//* ... */" in list_advice("part a /* b */ : C;")[0]
 
 
-def test_a_symbol_too_much_is_told_and_left_out():
-    tree, messages = parsed("part a;; } part b;")
+def test_a_superfluous_symbol_is_reported_and_skipped():
+    tree, messages = parse_with_diagnostics("part a;; } part b;")
     assert messages == [
         "1:8 SM190 unexpected ';'; expected a declaration or '}'",
     ]
     assert len(tree) == 2
 
 
-def test_a_word_that_nearly_is_a_keyword_is_asked_about():
-    assert advised("attribut x : T;") == ["'attribut' is not a keyword: did you mean 'attribute'?"]
+def test_a_misspelt_keyword_is_corrected_in_the_advice():
+    assert list_advice("attribut x : T;") == [
+        "'attribut' is not a keyword: did you mean 'attribute'?"
+    ]
 
 
 @pytest.mark.parametrize(
@@ -171,69 +177,73 @@ def test_a_word_that_nearly_is_a_keyword_is_asked_about():
         ("feature f;", "in SysML a feature is a 'ref'"),
     ],
 )
-def test_common_slips_get_the_words_that_are_right(text, advice):
-    assert advice in advised(text)[0]
+def test_the_advice_about_a_common_mistake_shows_the_right_notation(text, advice):
+    assert advice in list_advice(text)[0]
 
 
-def test_a_comparison_where_a_value_is_meant_is_read_as_a_binding():
-    tree, messages = parsed("attribute a == 3;")
+def test_a_comparison_in_place_of_a_binding_is_read_as_a_binding():
+    tree, messages = parse_with_diagnostics("attribute a == 3;")
     assert messages == ["1:13 SM190 unexpected '=='; expected '='"]
     assert tree[1] == "  FeatureValue (=) LiteralInteger value=3"
 
 
 @pytest.mark.parametrize("text", ["part a b;", "part p { connect a b; }"])
-def test_what_is_no_slip_gets_no_words(text):
-    assert advised(text) == [""]
+def test_an_error_that_is_no_common_mistake_has_no_advice(text):
+    assert list_advice(text) == [""]
 
 
-def test_parameters_in_parentheses_of_kerml_get_the_words_that_are_right():
-    assert advised("feature f { expr s(x) : Boolean; }", "kerml") == [
+def test_the_advice_about_parameters_in_parentheses_fits_kerml_too():
+    assert list_advice("feature f { expr s(x) : Boolean; }", "kerml") == [
         "parameters are members of the body: { in x; }"
     ]
 
 
 @pytest.mark.parametrize("text", ["action def A (", "action def A (in", "private import A as"])
-def test_a_slip_at_the_end_of_a_text_is_told_too(text):
-    assert advised(text)
+def test_a_common_mistake_at_the_end_of_a_text_has_advice(text):
+    assert list_advice(text)
 
 
-def test_words_that_are_right_elsewhere_are_no_slips():
-    assert "no keyword" not in "".join(advised("class Gate { value : Real ; ] }", "kerml"))
+def test_a_word_that_is_right_elsewhere_is_not_called_a_mistake():
+    assert "not a keyword" not in "".join(list_advice("class Gate { value : Real ; ] }", "kerml"))
 
 
-def test_sm195_members_stand_only_where_they_mean_something():
-    assert said("part p { entry; return x; x + 1 }") == [
+def test_sm195_members_are_allowed_only_in_the_owners_that_give_them_a_meaning():
+    assert list_diagnostics("part p { entry; return x; x + 1 }") == [
         "1:10 SM195 an 'entry', 'do' or 'exit' action is not allowed in 'p'",
         "1:17 SM195 'return' is not allowed in 'p'",
         "1:27 SM195 an expression is not allowed in 'p'",
     ]
-    assert said("state s { entry; } calc c { return x; x + 1 }") == []
-    assert said("enum def E { a; part b; }") == [
+    assert list_diagnostics("state s { entry; } calc c { return x; x + 1 }") == []
+    assert list_diagnostics("enum def E { a; part b; }") == [
         "1:17 SM195 a member that is not an enumerated value is not allowed in 'E'"
     ]
 
 
 def test_sm196_prefixes_have_an_order_and_a_meaning():
-    assert said("abstract in item a; in out item b; standard part c;") == [
+    assert list_diagnostics("abstract in item a; in out item b; standard part c;") == [
         "1:10 SM196 'in' stands after 'abstract'",
         "1:24 SM196 'out' and 'in' exclude one another",
         "1:36 SM196 'standard' cannot stand before this declaration",
     ]
-    assert said("standard library package P { in abstract ref item a; end item b; }") == []
-    assert said("const end feature a; abstract class B;", "kerml") == []
+    assert (
+        list_diagnostics("standard library package P { in abstract ref item a; end item b; }") == []
+    )
+    assert list_diagnostics("const end feature a; abstract class B;", "kerml") == []
 
 
-def test_sm197_every_import_says_for_whom():
-    assert said("import A::*; public import B; package P { import C::**; }") == [
+def test_sm197_every_import_needs_a_visibility():
+    assert list_diagnostics("import A::*; public import B; package P { import C::**; }") == [
         "1:1 SM197 the import has no visibility",
         "1:43 SM197 the import has no visibility",
     ]
 
 
-def test_sm198_what_is_nested_too_deep_is_not_read():
+def test_sm198_text_nested_more_than_200_levels_deep_is_not_read():
     fits, deep = ("part p { " * n + "}" * n for n in (200, 201))
-    assert said(fits) == []
-    assert said(deep) == ["1:1808 SM198 this is nested more than 200 levels deep and is not read"]
+    assert list_diagnostics(fits) == []
+    assert list_diagnostics(deep) == [
+        "1:1808 SM198 this is nested more than 200 levels deep and is not read"
+    ]
 
 
 @pytest.mark.parametrize(
@@ -246,58 +256,60 @@ def test_sm198_what_is_nested_too_deep_is_not_read():
     ],
     ids=["braces", "parentheses", "signs", "sums"],
 )
-def test_sm198_ten_thousand_levels_are_one_message(text):
-    assert [line.split()[1] for line in said(text) if "SM191" not in line] == ["SM198"]
+def test_sm198_ten_thousand_levels_are_one_diagnostic(text):
+    assert [line.split()[1] for line in list_diagnostics(text) if "SM191" not in line] == ["SM198"]
 
 
-def test_a_long_row_of_operators_is_flat_and_not_deep():
-    for rows in (" + ", " - "), (" and ",), (" * ", " / "):
-        row = "x" + "".join(rows[n % len(rows)] + "x" for n in range(1_000))
+def test_a_long_chain_of_operators_is_not_nested():
+    for operators in (" + ", " - "), (" and ",), (" * ", " / "):
+        chain = "x" + "".join(operators[n % len(operators)] + "x" for n in range(1_000))
         sink = Sink()
-        parse(f"attribute x; attribute a = {row};", "m.sysml", "sysml", sink)
+        parse(f"attribute x; attribute a = {chain};", "m.sysml", "sysml", sink)
         assert list(sink) == []
 
 
-def test_sm198_rows_within_one_another_are_deep():
+def test_sm198_chains_of_operators_in_parentheses_are_nested():
     deep = "1 + 2 * (" * 101 + "1" + ")" * 101
-    assert [line.split()[1] for line in said(f"attribute a = {deep};")] == ["SM198"]
+    assert [line.split()[1] for line in list_diagnostics(f"attribute a = {deep};")] == ["SM198"]
 
 
-def test_a_long_sequence_is_not_deep():
+def test_a_long_sequence_is_not_nested():
     document = parse(f"attribute a = ({'1, ' * 3_000}1);", "m.sysml", "sysml", Sink())
     literals = [node for node in document.root.walk() if node.kind == "LiteralInteger"]
     assert len(literals) == 3_001
 
 
-def test_sm199_each_usage_has_its_own_words():
-    assert [line.split()[1] for line in said("part a connect b to c; connect b to c;")] == ["SM199"]
+def test_sm199_a_clause_of_another_kind_of_usage_is_reported():
+    assert [
+        line.split()[1] for line in list_diagnostics("part a connect b to c; connect b to c;")
+    ] == ["SM199"]
 
 
-def test_sm199_parallel_goes_with_states():
-    assert said("state s parallel { } state def T parallel { }") == []
-    assert said("part p parallel { }") == [
+def test_sm199_only_states_are_parallel():
+    assert list_diagnostics("state s parallel { } state def T parallel { }") == []
+    assert list_diagnostics("part p parallel { }") == [
         "1:1 SM199 'parallel' goes with states, not with this declaration"
     ]
 
 
-def test_errors_of_one_line_do_not_flood():
-    assert len(said("part a : b c d e f g;\n" * 3)) == 3
+def test_one_line_has_one_syntax_error_at_most():
+    assert len(list_diagnostics("part a : b c d e f g;\n" * 3)) == 3
 
 
-def test_of_very_many_errors_the_first_hundred_are_told():
-    assert len(said("part a : ;\n" * 1_000)) == 100
+def test_the_first_hundred_syntax_errors_of_a_file_are_reported():
+    assert len(list_diagnostics("part a : ;\n" * 1_000)) == 100
 
 
-def test_the_last_error_that_is_told_says_that_it_is_the_last():
+def test_the_hundredth_syntax_error_has_a_note_about_the_limit():
     sink = Sink()
     parse("part a : ;\n" * 1_000, "a.sysml", "sysml", sink)
     notes = ("of one file no more than 100 syntax errors are reported",)
-    assert [one.notes for one in sink] == [()] * 99 + [notes]
+    assert [diagnostic.notes for diagnostic in sink] == [()] * 99 + [notes]
 
 
 @pytest.mark.parametrize("text", ["", " \n", "// nothing", "\ufeff"])
-def test_nothing_is_no_error(text):
-    assert understood(text) == []
+def test_an_empty_text_is_valid(text):
+    assert parse_outline(text) == []
 
 
 @pytest.mark.parametrize("marks", [0, 1, 2])
@@ -308,11 +320,11 @@ def test_an_error_is_located_at_its_byte_after_any_byte_order_marks(marks):
     assert [error.subject.place.offset for error in sink] == [source.data.index(b";")]
 
 
-def test_a_file_in_another_encoding_is_one_message():
+def test_a_file_in_another_encoding_has_one_diagnostic():
     text = "package P { part x; }".encode("utf-16").decode("utf-8", "replace")
-    assert said(text) == ["1:1 SM194 the file is not written in UTF-8"]
+    assert list_diagnostics(text) == ["1:1 SM194 the file is not written in UTF-8"]
 
 
 @pytest.mark.parametrize("text", ["\0", "\ufffd\ufffd", "'", '"', "/*", "}", "{", ";", "§" * 99])
-def test_what_is_no_text_at_all_is_told(text):
-    assert said(text)
+def test_a_text_without_any_declaration_is_reported(text):
+    assert list_diagnostics(text)

@@ -1,4 +1,4 @@
-"""The parser's tables: LALR(1), the same for the same grammar, and loaded without Lark."""
+"""The LALR(1) tables of the parser: generated reproducibly, shipped, and loaded without Lark."""
 
 import logging
 import subprocess
@@ -9,37 +9,37 @@ from lark import logger
 
 from sysmlc.language.text import lalr
 from sysmlc.language.text.builders import ACTIONS
-from sysmlc.language.text.table_generator import generate_tables as generate
+from sysmlc.language.text.table_generator import generate_tables
 
 LANGUAGES = ("kerml", "sysml")
 CONFLICTS = {"kerml": 13, "sysml": 4}
-"""Places where shifting is right: dangling else, a list of parts of a declaration, and such."""
+"""Conflicts in which shifting is right, such as the dangling else."""
 
 
 @pytest.mark.parametrize("language", LANGUAGES)
-def test_a_grammar_has_only_the_conflicts_that_are_known(language, caplog):
+def test_a_grammar_has_no_new_conflicts(language, caplog):
     with caplog.at_level(logging.DEBUG, logger=logger.name):
-        generate(lalr.read_grammar(language))
-    conflicts = [one for one in caplog.messages if one.startswith("Shift/Reduce")]
+        generate_tables(lalr.read_grammar(language))
+    conflicts = [message for message in caplog.messages if message.startswith("Shift/Reduce")]
     assert len(conflicts) == CONFLICTS[language]
 
 
 @pytest.mark.parametrize("language", LANGUAGES)
 def test_equal_grammars_have_equal_tables(language):
     grammar = lalr.read_grammar(language)
-    assert generate(grammar) == generate(grammar)
+    assert generate_tables(grammar) == generate_tables(grammar)
 
 
 @pytest.mark.parametrize("language", LANGUAGES)
-def test_every_rule_has_a_function_that_builds_its_part(language):
+def test_every_rule_of_a_grammar_has_a_function_that_builds_its_node(language):
     names = {name for _, _, name, _ in lalr.load_tables(language).rules}
     assert names - {""} <= set(ACTIONS[language])
 
 
-def test_all_functions_are_used():
-    used = {name for one in LANGUAGES for _, _, name, _ in lalr.load_tables(one).rules}
-    known = {name for one in LANGUAGES for name in ACTIONS[one]}
-    assert known <= used
+def test_every_building_function_is_used_by_a_rule():
+    rules = [rule for language in LANGUAGES for rule in lalr.load_tables(language).rules]
+    defined = {name for language in LANGUAGES for name in ACTIONS[language]}
+    assert defined <= {name for _, _, name, _ in rules}
 
 
 @pytest.mark.parametrize("language", LANGUAGES)
@@ -48,7 +48,7 @@ def test_words_are_reserved_in_their_language(language):
     assert ("part" in words, "classifier" in words) == (language == "sysml", language == "kerml")
 
 
-def test_shipped_tables_of_another_grammar_are_not_taken(tmp_path, monkeypatch):
+def test_shipped_tables_of_another_grammar_are_not_used(tmp_path, monkeypatch):
     monkeypatch.setattr(lalr, "SHIPPED", tmp_path)
     path = lalr.write_tables("sysml", tmp_path)
     shipped = lalr._read_shipped("sysml")
@@ -58,13 +58,13 @@ def test_shipped_tables_of_another_grammar_are_not_taken(tmp_path, monkeypatch):
     assert lalr._read_shipped("sysml") is None
 
 
-def test_missing_tables_are_generated_beside_the_code(tmp_path, monkeypatch):
+def test_missing_tables_are_generated_into_the_package(tmp_path, monkeypatch):
     monkeypatch.setattr(lalr, "SHIPPED", tmp_path / "generated")
     generated = lalr._generate("kerml")
     assert lalr._read_shipped("kerml") == generated
 
 
-def test_tables_are_generated_in_a_read_only_package(tmp_path, monkeypatch):
+def test_in_a_read_only_package_tables_are_generated_without_being_stored(tmp_path, monkeypatch):
     (tmp_path / "file").touch()
     monkeypatch.setattr(lalr, "SHIPPED", tmp_path / "file" / "generated")
     assert lalr._generate("kerml")
@@ -76,7 +76,7 @@ def test_a_process_that_has_tables_does_not_import_lark(tmp_path):
         "import sys; from sysmlc.diagnostics import Sink; from sysmlc.language.text import parse;"
         "parse('part x;', 'm', 'sysml', Sink()); print('lark' in sys.modules)"
     )
-    run = [sys.executable, "-c", code]
+    command = [sys.executable, "-c", code]
     env = {"SYSMLC_CACHE": str(tmp_path), "PATH": ""}
-    printed = [subprocess.run(run, capture_output=True, text=True, env=env) for _ in range(2)]
+    printed = [subprocess.run(command, capture_output=True, text=True, env=env) for _ in range(2)]
     assert printed[1].stdout == "False\n"

@@ -1,20 +1,20 @@
-"""Text becomes the tree that the standard's productions build."""
+"""The parser builds the trees that the productions of the standard describe."""
 
-from texts_v2 import understood
-
-
-def inner(text, language="sysml"):
-    """The outline of the first element's members."""
-    return [line[2:] for line in understood(text, language)[1:]]
+from tree_outlines import parse_outline
 
 
-def value(expression):
-    lines = understood(f"attribute x = {expression};")
-    return [line[2:] for line in lines[1:]]
+def parse_members(text, language="sysml"):
+    """Return the outline of the members of the first element."""
+    return [line[2:] for line in parse_outline(text, language)[1:]]
+
+
+def parse_value(expression):
+    """Return the outline of the value of an attribute."""
+    return parse_members(f"attribute x = {expression};")
 
 
 def test_a_package_owns_its_members_and_a_definition_its_features():
-    assert understood("package P { part def <c> Cell :> Unit { private part arm; } }") == [
+    assert parse_outline("package P { part def <c> Cell :> Unit { private part arm; } }") == [
         "OwningMembership Package P",
         "  OwningMembership PartDefinition <c> Cell Subclassification->Unit",
         "    FeatureMembership private PartUsage arm",
@@ -22,13 +22,13 @@ def test_a_package_owns_its_members_and_a_definition_its_features():
 
 
 def test_names_in_quotes_lose_quotes_and_escapes():
-    assert understood(r"part 'a \'b\' \\ c' : A::'x y'.z;") == [
+    assert parse_outline(r"part 'a \'b\' \\ c' : A::'x y'.z;") == [
         r"OwningMembership PartUsage a 'b' \ c FeatureTyping->A::x y.z"
     ]
 
 
 def test_specialisations_keep_the_order_of_the_text():
-    assert understood("part a : T, ~U [0..*] ordered nonunique :> b, c.d :>> e ::> f => g;") == [
+    assert parse_outline("part a : T, ~U [0..*] ordered nonunique :> b, c.d :>> e ::> f => g;") == [
         "OwningMembership PartUsage a isOrdered=True isUnique=False FeatureTyping->T "
         "ConjugatedPortTyping->U Subsetting->b Subsetting->c.d Redefinition->e "
         "ReferenceSubsetting->f CrossSubsetting->g",
@@ -38,8 +38,8 @@ def test_specialisations_keep_the_order_of_the_text():
     ]
 
 
-def test_prefixes_are_facts_and_metadata_comes_first():
-    assert understood("in abstract ref individual snapshot #m part x { part y; }") == [
+def test_prefixes_are_attributes_and_metadata_comes_first():
+    assert parse_outline("in abstract ref individual snapshot #m part x { part y; }") == [
         "OwningMembership PartUsage x direction=in isAbstract=True isIndividual=True "
         "isPortion=True portionKind=snapshot",
         "  OwningMembership MetadataUsage isPrefix=True FeatureTyping->m",
@@ -48,7 +48,7 @@ def test_prefixes_are_facts_and_metadata_comes_first():
 
 
 def test_operators_are_grouped_by_precedence():
-    assert value("not a or b + c * d ** e ** f == g") == [
+    assert parse_value("not a or b + c * d ** e ** f == g") == [
         "FeatureValue (=) OperatorExpression operator=or",
         "  ParameterMembership OperatorExpression operator=not",
         "    ParameterMembership FeatureReferenceExpression Membership->a",
@@ -67,7 +67,7 @@ def test_operators_are_grouped_by_precedence():
 
 
 def test_operators_of_one_level_group_to_the_left():
-    assert value("1 - 2 - 3") == [
+    assert parse_value("1 - 2 - 3") == [
         "FeatureValue (=) OperatorExpression operator=-",
         "  ParameterMembership OperatorExpression operator=-",
         "    ParameterMembership LiteralInteger value=1",
@@ -76,12 +76,12 @@ def test_operators_of_one_level_group_to_the_left():
     ]
 
 
-def test_parentheses_leave_a_chain_of_their_own():
-    assert value("a.b.c") == [
+def test_parentheses_start_a_feature_chain_of_their_own():
+    assert parse_value("a.b.c") == [
         "FeatureValue (=) FeatureChainExpression Membership->b.c",
         "  ParameterMembership FeatureReferenceExpression Membership->a",
     ]
-    assert value("(a.b).c") == [
+    assert parse_value("(a.b).c") == [
         "FeatureValue (=) FeatureChainExpression Membership->c",
         "  ParameterMembership FeatureChainExpression Membership->b",
         "    ParameterMembership FeatureReferenceExpression Membership->a",
@@ -89,7 +89,7 @@ def test_parentheses_leave_a_chain_of_their_own():
 
 
 def test_invocations_take_arguments_by_position_or_name():
-    assert value("A::f(1, x = 'é')->g { in y; y > 2.5e3 }") == [
+    assert parse_value("A::f(1, x = 'é')->g { in y; y > 2.5e3 }") == [
         "FeatureValue (=) InvocationExpression Membership->g",
         "  ParameterMembership InvocationExpression Membership->A::f",
         "    ParameterMembership LiteralInteger value=1",
@@ -104,8 +104,8 @@ def test_invocations_take_arguments_by_position_or_name():
     ]
 
 
-def test_types_and_metadata_in_expressions():
-    assert value("x istype T and x meta M") == [
+def test_operators_on_types_and_metadata_have_typed_features_as_operands():
+    assert parse_value("x istype T and x meta M") == [
         "FeatureValue (=) OperatorExpression operator=and",
         "  ParameterMembership OperatorExpression operator=istype",
         "    ParameterMembership FeatureReferenceExpression Membership->x",
@@ -116,8 +116,8 @@ def test_types_and_metadata_in_expressions():
     ]
 
 
-def test_a_type_ends_its_operation_for_what_follows():
-    assert value("1 + x as T < 2") == [
+def test_an_operator_behind_a_cast_applies_to_the_cast():
+    assert parse_value("1 + x as T < 2") == [
         "FeatureValue (=) OperatorExpression operator=<",
         "  ParameterMembership OperatorExpression operator=as",
         "    ParameterMembership OperatorExpression operator=+",
@@ -129,7 +129,7 @@ def test_a_type_ends_its_operation_for_what_follows():
 
 
 def test_a_sequence_nests_to_the_right():
-    assert value("(1, null, (true))") == [
+    assert parse_value("(1, null, (true))") == [
         "FeatureValue (=) OperatorExpression operator=,",
         "  ParameterMembership LiteralInteger value=1",
         "  ParameterMembership OperatorExpression operator=,",
@@ -138,8 +138,8 @@ def test_a_sequence_nests_to_the_right():
     ]
 
 
-def test_what_follows_a_bracket_tells_a_declaration_from_a_result():
-    assert inner("calc c { x [1]; x [kg] }") == [
+def test_a_semicolon_behind_a_bracket_makes_a_declaration_and_no_semicolon_a_result():
+    assert parse_members("calc c { x [1]; x [kg] }") == [
         "FeatureMembership ReferenceUsage x",
         "  OwningMembership MultiplicityRange",
         "    OwningMembership LiteralInteger value=1",
@@ -150,20 +150,20 @@ def test_what_follows_a_bracket_tells_a_declaration_from_a_result():
 
 
 def test_the_body_of_a_comment_loses_its_frame():
-    assert understood("/* one\n   * two\n\n     three */ doc /*\n * four\n */") == [
+    assert parse_outline("/* one\n   * two\n\n     three */ doc /*\n * four\n */") == [
         "OwningMembership Comment body=one\ntwo\n\nthree ",
         "OwningMembership Documentation body=four\n",
     ]
 
 
-def test_notes_are_nothing_and_may_stand_anywhere():
-    assert understood("part //* a { ; */ x // b ;\n : T;") == [
+def test_notes_may_stand_anywhere_and_add_nothing():
+    assert parse_outline("part //* a { ; */ x // b ;\n : T;") == [
         "OwningMembership PartUsage x FeatureTyping->T"
     ]
 
 
-def test_filtered_imports_import_into_a_package_of_their_own():
-    assert understood("private import all A::**[@M];") == [
+def test_a_filtered_import_imports_a_package_of_its_own():
+    assert parse_outline("private import all A::**[@M];") == [
         "- private NamespaceImport isImportAll=True",
         "  - Package",
         "    - public MembershipImport isRecursive=True importedMembership->A",
@@ -173,21 +173,21 @@ def test_filtered_imports_import_into_a_package_of_their_own():
 
 
 def test_connections_have_ends_with_names_and_multiplicities():
-    assert inner("interface i : I connect a ::> b.c to [1] d;") == [
+    assert parse_members("interface i : I connect a ::> b.c to [1] d;") == [
         "EndFeatureMembership PortUsage a ReferenceSubsetting->b.c",
         "EndFeatureMembership PortUsage ReferenceSubsetting->d",
         "  OwningMembership Feature",
         "    OwningMembership MultiplicityRange",
         "      OwningMembership LiteralInteger value=1",
     ]
-    assert inner("interface a ::> b to c;") == [
+    assert parse_members("interface a ::> b to c;") == [
         "EndFeatureMembership PortUsage a ReferenceSubsetting->b",
         "EndFeatureMembership PortUsage ReferenceSubsetting->c",
     ]
 
 
-def test_the_end_of_a_flow_is_what_has_the_feature_and_the_feature():
-    assert inner("flow of x : T from a.b.c to d;") == [
+def test_the_end_of_a_flow_consists_of_the_owner_of_the_feature_and_the_feature():
+    assert parse_members("flow of x : T from a.b.c to d;") == [
         "FeatureMembership PayloadFeature x FeatureTyping->T",
         "EndFeatureMembership FlowEnd ReferenceSubsetting->a.b",
         "  FeatureMembership ReferenceUsage Redefinition->c",
@@ -197,7 +197,7 @@ def test_the_end_of_a_flow_is_what_has_the_feature_and_the_feature():
 
 
 def test_ends_of_interfaces_are_ports_unless_they_say_ref():
-    assert inner("interface def I { end a; end ref b; end [1] port c; }") == [
+    assert parse_members("interface def I { end a; end ref b; end [1] port c; }") == [
         "FeatureMembership PortUsage a isEnd=True",
         "FeatureMembership ReferenceUsage b isEnd=True",
         "FeatureMembership PortUsage c isEnd=True",
@@ -208,7 +208,7 @@ def test_ends_of_interfaces_are_ports_unless_they_say_ref():
 
 
 def test_enumerated_values_are_variants():
-    assert inner("enum def E { a; enum b = 2; }") == [
+    assert parse_members("enum def E { a; enum b = 2; }") == [
         "VariantMembership EnumerationUsage a",
         "VariantMembership EnumerationUsage b",
         "  FeatureValue (=) LiteralInteger value=2",
@@ -216,7 +216,7 @@ def test_enumerated_values_are_variants():
 
 
 def test_the_body_of_metadata_redefines_attributes():
-    assert inner("@M { a = 1; :>> b; }") == [
+    assert parse_members("@M { a = 1; :>> b; }") == [
         "FeatureMembership ReferenceUsage Redefinition->a",
         "  FeatureValue (=) LiteralInteger value=1",
         "FeatureMembership ReferenceUsage Redefinition->b",
@@ -224,7 +224,7 @@ def test_the_body_of_metadata_redefines_attributes():
 
 
 def test_action_nodes_have_the_parameters_of_the_standard():
-    assert inner("action a { send x to y; assign b.c := 1; accept s after 2; }") == [
+    assert parse_members("action a { send x to y; assign b.c := 1; accept s after 2; }") == [
         "FeatureMembership SendActionUsage",
         "  ParameterMembership ReferenceUsage",
         "    FeatureValue (=) FeatureReferenceExpression Membership->x",
@@ -243,8 +243,10 @@ def test_action_nodes_have_the_parameters_of_the_standard():
     ]
 
 
-def test_structured_actions():
-    assert inner("action a { if b { } else if c { } while d { } until e; for i in f { } }") == [
+def test_structured_actions_have_conditions_and_bodies_as_parameters():
+    assert parse_members(
+        "action a { if b { } else if c { } while d { } until e; for i in f { } }"
+    ) == [
         "FeatureMembership IfActionUsage",
         "  ParameterMembership FeatureReferenceExpression Membership->b",
         "  ParameterMembership ActionUsage",
@@ -264,13 +266,13 @@ def test_structured_actions():
 
 
 def test_then_is_a_succession_in_actions_and_a_transition_after_a_state():
-    assert inner("action a { first start; then b; }") == [
+    assert parse_members("action a { first start; then b; }") == [
         "- Membership Membership->start",
         "FeatureMembership SuccessionAsUsage",
         "  EndFeatureMembership ReferenceUsage",
         "  EndFeatureMembership ReferenceUsage ReferenceSubsetting->b",
     ]
-    assert inner("state s { entry; then b; state b; then c; }") == [
+    assert parse_members("state s { entry; then b; state b; then c; }") == [
         "StateSubactionMembership (entry) ActionUsage",
         "FeatureMembership SuccessionAsUsage",
         "  EndFeatureMembership ReferenceUsage",
@@ -285,7 +287,7 @@ def test_then_is_a_succession_in_actions_and_a_transition_after_a_state():
 
 
 def test_transitions_have_source_trigger_guard_effect_and_target():
-    assert inner("state s { transition t first a accept e if g do send m then b; }") == [
+    assert parse_members("state s { transition t first a accept e if g do send m then b; }") == [
         "FeatureMembership TransitionUsage t Membership->a",
         "  ParameterMembership ReferenceUsage",
         "  ParameterMembership ReferenceUsage",
@@ -303,7 +305,7 @@ def test_transitions_have_source_trigger_guard_effect_and_target():
 
 def test_requirements_have_subjects_assumptions_and_guarantees():
     text = "requirement r { subject s : S; assume constraint a { s > 1 } require b; }"
-    assert inner(text) == [
+    assert parse_members(text) == [
         "SubjectMembership ReferenceUsage s FeatureTyping->S",
         "RequirementConstraintMembership (assumption) ConstraintUsage a",
         "  ResultExpressionMembership OperatorExpression operator=>",
@@ -313,8 +315,8 @@ def test_requirements_have_subjects_assumptions_and_guarantees():
     ]
 
 
-def test_satisfaction_binds_its_subject():
-    assert understood("assert not satisfy r by p.q;") == [
+def test_a_satisfaction_binds_its_subject():
+    assert parse_outline("assert not satisfy r by p.q;") == [
         "OwningMembership SatisfyRequirementUsage isNegated=True ReferenceSubsetting->r",
         "  SubjectMembership ReferenceUsage",
         "    FeatureValue (=) FeatureReferenceExpression Membership->p.q",
@@ -329,7 +331,7 @@ def test_kerml_has_types_features_and_relationships_of_its_own():
         connector from [1] a to b;
     }
     specialization z subtype A :> B;"""
-    assert understood(text, "kerml") == [
+    assert parse_outline(text, "kerml") == [
         "OwningMembership Class A isAbstract=True isSufficient=True Subclassification->B "
         "Disjoining->C Unioning->D Unioning->E",
         "  OwningMembership MultiplicityRange",
@@ -353,7 +355,7 @@ def test_kerml_has_types_features_and_relationships_of_its_own():
 
 def test_bindings_of_kerml_have_names_types_or_neither():
     text = "feature f { binding a = b; binding x of a = b; binding : B of a = b; }"
-    assert [line for line in inner(text, "kerml") if "Binding" in line] == [
+    assert [line for line in parse_members(text, "kerml") if "Binding" in line] == [
         "FeatureMembership BindingConnector",
         "FeatureMembership BindingConnector x",
         "FeatureMembership BindingConnector FeatureTyping->B",
