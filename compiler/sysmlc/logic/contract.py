@@ -11,7 +11,7 @@ from sysmlc.logic.formula import Formula
 
 
 class Owner(StrEnum):
-    """Who decides the value of a variable."""
+    """The side that decides the value of a variable: the environment or the system."""
 
     ENVIRONMENT = "env"
     SYSTEM = "sys"

@@ -8,7 +8,7 @@ from sysmlc.logic.formula import Literal
 
 
 def values(domain: Domain) -> Sequence[Literal]:
-    """Return all values, the least or first declared one first; a range is not expanded."""
+    """Return all values in order, the least or first declared one first; a range stays a range."""
     match domain:
         case BooleanDomain():
             return (False, True)
@@ -30,7 +30,7 @@ def size(domain: Domain) -> int:
 
 
 def contains(domain: Domain, value: Literal) -> bool:
-    """Return whether the value belongs to the domain, by its type too."""
+    """Return whether the value belongs to the domain; ``True`` is no integer."""
     match domain:
         case BooleanDomain():
             return isinstance(value, bool)

@@ -34,7 +34,7 @@ Evaluation = Callable[[Valuation, Valuation | None], Literal]
 
 
 def compile_evaluation(formula: Formula) -> Evaluation:
-    """Return ``value_of`` for one formula as a closure, for formulas that are evaluated often."""
+    """Return a closure that computes ``value_of`` faster, for a formula that is evaluated often."""
     match formula:
         case Const(value):
             return lambda now, then: value
@@ -122,8 +122,9 @@ def _pair_steps(
 
 
 def evaluate_on_lasso(formula: Formula, trace: Sequence[Valuation], loop: int) -> list[bool]:
-    """Return the truth of an LTL formula at each step of the infinite trace that returns to
-    *loop*.
+    """Return whether an LTL formula holds, for each step of an infinite trace.
+
+    The trace consists of *trace* and, repeated for ever, its steps from *loop* on.
     """
     match formula:
         case Apply(op, args) if op in _TEMPORAL:
@@ -146,8 +147,9 @@ def _shift(loop: int, column: Sequence[bool]) -> list[bool]:
 
 
 def _iterate_backwards(loop: int, stay: list[bool], goal: list[bool], start: bool) -> list[bool]:
-    """Iterate the expansion of an until operator backwards along the lasso; *start* selects weak
-    or strong until.
+    """Return at which steps ``stay until goal`` holds, as a fixpoint of its expansion law.
+
+    *start* is the value before the first round: false for strong until, true for weak until.
     """
     truth = [start] * len(goal)
     for _ in range(2 * len(goal)):

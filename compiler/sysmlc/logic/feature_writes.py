@@ -58,13 +58,19 @@ def iter_writes(graph: Graph, action: Element) -> Iterator[FeatureWrite]:
 
 
 def _iter_written_names(graph: Graph, action: Element) -> Iterator[str]:
-    """Yield the names that an action writes; a write action refers to its feature instead."""
+    """Yield the paths of the features that an action assigns or binds.
+
+    Write actions, which refer to their feature by an edge, are not considered.
+    """
     yield from (write.name for write in _iter_assignments(action))
     yield from _iter_bound_names(graph, action)
 
 
 def _iter_mentioned_names(graph: Graph, action: Element) -> Iterator[str]:
-    """Yield the last names of all features that an action may write, mostly without parsing."""
+    """Yield the last names of all features that an action may write.
+
+    Most bodies are searched without being parsed, so a name may belong to no write.
+    """
     if action.subkind == "write":
         yield from (feature.name for feature in graph.targets(action, Edge.CALLS))
     body = action.attrs.get("body")
@@ -93,7 +99,7 @@ def _iter_bound_names(graph: Graph, action: Element) -> Iterator[str]:
 
 
 def _parse_name(text: str) -> str | None:
-    """Return the path of names that a text is, None for another expression."""
+    """Return the path of names in a text; None if the text is another expression."""
     try:
         return name_of(parse_expression(text))
     except ExpressionError:
@@ -144,7 +150,10 @@ def _is_self(graph: Graph, pin: Element | None) -> bool:
 
 
 def _read_literal(graph: Graph, pin: Element) -> str | None:
-    """Return the literal of the value action whose flow enters the pin, else of the pin itself."""
+    """Return the literal that flows into the pin, as text; None if there is none.
+
+    It is the literal of the value action at the other end of the flow, or of the pin itself.
+    """
     source = _find_source(graph, pin)
     holder = source if source is not None and source.subkind == "value" else pin
     value = holder.attrs.get("value")
@@ -154,7 +163,7 @@ def _read_literal(graph: Graph, pin: Element) -> str | None:
 
 
 def _find_source(graph: Graph, pin: Element) -> Element | None:
-    """Return the action from which the only flow into a pin comes."""
+    """Return the action at the other end of the only flow into a pin; None for several flows."""
     flows = list(graph.sources(pin, Edge.FLOW_TARGET))
     source = graph.target(flows[0], Edge.FLOW_SOURCE) if len(flows) == 1 else None
     return graph.owner(source) if source is not None and source.kind is Kind.PIN else source
@@ -212,7 +221,7 @@ class WriterIndex:
         return self._candidates_by_name.get(name, [])
 
     def _iter_written_features(self, writer: Element, last_name: str) -> Iterator[Element | None]:
-        """Yield the features that an action writes by paths that end with the name."""
+        """Yield the features that the action writes, of those whose path ends with *last_name*."""
         if writer.subkind == "write":
             yield from self._graph.targets(writer, Edge.CALLS)
         for path in _iter_written_names(self._graph, writer):
@@ -231,7 +240,7 @@ class WriterIndex:
         return worklist[1:]
 
     def _find_visible(self, writer: Element, name: str) -> Element | None:
-        """Return the member of that name of the nearest scope around the writer, or a root."""
+        """Return the member called *name* in the nearest scope around the writer, else a root."""
         for scope in (writer, *self._graph.ancestors(writer)):
             member = self._find_member(scope, name)
             if member is not None:
@@ -239,7 +248,7 @@ class WriterIndex:
         return next((root for root in self._graph.roots() if root.name == name), None)
 
     def _find_member_of_value(self, element: Element, name: str) -> Element | None:
-        """Return the member of an element, or else of its type."""
+        """Return the member of that name of an element, or else of its type."""
         type_ = query.type_of(self._graph, element)
         return self._find_member(element, name) or (type_ and self._find_member(type_, name))
 
@@ -256,7 +265,7 @@ class WriterIndex:
 
 
 def _index_candidates(graph: Graph) -> dict[str, list[Element]]:
-    """Return the actions and activities by the last names of features that they may write."""
+    """Return the actions and activities that may write a feature, by the last name of its path."""
     candidates: dict[str, list[Element]] = {}
     for action in (*graph.of_kind(Kind.ACTION), *graph.of_kind(Kind.ACTIVITY)):
         for name in dict.fromkeys(_iter_mentioned_names(graph, action)):
@@ -265,6 +274,6 @@ def _index_candidates(graph: Graph) -> dict[str, list[Element]]:
 
 
 def find_label(graph: Graph, writer: Element) -> str:
-    """Return the name of a writer, or else of the nearest owner that has a name."""
+    """Return the name of a writer, or else of its nearest owner with a name."""
     elements = (writer, *graph.ancestors(writer))
     return next((element.name for element in elements if element.name), writer.subkind)

@@ -56,7 +56,7 @@ def read_formal(text: str, language: str, variables: Mapping[str, Domain]) -> Fo
 
 
 def describe_error(error: FormulaError, text: str) -> str:
-    """Return the message of an error with its column, and with its line if the text has several."""
+    """Return the message of an error with its column, and with its line in a longer text."""
     line, column = line_and_column(text, error.offset)
     location = f"line {line}, column {column}" if "\n" in text.strip() else f"column {column}"
     return f"{error} ({location})"
@@ -80,7 +80,7 @@ def read_temporal_logic(text: str, variables: Mapping[str, Domain]) -> Formula:
 
 
 class _TemporalReader(FormulaReader):
-    """Reader that rejects operators of the past over the future."""
+    """Reader that rejects operators of the past whose operands are about the future."""
 
     def _read_prefix(self, op: Op, min_precedence: int) -> Term:
         return self._check_past(op, super()._read_prefix(op, min_precedence))
@@ -223,7 +223,7 @@ class _SentenceReader:
         return condition
 
     def _read_count(self, *units: str) -> int:
-        """Read ``once``, ``twice`` or a number with a unit."""
+        """Read ``once``, ``twice``, or a number followed by one of *units*."""
         words = {"once": 1, "twice": 2}
         token = self._cursor.next
         if token.text.lower() in words:
@@ -246,7 +246,7 @@ class _SentenceReader:
         return self._fail(" or ".join(f"'{word}'" for word in words))
 
     def _accept(self, *words: str) -> bool:
-        """Read the words if all of them come next, in any letter case; return whether they do."""
+        """Consume the words if they come next, in any letter case; return whether they do."""
         start = self._cursor.mark()
         for word in words:
             if self._cursor.next.text.lower() != word:

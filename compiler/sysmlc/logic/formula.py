@@ -190,7 +190,7 @@ def iff(left: Formula, right: Formula) -> Formula:
 
 
 def compare(op: Op, left: Formula, right: Formula) -> Formula:
-    """Return a comparison of two values, or a sum or product of them."""
+    """Return *op*, a comparison or an arithmetic operation, applied to two values."""
     return _apply(op, (left, right))
 
 
@@ -200,18 +200,18 @@ def eq(left: Formula, right: Formula) -> Formula:
 
 
 def always(formula: Formula) -> Formula:
-    """Return that the formula holds in the current step and in every later step."""
+    """Return ``G formula``: it holds in the current step and in every later step."""
     return _apply(Op.ALWAYS, (formula,))
 
 
 def eventually(formula: Formula) -> Formula:
-    """Return that the formula holds in the current step or in a later step."""
+    """Return ``F formula``: it holds in the current step or in a later step."""
     return _apply(Op.EVENTUALLY, (formula,))
 
 
 @lru_cache(_CACHED_FORMULAS)
 def _apply(op: Op, args: tuple[Formula, ...]) -> Apply:
-    """Return ``Apply(op, args)`` from a cache."""
+    """Return ``Apply(op, args)``; the cache also keeps recent formulas alive."""
     return Apply(op, args)
 
 

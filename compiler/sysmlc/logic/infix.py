@@ -78,7 +78,7 @@ class FormulaReader:
         return term.formula
 
     def describe(self, term: Term) -> str:
-        """Return what messages call the term."""
+        """Return the term for messages: its name or value, or else the kind of its value."""
         match term.formula:
             case Var(name) | Const(name):
                 return f"'{str(name).lower() if isinstance(name, bool) else name}'"
@@ -152,7 +152,7 @@ class FormulaReader:
         return Term(f.compare(op, left.formula, right.formula), BOOLEAN, left.offset)
 
     def _convert_to_literal(self, term: Term, opposite: Term) -> Term:
-        """Return the literal that *term* names in the enumeration on the opposite side, if any."""
+        """Return *term* as a literal of the enumeration of *opposite*; unchanged if it is none."""
         if not isinstance(opposite.kind, EnumerationDomain):
             return term
         literals = opposite.kind.literals
@@ -184,7 +184,10 @@ class FormulaReader:
         return self.read_operand()
 
     def _is_variable(self, token: Token) -> bool:
-        """Whether a word such as ``G`` is a variable: it is declared, and no operand follows."""
+        """Whether a word that is also an operator, such as ``G``, is a variable here.
+
+        It is if a variable of this name is declared and no operand follows.
+        """
         follower = self.cursor.after_next
         is_opening = follower.text in self._syntax.prefix or follower.text in self._syntax.brackets
         is_operand = follower.kind in ("name", "number", "string") or is_opening
@@ -222,7 +225,10 @@ class FormulaReader:
         return Term(term.formula, term.kind, opening.offset)
 
     def resolve_name(self, token: Token) -> Term:
-        """Return the term that a name means, which is consumed already. Raises FormulaError."""
+        """Return the variable or literal that *token*, which is consumed already, denotes.
+
+        Raises FormulaError.
+        """
         if token.text in self.variables:
             return self.build_variable(token, self.cursor.accept("'"))
         if any(domains.contains(domain, token.text) for domain in self.variables.values()):
@@ -243,7 +249,10 @@ def kind_of(domain: Domain) -> Kind:
 
 
 def _compare_enumerations(op: Op, left: Term, right: Term) -> Formula:
-    """Compare two enumerations; different ones are equal where both have a literal they share."""
+    """Compare values of two enumerations by the names of their literals.
+
+    Values of different enumerations are equal if both are the same literal of both enumerations.
+    """
     left_literals, right_literals = (getattr(term.kind, "literals", ()) for term in (left, right))
     if left_literals == right_literals:
         return f.compare(op, left.formula, right.formula)

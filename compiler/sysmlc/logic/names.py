@@ -6,8 +6,7 @@ from functools import lru_cache
 _RESERVED = frozenset(
     ["G", "F", "X", "U", "R", "W", "V", "true", "false", "TRUE", "FALSE", "mod", "M", "xor"]
 )
-
-
+"""Words with a meaning in one of the formula formats."""
 _INVALID_CHARACTERS = re.compile(r"[^0-9A-Za-z_]+")
 _MAX_LENGTH = 40
 _CACHED_NAMES = 1 << 12

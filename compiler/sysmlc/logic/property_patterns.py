@@ -4,6 +4,10 @@ Patterns and scopes are those of Dwyer, Avrunin and Corbett (Patterns in Propert
 for Finite-State Verification, 1999). Every pattern is written as ``G p`` or ``G F p`` where p is
 about the present and the past, so that history bits bring it into GR(1); the tests compare the
 patterns with the published formulas. "After Q" means after the first Q.
+
+Each function returns a formula, and its docstring states what the formula says. *inside* is true in
+the steps of the scope, *missing* where a wanted condition does not hold, *pending* from the step of
+an obligation until the step that fulfils it.
 """
 
 from msgspec import Struct
@@ -77,7 +81,7 @@ def bounded_response(scope: Scope, trigger: Formula, answer: Formula, steps: int
 
 
 def bounded_existence(scope: Scope, counted: Formula, times: int) -> Formula:
-    """At most *times* phases inside the scope satisfy the condition."""
+    """The condition holds in at most *times* runs of consecutive steps inside the scope."""
     phase = f.both(counted, _is_inside(scope))
     begins = f.both(phase, f.negate(_previous(phase)))
     has_more = _once_inside(scope, begins)
@@ -137,7 +141,11 @@ def _once_inside(scope: Scope, formula: Formula) -> Formula:
 
 
 def _forbid(scope: Scope, bad: Formula) -> Formula:
-    """``bad`` never holds; in a scope that needs an end, only if the end comes."""
+    """``bad`` never holds inside the scope.
+
+    "Before R" and "between Q and R" are scopes only if R comes: the formula is about the step
+    before R, and looks back from there.
+    """
     if scope.kind in ("globally", "after", "until"):
         return _never(bad)
     if scope.kind == "before":
@@ -162,7 +170,7 @@ def _forbid_at_end(scope: Scope, bad: Formula) -> Formula:
 
 
 def _is_missing(bad: Formula) -> bool:
-    """Whether the fault is the absence of something, which a scope without steps has too."""
+    """Whether *bad* states that something is missing, as it is in a scope without steps."""
     return isinstance(bad, Apply) and bad.op is Op.NOT
 
 

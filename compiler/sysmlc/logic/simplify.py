@@ -14,7 +14,7 @@ _MAX_VALUATIONS = 4096
 _CACHED_ANSWERS = 1 << 16
 """Cache size: similar machines ask the same questions."""
 _MAX_VALUATIONS_REDUNDANCY = 300
-"""Most valuations tried to shorten a formula for its reader."""
+"""Most valuations tried to decide whether a part of a formula is redundant."""
 
 
 def substitute(formula: Formula, values: Mapping[str, Formula]) -> Formula:
@@ -56,15 +56,15 @@ def _fold_equivalence(left: Formula, right: Formula) -> Formula:
 
 
 def is_satisfiable(
-    formula: Formula, known: Mapping[str, Domain], limit: int = _MAX_VALUATIONS
+    formula: Formula, domain_by_name: Mapping[str, Domain], limit: int = _MAX_VALUATIONS
 ) -> bool:
-    """Return whether some values make the formula true; also if there are too many to try.
+    """Return whether some values make the formula true, or there are too many values to try.
 
     Primed and unprimed variables are independent of one another.
     """
     if isinstance(formula, Const):
         return bool(formula.value)
-    domains_of = {v: known[v.name] for v in f.variables(formula)}
+    domains_of = {v: domain_by_name[v.name] for v in f.variables(formula)}
     if _count(domains_of.values(), limit) > limit:
         return True
     return _is_satisfiable(formula, tuple(domains_of.items()))
@@ -97,7 +97,7 @@ def _is_satisfiable(formula: Formula, variables: tuple[tuple[Var, Domain], ...])
 
 
 def _split_disjunction(formula: Formula) -> tuple[Formula, ...]:
-    """Return the operands of a disjunction in any spelling; nothing for another formula."""
+    """Return the operands of a disjunction, also of ``a -> b`` and ``!(a & b)``; else nothing."""
     match formula:
         case Apply(Op.OR, args):
             return args
@@ -110,7 +110,7 @@ def _split_disjunction(formula: Formula) -> tuple[Formula, ...]:
 
 
 def _split_any_conjunction(formula: Formula) -> tuple[Formula, ...]:
-    """Return the operands of a conjunction in any spelling, else the formula alone."""
+    """Return the operands of a conjunction, also of ``!(a | b)``; else the formula alone."""
     match formula:
         case Apply(Op.NOT, (Apply(Op.OR, args),)):
             return tuple(map(f.negate, args))
@@ -164,13 +164,13 @@ def _has_model(formula: Formula, variable_domains: Mapping[Var, Domain]) -> bool
     )
 
 
-def simplify_constant(formula: Formula, known: Mapping[str, Domain]) -> Formula:
+def simplify_constant(formula: Formula, domain_by_name: Mapping[str, Domain]) -> Formula:
     """Return true or false if the formula is constant, else the formula."""
     if isinstance(formula, Const):
         return formula
-    if not is_satisfiable(formula, known):
+    if not is_satisfiable(formula, domain_by_name):
         return f.FALSE
-    return formula if is_satisfiable(f.negate(formula), known) else f.TRUE
+    return formula if is_satisfiable(f.negate(formula), domain_by_name) else f.TRUE
 
 
 @lru_cache(_CACHED_ANSWERS)
@@ -189,37 +189,37 @@ def _solutions(formula: Formula, variable: Var, domain: Domain) -> frozenset[Lit
             return frozenset(value for value, row in rows if truth(row, row))
 
 
-# -- tidying -----------------------------------------------------------------------------------
+# -- redundant parts --------------------------------------------------------------------------
 
 
 def remove_redundant(
-    formula: Formula, known: Mapping[str, Domain], facts: tuple[Formula, ...] = ()
+    formula: Formula, domain_by_name: Mapping[str, Domain], facts: tuple[Formula, ...] = ()
 ) -> Formula:
     """Return an equivalent formula, given the facts, without parts that the rest implies."""
-    return _remove_redundant_cached(formula, tuple(known.items()), facts)
+    return _remove_redundant_cached(formula, tuple(domain_by_name.items()), facts)
 
 
 @lru_cache(_CACHED_ANSWERS)
 def _remove_redundant_cached(
-    formula: Formula, known: tuple[tuple[str, Domain], ...], facts: tuple[Formula, ...]
+    formula: Formula, domain_by_name: tuple[tuple[str, Domain], ...], facts: tuple[Formula, ...]
 ) -> Formula:
-    return _remove_redundant(formula, dict(known), facts)
+    return _remove_redundant(formula, dict(domain_by_name), facts)
 
 
 def _remove_redundant(
-    formula: Formula, known: Mapping[str, Domain], facts: tuple[Formula, ...]
+    formula: Formula, domain_by_name: Mapping[str, Domain], facts: tuple[Formula, ...]
 ) -> Formula:
     match formula:
         case Apply(Op.AND, args):
-            return _remove_redundant_conjuncts(args, known, facts)
+            return _remove_redundant_conjuncts(args, domain_by_name, facts)
         case Apply(Op.OR, args):
-            return f.either(*(_remove_redundant(arg, known, facts) for arg in args))
+            return f.either(*(_remove_redundant(arg, domain_by_name, facts) for arg in args))
         case Apply(Op.NOT, (inner,)):
-            return opposite(_remove_redundant(inner, known, facts))
+            return opposite(_remove_redundant(inner, domain_by_name, facts))
         case Apply(Op.IMPLIES, (left, right)):
-            return f.implies(_remove_redundant(left, known, facts), right)
+            return f.implies(_remove_redundant(left, domain_by_name, facts), right)
         case _:
-            return _decide_atom(formula, known, facts)
+            return _decide_atom(formula, domain_by_name, facts)
 
 
 def opposite(formula: Formula) -> Formula:
@@ -230,31 +230,36 @@ def opposite(formula: Formula) -> Formula:
 
 
 def _remove_redundant_conjuncts(
-    args: tuple[Formula, ...], known: Mapping[str, Domain], facts: tuple[Formula, ...]
+    args: tuple[Formula, ...], domain_by_name: Mapping[str, Domain], facts: tuple[Formula, ...]
 ) -> Formula:
     parts = list(args)
     for index in reversed(range(len(parts))):
         rest = (*facts, *parts[:index], *parts[index + 1 :])
-        parts[index] = _remove_redundant(parts[index], known, rest)
+        parts[index] = _remove_redundant(parts[index], domain_by_name, rest)
     return f.both(*parts)
 
 
 def _decide_atom(
-    formula: Formula, known: Mapping[str, Domain], facts: tuple[Formula, ...]
+    formula: Formula, domain_by_name: Mapping[str, Domain], facts: tuple[Formula, ...]
 ) -> Formula:
-    near = _select_facts(formula, known, facts)
-    if not is_satisfiable(f.both(near, f.negate(formula)), known, _MAX_VALUATIONS_REDUNDANCY):
+    """Return true or false if the facts decide the formula, else the formula."""
+    relevant = _select_facts(formula, domain_by_name, facts)
+    if not is_satisfiable(
+        f.both(relevant, f.negate(formula)), domain_by_name, _MAX_VALUATIONS_REDUNDANCY
+    ):
         return f.TRUE
-    if not is_satisfiable(f.both(near, formula), known, _MAX_VALUATIONS_REDUNDANCY):
+    if not is_satisfiable(f.both(relevant, formula), domain_by_name, _MAX_VALUATIONS_REDUNDANCY):
         return f.FALSE
     return formula
 
 
 def _select_facts(
-    formula: Formula, known: Mapping[str, Domain], facts: tuple[Formula, ...]
+    formula: Formula, domain_by_name: Mapping[str, Domain], facts: tuple[Formula, ...]
 ) -> Formula:
-    """Return the facts about the formula's variables, simplest first, within the valuation
-    limit.
+    """Return the conjunction of the facts that may decide the formula.
+
+    These share a variable with it. Facts with fewer variables are preferred, and facts with which
+    there would be too many valuations to try are omitted.
     """
     selected_variables = set(f.variables(formula))
     parts = [part for fact in facts for part in f.split_conjunction(fact)]
@@ -263,7 +268,9 @@ def _select_facts(
     for variables, part in sorted(candidates, key=lambda candidate: len(candidate[0])):
         if variables.isdisjoint(f.variables(formula)):
             continue
-        variable_domains = (known[variable.name] for variable in selected_variables | variables)
+        variable_domains = (
+            domain_by_name[variable.name] for variable in selected_variables | variables
+        )
         if _count(variable_domains, _MAX_VALUATIONS_REDUNDANCY) <= _MAX_VALUATIONS_REDUNDANCY:
             selected_variables |= variables
             chosen.append(part)

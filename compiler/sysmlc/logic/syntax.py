@@ -143,12 +143,12 @@ class Cursor:
 
     @property
     def after_next(self) -> Token:
-        """The token behind the next one."""
+        """The token that follows ``next``."""
         return self._tokens[min(self._index + 1, len(self._tokens) - 1)]
 
     @property
     def is_at_end(self) -> bool:
-        """Whether all tokens are consumed."""
+        """Whether all tokens before the ``end`` are consumed."""
         return self.next.kind == "end"
 
     def mark(self) -> int:
@@ -182,10 +182,13 @@ class Cursor:
             self.fail(f"{' or '.join(map(repr, texts))} is expected")
         return self.take()
 
-    def expect_kind(self, kind: str, what: str) -> Token:
-        """Consume a token of the kind, which the message calls *what*. Raises FormulaError."""
+    def expect_kind(self, kind: str, description: str) -> Token:
+        """Consume the next token, which must have the kind. Raises FormulaError.
+
+        *description* is the kind in the words of the message.
+        """
         if self.next.kind != kind:
-            self.fail(f"{what} is expected")
+            self.fail(f"{description} is expected")
         return self.take()
 
     def expect_end(self) -> None:
@@ -202,17 +205,17 @@ class Cursor:
         return -int(token.text) if is_negative else int(token.text)
 
     def skip_to(self, *texts: str) -> None:
-        """Move to the next of the texts, or to the end."""
+        """Consume the tokens before the next one of the texts, or all tokens."""
         while not self.is_at_end and not self.is_next(*texts):
             self.take()
 
     def skip_past(self, *texts: str) -> None:
-        """Move behind the next of the texts, or to the end."""
+        """Consume the tokens up to and including the next one of the texts, or all tokens."""
         while not self.is_at_end and not self.accept(*texts):
             self.take()
 
     def fail(self, wanted: str = "") -> NoReturn:
-        """Raise FormulaError about the next token."""
+        """Raise FormulaError about the next token; *wanted* is the first part of the message."""
         token = self.next
         actual = "the end" if token.kind == "end" else f"'{token.text}'"
         reason = f"{wanted}, not {actual}" if wanted else f"{actual} is not expected here"

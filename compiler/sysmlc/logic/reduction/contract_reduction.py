@@ -57,7 +57,7 @@ def _reduce_conjuncts(
 
 
 def is_gr1(conjunct: Conjunct) -> bool:
-    """Whether the conjunct is in GR(1) without a reduction."""
+    """Return whether the conjunct is in GR(1) as it is."""
     if conjunct.class_ is Class.LIVENESS:
         return not has_primes(conjunct.formula)
     return conjunct.class_ is not Class.OTHER
@@ -73,7 +73,7 @@ def as_ltl(conjunct: Conjunct) -> Formula:
 
 
 def add_history_bits(contract: Contract) -> Contract:
-    """Replace the operators of the past in a contract by history bits.
+    """Return the contract with history bits in place of operators of the past.
 
     Raises NotReducibleError if an operator of the past is applied to the future.
     """

@@ -68,12 +68,12 @@ class FormulaReduction:
                 has_occurred = f.both(self._has_steps(depth), self._look_back(inner, depth))
                 yield Class.LIVENESS, self._last_step(has_occurred)
             case Apply(Op.ALWAYS, (inner,)):
-                yield from self._require(f.TRUE, inner)
+                yield from self._reduce_obligation(f.TRUE, inner)
             case _:
-                yield from self._require(self._is_first_step(), formula)
+                yield from self._reduce_obligation(self._is_first_step(), formula)
 
     def replace_past(self, formula: Formula) -> Formula:
-        """Replace the operators of the past by history bits."""
+        """Return the formula with history bits in place of operators of the past."""
         if not isinstance(formula, Apply):
             return formula
         args = tuple(self.replace_past(arg) for arg in formula.args)
@@ -94,7 +94,7 @@ class FormulaReduction:
 
     # -- obligations: G (trigger -> body) --------------------------------------------------------
 
-    def _require(self, trigger: Formula, body: Formula) -> Iterator[Part]:
+    def _reduce_obligation(self, trigger: Formula, body: Formula) -> Iterator[Part]:
         """Reduce ``G (trigger -> body)``."""
         if not has_future(body):
             yield Class.SAFETY, f.implies(trigger, body)
@@ -104,39 +104,39 @@ class FormulaReduction:
         if bounded is not None:
             yield Class.SAFETY, bounded
             return
-        yield from self._require_operator(trigger, body, body.op)
+        yield from self._reduce_by_operator(trigger, body, body.op)
 
-    def _require_operator(self, trigger: Formula, body: Apply, op: Op) -> Iterator[Part]:
-        """Reduce an obligation by the outermost operator of its body."""
+    def _reduce_by_operator(self, trigger: Formula, body: Apply, op: Op) -> Iterator[Part]:
+        """Reduce an obligation by *op*, the outermost operator of its body."""
         args = body.args
         if op is Op.AND:
             for arg in args:
-                yield from self._require(trigger, arg)
+                yield from self._reduce_obligation(trigger, arg)
         elif op is Op.IMPLIES and not has_future(args[0]):
-            yield from self._require(f.both(trigger, args[0]), args[1])
+            yield from self._reduce_obligation(f.both(trigger, args[0]), args[1])
         elif op is Op.OR and sum(map(has_future, args)) == 1:
             negated = [f.negate(arg) for arg in args if not has_future(arg)]
             (future,) = (arg for arg in args if has_future(arg))
-            yield from self._require(f.both(trigger, *negated), future)
+            yield from self._reduce_obligation(f.both(trigger, *negated), future)
         elif op is Op.NOT:
-            yield from self._require(trigger, _push_negation(args[0]))
+            yield from self._reduce_obligation(trigger, _push_negation(args[0]))
         elif op is Op.NEXT:
             _check_unprimed(trigger, body)
-            yield from self._require(self._previous(trigger), args[0])
+            yield from self._reduce_obligation(self._previous(trigger), args[0])
         elif op is Op.ALWAYS:
-            yield from self._require(self._history.once(trigger, self._origin), args[0])
-        elif op in _WAITING and not any(map(has_future, args)):
-            yield from self._require_waiting(trigger, body)
+            yield from self._reduce_obligation(self._history.once(trigger, self._origin), args[0])
+        elif op in _UNTIL_OPERATORS and not any(map(has_future, args)):
+            yield from self._reduce_until(trigger, body)
         elif op is Op.EVENTUALLY:
-            yield from self._require_eventually(trigger, body, args[0])
+            yield from self._reduce_eventually(trigger, body, args[0])
         else:
             raise NotReducibleError(body)
 
-    def _require_waiting(self, trigger: Formula, body: Apply) -> Iterator[Part]:
-        """Reduce until, weak until, release and eventually over the present.
+    def _reduce_until(self, trigger: Formula, body: Apply) -> Iterator[Part]:
+        """Reduce until, weak until, release or eventually, whose operands are about the present.
 
-        A bit stores that an obligation is pending: the trigger held, and the goal did not hold
-        since then.
+        A bit stores whether an obligation is pending: the trigger has held, and the goal has not
+        held since then.
         """
         if any(map(has_primes, body.args)):
             raise NotReducibleError(body)
@@ -152,18 +152,18 @@ class FormulaReduction:
         if body.op is not Op.WEAK_UNTIL:
             yield Class.LIVENESS, f.negate(pending)
 
-    def _require_eventually(self, trigger: Formula, body: Apply, inner: Formula) -> Iterator[Part]:
-        """Reduce ``F inner`` where *inner* is about a bounded number of steps, or is ``F q`` or
-        ``a & F b``.
+    def _reduce_eventually(self, trigger: Formula, body: Apply, inner: Formula) -> Iterator[Part]:
+        """Reduce ``F inner``, where *inner* needs a bounded number of steps or contains one F.
 
-        In ``F (a & F b)`` the first a can be taken, because every b after another a follows it too.
+        The latter is ``F F q`` or ``F (a & F b)``. A b that follows a later a also follows the
+        first a, so it is enough to wait for the first a and then for b.
         """
         depth = _next_depth(inner)
         if depth and not has_primes(body):
             _check_unprimed(trigger, body)
             has_occurred = f.both(self._has_steps(depth), self._look_back(inner, depth))
             goal = f.eventually(self._last_step(has_occurred))
-            yield from self._require(self._shift_back(trigger, depth), goal)
+            yield from self._reduce_obligation(self._shift_back(trigger, depth), goal)
             return
         parts = f.split_conjunction(inner)
         future = [part for part in parts if has_future(part)]
@@ -174,29 +174,29 @@ class FormulaReduction:
         ):
             raise NotReducibleError(body)
         present = f.both(*(part for part in parts if part != future[0]))
-        yield from self._require_in_order(trigger, body, present, future[0])
+        yield from self._reduce_sequence(trigger, body, present, future[0])
 
-    def _require_in_order(
+    def _reduce_sequence(
         self, trigger: Formula, body: Apply, present: Formula, future: Formula
     ) -> Iterator[Part]:
-        """Reduce an obligation that *present* holds at some step, and *future* from that step."""
+        """Reduce the obligation that *present* holds in some step, and *future* in that step."""
         is_missing = f.negate(present)
         if has_primes(present) or has_primes(trigger):
             raise NotReducibleError(body)
         if present == f.TRUE:
-            yield from self._require(trigger, future)
+            yield from self._reduce_obligation(trigger, future)
             return
         pending = self._since(is_missing, f.both(trigger, is_missing))
         yield Class.LIVENESS, f.negate(pending)
         is_due = f.either(trigger, self._previous(pending))
-        yield from self._require(f.both(present, is_due), future)
+        yield from self._reduce_obligation(f.both(present, is_due), future)
 
     # -- bounded look-ahead: X --------------------------------------------------------------------
 
     def _reduce_next(self, trigger: Formula, body: Formula) -> Formula | None:
-        """Reduce a body whose only temporal operator is X; None for any other body.
+        """Return the obligation for a body with no temporal operator but X; None for another body.
 
-        The formula is evaluated from the last step that it refers to; bits store the steps before.
+        It is evaluated in the last step that it refers to; bits store the steps before that step.
         """
         depth = _next_depth(body)
         if depth is None or has_primes(body) or has_primes(trigger):
@@ -224,7 +224,7 @@ class FormulaReduction:
                 return self._shift_back(formula, depth - 1)
 
     def _shift_back(self, formula: Formula, steps: int) -> Formula:
-        """Return the condition that *formula* held some steps ago; -1 is the next step."""
+        """Return the condition that *formula* held *steps* steps ago; -1 is the next step."""
         if steps < 0:
             return f.prime(formula)
         for _ in range(steps):
@@ -249,7 +249,7 @@ class FormulaReduction:
 
 # -- formulas ------------------------------------------------------------------------------------
 
-_WAITING = (Op.EVENTUALLY, Op.UNTIL, Op.WEAK_UNTIL, Op.RELEASE)
+_UNTIL_OPERATORS = (Op.EVENTUALLY, Op.UNTIL, Op.WEAK_UNTIL, Op.RELEASE)
 _DUAL = {
     Op.AND: Op.OR,
     Op.OR: Op.AND,
@@ -279,7 +279,7 @@ def _push_negation(body: Formula) -> Formula:
 
 
 def _check_unprimed(trigger: Formula, body: Formula) -> None:
-    """Raise NotReducibleError if the trigger has primes: no bit can store it."""
+    """Raise NotReducibleError if the trigger has primes, because no history bit can store it."""
     if has_primes(trigger):
         raise NotReducibleError(body)
 
@@ -300,7 +300,7 @@ def _apply(op: Op, args: tuple[Formula, ...]) -> Formula:
 
 
 def _next_depth(formula: Formula) -> int | None:
-    """Return the deepest nesting of X; None if the formula has other operators of the future."""
+    """Return how deep operators X are nested; None if there are other operators of the future."""
     if not isinstance(formula, Apply):
         return 0
     if formula.op in FUTURE and formula.op is not Op.NEXT:

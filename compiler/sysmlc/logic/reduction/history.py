@@ -14,7 +14,10 @@ from sysmlc.logic.printing import print_formula
 
 
 class History:
-    """Creates history bits; equal facts share one bit. No bit has one of the names *taken*."""
+    """Creates history bits and collects their variables and conjuncts.
+
+    Equal facts share one bit. No bit gets one of the names in *taken*.
+    """
 
     def __init__(self, taken: Iterable[str]) -> None:
         self._taken = set(taken)
@@ -30,7 +33,7 @@ class History:
         return duplicate
 
     def adopt(self, extended: "History") -> None:
-        """Take over the bits of a copy that was extended."""
+        """Replace the bits by those of *extended*, a copy to which bits were added."""
         self._taken, self._bits = extended._taken, extended._bits
         self.variables, self.conjuncts = extended.variables, extended.conjuncts
 
@@ -53,9 +56,9 @@ class History:
         return f.either(goal, f.both(stay, bit))
 
     def last_step(self, step: Formula, origin: str = "") -> Formula:
-        """Return the condition that *step*, a formula with primes, was true of the last step.
+        """Return the condition that *step*, a formula with primes, held for the last step and this.
 
-        It is false in the first step.
+        It is false in the first step, which no step precedes.
         """
         key = ("did", step, f.FALSE)
         if key not in self._bits:
@@ -75,7 +78,10 @@ class History:
         self.conjuncts.append(Conjunct(update, Class.SAFETY, origin, text))
 
     def _find_bit(self, stem: str, stay: Formula, goal: Formula, start: bool, origin: str) -> Var:
-        """Return the bit of ``was`` (of *stay*), ``always_was`` (of *stay*) or ``since``."""
+        """Return the bit with this *stem* for the two formulas; create it at the first call.
+
+        The stem selects the rule of the bit: ``was`` and ``always_was`` (of *stay*), or ``since``.
+        """
         if has_primes(stay) or has_primes(goal):
             raise ValueError("a history bit cannot refer to the next step")
         key = (stem, stay, goal)

@@ -189,7 +189,7 @@ def _is_assumed(scope: Scope, statement: Statement, formula: Formula) -> bool:
 def _classify(
     scope: Scope, statement: Statement, formula: Formula, is_assumed: bool
 ) -> Iterator[Conjunct]:
-    """Yield the conjuncts of a statement, with a text that names its requirement."""
+    """Yield the conjuncts of a statement; their texts name its requirement."""
     id, name = statement.constraint.id, statement.requirement.name
     text = _describe(statement, is_assumed)
     for class_, part in _split_by_class(scope, statement, formula, is_assumed):
@@ -199,10 +199,11 @@ def _classify(
 def _split_by_class(
     scope: Scope, statement: Statement, formula: Formula, is_assumed: bool
 ) -> Iterator[tuple[Class, Formula]]:
-    """Yield the parts of a formula; a condition without temporal operators holds at all times.
+    """Yield the conjuncts of a formula with their classes.
 
-    An assumption about inputs alone is stated for the first step and for each next step, so that
-    the environment cannot reach a step in which it must break the assumption.
+    A condition, which has no temporal operators, must hold in every step. If it is an assumption
+    about inputs alone, it is stated for the first step and for each next step: the environment can
+    then never reach a step in which it has to violate the assumption.
     """
     if _is_temporal(statement.constraint):
         yield from classify(formula)
@@ -234,7 +235,7 @@ def _make_contract(
 
 
 def _state_initial_values(scope: Scope, names: set[str]) -> tuple[list[Conjunct], list[Conjunct]]:
-    """Return the initial values of the named variables: those of inputs, and those of others."""
+    """Return conjuncts for the initial values of the named variables: of inputs, then of others."""
     inputs: list[Conjunct] = []
     outputs: list[Conjunct] = []
     for feature in scope.context.features.values():

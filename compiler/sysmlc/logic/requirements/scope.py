@@ -1,4 +1,4 @@
-"""Meaning of the names in a requirement: features of its subject, variables of its behaviour."""
+"""Resolves the names in a requirement to features of its subject or variables of a behaviour."""
 
 import re
 from collections.abc import Iterable, Mapping
@@ -33,7 +33,7 @@ class Scope(Struct, frozen=True):
         return domains | {name: variable.domain for name, variable in self.variables.items()}
 
     def find_symbol(self, name: str) -> Symbol | None:
-        """Return the symbol of a dotted name in an expression.
+        """Return what a dotted name in an expression denotes, or None.
 
         The name of the subject may precede the name of the feature.
         """
@@ -55,8 +55,8 @@ class Scope(Struct, frozen=True):
     def replace_dotted_names(self, text: str) -> str:
         """Replace dotted names (``level.value``, ``tank.filling``) by variables.
 
-        Variables are padded to the length of the names, so that columns in messages stay right
-        unless a variable is longer.
+        A variable is padded with blanks to the length of the name, so that columns in messages are
+        those of *text*; they are not if a variable is longer than the name.
         """
         return _DOTTED_NAME.sub(self._pad_variable, text)
 

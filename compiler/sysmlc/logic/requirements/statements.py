@@ -1,4 +1,4 @@
-"""Constraints of requirements, by the element that the requirements are about."""
+"""Constraints of requirements, grouped by the subjects of the requirements."""
 
 from collections.abc import Iterator
 
@@ -61,13 +61,17 @@ def _separates_assumptions(graph: Graph, requirement: Element) -> bool:
 
 
 def _is_marked_assumption(constraint: Element) -> bool:
-    """Whether the language of a constraint marks it as an assumption; SysML v1 has no other way."""
+    """Whether the language of a constraint contains "assume".
+
+    SysML v1 has no other way to mark an assumption.
+    """
     return "assume" in str(constraint.attrs.get("language", "")).lower()
 
 
 def _iter_subjects(graph: Graph, requirement: Element) -> Iterator[Element]:
-    """Yield the elements that satisfy the requirement, else its declared subject, with all their
-    specialisations.
+    """Yield the elements that satisfy the requirement, or if there are none its declared subject.
+
+    A usage counts as its type. All specialisations follow each element.
     """
     family = (requirement, *query.generals(graph, requirement))
     stated = graph.sources(requirement, Edge.SATISFIES)
@@ -81,7 +85,10 @@ def _iter_subjects(graph: Graph, requirement: Element) -> Iterator[Element]:
 
 
 def _iter_specialisations(graph: Graph, type_: Element, visited: set[str]) -> Iterator[Element]:
-    """Yield a type, the operations whose method it is, and both for all its specialisations."""
+    """Yield a type and its specialisations, each followed by the operations that it implements.
+
+    A behaviour implements an operation as its method. *visited* are the ids of types seen before.
+    """
     # A faulty model may specialise in a circle.
     if type_.id in visited:
         return
@@ -100,7 +107,7 @@ def definition_of(graph: Graph, subject: Element) -> Element:
 
 
 def component_of(graph: Graph, subject: Element) -> str:
-    """Return the component name of a subject; that of an operation begins with its owner's."""
+    """Return the component name of a subject; that of an operation is ``<owner>.<operation>``."""
     owner = graph.owner(subject) if subject.kind is Kind.OPERATION else None
     if owner is None:
         return query.component_name(graph, subject)
@@ -108,7 +115,7 @@ def component_of(graph: Graph, subject: Element) -> str:
 
 
 def find_redefining_operation(graph: Graph, subject: Element) -> Element | None:
-    """Return the subject if it is an operation that redefines parameters of its method."""
+    """Return *subject* if it is an operation that redefines parameters of its method, else None."""
     if subject.kind is not Kind.OPERATION:
         return None
     parameters = query.parameters(graph, subject)
