@@ -3,9 +3,9 @@
 import click
 
 
-@click.command("backends", short_help="List what can be emitted.")
+@click.command("backends", short_help="List the back ends.")
 def command() -> None:
-    """List the back ends, plug-ins included; those with * are emitted by default."""
+    """List the back ends, plug-ins included; * marks those that run by default."""
     from sysmlc.cli.session import fail
     from sysmlc.driver import BackendError, list_backend_names, load_backends
 

@@ -38,7 +38,7 @@ Examples:
     "--check",
     "check_only",
     is_flag=True,
-    help="Write nothing; exit 1 and list the files when the output folder is not up to date.",
+    help="Write nothing; list the files that are not up to date, and exit with 1 if there are any.",
 )
 @click.option(
     "--force",
@@ -56,7 +56,7 @@ def command(
     is_forced: bool,
     **setting_values: Any,  # noqa: ANN401 - the fields of Settings
 ) -> None:
-    """Compile MODEL... (files or folders) and write what changed to the output folder.
+    """Compile MODEL... (files or folders) and write changed files to the output folder.
 
     Without MODEL every [[model]] of sysmlc.toml is compiled. A file that comes from an element
     with an error is withheld; the others are written.

@@ -10,7 +10,7 @@ from sysmlc.cli import options
 
 @click.command(
     "check",
-    short_help="Report what is wrong with models; write nothing.",
+    short_help="Report the faults of models; write nothing.",
     epilog="""\b
 Examples:
   sysmlc check models/
@@ -29,7 +29,7 @@ def command(
     models: tuple[Path, ...],
     **setting_values: Any,  # noqa: ANN401 - the fields of Settings
 ) -> None:
-    """Compile MODEL... in memory and report what is wrong, as 'build' would."""
+    """Compile MODEL... in memory and report the same findings as 'build'."""
     from sysmlc.cli import reports, session
     from sysmlc.cli.units import open_units
 

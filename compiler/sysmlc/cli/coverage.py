@@ -17,11 +17,11 @@ if TYPE_CHECKING:
 
 @click.command(
     "coverage",
-    short_help="Show what of the models is read, and what is not.",
+    short_help="Show which elements of models are read, and which are lost.",
     epilog="""\b
 Examples:
   sysmlc coverage plant.mdzip
-  sysmlc coverage models/ --elements          # every element that is not wholly read
+  sysmlc coverage models/ --elements          # every element that is not read completely
   sysmlc coverage models/ --fail-under 99.5   # for continuous integration""",
 )
 @options.models()
@@ -33,12 +33,14 @@ Examples:
     show_default=True,
     help="Form of the report; json lists every element that is not mapped.",
 )
-@click.option("--elements", "every", is_flag=True, help="List all places, not three of each kind.")
+@click.option(
+    "--elements", "every", is_flag=True, help="List all locations, not three of each kind."
+)
 @click.option(
     "--fail-under",
     type=click.FloatRange(0, 100),
     metavar="PERCENT",
-    help="Exit with 1 when less of what means something is covered.",
+    help="Exit with 1 if fewer of the elements with a meaning are covered.",
 )
 @options.configuration
 @click.pass_context
@@ -52,10 +54,10 @@ def command(
     config: Path | None,
     isolated: bool,
 ) -> None:
-    """Count what became of every element of MODEL..., by type, the worst first.
+    """Count the verdicts on every element of MODEL... by type, the worst types first.
 
-    Covered is what is in the graph with its whole meaning, or stands for something in another
-    file. What only says how the model is drawn does not count.
+    An element is covered if it is in the graph with its complete meaning, or refers to an element
+    of another file. Drawings and settings of tools do not count.
     """
     from sysmlc.cli import session
     from sysmlc.cli.units import open_units

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 Examples:
   sysmlc diff old/plant.aml plant.aml
   sysmlc diff old.uml new.uml --format markdown   # for a review
-  sysmlc diff old.uml new.uml --ignore id         # when the ids were given anew""",
+  sysmlc diff old.uml new.uml --ignore id         # if a tool has renumbered the ids""",
 )
 @click.argument("old", type=click.Path(path_type=Path), metavar="OLD")
 @click.argument("new", type=click.Path(path_type=Path), metavar="NEW")
@@ -34,7 +34,7 @@ Examples:
     multiple=True,
     callback=options.split_names,
     metavar="A,B",
-    help="What makes no difference: names of attributes; with 'id' equal ids mean nothing.",
+    help="Attributes to ignore, by name; with 'id', elements are matched without their ids.",
 )
 @click.option("--format", "form", type=click.Choice(("text", "markdown", "json")), default="text")
 @options.reading
@@ -50,10 +50,10 @@ def command(
 ) -> None:
     """Compare OLD and NEW (files or folders, of any format) as they are written.
 
-    Places in files, ids that were given anew and the order of elements make no difference.
-    Of folders with several compile units, those whose first files have the same path are compared.
-    Overlays count when both models have one.
-    Exit code 0 when they are equal, 1 when they differ, 2 when one cannot be read.
+    Locations in files, renumbered ids and the order of elements are not differences. If the
+    folders contain several compile units, units whose first files have the same path are compared.
+    Overlays count if both models have one. Exit code 0: the models are equal; 1: they differ; 2:
+    one of them cannot be read.
     """
     from sysmlc.cli import reports, session
     from sysmlc.ir import Graph

@@ -42,8 +42,8 @@ class _Text(Struct, frozen=True):
     epilog="""\b
 Examples:
   sysmlc format plant.sysml
-  sysmlc format models/ --check     # for continuous integration: exit code 1 when one differs
-  sysmlc format models/ --diff      # only show what would change
+  sysmlc format models/ --check     # for continuous integration: exit code 1 if a file would change
+  sysmlc format models/ --diff      # shows the changes
   sysmlc format - < plant.sysml     # from standard input to standard output""",
 )
 @click.argument(
@@ -53,12 +53,12 @@ Examples:
     type=click.Path(path_type=Path, allow_dash=True),
     metavar="FILE...",
 )
-@click.option("--check", is_flag=True, help="Write nothing; name the files that would change.")
-@click.option("--diff", "shows_diff", is_flag=True, help="Write nothing; print what would change.")
+@click.option("--check", is_flag=True, help="Write nothing; list the files that would change.")
+@click.option("--diff", "shows_diff", is_flag=True, help="Write nothing; print the changes.")
 @click.option(
     "--language",
     type=click.Choice(_LANGUAGES),
-    help="Language of all files, when their suffixes do not say it.",
+    help="Language of all files, if their suffixes do not show it.",
 )
 @click.pass_context
 def command(
@@ -69,11 +69,11 @@ def command(
     shows_diff: bool,
     language: str | None,
 ) -> None:
-    """Lay out FILE... anew: files, folders with .sysml and .kerml files, or - for standard input.
+    """Format FILE...: files, folders with .sysml and .kerml files, or - for standard input.
 
-    Tokens, comments and notes stay as they are; only white space changes. Files with syntax
-    errors are left alone. Exit code 0 when all is well, 1 for syntax errors and, with --check or
-    --diff, for files that would change, 2 when a file cannot be read or written.
+    Only white space changes; tokens, comments and notes do not. Files with syntax errors are not
+    changed. Exit code 0: success; 1: a file has syntax errors or, with --check or --diff, would
+    change; 2: a file cannot be read or written.
     """
     texts = [_read(path, language) for path in _expand(files)]
     _show([finding for text in texts for finding in text.findings])

@@ -96,7 +96,7 @@ def reading(function: _F) -> _F:
                 multiple=True,
                 type=click.Path(path_type=Path),
                 metavar="FILE",
-                help="Refine the model by this overlay, beside MODEL.overlay.yaml.",
+                help="Refine the model by this overlay, in addition to MODEL.overlay.yaml.",
             ),
             click.option(
                 "--strict-input", is_flag=True, help="Content that is not supported is an error."
@@ -118,7 +118,7 @@ def reading(function: _F) -> _F:
                 "--print-after",
                 multiple=True,
                 metavar="PASS",
-                help="Print the graph as it is after a pass ('read': before the first).",
+                help="Print the graph after this pass ('read': before the first one).",
             ),
             click.option(
                 "-v",
@@ -150,7 +150,7 @@ def reporting(function: _F) -> _F:
                 "max_diagnostics",
                 type=click.IntRange(min=0),
                 metavar="N",
-                help="Show at most N findings, the worst; 0 shows all."
+                help="Show at most N findings, the worst first; 0 shows all."
                 "  [default: 1000; json and sarif: all]",
             ),
         ],
@@ -187,7 +187,7 @@ def templates(function: _F) -> _F:
         "--templates",
         type=click.Path(path_type=Path, file_okay=False),
         metavar="DIR",
-        help="Folder whose templates come before the shipped ones.",
+        help="Folder with templates that replace the shipped ones of the same name.",
     )(function)
 
 
@@ -198,7 +198,7 @@ def output_folder(function: _F) -> _F:
         "--output",
         type=click.Path(path_type=Path, file_okay=False),
         metavar="DIR",
-        help="Output folder.  [default: out, or what the configuration says]",
+        help="Output folder.  [default: that of the configuration, or out]",
     )(function)
 
 
@@ -208,5 +208,5 @@ def caching(function: _F) -> _F:
         "--cache/--no-cache",
         "has_cache",
         default=True,
-        help="Reuse what an earlier run found about the same inputs (the default), or do not.",
+        help="Reuse results of a run with the same inputs (the default), or compile again.",
     )(function)

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 Examples:
   sysmlc show plant.uml
   sysmlc show plant.uml --element Plant::Gate
-  sysmlc show plant.uml --element Gate     # when only one element is called so""",
+  sysmlc show plant.uml --element Gate     # if only one element has this name""",
 )
 @options.models(required=True)
 @click.option("-e", "--element", metavar="NAME|ID", help="Qualified name, name or id.")

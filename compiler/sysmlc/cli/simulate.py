@@ -44,7 +44,7 @@ def command(
 ) -> None:
     """Run the steps of a scenario and compare the trace with the expected one.
 
-    Exit code 0 when they agree, 1 when they do not, 2 when the scenario cannot be run.
+    Exit code 0: they are equal; 1: they differ; 2: the scenario cannot be run.
     """
     from sysmlc.cli import reports, session
     from sysmlc.cli.reports import write_files

@@ -20,7 +20,7 @@ _QUIET_MILLISECONDS = 20
 
 @click.command(
     "watch",
-    short_help="Compile again at every save.",
+    short_help="Compile again after every save.",
     epilog="""\b
 Example:
   sysmlc watch plant.uml -o out/           # ends with Ctrl-C""",
@@ -33,13 +33,13 @@ Example:
     default=50,
     show_default=True,
     metavar="MS",
-    help="How long files must rest before they are compiled; new findings wait 1.5 s, or five "
+    help="Time without a change before files are compiled; new findings wait 1.5 s, or five "
     "times as long.",
 )
 @click.option(
     "--keep-going",
     is_flag=True,
-    help="While the model has errors, write the files that they do not concern.",
+    help="While the model has errors, write the outputs that the errors do not concern.",
 )
 @options.emitting
 @options.templates
@@ -52,11 +52,11 @@ def command(
     keep_going: bool,
     **setting_values: Any,  # noqa: ANN401 - the fields of Settings
 ) -> None:
-    """Compile MODEL... now and at every save; keep the last good outputs.
+    """Compile MODEL... now and after every save.
 
-    Files that are still being saved are waited for. While the model has errors nothing in the
-    output folder changes, but with --keep-going. The time and memory limits hold for each time
-    that MODEL... are compiled; after a limit the command waits for the next save.
+    The command waits until files are saved completely. While the model has errors, the output
+    folder does not change, except with --keep-going. The limits of time and memory apply to each
+    compilation; after a limit the command waits for the next save.
     """
     from sysmlc.cli import session
     from sysmlc.cli.watching import Watch
