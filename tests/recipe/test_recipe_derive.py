@@ -6,7 +6,7 @@ from msgspec.structs import replace
 
 from sysmlc.diagnostics import Sink, Subject
 from sysmlc.recipe import validate
-from sysmlc.recipe.derive import derive
+from sysmlc.recipe.derivation import derive
 from sysmlc.recipe.model import (
     FlowEdge,
     FlowGraph,

@@ -4,8 +4,10 @@ from random import Random
 
 import pytest
 
+from sysmlc.recipe.durations import compute_duration
 from sysmlc.recipe.expression import make_variable
-from sysmlc.recipe.flow import compute_duration, find_cycles, forward_edges, sort_nodes, with_loops
+from sysmlc.recipe.flow import find_cycles, list_forward_edges, sort_nodes
+from sysmlc.recipe.loops import add_loop_nodes
 from sysmlc.recipe.model import FlowEdge, FlowGraph, Node, Range
 
 TIMES = {"a": (10, 20), "b": (5, 5), "c": (1, 100), "d": (7, 9)}
@@ -18,7 +20,7 @@ def graph(text: str, **bounds: int) -> FlowGraph:
     names = dict.fromkeys(name for edge in edges for name in edge)
     nodes = tuple(Node(name, kinds.get(name[0], "service")) for name in sorted(names))
     flows = tuple(FlowEdge(a, b, guard=make_variable(f"{a}{b}")) for a, b in edges)
-    return with_loops(FlowGraph("g", nodes=nodes, edges=flows), bounds)
+    return add_loop_nodes(FlowGraph("g", nodes=nodes, edges=flows), bounds)
 
 
 def time(text: str, **bounds: int) -> tuple[float, float | None] | None:
@@ -132,7 +134,7 @@ def test_every_way_round_passes_a_loop_node():
 @pytest.mark.parametrize("text", ["i>M M>a a>D D>M D>f", "i>a a>b b>a", "i>M M>D D>a a>M D>b b>f"])
 def test_forward_edges_hold_no_cycle_and_reach_the_same(text):
     found = graph(text)
-    forward = forward_edges(found)
+    forward = list_forward_edges(found)
     names = [node.id for node in found.nodes]
     assert find_cycles(names, forward) == []
     rank = {id: number for number, id in enumerate(sort_nodes(found))}

@@ -4,10 +4,10 @@ The checks are those of the thesis, REC001 to REC012 (SM601 to SM612), and more.
 """
 
 from sysmlc.diagnostics import Sink
-from sysmlc.recipe import check_data, check_graphs, check_tasks
-from sysmlc.recipe.checks import Check, Locate, report_findings
-from sysmlc.recipe.derive import Tables
+from sysmlc.recipe import check_data, check_graphs, check_resources, check_tasks
+from sysmlc.recipe.findings import Check, Locate, report_findings
 from sysmlc.recipe.model import Model
+from sysmlc.recipe.tables import Tables
 
 CHECKS: tuple[Check, ...] = (
     check_tasks.check_references,
@@ -18,9 +18,9 @@ CHECKS: tuple[Check, ...] = (
     check_data.check_names,
     check_data.check_expressions,
     check_tasks.check_machines,
-    check_graphs.check_task_times,
-    check_graphs.check_groups,
-    check_graphs.check_releases,
+    check_resources.check_task_times,
+    check_resources.check_groups,
+    check_resources.check_releases,
     check_graphs.check_bounds,
     check_tasks.check_materials,
     check_tasks.check_opc_ua_calls,
@@ -35,4 +35,4 @@ def validate(model: Model, sink: Sink, locate: Locate, tolerance: float = 0.1) -
     tables = Tables.from_model(model)
     for check in CHECKS:
         report_findings(check(model, tables), sink, locate)
-    report_findings(check_graphs.check_service_times(model, tables, tolerance), sink, locate)
+    report_findings(check_resources.check_service_times(model, tables, tolerance), sink, locate)

@@ -5,8 +5,6 @@ from collections.abc import Iterator, Mapping
 from sysmlc.diagnostics import Severity, rule
 from sysmlc.ir.algorithms import sort_topologically
 from sysmlc.logic.expressions.expression import Expression
-from sysmlc.recipe.checks import Finding, declared_parameters, iter_graphs
-from sysmlc.recipe.derive import Tables
 from sysmlc.recipe.expression import (
     UndecidedError,
     is_condition,
@@ -16,7 +14,8 @@ from sysmlc.recipe.expression import (
     iter_variables,
     resolve_literals,
 )
-from sysmlc.recipe.flow import forward_edges
+from sysmlc.recipe.findings import Finding
+from sysmlc.recipe.flow import list_forward_edges
 from sysmlc.recipe.model import (
     EnumType,
     FlowEdge,
@@ -30,6 +29,7 @@ from sysmlc.recipe.model import (
     Task,
     ValueType,
 )
+from sysmlc.recipe.tables import Tables
 
 GUARDS = rule(
     "SM605",
@@ -61,13 +61,13 @@ UNREADABLE = rule(
 
 def check_guards(model: Model, tables: Tables) -> Iterator[Finding]:
     """REC005: guards are Boolean, with at most one else, without overlap or gap."""
-    for graph in iter_graphs(model):
+    for graph in model.graphs:
         for node, problem in _iter_decision_problems(graph):
             yield Finding(GUARDS, node.element, {"decision": node.id, "problem": problem})
 
 
 def _iter_decision_problems(graph: FlowGraph) -> Iterator[tuple[Node, str]]:
-    types = {name: parameter.type for name, parameter in declared_parameters(graph).items()}
+    types = {name: parameter.type for name, parameter in graph.parameters.items()}
     for node in graph.nodes:
         if node.kind in ("decision", "loop"):
             edges = [edge for edge in graph.edges if edge.source == node.id]
@@ -95,7 +95,7 @@ def _iter_guard_problems(
 def _iter_conflicts(
     guards: list[tuple[str, Expression]], types: Mapping[str, ValueType | None], *, has_else: bool
 ) -> Iterator[str]:
-    """Describe at most one overlap and one gap, each with values that show it."""
+    """Yield at most one overlap and one gap of guards, each with values as an example."""
     expressions = [resolve_literals(guard, types) for _, guard in guards]
     has_overlap = has_gap = False
     for values in iter_valuations(expressions, types):
@@ -130,7 +130,7 @@ def _format_value(value: Scalar) -> str:
 
 def check_names(model: Model, tables: Tables) -> Iterator[Finding]:
     """REC006: variables are declared, and set before they are read; bindings fit."""
-    for graph in iter_graphs(model):
+    for graph in model.graphs:
         for element, problem in (*_iter_name_problems(graph), *_iter_misfits(graph, tables)):
             yield Finding(UNDECLARED, element, {"graph": graph.id, "problem": problem})
 
@@ -141,9 +141,9 @@ def _iter_name_problems(graph: FlowGraph) -> Iterator[tuple[str, str]]:
 
 
 def _iter_uses(graph: FlowGraph) -> Iterator[tuple[str, str, Expression]]:
-    """Iterate over expressions with their element and the node that reads the variables.
+    """Yield the element of each expression, the time at which it is evaluated, and the expression.
 
-    The prefix ``<`` of a node means that it reads them when it begins, else when it is done.
+    The time is ``<id`` when the node begins, ``id`` when it is done (``_collect_set_variables``).
     """
     for edge in graph.edges:
         if edge.guard is not None:
@@ -156,43 +156,43 @@ def _iter_uses(graph: FlowGraph) -> Iterator[tuple[str, str, Expression]]:
 
 
 def _collect_literals(graph: FlowGraph) -> set[str]:
-    types = (parameter.type for parameter in declared_parameters(graph).values())
+    types = (parameter.type for parameter in graph.parameters.values())
     return {name for type_ in types if isinstance(type_, EnumType) for name in type_.literals}
 
 
 def _iter_undeclared(graph: FlowGraph) -> Iterator[tuple[str, str]]:
-    known = set(declared_parameters(graph)) | _collect_literals(graph)
+    declared = set(graph.parameters) | _collect_literals(graph)
     for element, _, expression in _iter_uses(graph):
         for name in iter_variables(expression):
             base = name.split(".")[0]
             last = name.replace("::", ".").rpartition(".")[2]
-            if not {name, base, last} & known:
+            if not {name, base, last} & declared:
                 yield element, f"'{name}' is declared nowhere"
     for node in graph.nodes:
-        if node.variable and node.variable.split(".")[0] not in known:
+        if node.variable and node.variable.split(".")[0] not in declared:
             yield node.element, f"'{node.variable}' is declared nowhere"
 
 
 def _iter_unset(graph: FlowGraph) -> Iterator[tuple[str, str]]:
-    """Iterate over the variables that some path reads before it sets them."""
-    defined = _definitely_set(graph)
+    """Yield the variables that an expression reads although a path to it does not set them."""
+    set_variables = _collect_set_variables(graph)
     names = {variable.name for variable in graph.variables}
-    for element, node, expression in _iter_uses(graph):
-        missing = sorted(set(iter_variables(expression)) & names - defined.get(node, names))
+    for element, time, expression in _iter_uses(graph):
+        missing = sorted(set(iter_variables(expression)) & names - set_variables.get(time, names))
         for name in missing:
             yield element, f"'{name}' is read before it has a value"
 
 
-def _definitely_set(graph: FlowGraph) -> dict[str, set[str]]:
-    """Return the variables that have a value on every path when a node is done.
+def _collect_set_variables(graph: FlowGraph) -> dict[str, set[str]]:
+    """Return the variables that every path to a time has set, by the time.
 
-    The key of the variables when it begins has the prefix ``<``.
+    The key ``id`` stands for the time when a node is done, ``<id`` for the time when it begins.
     """
     start = {parameter.name for parameter in graph.inputs}
     start |= {variable.name for variable in graph.variables if variable.value is not None}
     nodes = {node.id: node for node in graph.nodes}
     predecessors: dict[str, list[str]] = {}
-    edges = forward_edges(graph)
+    edges = list_forward_edges(graph)
     for source, target in edges:
         predecessors.setdefault(target, []).append(source)
     defined: dict[str, set[str]] = {}
@@ -215,7 +215,7 @@ def _assigned_variables(node: Node) -> set[str]:
 
 
 def _iter_misfits(graph: FlowGraph, tables: Tables) -> Iterator[tuple[str, str]]:
-    parameters = declared_parameters(graph)
+    parameters = graph.parameters
     for node in graph.nodes:
         called = tables.services.get(node.ref) or tables.functions.get(node.ref)
         inputs = (
@@ -254,8 +254,8 @@ def _is_assignable(actual: ValueType, formal: ValueType) -> bool:
 
 
 def check_expressions(model: Model, tables: Tables) -> Iterator[Finding]:
-    """Executors can evaluate every expression."""
-    for graph in iter_graphs(model):
+    """SM616: executors can evaluate every expression."""
+    for graph in model.graphs:
         yield from _check_graph(graph)
     for element, id, expression in _iter_conditions(model):
         yield from _check_expression(element, id, expression)
@@ -277,7 +277,7 @@ def _check_expression(element: str, id: str, expression: Expression | None) -> I
 
 
 def _iter_conditions(model: Model) -> Iterator[tuple[str, str, Expression | None]]:
-    """Iterate over the conditions of tasks and services: element, id of the owner, expression."""
+    """Yield each condition of tasks and services: element and id of its owner, and expression."""
     owners: tuple[Task | Service, ...] = (*model.recipe.tasks, *model.services)
     for owner in owners:
         yield owner.element, owner.id, owner.pre

@@ -4,10 +4,10 @@ import re
 from collections.abc import Iterator
 
 from sysmlc.diagnostics import Severity, rule
-from sysmlc.recipe.checks import Finding
-from sysmlc.recipe.derive import Tables, providers_of
+from sysmlc.recipe.findings import Finding
 from sysmlc.recipe.flow import find_cycles
-from sysmlc.recipe.model import Function, Model, OpcUa, Service, Task
+from sysmlc.recipe.model import Function, Model, OpcUa, Provider, Service, Task
+from sysmlc.recipe.tables import Tables
 
 BROKEN_REFERENCE = rule(
     "SM601",
@@ -92,7 +92,7 @@ def _check_machines_of_task(task: Task, tables: Tables) -> Iterator[Finding]:
     equipment = {machine for mode in task.equipment for machine in mode.machines}
     offers = {
         service: {provider.machine for provider in providers}
-        for service, providers in providers_of(task, tables).items()
+        for service, providers in _find_providers(task, tables).items()
     }
     for service, offering in sorted(offers.items()):
         if not offering & equipment:
@@ -103,6 +103,15 @@ def _check_machines_of_task(task: Task, tables: Tables) -> Iterator[Finding]:
     offered = {machine for offering in offers.values() for machine in offering}
     for machine in sorted(equipment - offered) if offers else ():
         yield _make_finding(task, f"its machine '{machine}' offers none of its services")
+
+
+def _find_providers(task: Task, tables: Tables) -> dict[str, tuple[Provider, ...]]:
+    """Return the providers of each machine service of a task, by the id of the service."""
+    graph = tables.service_graphs.get(task.implementation)
+    nodes = () if graph is None else graph.nodes
+    services = [tables.find_service(node) for node in nodes]
+    machine_services = [s for s in services if s is not None and s.kind == "machine"]
+    return {service.id: service.providers for service in machine_services}
 
 
 def _make_finding(task: Task, problem: str) -> Finding:
@@ -148,7 +157,7 @@ def _sum_consumption(task: Task, tables: Tables) -> dict[str, float]:
     graph = tables.service_graphs.get(task.implementation)
     consumption: dict[str, float] = {}
     for node in () if graph is None else graph.nodes:
-        service = tables.service(node)
+        service = tables.find_service(node)
         for use in () if service is None else service.materials:
             if use.use == "consumed":
                 consumption[use.material] = consumption.get(use.material, 0) + use.quantity
@@ -180,7 +189,7 @@ def _name_owner(model: Model, call: OpcUa) -> str:
 
 
 def is_complete(call: OpcUa) -> bool:
-    """Return whether an executor can make the call: its node ids are well-formed, with a method."""
+    """Return whether an executor can perform the call: all node ids exist and are well-formed."""
     ids = [call.object, *([call.method] if call.method else [])]
     return all(map(_NODE_ID.fullmatch, ids)) and (call.kind != "call" or bool(call.method))
 

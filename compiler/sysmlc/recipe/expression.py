@@ -69,7 +69,7 @@ def disjunction(expressions: tuple[Expression, ...]) -> Expression:
 
 
 def operands(expression: Expression) -> tuple[Expression, ...]:
-    """Return the operands of an operator, an index or a call; none for other expressions."""
+    """Return the operands of an operator, the parts of an index, or the arguments of a call."""
     match expression:
         case Unary(_, operand):
             return (operand,)
@@ -84,7 +84,7 @@ def operands(expression: Expression) -> tuple[Expression, ...]:
 
 
 def map_operands(expression: Expression, change: Callable[[Expression], Expression]) -> Expression:
-    """Return the expression with changed operands."""
+    """Return the expression with *change* applied to each of its operands."""
     match expression:
         case Unary(op, operand):
             return Unary(op, change(operand))
@@ -99,7 +99,7 @@ def map_operands(expression: Expression, change: Callable[[Expression], Expressi
 
 
 def iter_variables(expression: Expression) -> Iterator[str]:
-    """Iterate over the names of the variables, with repetitions, from left to right."""
+    """Yield the names of the variables, with repetitions, from left to right."""
     name = variable_name(expression)
     if name is not None:
         yield name
@@ -108,7 +108,7 @@ def iter_variables(expression: Expression) -> Iterator[str]:
 
 
 def iter_opaque_texts(expression: Expression) -> Iterator[str]:
-    """Iterate over the texts in an expression that the grammar does not cover."""
+    """Yield the texts in an expression that the grammar does not cover."""
     if isinstance(expression, Opaque):
         yield expression.path[0]
     for operand in operands(expression):
@@ -136,7 +136,7 @@ _OPERATIONS: dict[str, Callable[..., Scalar]] = {
 
 
 class UndecidedError(ValueError):
-    """A part of the expression has no value in the valuation."""
+    """An expression has no value, because one of its parts has none in the valuation."""
 
 
 def is_condition(expression: Expression, types: Mapping[str, ValueType | None]) -> bool:
@@ -156,7 +156,7 @@ def is_condition(expression: Expression, types: Mapping[str, ValueType | None]) 
 def iter_valuations(
     guards: list[Expression], types: Mapping[str, ValueType | None]
 ) -> Iterator[dict[str, Scalar]]:
-    """Iterate over sample valuations of the guards' variables; over none if there are too many."""
+    """Yield the combinations of sample values of all variables; none if there are too many."""
     names = sorted({name for guard in guards for name in iter_variables(guard)})
     domains = [_sample_domain(name, guards, types.get(name)) for name in names]
     size = 1
@@ -168,7 +168,7 @@ def iter_valuations(
 
 
 def is_satisfied(expression: Expression, values: Mapping[str, Scalar]) -> bool:
-    """Return whether a condition is true. Raise UndecidedError."""
+    """Return whether a condition is true. Raises UndecidedError."""
     return bool(_evaluate(expression, values))
 
 
@@ -220,7 +220,7 @@ def _sample_domain(name: str, guards: list[Expression], type_: ValueType | None)
 
 
 def _iter_constants(name: str, expression: Expression) -> Iterator[Scalar]:
-    """Iterate over the constants that a variable is compared with."""
+    """Yield the constants that a variable is compared with."""
     constant = _compared_constant(name, expression)
     if constant is not None:
         yield constant.value
@@ -259,7 +259,7 @@ def _is_numeric(name: str, expression: Expression) -> bool:
 
 
 def resolve_literals(expression: Expression, types: Mapping[str, ValueType | None]) -> Expression:
-    """Return the expression with values in place of names of enumeration literals."""
+    """Return the expression with each name of an enumeration literal replaced by its value."""
     literals = {
         literal
         for type_ in types.values()

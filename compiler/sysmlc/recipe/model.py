@@ -22,7 +22,7 @@ class Range(Struct, frozen=True):
 
 
 class EnumType(Struct, frozen=True):
-    """An enumeration with its literals in order, and their values when each has one."""
+    """An enumeration with its literals in order, and their values if every literal has one."""
 
     name: str
     literals: tuple[str, ...]
@@ -114,7 +114,7 @@ class MaterialUse(Struct, frozen=True):
 
 
 class Mode(Struct, frozen=True):
-    """One choice of machines for a task or service, needed at the same time, with its costs."""
+    """A set of machines that together can perform a task or service, and what this costs."""
 
     machines: tuple[str, ...]
     duration: int | None = None
@@ -166,10 +166,10 @@ class Task(Struct, frozen=True):
 
 
 class Performance(Struct, frozen=True):
-    """A block that performs a recipe, and the parts or operations that perform its steps.
+    """A block that performs a recipe, with the features of the block that take part in it.
 
-    ``arguments`` are the parameters of the recipe and ``steps`` the nodes of its graphs, each
-    with the dotted path of a feature from the block on.
+    ``arguments`` has the feature for each parameter of the recipe, and ``steps`` the feature for
+    each node of its graphs. A feature is a dotted path that begins at the block.
     """
 
     block: str
@@ -196,7 +196,7 @@ class Recipe(Struct, frozen=True):
 
 
 class Provider(Struct, frozen=True):
-    """A machine that offers a service, with its own duration there."""
+    """A machine that offers a service, with the duration of the service on this machine."""
 
     machine: str
     duration: int | None = None
@@ -288,6 +288,12 @@ class FlowGraph(Struct, frozen=True):
     edges: tuple[FlowEdge, ...] = ()
     element: str = ""
 
+    @property
+    def parameters(self) -> dict[str, Parameter]:
+        """The inputs, outputs and variables, which expressions of the graph may name, by name."""
+        parameters = (*self.inputs, *self.outputs, *self.variables)
+        return {parameter.name: parameter for parameter in parameters}
+
 
 class Model(Struct, frozen=True):
     """One recipe with everything that it refers to; each tuple is sorted by id."""
@@ -299,3 +305,8 @@ class Model(Struct, frozen=True):
     functions: tuple[Function, ...] = ()
     service_graphs: tuple[FlowGraph, ...] = ()
     function_graphs: tuple[FlowGraph, ...] = ()
+
+    @property
+    def graphs(self) -> tuple[FlowGraph, ...]:
+        """The graphs of services, then those of functions."""
+        return (*self.service_graphs, *self.function_graphs)

@@ -32,7 +32,7 @@ class PlantElement(Struct, frozen=True):
     owner: str
 
 
-def is_of_plant(graph: Graph, element: Element) -> bool:
+def is_in_plant(graph: Graph, element: Element) -> bool:
     """Return whether *element* is in an instance hierarchy or class library of AutomationML."""
     root = [element, *graph.ancestors(element)][-1]
     return root.subkind == HIERARCHY or root.subkind in LIBRARIES
@@ -80,7 +80,7 @@ class Plant:
         return None
 
     def _has_instance(self, part: Element) -> bool:
-        """Return whether an instance represents the part or a feature that it redefines."""
+        """Return whether an instance represents the part or a feature that the part redefines."""
         parts = [part, *query.redefined_features(self.graph, part)]
         sources = (source for p in parts for source in self.graph.sources(p, Edge.REPRESENTS))
         return any(source.kind is Kind.INSTANCE for source in sources)
@@ -98,14 +98,14 @@ class Plant:
     def _by_block(self) -> dict[str, list[PlantElement]]:
         index: dict[str, list[PlantElement]] = {}
         for item in self.elements.values():
-            for id in () if item.block is None else self.class_ids(item.block):
+            for id in () if item.block is None else self.list_class_ids(item.block):
                 index.setdefault(id, []).append(item)
         return index
 
     def find_represented(self, element: Element) -> list[PlantElement]:
         """Return the InternalElements that an element of the graph represents.
 
-        A part of a class can represent several of them, and a class all of its kind.
+        A part of a class represents one in each instance of the class, a class all its instances.
         """
         exact = self.elements.get(element.id)
         if exact is not None:
@@ -113,21 +113,21 @@ class Plant:
         return self._by_graph_id.get(element.id) or self._by_block.get(element.id, [])
 
     def find_by_id(self, text: str) -> PlantElement | None:
-        """Return the InternalElement with an id, if necessary ignoring braces and case."""
+        """Return the InternalElement with this id, else one whose id differs in case or braces."""
         return self.elements.get(text) or self._by_normalised_id.get(_normalise_id(text))
 
     @cached_property
     def _by_normalised_id(self) -> dict[str, PlantElement]:
         return {_normalise_id(id): item for id, item in self.elements.items()}
 
-    def class_ids(self, block: Element) -> frozenset[str]:
-        """Return the ids of a block, its generals, and the role classes that these realise."""
+    def list_class_ids(self, block: Element) -> frozenset[str]:
+        """Return the ids of ``list_classes(block)``."""
         if block.id not in self._class_ids:
-            self._class_ids[block.id] = frozenset(item.id for item in self.classes(block))
+            self._class_ids[block.id] = frozenset(item.id for item in self.list_classes(block))
         return self._class_ids[block.id]
 
-    def classes(self, block: Element) -> list[Element]:
-        """Return a block, its generals, and the role classes that these realise, nearest first."""
+    def list_classes(self, block: Element) -> list[Element]:
+        """Return a block and its generals, then the role classes that they realise with theirs."""
         if block.id not in self._classes:
             classes = [block, *query.generals(self.graph, block)]
             roles = [role for item in classes for role in self.graph.targets(item, Edge.REALIZES)]
@@ -136,7 +136,7 @@ class Plant:
             self._classes[block.id] = list(dict.fromkeys(classes))
         return self._classes[block.id]
 
-    def name_of(self, item: PlantElement) -> str:
+    def qualified_name(self, item: PlantElement) -> str:
         """Return the qualified name of an InternalElement in its hierarchy."""
         return self.graph.qualified_name(item.element)
 
@@ -153,7 +153,10 @@ class Plant:
             element = self.graph.owner(element)
 
     def _find_owner(self, element: Element) -> PlantElement | None:
-        """Return the InternalElement that *element* represents, also as its own class, or None."""
+        """Return the InternalElement that *element* represents, or None.
+
+        An InternalElement with a definition of its own may be represented by this definition.
+        """
         candidates = self._by_graph_id.get(element.id, [])
         if not candidates and element.subkind == "internal-element":
             candidates = [

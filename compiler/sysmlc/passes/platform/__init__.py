@@ -54,7 +54,10 @@ def _describe_platform(
 
 def _describe_used(context: Context, element: PlantElement) -> Used:
     return Used(
-        element.id, context.plant.name_of(element), _type_name(context, element), element.element.id
+        element.id,
+        context.plant.qualified_name(element),
+        _type_name(context, element),
+        element.element.id,
     )
 
 
@@ -88,7 +91,7 @@ def _list_unused(context: Context, used: Iterable[PlantElement]) -> list[Unused]
     unused = [
         Unused(
             element.id,
-            plant.name_of(element),
+            plant.qualified_name(element),
             _type_name(context, element),
             element.element.id,
             contents,

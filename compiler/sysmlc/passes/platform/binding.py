@@ -9,7 +9,7 @@ from sysmlc.diagnostics import Sink
 from sysmlc.ir import Edge, Element, Graph, Kind, query
 from sysmlc.passes.platform import rules
 from sysmlc.recipe.model import Machine, Model, Service
-from sysmlc.recipe.plant import Binding, Plant, PlantElement, is_of_plant
+from sysmlc.recipe.plant import Binding, Plant, PlantElement, is_in_plant
 from sysmlc.support.suggestions import did_you_mean
 
 _OVERLAY = ".overlay.yaml"
@@ -155,7 +155,8 @@ class Context:
             return ""
         similar = clause.removeprefix("did you mean '").removesuffix("'?")
         suggestions = [
-            f"'{self.plant.name_of(element)}' (id {element.id})" for element in names[similar]
+            f"'{self.plant.qualified_name(element)}' (id {element.id})"
+            for element in names[similar]
         ]
         several = list(dict.fromkeys(suggestions))[:3]
         return f"did you mean {' or '.join(several)}?"
@@ -205,7 +206,7 @@ def _list_statements(context: Context, machine: Machine) -> Iterator[tuple[Plant
     """
     graph = context.graph
     element = graph[machine.element]
-    if context.plant and is_of_plant(graph, element):
+    if context.plant and is_in_plant(graph, element):
         yield from (
             (part, "itself", element.id) for part in context.plant.find_represented(element)
         )
@@ -310,4 +311,4 @@ def _report_shared(context: Context, bindings: list[Binding]) -> None:
 
 
 def _name_of(context: Context, element: PlantElement) -> str:
-    return context.plant.name_of(element)
+    return context.plant.qualified_name(element)

@@ -113,7 +113,7 @@ def _find_operation(
     Without a stated operation, the name and the parameters decide. A mismatch is an operation of
     the same name with other parameters, and a clause about the difference.
     """
-    family = context.plant.class_ids(block)
+    family = context.plant.list_class_ids(block)
     for candidate in stated:
         if candidate.operation.owner in family:
             return candidate, None
@@ -129,7 +129,7 @@ def _find_operation(
 
 
 def _list_operations(context: Context, block: Element) -> Iterator[Element]:
-    for classifier in context.plant.classes(block):
+    for classifier in context.plant.list_classes(block):
         yield from (
             feature for feature in context.graph.owned(classifier) if feature.kind is Kind.OPERATION
         )
@@ -155,7 +155,7 @@ def _report_mismatches(
                 subject,
                 service=service.id,
                 operation=operation.name,
-                element=context.plant.name_of(site.element),
+                element=context.plant.qualified_name(site.element),
                 difference=problem,
             )
     if not offers and not mismatches and sites and _needs_offer(service):
@@ -208,7 +208,7 @@ def _report_foreign_operations(
                 service=service.id,
                 operation=context.graph.qualified_name(candidate.operation),
                 elements=", ".join(
-                    sorted({f"'{context.plant.name_of(p.element)}'" for p in sites})[:3]
+                    sorted({f"'{context.plant.qualified_name(p.element)}'" for p in sites})[:3]
                 ),
             )
 

@@ -26,7 +26,8 @@ from sysmlc.passes.recipe.nodes import (
     list_flows,
     step_kind,
 )
-from sysmlc.recipe.flow import find_reachable, sort_nodes, with_loops
+from sysmlc.recipe.flow import find_reachable, sort_nodes
+from sysmlc.recipe.loops import add_loop_nodes
 from sysmlc.recipe.model import FlowEdge, FlowGraph, Node
 
 _CALLED_LEVELS = {"service": "service", "function": "machine function"}
@@ -219,7 +220,7 @@ def build_flow_graph(context: Context, activity: Element, activity_level: str) -
         tuple(draft.edges),
         activity.id,
     )
-    return _sort_graph(with_loops(graph, _read_loop_bounds(context, activity, draft)))
+    return _sort_graph(add_loop_nodes(graph, _read_loop_bounds(context, activity, draft)))
 
 
 def _sort_graph(graph: FlowGraph) -> FlowGraph:

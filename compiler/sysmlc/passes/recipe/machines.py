@@ -9,7 +9,7 @@ from sysmlc.passes.recipe.context import Context
 from sysmlc.passes.recipe.expressions import is_data, literal_default, read_optional
 from sysmlc.passes.recipe.profile import Tags
 from sysmlc.recipe.model import Machine, Material, Mode, OpcUa, Provider, Range
-from sysmlc.recipe.plant import is_of_plant
+from sysmlc.recipe.plant import is_in_plant
 
 
 class Relation(Struct, frozen=True):
@@ -59,7 +59,7 @@ def _is_plant_location(context: Context, supplier: Element) -> bool:
     """Whether the pass ``platform`` reads the supplier: an operation or a plant element."""
     if context.level(supplier) == "machine":
         return False
-    return supplier.kind is Kind.OPERATION or is_of_plant(context.graph, supplier)
+    return supplier.kind is Kind.OPERATION or is_in_plant(context.graph, supplier)
 
 
 def _relations_by_association(context: Context, client: Element) -> Iterator[Relation]:

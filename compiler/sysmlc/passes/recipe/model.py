@@ -26,8 +26,7 @@ from sysmlc.passes.recipe.tasks import (
     find_precedence,
     list_steps,
 )
-from sysmlc.recipe.checks import iter_graphs
-from sysmlc.recipe.derive import derive
+from sysmlc.recipe.derivation import derive
 from sysmlc.recipe.expression import iter_variables
 from sysmlc.recipe.model import (
     FlowGraph,
@@ -251,7 +250,7 @@ def _list_scopes(model: Model) -> Iterator[tuple[tuple[Parameter, ...], list[Exp
     recipe: Recipe = model.recipe
     bindings = [value for task in recipe.tasks for _, value in task.bind]
     yield (*recipe.inputs, *recipe.variables), bindings
-    for graph in iter_graphs(model):
+    for graph in model.graphs:
         expressions = [value for node in graph.nodes for _, value in node.bind]
         expressions += [node.expression for node in graph.nodes if node.expression is not None]
         expressions += [edge.guard for edge in graph.edges if edge.guard is not None]

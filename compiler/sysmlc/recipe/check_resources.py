@@ -1,0 +1,148 @@
+"""Checks of durations and of machines and resources that services share (REC008 to REC010)."""
+
+from collections.abc import Iterator
+
+from sysmlc.diagnostics import Severity, rule
+from sysmlc.recipe.derivation import find_resource_modes, find_same_machine_groups, list_functions
+from sysmlc.recipe.durations import find_mode_duration, find_refined_duration
+from sysmlc.recipe.findings import Finding
+from sysmlc.recipe.flow import find_reachable
+from sysmlc.recipe.model import FlowGraph, Model, Provider, Range, Service, Task
+from sysmlc.recipe.tables import Tables
+
+TASK_TIME = rule(
+    "SM608",
+    "task-takes-too-long",
+    Severity.WARNING,
+    "task '{task}' takes {derived} ms by its services, but {declared}",
+    help="correct the duration of the task or of a service, or bound a loop",
+)
+SERVICE_TIME = rule(
+    "SM609",
+    "service-time-differs",
+    Severity.WARNING,
+    "service '{service}' takes {derived} ms by its functions, but {declared} ms on '{machine}'",
+    help="correct the duration of a function or of the «Capability»",
+)
+STALE_GROUPS = rule(
+    "SM610",
+    "same-machine-differs",
+    Severity.ERROR,
+    "task '{task}': {problem}",
+    help="let one machine offer all services of the group, or correct which service "
+    "takes the resource",
+)
+UNRELEASED = rule(
+    "SM618",
+    "resource-never-released",
+    Severity.WARNING,
+    "task '{task}' can end while '{resource}', taken at '{node}', is not given back",
+    help=(
+        "call a service that releases it on every way to the end, or mark the function's use of it"
+    ),
+)
+
+
+def check_task_times(model: Model, tables: Tables) -> Iterator[Finding]:
+    """REC008: a task takes no longer than its bound, nor than the duration of each mode."""
+    for task in model.recipe.tasks:
+        derived = None if task.derived is None else task.derived.duration
+        if derived is not None and _exceeds(derived, task.max_duration):
+            yield _too_long(task, derived, f"at most {task.max_duration} ms are allowed")
+        for mode in task.equipment:
+            derived = find_mode_duration(task, mode, tables)
+            if derived is not None and _exceeds(derived, mode.duration):
+                machines = " and ".join(f"'{machine}'" for machine in mode.machines)
+                yield _too_long(task, derived, f"{mode.duration} ms on {machines}")
+
+
+def _exceeds(duration: Range, limit: int | None) -> bool:
+    """Return whether the maximum, or without a maximum the minimum, is above the limit."""
+    return limit is not None and (duration.min if duration.max is None else duration.max) > limit
+
+
+def _too_long(task: Task, derived: Range, declared: str) -> Finding:
+    facts = {"task": task.id, "derived": _format_range(derived), "declared": declared}
+    return Finding(TASK_TIME, task.element, facts)
+
+
+def _format_range(duration: Range) -> str:
+    if duration.max == duration.min:
+        return str(duration.min)
+    return f"{duration.min} to {'any number of' if duration.max is None else duration.max}"
+
+
+def check_service_times(model: Model, tables: Tables, tolerance: float) -> Iterator[Finding]:
+    """REC009: the durations of functions and of providers agree within the tolerance."""
+    for service in model.services:
+        derived = find_refined_duration(service, tables)
+        if derived is None:
+            continue
+        for provider in service.providers:
+            if _differs(derived, provider.duration, tolerance):
+                yield _make_time_finding(service, provider, derived)
+
+
+def _differs(derived: Range, duration: int | None, tolerance: float) -> bool:
+    if duration is None:
+        return False
+    too_short = duration < derived.min * (1 - tolerance)
+    return too_short or (derived.max is not None and duration > derived.max * (1 + tolerance))
+
+
+def _make_time_finding(service: Service, provider: Provider, derived: Range) -> Finding:
+    facts = {
+        "service": service.id,
+        "derived": _format_range(derived),
+        "declared": provider.duration,
+        "machine": provider.machine,
+    }
+    return Finding(SERVICE_TIME, service.element, facts)
+
+
+# -- resources ---------------------------------------------------------------------------------
+
+
+def check_groups(model: Model, tables: Tables) -> Iterator[Finding]:
+    """REC010: same-machine groups are up to date; one machine offers all services of a group."""
+    for task in model.recipe.tasks:
+        graph = tables.service_graphs.get(task.implementation)
+        groups = None if graph is None else find_same_machine_groups(graph, tables)
+        if groups != (task.derived and task.derived.same_machine):
+            problem = "its same-machine groups are not those that follow from its functions"
+            yield Finding(STALE_GROUPS, task.element, {"task": task.id, "problem": problem})
+        elif groups is not None:
+            for group in groups:
+                yield from _check_group(task, group.nodes, tables)
+
+
+def _check_group(task: Task, group: tuple[str, ...], tables: Tables) -> Iterator[Finding]:
+    nodes = {node.id: node for node in tables.service_graphs[task.implementation].nodes}
+    services = [tables.find_service(nodes[id]) for id in group]
+    offers = [{p.machine for p in service.providers} for service in services if service]
+    equipment = {machine for mode in task.equipment for machine in mode.machines}
+    if offers and not set.intersection(*offers, *([equipment] if equipment else [])):
+        names = ", ".join(f"'{id.rpartition('::')[2]}'" for id in group)
+        problem = f"no machine offers all of {names}, which must run on one machine"
+        yield Finding(STALE_GROUPS, task.element, {"task": task.id, "problem": problem})
+
+
+def check_releases(model: Model, tables: Tables) -> Iterator[Finding]:
+    """SM618: each resource that a task acquires is released on every path to the end."""
+    for task in model.recipe.tasks:
+        graph = tables.service_graphs.get(task.implementation)
+        for resource, node, element in () if graph is None else _iter_unreleased(graph, tables):
+            facts = {"task": task.id, "resource": resource, "node": node}
+            yield Finding(UNRELEASED, element, facts)
+
+
+def _iter_unreleased(graph: FlowGraph, tables: Tables) -> Iterator[tuple[str, str, str]]:
+    ends = {node.id for node in graph.nodes if node.kind == "final"}
+    for node in graph.nodes:
+        resources = {r.id for f in list_functions(node, tables) for r in f.resources}
+        for resource in sorted(resources):
+            modes_by_node = {n.id: find_resource_modes(n, resource, tables) for n in graph.nodes}
+            releasing = {id for id, modes in modes_by_node.items() if "release" in modes}
+            edges = [(e.source, e.target) for e in graph.edges if e.source not in releasing]
+            if "acquire" in modes_by_node[node.id] and find_reachable([node.id], edges) & ends:
+                yield resource, node.id, node.element

@@ -1,0 +1,121 @@
+"""Loop nodes of flow graphs.
+
+The decision that can leave a cycle of decide and merge becomes a loop node. The loop node retains
+the guards of its edges; ``body`` edges repeat the cycle, ``exit`` edges leave it. A for-each node
+has such edges too: its body runs once for each element of a list.
+"""
+
+from collections.abc import Mapping
+
+from msgspec.structs import replace
+
+from sysmlc.logic.expressions.expression import Expression
+from sysmlc.recipe.expression import disjunction, negation
+from sysmlc.recipe.flow import find_cycles, find_entries, find_reachable
+from sysmlc.recipe.model import FlowEdge, FlowGraph, Node
+
+
+def add_loop_nodes(graph: FlowGraph, bounds: Mapping[str, int]) -> FlowGraph:
+    """Return the graph in which a decision of each cycle is a loop node.
+
+    *bounds* maps ids of nodes, and ids of the elements of edges, to the most iterations. A cycle
+    that no decision can leave is unchanged; ``check_graphs`` reports it.
+    """
+    nodes = {node.id: node for node in graph.nodes}
+    edges = list(graph.edges)
+    active = set(nodes)
+    # A for-each node repeats its body without a decision: its cycle is complete already.
+    closing = _find_for_each_back_edges(graph)
+    without_for_each = replace(graph, edges=tuple(edge for edge in edges if edge not in closing))
+    while (next_loop := _find_next_loop(without_for_each, active)) is not None:
+        loop, cycle = next_loop
+        edges = [_assign_role(edge, loop, cycle) for edge in edges]
+        nodes[loop] = _make_loop_node(nodes[loop], cycle, edges, bounds)
+        # Without its loop node the cycle is gone, and the cycles inside it become visible.
+        active.discard(loop)
+    return replace(graph, nodes=tuple(nodes.values()), edges=tuple(edges))
+
+
+def _find_for_each_back_edges(graph: FlowGraph) -> frozenset[FlowEdge]:
+    """Return the edges that lead from the body of a for-each node back to it."""
+    back_edges: set[FlowEdge] = set()
+    for node in graph.nodes:
+        if node.kind == "forEach":
+            starts = [e.target for e in graph.edges if e.source == node.id and e.role == "body"]
+            inner = [(e.source, e.target) for e in graph.edges if e.source != node.id]
+            body = find_reachable(starts, inner)
+            back_edges |= {e for e in graph.edges if e.target == node.id and e.source in body}
+    return frozenset(back_edges)
+
+
+def _find_next_loop(graph: FlowGraph, active: set[str]) -> tuple[str, set[str]] | None:
+    """Return a decision with an edge out of a cycle of *active* nodes, and this cycle."""
+    edges = [(e.source, e.target) for e in graph.edges if {e.source, e.target} <= active]
+    nodes = [node.id for node in graph.nodes if node.id in active]
+    for cycle in find_cycles(nodes, edges):
+        inside = set(cycle)
+        decisions = [n.id for n in graph.nodes if n.id in inside and n.kind == "decision"]
+        leaving = [id for id in decisions if _can_leave(graph, id, inside)]
+        if leaving:
+            return _select_loop(graph, leaving, cycle), inside
+    return None
+
+
+def _can_leave(graph: FlowGraph, decision: str, cycle: set[str]) -> bool:
+    return any(e.target not in cycle for e in graph.edges if e.source == decision)
+
+
+def _select_loop(graph: FlowGraph, leaving: list[str], cycle: list[str]) -> str:
+    """Return the first decision with an edge to an entry of the cycle, else the first decision."""
+    entries = find_entries(graph, cycle)
+    sources = {e.source for e in graph.edges if e.target in entries}
+    direct = [id for id in leaving if id in sources]
+    return (direct or leaving)[0]
+
+
+def _assign_role(edge: FlowEdge, loop: str, cycle: set[str]) -> FlowEdge:
+    if edge.source != loop:
+        return edge
+    return replace(edge, role="body" if edge.target in cycle else "exit")
+
+
+def _make_loop_node(
+    node: Node, cycle: set[str], edges: list[FlowEdge], bounds: Mapping[str, int]
+) -> Node:
+    outgoing = [edge for edge in edges if edge.source == node.id]
+    return replace(
+        node,
+        kind="loop",
+        expression=_repeat_condition(outgoing),
+        max_iterations=_find_bound(node, cycle, outgoing, edges, bounds),
+    )
+
+
+def _repeat_condition(outgoing: list[FlowEdge]) -> Expression:
+    """Return the condition of another round.
+
+    It is that a body guard holds; if a body edge has no guard or else, that no exit guard holds.
+    """
+    body = [edge for edge in outgoing if edge.role == "body"]
+    if any(edge.is_else or edge.guard is None for edge in body):
+        exits = [edge.guard for edge in outgoing if edge.role == "exit" and edge.guard is not None]
+        return negation(disjunction(tuple(exits)))
+    return disjunction(tuple(edge.guard for edge in body if edge.guard is not None))
+
+
+def _find_bound(
+    node: Node,
+    cycle: set[str],
+    outgoing: list[FlowEdge],
+    edges: list[FlowEdge],
+    bounds: Mapping[str, int],
+) -> int | None:
+    """Return the first bound in this order, None if there is none.
+
+    The order is: of the decision, of its body edges, of the entries of the cycle, of back edges.
+    """
+    body = [edge for edge in outgoing if edge.role == "body"]
+    entries = {e.target for e in edges if e.source not in cycle and e.target in cycle}
+    back = [e.element for e in edges if e.source in cycle and e.target in entries]
+    keys = [node.id, *(e.element for e in body), *sorted(entries), *back]
+    return next((bounds[key] for key in keys if key in bounds), None)
