@@ -14,6 +14,7 @@ from sysmlc.recipe.model import (
     Mode,
     Model,
     Node,
+    OpcUa,
     Provider,
     Range,
     Recipe,
@@ -131,3 +132,13 @@ def test_groups_that_were_changed_by_hand_are_noticed():
     (message,) = findings(changed, "SM610")
     assert "not those that follow" in message
     assert derive(changed) == model
+
+
+def test_a_malformed_node_id_is_reported():
+    call = OpcUa("call", "Robot.Grip", "ns=2;s=Grip", namespace_uri="urn:robot")
+    model = Model(Recipe("R", ()), services=(Service("S", "machine", opcua=call),))
+    sink = Sink()
+    validate(model, sink, Subject)
+    assert "the OPC UA call on 'S' has 'Robot.Grip', which is not a node id" in [
+        diagnostic.message for diagnostic in sink
+    ]

@@ -202,6 +202,6 @@ def _iter_problems(call: OpcUa) -> Iterator[str]:
     for id in (call.object, call.method):
         match = _NODE_ID.fullmatch(id)
         if id and match is None:
-            yield f"has '{id}', which is not at at a node id"
+            yield f"has '{id}', which is not a node id"
         elif match is not None and match[1] and not call.namespace_uri:
             yield f"has '{id}', which names its namespace by an index only"
