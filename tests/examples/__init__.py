@@ -1,1 +1,1 @@
-"""The shipped examples as tests."""
+"""Tests of the models in the folder ``examples``."""

@@ -1,62 +1,92 @@
-"""Each shipped example gives the outputs that were read and found right (tests/golden/examples).
+"""Each example has the outputs in tests/golden/examples, which were reviewed by reading.
 
-Kept are the files that people read: recipes, diagrams, contracts as text, and one contract in
-every form. ``files.txt`` lists them all, ``findings.txt`` what was found in the model.
+The golden files are those that people read: recipes, diagrams, contracts as text, and one contract
+in every format. ``files.txt`` lists all outputs, ``findings.txt`` the diagnostics.
 """
 
 import re
 
 import pytest
 
-from examples.compiling import EXAMPLES, PLANT, ROOT, TEXT, compile_example, findings, outputs
+from examples.compiling import (
+    EXAMPLES,
+    PLANT,
+    ROOT,
+    TEXT,
+    compile_example,
+    format_diagnostics,
+    outputs,
+)
+from sysmlc.diagnostics import Sink
+from sysmlc.logic.contract import Contract
+from sysmlc.synthesis.contract_checks import check_contracts
+from sysmlc.synthesis.decision import Options
 
-_TELLING = re.compile(r"recipes/.*|diagrams/.*|contracts/.*\.md|contracts/.*(Stopper|Gripper)\..*")
+MODELS = [*EXAMPLES, PLANT, TEXT]
+
+_GOLDEN_OUTPUTS = re.compile(
+    r"recipes/.*|diagrams/.*|contracts/.*\.md|contracts/.*(Stopper|Gripper)\..*"
+)
 
 
 @pytest.mark.parametrize("model", [*EXAMPLES, PLANT], ids=lambda path: path.parent.name)
-def test_an_example_gives_its_golden_outputs(model, golden):
+def test_an_example_has_its_golden_outputs(model, golden):
     compilation = compile_example(model)
-    made = outputs(compilation)
-    kept = {path: text for path, text in made.items() if _TELLING.fullmatch(path)}
-    kept["files.txt"] = "".join(f"{path}\n" for path in sorted(made))
-    kept["findings.txt"] = findings(compilation)
+    texts = outputs(compilation)
+    reviewed = {path: text for path, text in texts.items() if _GOLDEN_OUTPUTS.fullmatch(path)}
+    reviewed["files.txt"] = "".join(f"{path}\n" for path in sorted(texts))
+    reviewed["findings.txt"] = format_diagnostics(compilation)
     assert compilation.exit_code() == 0
     assert not compilation.withheld
-    golden.check(f"examples/{model.parent.name}", kept)
+    golden.check(f"examples/{model.parent.name}", reviewed)
 
 
 CELL = ROOT / "examples" / "four-tasks" / "cell.aml"
 
 
 def test_the_recipes_of_four_tasks_are_mapped_to_a_plant(golden):
-    """The overlay beside the plant names the recipes, so that both are one unit."""
+    """The overlay of the plant names the recipes, so that both are one unit."""
     compilation = compile_example(CELL, "platform")
-    assert {found.rule.code for found in compilation.diagnostics} == {"SM469"}
+    assert {diagnostic.rule.code for diagnostic in compilation.diagnostics} == {"SM469"}
     golden.check("examples/four-tasks-platform", outputs(compilation))
 
 
 @pytest.mark.parametrize(
-    ("line", "code"), [("Plant::Cart", "SM624"), ("Turn: ", "SM623"), ("takePin}", "SM623")]
+    ("removed", "code"), [("Plant::Cart", "SM624"), ("Turn: ", "SM623"), ("takePin}", "SM623")]
 )
-def test_the_plant_of_four_tasks_without_a_line_of_its_overlay(tmp_path, line, code):
+def test_a_missing_line_in_the_overlay_of_four_tasks_is_reported(tmp_path, removed, code):
     (tmp_path / ".git").mkdir()
     for path in CELL.parent.iterdir():
-        kept = path.read_text("utf-8").splitlines(keepends=True)
+        lines = path.read_text("utf-8").splitlines(keepends=True)
         is_overlay = path.name == "cell.overlay.yaml"
-        text = "".join(one for one in kept if not (is_overlay and line in one))
+        text = "".join(line for line in lines if not (is_overlay and removed in line))
         (tmp_path / path.name).write_text(text, "utf-8")
-    found = compile_example(tmp_path / CELL.name, "platform").diagnostics
-    assert {one.rule.code for one in found} == {"SM469", code}
+    diagnostics = compile_example(tmp_path / CELL.name, "platform").diagnostics
+    assert {diagnostic.rule.code for diagnostic in diagnostics} == {"SM469", code}
 
 
-def test_there_are_six_examples():
+def test_the_examples_are_those_in_the_folder():
     names = [path.parent.name for path in (PLANT, *EXAMPLES, TEXT)]
     assert names == ["baygate", "baygate-behaviour", "four-tasks", "lego-recipe", "lego-recipe-v2"]
     assert {path.name for path in (ROOT / "examples").iterdir()} == {*names, "robots"}
 
 
-@pytest.mark.parametrize("model", [*EXAMPLES, PLANT, TEXT], ids=lambda path: path.parent.name)
-def test_an_example_is_in_the_graph_whole(model):
+@pytest.mark.parametrize("model", MODELS, ids=lambda path: path.parent.name)
+def test_an_example_has_no_unsupported_and_no_approximated_elements(model):
     total = compile_example(model, "ir").coverage.as_json()["total"]
     assert total["unsupported"] == 0
     assert total["approximated"] == 0
+
+
+@pytest.mark.parametrize("model", MODELS, ids=lambda path: path.parent.name)
+def test_the_contracts_of_an_example_are_realizable_without_diagnostics(model):
+    compilation, sink = compile_example(model), Sink()
+    graph = compilation.graph
+    contracts = graph.derived(Contract)
+    results = check_contracts(
+        contracts, contracts, lambda origin: graph.subject(graph[origin]), sink, Options()
+    )
+    verdicts = {result.verdict.component: result.verdict.is_realizable for result in results}
+    assert [name for name, is_realizable in verdicts.items() if not is_realizable] == []
+    assert [(diagnostic.rule.code, diagnostic.message) for diagnostic in sink] == []
+    assert verdicts

@@ -1,4 +1,4 @@
-"""The scenarios beside the examples pass, and would fail if the diagram did something else."""
+"""The scenarios of the examples pass, and fail when an input or an expected value is changed."""
 
 import pytest
 
@@ -10,20 +10,20 @@ from sysmlc.sources import Source
 SCENARIOS = sorted((ROOT / "examples").glob("*/scenarios/*.yaml"))
 
 
-def play(path, change=("", "")):
+def run_scenario(path, change=("", "")):
     (model,) = path.parents[1].glob("*.uml")
     sink = Sink()
     text = path.read_text(encoding="utf-8")
     assert change[0] in text
     source = Source(path.name, text.replace(*change, 1).encode())
     report = run_scenarios(compile_example(model, "ir").graph, source, sink)
-    return report, [found.message for found in sink]
+    return report, [diagnostic.message for diagnostic in sink]
 
 
 @pytest.mark.parametrize("path", SCENARIOS, ids=lambda path: path.stem)
 def test_the_scenarios_of_an_example_pass(path):
-    report, complaints = play(path)
-    assert complaints == []
+    report, messages = run_scenario(path)
+    assert messages == []
     assert report.passed, report.as_text()
 
 
@@ -38,12 +38,12 @@ def test_the_scenarios_of_an_example_pass(path):
         ("stopper", ("event: release}", "event: none}")),
     ],
 )
-def test_another_input_fails_a_scenario(name, change):
+def test_a_changed_input_fails_the_scenario(name, change):
     path = next(path for path in SCENARIOS if path.stem == name)
-    report, complaints = play(path, change)
-    assert complaints == []
+    report, messages = run_scenario(path, change)
+    assert messages == []
     assert not report.passed
 
 
-def test_there_are_scenarios():
+def test_the_examples_have_scenarios():
     assert [path.stem for path in SCENARIOS][:2] == ["gate", "stopper"]

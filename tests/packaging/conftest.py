@@ -24,11 +24,11 @@ class Environment:
 
     @property
     def python(self) -> str:
-        """The interpreter."""
+        """The path of the interpreter."""
         return str(next(self.programs.glob("python*")))
 
     def variables(self) -> dict[str, str]:
-        """Variables of processes that find the programs of this environment first."""
+        """Return environment variables with which a process finds these programs first."""
         inherited = {key: value for key, value in os.environ.items() if key != "PYTHONPATH"}
         path = os.pathsep.join([str(self.programs), inherited["PATH"]])
         return {**inherited, "PATH": path, "VIRTUAL_ENV": str(self.folder)}
@@ -39,18 +39,18 @@ def dist(tmp_path_factory) -> Path:
     """A folder with the source distribution and the wheel that was built from it."""
     folder = tmp_path_factory.mktemp("dist")
     run = [sys.executable, "-m", "build", "--no-isolation", "--outdir", str(folder), str(ROOT)]
-    done = subprocess.run(run, capture_output=True, text=True)
-    assert done.returncode == 0, done.stdout + done.stderr
+    result = subprocess.run(run, capture_output=True, text=True)
+    assert result.returncode == 0, result.stdout + result.stderr
     return folder
 
 
 @pytest.fixture(scope="session")
 def environment(dist, tmp_path_factory) -> Environment:
-    """An environment after ``pip install`` of the wheel, which needs the package index."""
+    """An environment in which the wheel and its dependencies are installed."""
     folder = tmp_path_factory.mktemp("plain") / "env"
     subprocess.run([sys.executable, "-m", "venv", str(folder)], check=True)
-    made = Environment(folder)
+    environment = Environment(folder)
     (wheel,) = dist.glob("*.whl")
-    pip = [made.python, "-m", "pip", "install", "--quiet", "--disable-pip-version-check"]
-    subprocess.run([*pip, str(wheel)], check=True, env=made.variables())
-    return made
+    pip = [environment.python, "-m", "pip", "install", "--quiet", "--disable-pip-version-check"]
+    subprocess.run([*pip, str(wheel)], check=True, env=environment.variables())
+    return environment

@@ -1,4 +1,4 @@
-"""Files of a reader who follows the documentation: models under the names that pages use."""
+"""The files of a reader who follows the documentation, under the names that the pages use."""
 
 import re
 import shutil
@@ -9,17 +9,17 @@ from dialects.enterprise_architect import write_xmi
 from dialects.magicdraw import write_mdzip
 
 ROOT = Path(__file__).parents[2]
-OWN = Path(__file__).with_name("reader_models")
+READER_MODELS = Path(__file__).with_name("reader_models")
 LEGO = ROOT / "examples/lego-recipe/lego-recipe.uml"
 GATE = ROOT / "examples/baygate-behaviour"
 
 COPIES = {
-    "plant.sysml": OWN / "plant.sysml",
-    "plant/plant.sysml": OWN / "plant.sysml",
-    "models/plant.sysml": OWN / "plant.sysml",
-    "cart.gr1.json": OWN / "cart.gr1.json",
-    "amba.tlsf": OWN / "amba.tlsf",
-    "schemas/plant.xsd": OWN / "plant.xsd",
+    "plant.sysml": READER_MODELS / "plant.sysml",
+    "plant/plant.sysml": READER_MODELS / "plant.sysml",
+    "models/plant.sysml": READER_MODELS / "plant.sysml",
+    "cart.gr1.json": READER_MODELS / "cart.gr1.json",
+    "amba.tlsf": READER_MODELS / "amba.tlsf",
+    "schemas/plant.xsd": READER_MODELS / "plant.xsd",
     "model.uml": LEGO,
     "recipe.uml": ROOT / "examples/four-tasks/four-tasks.uml",
     "plant.aml": ROOT / "examples/baygate/baygate.aml",
@@ -36,7 +36,7 @@ COPIES = {
     "examples": ROOT / "examples",
     "benchmarks": ROOT / "benchmarks",
 }
-"""Files and folders that every page finds, by what they are copied from."""
+"""Files and folders that are copied for every page, and their sources."""
 
 PAGE_COPIES = {
     "docs/map-a-recipe-to-a-plant.md": {"plant.aml": ROOT / "examples/four-tasks/cell.aml"},
@@ -45,15 +45,15 @@ PAGE_COPIES = {
         "wrong-id.yaml": GATE / "scenarios/gate.yaml",
     },
 }
-"""Files that a page wants to be something else."""
+"""Files with another source for some pages."""
 
 CONFIGURATION = '[[model]]\nname = "plant"\nfiles = ["plant.uml"]\n'
 
 
 def supply_files(page: str, folder: Path, sysmlc: Callable[..., object]) -> None:
-    """Put everything that the commands of a page refer to into a folder.
+    """Create all files in *folder* that the commands of a page refer to.
 
-    ``sysmlc`` runs the command in the folder; it makes those files that sysmlc itself writes.
+    *sysmlc* runs the command line in the folder, for those files that are outputs of sysmlc.
     """
     (folder / ".git").mkdir()
     for name, source in (COPIES | PAGE_COPIES.get(page, {})).items():
@@ -64,10 +64,10 @@ def supply_files(page: str, folder: Path, sysmlc: Callable[..., object]) -> None
         (folder / name).write_bytes(write_mdzip(LEGO.read_bytes()))
     (folder / "Plant.xmi").write_bytes(write_xmi(LEGO.read_bytes()))
     _supply_code_blocks(folder)
-    sysmlc("plant.sysml", "--emit", "uml,contracts", "-o", "made")
-    shutil.copyfile(folder / "made/uml/plant.uml", folder / "plant.uml")
+    sysmlc("plant.sysml", "--emit", "uml,contracts", "-o", "compiled")
+    shutil.copyfile(folder / "compiled/uml/plant.uml", folder / "plant.uml")
     shutil.copyfile(
-        folder / "made/contracts/Plant.Gate.contract.json", folder / "gate.contract.json"
+        folder / "compiled/contracts/Plant.Gate.contract.json", folder / "gate.contract.json"
     )
     _supply_old_and_new(folder)
     if page == "sysmlc build --help":
@@ -83,9 +83,9 @@ def _supply_code_blocks(folder: Path) -> None:
 
 
 def _search(pattern: str, text: str) -> str:
-    found = re.search(pattern, text, re.DOTALL)
-    assert found, pattern
-    return found[1]
+    match = re.search(pattern, text, re.DOTALL)
+    assert match, pattern
+    return match[1]
 
 
 def _supply_old_and_new(folder: Path) -> None:

@@ -1,6 +1,7 @@
-"""Other programs beside ours in the benchmark of contracts: what they are told and what they say.
+"""The benchmark of contracts runs other synthesis programs: their inputs and their outputs.
 
-The programs here are small stand-ins; what is looked at is the file they get and how they are read.
+Small scripts take the place of the programs. The tests check the file that a script receives, and
+the verdict that the benchmark reads from its output.
 """
 
 import json
@@ -33,20 +34,20 @@ ANSWERS = {
         ("RESULT: Specification is unrealizable.", "unrealizable"),
     ),
 }  # fmt: skip
-FIRST = {"gr1c": "ENV: request;", "slugs": "[INPUT]"}
-"""How a contract begins in the form that a program reads."""
+FIRST_LINES = {"gr1c": "ENV: request;", "slugs": "[INPUT]"}
+"""The first line of a contract in the format that a program reads."""
 
 
 @pytest.fixture
-def peer(monkeypatch):
+def peer_class(monkeypatch):
     monkeypatch.syspath_prepend(str(BENCHMARKS))
     from gr1_peers import Peer
 
     return Peer
 
 
-def program(folder, body):
-    """A program that does this with its arguments."""
+def write_program(folder, body):
+    """Write an executable script with this body and return its path."""
     path = folder / "peer"
     path.write_text(f"#!{sys.executable}\nimport sys\n{body}\n", encoding="utf-8")
     path.chmod(0o755)
@@ -54,28 +55,32 @@ def program(folder, body):
 
 
 @pytest.mark.parametrize(
-    ("name", "said", "verdict"),
+    ("name", "output", "verdict"),
     [(name, *answer) for name, answers in ANSWERS.items() for answer in answers],
 )
-def test_what_a_program_says_is_its_verdict(peer, tmp_path, name, said, verdict):
-    found = peer(name, program(tmp_path, f"print({said!r})"), 60).decided("d.gr1.json", CONTRACT)
-    time, unit, words = found.removeprefix(f"{name} ").split(" ", 2)
-    assert (float(time) >= 0, unit, words) == (True, "s", verdict)
+def test_the_verdict_is_read_from_the_output_of_the_program(
+    peer_class, tmp_path, name, output, verdict
+):
+    result = peer_class(name, write_program(tmp_path, f"print({output!r})"), 60).decided(
+        "d.gr1.json", CONTRACT
+    )
+    seconds, unit, reported = result.removeprefix(f"{name} ").split(" ", 2)
+    assert (float(seconds) >= 0, unit, reported) == (True, "s", verdict)
 
 
 @pytest.mark.parametrize("name", ANSWERS)
-def test_a_program_is_told_the_contract_in_its_own_form(peer, tmp_path, name):
-    seen = tmp_path / "seen"
-    body = f"open({str(seen)!r}, 'w').write(repr(sys.argv[1:-1]) + open(sys.argv[-1]).read())"
-    peer(name, program(tmp_path, body), 60).decided("d.gr1.json", CONTRACT)
-    options, text = seen.read_text().split("]", 1)
+def test_a_program_gets_the_contract_in_its_own_format(peer_class, tmp_path, name):
+    received = tmp_path / "received"
+    body = f"open({str(received)!r}, 'w').write(repr(sys.argv[1:-1]) + open(sys.argv[-1]).read())"
+    peer_class(name, write_program(tmp_path, body), 60).decided("d.gr1.json", CONTRACT)
+    options, text = received.read_text().split("]", 1)
     assert options == ("['-r'" if name == "gr1c" else "[")
-    assert FIRST[name] in text
+    assert FIRST_LINES[name] in text
 
 
-def test_a_program_that_is_not_there_or_takes_too_long_is_told(peer, tmp_path):
-    assert "does not run" in peer("gr1c", str(tmp_path / "none"), 60).decided(
+def test_a_missing_or_slow_program_is_reported(peer_class, tmp_path):
+    assert "does not run" in peer_class("gr1c", str(tmp_path / "none"), 60).decided(
         "d.gr1.json", CONTRACT
     )
-    slow = program(tmp_path, "import time; time.sleep(600)")
-    assert peer("slugs", slow, 0.2).decided("d.gr1.json", CONTRACT) == "slugs over 0.2 s"
+    slow = write_program(tmp_path, "import time; time.sleep(600)")
+    assert peer_class("slugs", slow, 0.2).decided("d.gr1.json", CONTRACT) == "slugs over 0.2 s"

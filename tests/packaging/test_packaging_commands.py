@@ -1,7 +1,7 @@
-"""Every command of README, docs and ``--help`` works as printed after a plain installation.
+"""Every command in README, docs and ``--help`` succeeds after an installation without extras.
 
-Each page's commands run in one folder, one after the other, by a shell, in an environment without
-extras. ``reader_files`` supplies the files that they name.
+The commands of a page are run by a shell in one folder, in their order. ``reader_files`` creates
+the files that they refer to.
 """
 
 import os
@@ -11,7 +11,7 @@ import subprocess
 import time
 
 import pytest
-from documented_commands import Command, find_commands
+from documentation import Command, find_commands
 from reader_files import supply_files
 
 from sysmlc.cli.group import COMMANDS
@@ -22,58 +22,58 @@ NOT_RUN = {
     r"pip install ": "the environment of this test is made by installing",
     r"uses: ": "actions of a service for continuous integration",
     r"make ": "targets of the Makefile, which test_packaging_docs looks up",
-    r"java -jar plantuml\.jar ": "PlantUML is a download of the reader's",
+    r"java -jar plantuml\.jar ": "the reader downloads PlantUML",
 }
-"""Commands that are not run, and why."""
+"""Commands that are not run, with the reason."""
 
 EXIT_CODES = {
     r"sysmlc diff ": 1,
     r"sysmlc contracts check .* # draws the runs that break a contract": 1,
 }
-"""Exit codes other than 0 that pages announce: models differ, a contract is broken."""
+"""Exit codes other than 0 that pages state: models differ, a contract is violated."""
 
 PREPARATION = {"docs/check-in-ci.md": ["sysmlc build plant.uml -o out/"]}
-"""What a page takes for granted before its first command."""
+"""Commands that a page assumes to have been run before its first one."""
 
 BOUND = 300
-COMMANDS_OF = {
+COMMANDS_BY_PAGE = {
     page: [command for command in find_commands() if command.page == page]
     for page in dict.fromkeys(command.page for command in find_commands())
 }
 
 
-def is_run(command: Command) -> bool:
+def can_run(command: Command) -> bool:
     return not any(re.match(pattern, command.text) for pattern in NOT_RUN)
 
 
-PAGES = [page for page, commands in COMMANDS_OF.items() if any(map(is_run, commands))]
+PAGES = [page for page, commands in COMMANDS_BY_PAGE.items() if any(map(can_run, commands))]
 
 
-def test_commands_are_found_in_every_kind_of_page():
-    found = {(command.page, command.text) for command in find_commands()}
+def test_commands_of_every_kind_of_page_are_found():
+    commands = {(command.page, command.text) for command in find_commands()}
     assert {
         ("README.md", "sysmlc examples/lego-recipe/lego-recipe.uml -o out/"),
         ("docs/check-in-ci.md", "sysmlc check models/ --format github"),
         ("docs/simulate-a-scenario.md",
          "sysmlc simulate examples/lego-recipe/lego-recipe.uml --scenario gripper.yaml"),
         ("sysmlc synth --help", "sysmlc synth gate.contract.json --realizable"),
-    } <= found  # fmt: skip
-    silent = {"backends"}
-    assert {page.split()[1] for page in COMMANDS_OF if page.endswith("--help")} == {
+    } <= commands  # fmt: skip
+    without_examples = {"backends"}
+    assert {page.split()[1] for page in COMMANDS_BY_PAGE if page.endswith("--help")} == {
         "--help",
         *COMMANDS,
-    } - silent
+    } - without_examples
 
 
-def test_every_exception_concerns_a_command():
-    texts = [command.text for commands in COMMANDS_OF.values() for command in commands]
+def test_every_exception_matches_a_command():
+    texts = [command.text for commands in COMMANDS_BY_PAGE.values() for command in commands]
     for pattern in (*NOT_RUN, *EXIT_CODES):
         assert any(re.match(pattern, text) for text in texts), pattern
-    assert set(PREPARATION) <= set(COMMANDS_OF)
+    assert set(PREPARATION) <= set(COMMANDS_BY_PAGE)
 
 
 @pytest.mark.parametrize("page", PAGES)
-def test_the_commands_of_a_page_work_as_printed(page, environment, tmp_path):
+def test_the_commands_of_a_page_succeed(page, environment, tmp_path):
     folder = tmp_path / "repository"
     folder.mkdir()
     variables = {
@@ -88,7 +88,7 @@ def test_the_commands_of_a_page_work_as_printed(page, environment, tmp_path):
 
     supply_files(page, folder, sysmlc)
     problems = []
-    texts = [command.text for command in COMMANDS_OF[page] if is_run(command)]
+    texts = [command.text for command in COMMANDS_BY_PAGE[page] if can_run(command)]
     for text in [*PREPARATION.get(page, []), *texts]:
         run = run_watch if text.startswith("sysmlc watch ") else run_command
         problem = run(text, folder, variables)
@@ -98,17 +98,19 @@ def test_the_commands_of_a_page_work_as_printed(page, environment, tmp_path):
 
 
 def run_command(text, folder, variables):
-    """Run a line in a shell; return what is wrong with the result, or nothing."""
+    """Run a command in a shell; return the problem, or an empty text."""
     run = ["/bin/sh", "-c", text]
-    done = subprocess.run(
+    result = subprocess.run(
         run, cwd=folder, env=variables, input="", capture_output=True, text=True, timeout=BOUND
     )
     expected = next((code for line, code in EXIT_CODES.items() if re.match(line, text)), 0)
-    return "" if done.returncode == expected else f"exit code {done.returncode}\n{done.stderr}"
+    return (
+        "" if result.returncode == expected else f"exit code {result.returncode}\n{result.stderr}"
+    )
 
 
 def run_watch(text, folder, variables):
-    """Run a line that watches until its first build is done, then interrupt it."""
+    """Run a watch command until its first build is done, then interrupt it."""
     lines, errors = folder.parent / "lines.txt", folder.parent / "errors.txt"
     with lines.open("w") as stdout, errors.open("w") as stderr:
         process = subprocess.Popen(
@@ -118,11 +120,11 @@ def run_watch(text, folder, variables):
             stdout=stdout,
             stderr=stderr,
             start_new_session=True,
-            # A process that a shell started in the background inherits that it ignores SIGINT.
+            # Background processes of a shell ignore SIGINT, and children inherit that.
             preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
         )
-        end = time.monotonic() + BOUND
-        while not lines.read_text() and process.poll() is None and time.monotonic() < end:
+        deadline = time.monotonic() + BOUND
+        while not lines.read_text() and process.poll() is None and time.monotonic() < deadline:
             time.sleep(0.1)
         os.killpg(process.pid, signal.SIGINT)
         code = process.wait(BOUND)

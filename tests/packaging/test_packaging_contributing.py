@@ -1,27 +1,19 @@
-"""What CONTRIBUTING shows works: the plug-in is installed; back end, pass and rule are tried."""
+"""The plug-in in CONTRIBUTING works: it is installed, and its back end, pass and rules are used."""
 
 import os
-import re
 import subprocess
 import sys
 from importlib import import_module
 from pathlib import Path
 
 import pytest
+from documentation import read_block
 
 ROOT = Path(__file__).parents[2]
 TEXT = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
 
 
-def block(title: str) -> str:
-    """The code below the comment with this title."""
-    pattern = rf"<!-- {re.escape(title)} -->\n(```+)\w+\n(.*?)\1\n"
-    found = re.search(pattern, TEXT, re.DOTALL)
-    assert found, title
-    return found[2]
-
-
-SHOWN = [
+DOCUMENTED_FILES = [
     "tests/plugin/sysmlc_outline/__init__.py",
     "tests/plugin/sysmlc_outline/SM949.md",
     "tests/plugin/sysmlc_stateless/__init__.py",
@@ -29,22 +21,22 @@ SHOWN = [
 ]
 
 
-@pytest.mark.parametrize("path", SHOWN)
-def test_the_files_shown_are_those_that_are_tested(path):
-    assert block(path) == (ROOT / path).read_text(encoding="utf-8")
+@pytest.mark.parametrize("path", DOCUMENTED_FILES)
+def test_the_documented_files_are_the_files_of_the_plug_in(path):
+    assert read_block("CONTRIBUTING.md", path) == (ROOT / path).read_text(encoding="utf-8")
 
 
 @pytest.mark.parametrize(
     "entry", ['outline = "sysmlc_outline:BACKEND"', 'statelessness = "sysmlc_stateless:PASS"']
 )
-def test_the_entry_points_shown_are_those_that_are_tested(entry):
+def test_the_documented_entry_points_are_those_of_the_plug_in(entry):
     assert entry in (ROOT / "tests/plugin/pyproject.toml").read_text(encoding="utf-8")
     assert entry in TEXT
 
 
 @pytest.fixture(scope="module")
 def plugin(tmp_path_factory):
-    """An environment in which the plug-in is installed beside sysmlc."""
+    """Environment variables with which Python finds the installed plug-in."""
     folder = tmp_path_factory.mktemp("plugin")
     pip = [sys.executable, "-m", "pip", "install", "--quiet", "--disable-pip-version-check"]
     options = ["--no-deps", "--no-build-isolation", "--target", str(folder)]
@@ -52,7 +44,7 @@ def plugin(tmp_path_factory):
     return {**os.environ, "PYTHONPATH": str(folder)}
 
 
-def sysmlc(env, folder, *args):
+def run_sysmlc(env, folder, *args):
     run = [sys.executable, "-m", "sysmlc", *args]
     return subprocess.run(run, env=env, cwd=folder, capture_output=True, text=True)
 
@@ -62,55 +54,57 @@ def test_the_back_end_is_listed_emitted_and_explained(plugin, tmp_path):
     (tmp_path / "plant.ir").write_text(
         'Package p "Plant"\n  Class gate "Gate"\n    Port gate.in "in"\n  Class lamp "Lamp"\n'
     )
-    assert "outline" in sysmlc(plugin, tmp_path, "backends").stdout
-    done = sysmlc(plugin, tmp_path, "plant.ir", "--emit", "outline", "--format", "concise")
-    assert done.returncode == 0, done.stderr
+    assert "outline" in run_sysmlc(plugin, tmp_path, "backends").stdout
+    result = run_sysmlc(plugin, tmp_path, "plant.ir", "--emit", "outline", "--format", "concise")
+    assert result.returncode == 0, result.stderr
     assert (tmp_path / "out/outlines/Plant.Gate.md").read_text() == "# Gate\n\n- in\n"
     assert "warning[SM949 outline-without-ports]: block 'Lamp' has no ports to outline" in (
-        done.stderr
+        result.stderr
     )
-    explained = sysmlc(plugin, tmp_path, "explain", "outline-without-ports")
-    assert explained.stdout.startswith("SM949 outline-without-ports (warning)")
-    assert "Why:\n  An outline without ports says nothing" in explained.stdout
+    explanation = run_sysmlc(plugin, tmp_path, "explain", "outline-without-ports")
+    assert explanation.stdout.startswith("SM949 outline-without-ports (warning)")
+    assert "Why:\n  An outline without ports says nothing" in explanation.stdout
 
 
 @pytest.mark.slow
 def test_a_plug_in_that_cannot_be_loaded_is_one_sentence(plugin, tmp_path):
     broken = Path(plugin["PYTHONPATH"]) / "sysmlc_outline/__init__.py"
-    whole = broken.read_text()
+    source = broken.read_text()
     broken.write_text("import no_such_module\n")
     try:
-        done = sysmlc(plugin, tmp_path, "backends")
+        result = run_sysmlc(plugin, tmp_path, "backends")
     finally:
-        broken.write_text(whole)
-    assert done.returncode == 2
-    assert "back end 'outline' cannot be loaded: ModuleNotFoundError" in done.stderr
-    assert "Traceback" not in done.stderr
+        broken.write_text(source)
+    assert result.returncode == 2
+    assert "back end 'outline' cannot be loaded: ModuleNotFoundError" in result.stderr
+    assert "Traceback" not in result.stderr
 
 
 @pytest.mark.slow
 def test_the_rule_is_reported_and_explained(plugin, tmp_path):
     (tmp_path / "plant.ir").write_text('StateMachine gripper "Gripper"\n')
-    done = sysmlc(plugin, tmp_path, "check", "plant.ir", "--format", "concise")
-    assert "warning[SM948 stateless-machine]: state machine 'Gripper' has no states" in done.stderr
-    explained = sysmlc(plugin, tmp_path, "explain", "stateless-machine").stdout
-    assert explained.startswith("SM948 stateless-machine (warning)")
-    assert "Its contract would allow everything." in explained
-    assert "SM948" in sysmlc(plugin, tmp_path, "explain").stdout
+    result = run_sysmlc(plugin, tmp_path, "check", "plant.ir", "--format", "concise")
+    assert (
+        "warning[SM948 stateless-machine]: state machine 'Gripper' has no states" in result.stderr
+    )
+    explanation = run_sysmlc(plugin, tmp_path, "explain", "stateless-machine").stdout
+    assert explanation.startswith("SM948 stateless-machine (warning)")
+    assert "Its contract would allow everything." in explanation
+    assert "SM948" in run_sysmlc(plugin, tmp_path, "explain").stdout
 
 
 @pytest.mark.slow
 def test_the_rule_can_be_switched_off(plugin, tmp_path):
     (tmp_path / "plant.ir").write_text('StateMachine gripper "Gripper"\n')
     (tmp_path / "sysmlc.toml").write_text('[rules]\nstateless-machine = "off"\n')
-    done = sysmlc(plugin, tmp_path, "check", "plant.ir", "--format", "concise")
-    assert "SM948" not in done.stderr
+    result = run_sysmlc(plugin, tmp_path, "check", "plant.ir", "--format", "concise")
+    assert "SM948" not in result.stderr
 
 
-def test_the_rule_shown_works_and_so_do_its_tests(monkeypatch):
+def test_the_documented_tests_of_the_rule_pass(monkeypatch):
     monkeypatch.syspath_prepend(ROOT / "tests/plugin")
     names: dict[str, object] = {"__name__": "contributing"}
-    exec(compile(block("rule test"), "rule test", "exec"), names)
+    exec(compile(read_block("CONTRIBUTING.md", "rule test"), "rule test", "exec"), names)
     tests = [value for name, value in names.items() if name.startswith("test_")]
     assert len(tests) == 2
     for test in tests:

@@ -1,4 +1,4 @@
-"""The distributions that an installation brings are those that docs/dependencies.md lists."""
+"""The distributions that sysmlc depends on are those in docs/dependencies.md."""
 
 import re
 import subprocess
@@ -27,37 +27,41 @@ SPDX = {
     "BSD License": "BSD-3-Clause",
     "MIT License": "MIT",
 }
-"""Identifiers of licences that metadata names in other words."""
+"""SPDX identifiers of licences that metadata states in another form."""
 
 
 @cache
-def requirements(name: str) -> tuple[Requirement, ...]:
-    """Return what a distribution requires here, without extras."""
-    found = [Requirement(text) for text in distribution(name).requires or ()]
-    return tuple(one for one in found if not one.marker or one.marker.evaluate({"extra": ""}))
+def list_requirements(name: str) -> tuple[Requirement, ...]:
+    """Return the requirements of a distribution on this platform, without extras."""
+    declared = [Requirement(text) for text in distribution(name).requires or ()]
+    return tuple(
+        requirement
+        for requirement in declared
+        if not requirement.marker or requirement.marker.evaluate({"extra": ""})
+    )
 
 
-def closure() -> dict[str, Distribution]:
+def find_dependencies() -> dict[str, Distribution]:
     """Return all distributions that sysmlc needs, directly or not, without sysmlc itself."""
-    names, waiting = {}, [Requirement(text) for text in PROJECT["dependencies"]]
-    while waiting:
-        name = canonicalize_name(waiting.pop().name)
+    names, pending = {}, [Requirement(text) for text in PROJECT["dependencies"]]
+    while pending:
+        name = canonicalize_name(pending.pop().name)
         if name not in names:
             names[name] = distribution(name)
-            waiting += requirements(name)
+            pending += list_requirements(name)
     return names
 
 
-def licence(found: Distribution) -> str:
+def read_licence(installed: Distribution) -> str:
     """Return the licence that the metadata of a distribution states."""
-    metadata = found.metadata
+    metadata = installed.metadata
     classifiers = [text for text in metadata.get_all("Classifier") or () if "License ::" in text]
-    stated = metadata.get("License-Expression") or metadata.get("License")
-    stated = stated or classifiers[0].rpartition(" :: ")[2]
-    return SPDX.get(stated, stated)
+    licence_text = metadata.get("License-Expression") or metadata.get("License")
+    licence_text = licence_text or classifiers[0].rpartition(" :: ")[2]
+    return SPDX.get(licence_text, licence_text)
 
 
-def rows(heading: str) -> list[list[str]]:
+def read_table(heading: str) -> list[list[str]]:
     """Return the cells of the table below a heading of the page."""
     (section,) = re.findall(rf"^## {heading}\n(.*?)(?=^## )", PAGE, re.DOTALL | re.MULTILINE)
     lines = [line for line in section.splitlines() if line.startswith("| ")]
@@ -65,66 +69,69 @@ def rows(heading: str) -> list[list[str]]:
 
 
 def test_the_page_lists_the_direct_requirements_of_the_project():
-    direct = rows("Required directly")
+    direct = read_table("Required directly")
     assert [row[0].strip("`") for row in direct] == PROJECT["dependencies"]
-    bounded = [row[0] for row in direct if "<" in row[0]]
-    assert bounded == [row[0] for row in direct if row[3]]
+    with_upper_bound = [row[0] for row in direct if "<" in row[0]]
+    assert with_upper_bound == [row[0] for row in direct if row[3]]
 
 
 def test_the_page_lists_all_other_distributions_and_what_requires_them():
     direct = {canonicalize_name(Requirement(text).name) for text in PROJECT["dependencies"]}
-    names = closure()
+    names = find_dependencies()
     parents = {
         name: sorted(
             parent
             for parent in names
-            if name in {canonicalize_name(one.name) for one in requirements(parent)}
+            if name
+            in {canonicalize_name(requirement.name) for requirement in list_requirements(parent)}
         )
         for name in names.keys() - direct
     }
-    listed = {row[0]: row[2].split(", ") for row in rows("Required indirectly")}
+    listed = {row[0]: row[2].split(", ") for row in read_table("Required indirectly")}
     assert listed == parents
 
 
-def test_the_page_has_the_licences_of_the_installed_metadata():
-    listed = {Requirement(row[0].strip("`")).name: row[1] for row in rows("Required directly")}
-    listed |= {row[0]: row[1] for row in rows("Required indirectly")}
-    installed = {name: licence(found) for name, found in closure().items()}
+def test_the_page_has_the_licences_in_the_metadata():
+    listed = {
+        Requirement(row[0].strip("`")).name: row[1] for row in read_table("Required directly")
+    }
+    listed |= {row[0]: row[1] for row in read_table("Required indirectly")}
+    installed = {name: read_licence(dependency) for name, dependency in find_dependencies().items()}
     assert {canonicalize_name(name): text for name, text in listed.items()} == installed
 
 
-def test_every_requirement_is_met_by_what_is_installed():
-    names = ["sysmlc", *closure()]
+def test_installed_distributions_meet_every_requirement():
+    names = ["sysmlc", *find_dependencies()]
     unmet = [
         f"{name} requires {requirement}"
         for name in names
-        for requirement in requirements(name)
+        for requirement in list_requirements(name)
         if not requirement.specifier.contains(distribution(requirement.name).version, True)
     ]
     assert unmet == []
 
 
-def test_no_other_distribution_runs_code_at_every_start_of_python():
-    found = {
+def test_only_documented_distributions_run_code_at_every_start_of_python():
+    startup_files = {
         name: [
             str(path)
             for path in installed.files or ()
             if path.suffix == ".pth" or path.stem in ("sitecustomize", "usercustomize")
         ]
-        for name, installed in closure().items()
+        for name, installed in find_dependencies().items()
     }
-    assert {name: files for name, files in found.items() if files} == STARTUP_FILES
+    assert {name: files for name, files in startup_files.items() if files} == STARTUP_FILES
     for (file,) in STARTUP_FILES.values():
         assert f"`{file}`" in PAGE
 
 
-def test_ecore_works_without_the_distribution_that_only_pyecore_asks_for(tmp_path):
-    code = (
+def test_ecore_works_without_future_fstrings(tmp_path):
+    program = (
         "import sys; sys.modules['future_fstrings'] = None; sys.argv[0] = 'sysmlc'\n"
         "from sysmlc.cli import main; sys.exit(main())"
     )
     model = str(ROOT / "examples/baygate-behaviour/baygate-behaviour.uml")
-    run = [sys.executable, "-c", code, model, "--emit", "ecore", "-o", str(tmp_path / "out")]
-    done = subprocess.run(run, capture_output=True, text=True)
-    assert done.returncode == 0, done.stderr
+    run = [sys.executable, "-c", program, model, "--emit", "ecore", "-o", str(tmp_path / "out")]
+    result = subprocess.run(run, capture_output=True, text=True)
+    assert result.returncode == 0, result.stderr
     assert list((tmp_path / "out").rglob("*.xmi"))

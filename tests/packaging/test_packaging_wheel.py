@@ -1,4 +1,4 @@
-"""What is shipped: the wheel compiles an example in an empty environment, from another folder."""
+"""The contents of the distributions, and a compilation with the installed wheel."""
 
 import subprocess
 import tarfile
@@ -12,12 +12,12 @@ _PAGES = {path.name for path in (ROOT / "compiler/sysmlc/diagnostics/rules").glo
 pytestmark = pytest.mark.slow
 
 
-def test_the_wheel_carries_data_licence_and_types(dist):
+def test_the_wheel_contains_data_licence_and_types(dist):
     (wheel,) = dist.glob("*.whl")
     names = zipfile.ZipFile(wheel).namelist()
     for folder in ("grammars", "metamodels", "templates"):
-        found = (path for path in (ROOT / folder).rglob("*") if path.is_file())
-        shipped = [path for path in found if path.parent.name != "__pycache__"]
+        paths = (path for path in (ROOT / folder).rglob("*") if path.is_file())
+        shipped = [path for path in paths if path.parent.name != "__pycache__"]
         expected = {f"sysmlc/{path.relative_to(ROOT).as_posix()}" for path in shipped}
         assert expected <= set(names)
     assert "sysmlc/py.typed" in names
@@ -29,10 +29,10 @@ def test_the_wheel_carries_data_licence_and_types(dist):
     assert not [name for name in names if name.endswith(".pth")]
 
 
-def test_the_source_distribution_has_what_the_tests_need(dist):
+def test_the_source_distribution_contains_the_files_of_the_tests(dist):
     (archive,) = dist.glob("*.tar.gz")
-    with tarfile.open(archive) as opened:
-        names = {name.partition("/")[2] for name in opened.getnames()}
+    with tarfile.open(archive) as source_archive:
+        names = {name.partition("/")[2] for name in source_archive.getnames()}
     assert {"LICENSE", "README.md", "CHANGELOG.md", "CONTRIBUTING.md", "Makefile"} <= names
     assert {"compiler/hatch_build.py", "grammars/sysml.lark"} <= names
     assert {name.removeprefix("compiler/sysmlc/diagnostics/rules/") for name in names} >= _PAGES
@@ -40,14 +40,16 @@ def test_the_source_distribution_has_what_the_tests_need(dist):
 
 
 @pytest.mark.long
-def test_installed_in_an_empty_environment_it_compiles_an_example(environment, tmp_path):
+def test_the_wheel_compiles_an_example_in_an_empty_environment(environment, tmp_path):
     model = ROOT / "examples/lego-recipe/lego-recipe.uml"
     run = [environment.python, "-m", "sysmlc", str(model), "-o", "out"]
     env = environment.variables()
-    done = subprocess.run(run, capture_output=True, text=True, cwd=tmp_path, env=env)
-    assert done.returncode == 0, done.stderr
-    made = {path.relative_to(tmp_path / "out").parts[0] for path in (tmp_path / "out").rglob("*")}
-    assert {"contracts", "recipes", "diagrams", "manifest.json", "trace.json"} <= made
-    where = [environment.python, "-c", "import sysmlc; print(sysmlc.__file__)"]
-    printed = subprocess.run(where, capture_output=True, text=True, cwd=tmp_path, env=env).stdout
-    assert str(environment.folder) in printed
+    result = subprocess.run(run, capture_output=True, text=True, cwd=tmp_path, env=env)
+    assert result.returncode == 0, result.stderr
+    outputs = {
+        path.relative_to(tmp_path / "out").parts[0] for path in (tmp_path / "out").rglob("*")
+    }
+    assert {"contracts", "recipes", "diagrams", "manifest.json", "trace.json"} <= outputs
+    command = [environment.python, "-c", "import sysmlc; print(sysmlc.__file__)"]
+    location = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path, env=env).stdout
+    assert str(environment.folder) in location

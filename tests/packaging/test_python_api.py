@@ -17,8 +17,8 @@ OUTPUTS = dict(re.findall(r"<!-- output: (\w+) -->\n```text\n(.*?)```", PAGE, re
 
 
 @pytest.fixture
-def rules():
-    """Remove the rule that an example defines after the test."""
+def restore_catalogue():
+    """Remove the rule that an example defines, after the test."""
     yield
     catalogue = import_module("sysmlc.diagnostics.rule")
     catalogue._rules.pop("SM946", None)
@@ -26,12 +26,14 @@ def rules():
 
 
 @pytest.mark.parametrize(("name", "code"), EXAMPLES)
-def test_an_example_of_the_page_prints_what_the_page_shows(name, code, rules, monkeypatch, capsys):
+def test_an_example_prints_the_output_on_the_page(
+    name, code, restore_catalogue, monkeypatch, capsys
+):
     monkeypatch.chdir(ROOT)
     exec(compile(code, name, "exec"), {"__name__": name})
-    printed = capsys.readouterr().out
-    assert printed == OUTPUTS.get(name, printed)
-    assert printed
+    output = capsys.readouterr().out
+    assert output == OUTPUTS.get(name, output)
+    assert output
 
 
 def test_the_three_examples_have_their_output_on_the_page():
@@ -49,10 +51,10 @@ def test_an_unknown_name_is_an_attribute_error():
         sysmlc.compile  # noqa: B018 - the access is the test
 
 
-def test_the_package_alone_imports_nothing_of_the_compiler():
+def test_importing_the_package_imports_no_module_of_the_compiler():
     program = "import sys, sysmlc; print(sorted(m for m in sys.modules if m.startswith('sysmlc.')))"
-    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
-    assert done.stdout.strip() == "[]"
+    result = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
+    assert result.stdout.strip() == "[]"
 
 
 def test_a_missing_file_is_a_diagnostic(tmp_path):
@@ -60,7 +62,7 @@ def test_a_missing_file_is_a_diagnostic(tmp_path):
     assert [diagnostic.rule.code for diagnostic in compilation.diagnostics] == ["SM170"]
 
 
-def test_outputs_are_in_memory(tmp_path):
+def test_outputs_are_not_written_to_files(tmp_path):
     model = tmp_path / "plant.ir"
     model.write_text('Class gate "Gate"\n')
     compilation = sysmlc.compile_model([model], emit=["ir"])
@@ -68,7 +70,7 @@ def test_outputs_are_in_memory(tmp_path):
     assert list(tmp_path.iterdir()) == [model]
 
 
-def test_a_request_states_everything(tmp_path):
+def test_a_request_can_be_compiled(tmp_path):
     model = tmp_path / "plant.ir"
     model.write_text('Class gate "Gate"\n')
     compilation = sysmlc.compile_model(sysmlc.Request((model,)))

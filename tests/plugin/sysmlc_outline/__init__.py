@@ -1,4 +1,4 @@
-"""Back end ``outline``: one Markdown file a block with its ports."""
+"""Back end ``outline``: one Markdown file for each block, with its ports."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -19,7 +19,7 @@ NO_PORTS = rule(
 
 @dataclass(frozen=True, slots=True)
 class Outline:
-    """Lists the ports of each class."""
+    """List the ports of each class."""
 
     name: str = "outline"
     summary: str = "ports of each block, outlines/*.md"

@@ -18,7 +18,7 @@ STATELESS_MACHINE = rule(
 
 
 class Statelessness(Struct, frozen=True):
-    """Reports state machines without states; changes nothing."""
+    """Report state machines without states. The pass changes nothing."""
 
     name: ClassVar[str] = "statelessness"
     after: ClassVar[tuple[str, ...]] = ()

@@ -1,4 +1,4 @@
-"""The shell commands that the pages of the documentation and ``--help`` show."""
+"""The commands and code blocks that the documentation and ``--help`` show."""
 
 import re
 from collections.abc import Iterator
@@ -24,25 +24,36 @@ _STEP = re.compile(r"- (?:run: (.+)|(uses: .+))")
 
 @dataclass(frozen=True)
 class Command:
-    """A line for a shell, as a page shows it; a step that uses an action begins with ``uses:``."""
+    """A shell command on a page. A workflow step that uses an action starts with ``uses:``."""
 
     page: str
     text: str
 
 
+def read_block(page: str, title: str) -> str:
+    """Return the code block below the comment ``<!-- title -->`` of a page."""
+    text = (ROOT / page).read_text(encoding="utf-8")
+    pattern = rf"<!-- {re.escape(title)} -->\n(```+)\w+\n(.*?)\1\n"
+    match = re.search(pattern, text, re.DOTALL)
+    assert match, (page, title)
+    return match[2]
+
+
 def find_commands() -> list[Command]:
-    """Return the commands of all pages, page by page and in the order in which they stand."""
+    """Return the commands of all pages, page by page, in their order on the page."""
     paths = sorted(path for pattern in PAGES for path in ROOT.glob(pattern))
     texts = {path.relative_to(ROOT).as_posix(): path.read_text("utf-8") for path in paths}
     commands = [
-        Command(page, text) for page, content in texts.items() for text in _commands_in(content)
+        Command(page, text) for page, content in texts.items() for text in _iter_commands(content)
     ]
     return commands + [
-        Command(f"{name} --help", text) for name in _help_pages() for text in _examples_of(name)
+        Command(f"{name} --help", text)
+        for name in _iter_help_pages()
+        for text in _iter_examples(name)
     ]
 
 
-def _commands_in(page: str) -> Iterator[str]:
+def _iter_commands(page: str) -> Iterator[str]:
     """Yield the commands of indented blocks, of fenced shell text and of workflow steps."""
     blocks = [(match.start(), match[2], match[3]) for match in _FENCE.finditer(page)]
     prose = _FENCE.sub(lambda match: " " * (len(match[0]) - 1) + "\n", page)
@@ -60,12 +71,12 @@ def _commands_in(page: str) -> Iterator[str]:
                 yield re.sub(r"\s+", " ", command[1])
 
 
-def _help_pages() -> Iterator[str]:
+def _iter_help_pages() -> Iterator[str]:
     yield "sysmlc"
     yield from (f"sysmlc {name}" for name in COMMANDS)
     yield "sysmlc contracts check"
 
 
-def _examples_of(command: str) -> Iterator[str]:
-    shown = CliRunner().invoke(sysmlc, [*command.split()[1:], "--help"], terminal_width=200)
-    yield from re.findall(r"^ {4}(sysmlc .+)$", shown.stdout, re.MULTILINE)
+def _iter_examples(command: str) -> Iterator[str]:
+    result = CliRunner().invoke(sysmlc, [*command.split()[1:], "--help"], terminal_width=200)
+    yield from re.findall(r"^ {4}(sysmlc .+)$", result.stdout, re.MULTILINE)

@@ -1,4 +1,4 @@
-"""The examples in SysML v2 where the distribution ``sysml`` comes without its library files."""
+"""The examples in SysML v2, compiled with and without the installed standard library."""
 
 from pathlib import Path
 
@@ -11,23 +11,23 @@ EXAMPLES = Path(__file__).parents[2] / "examples"
 MODELS = ("lego-recipe-v2/lego-recipe.sysml", "robots/hall.sysml")
 
 
-def build(model, folder):
-    done = CliRunner().invoke(sysmlc, [str(EXAMPLES / model), "-o", str(folder)])
+def build_example(model, folder):
+    result = CliRunner().invoke(sysmlc, [str(EXAMPLES / model), "-o", str(folder)])
     outputs = {
         path.relative_to(folder): path.read_bytes() for path in folder.rglob("*") if path.is_file()
     }
-    return done, outputs
+    return result, outputs
 
 
 @pytest.mark.parametrize("model", MODELS)
 def test_the_bundled_core_gives_the_same_outputs_with_one_warning(model, tmp_path, monkeypatch):
-    complete, expected = build(model, tmp_path / "complete")
+    with_library, expected = build_example(model, tmp_path / "complete")
     monkeypatch.setattr("sysmlc.language.library._find_installed", lambda: None)
-    done, outputs = build(model, tmp_path / "core")
-    assert (complete.exit_code, done.exit_code) == (0, 0)
+    result, outputs = build_example(model, tmp_path / "core")
+    assert (with_library.exit_code, result.exit_code) == (0, 0)
     assert outputs == expected
-    assert "SM207" not in complete.stderr
-    assert done.stderr.count("warning[SM207 no-standard-library]") == 1
+    assert "SM207" not in with_library.stderr
+    assert result.stderr.count("warning[SM207 no-standard-library]") == 1
 
 
 @pytest.mark.parametrize(
@@ -37,8 +37,8 @@ def test_the_bundled_core_gives_the_same_outputs_with_one_warning(model, tmp_pat
 def test_verbose_names_the_library(options, label, monkeypatch):
     monkeypatch.chdir(EXAMPLES.parent)
     model = "examples/robots/hall.sysml"
-    done = CliRunner().invoke(sysmlc, ["check", "-v", *options, model])
-    assert f"SysML v2 library: {label}" in done.stderr
+    result = CliRunner().invoke(sysmlc, ["check", "-v", *options, model])
+    assert f"SysML v2 library: {label}" in result.stderr
 
 
 def test_verbose_names_no_library_for_a_model_in_xmi():
