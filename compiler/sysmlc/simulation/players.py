@@ -20,41 +20,46 @@ from sysmlc.logic.contract import (
 )
 from sysmlc.logic.domains import contains, values
 from sysmlc.logic.formula import Literal
-from sysmlc.logic.machines import interpreter as step
+from sysmlc.logic.machines import interpreter as machine_interpreter
+from sysmlc.logic.machines.interpreter import Valuation
 from sysmlc.logic.machines.machine import Machine
 from sysmlc.logic.machines.reader import read_machine
 
-Valuation = dict[str, Literal]
 _T = TypeVar("_T")
 _LASTING_KINDS = (Kind.PROPERTY, Kind.PORT, Kind.FLOW_PROPERTY)
+"""Kinds of inputs whose value lasts until it is set again; other inputs are events."""
 
 
 class Player(Protocol):
-    """A component that makes steps; a step has several results if the diagram leaves a choice."""
+    """A component that can be simulated step by step.
+
+    A step is a valuation of all variables. Where the diagram leaves a choice, several steps are
+    possible.
+    """
 
     @property
     def component(self) -> str:
-        """Qualified name."""
+        """Qualified name of the component."""
 
     @property
     def variables(self) -> tuple[Variable, ...]:
-        """All variables."""
+        """Inputs, outputs and internal states of the component."""
 
     @property
     def pulses(self) -> frozenset[str]:
-        """Inputs that last one step."""
+        """Names of the inputs that last one step, such as events."""
 
     def initial(self, inputs: Mapping[str, Literal]) -> list[Valuation]:
-        """Return all first steps with these inputs."""
+        """Return the possible first steps with these inputs."""
 
     def successors(
         self, now: Mapping[str, Literal], inputs: Mapping[str, Literal]
     ) -> list[Valuation]:
-        """Return all steps that may follow *now* if the next step has the given inputs."""
+        """Return the steps that may follow the step *now* if the inputs are *inputs*."""
 
 
 def find_players(graph: Graph) -> dict[str, Player]:
-    """Return every component that can be simulated, by qualified name."""
+    """Return a player for every component that can be simulated, by qualified name."""
     players_by_name: dict[str, Player] = {}
     for tokens in graph.derived(TokenGraph):
         players_by_name.setdefault(tokens.component, ActivityPlayer(tokens))
@@ -68,8 +73,9 @@ def find_players(graph: Graph) -> dict[str, Player]:
 
 
 def find_resting_value(graph: Graph, variable: Variable) -> Literal:
-    """Return the value of an input until a scenario sets it: the default, else false, 0 or the
-    first value.
+    """Return the value that an input has until a scenario sets it.
+
+    It is the default of the feature, else false, 0 or the first value of the domain.
     """
     element = graph.get(variable.origin)
     default = _default_value(graph, element, variable.domain) if element is not None else None
@@ -98,7 +104,7 @@ def _parse_value(graph: Graph, text: str, domain: Domain) -> Literal | None:
 
 
 class ActivityPlayer(Struct, frozen=True, dict=True):
-    """Plays the token game of an activity."""
+    """Player of an activity, whose steps are those of its token game."""
 
     tokens: TokenGraph
 
@@ -136,10 +142,10 @@ class ActivityPlayer(Struct, frozen=True, dict=True):
 
 
 class _BranchPlan:
-    """A choice function that takes the planned branches, then the first branch of each choice.
+    """A choice function for one replay of a step: backtracking without copies of the state.
 
-    It counts the options of every choice, so that ``list_alternatives`` can plan the other
-    branches (backtracking by replay).
+    It takes the *planned* branches, and then the first branch of each further choice. It counts the
+    options of every choice, so that ``list_alternatives`` can plan the branches not taken.
     """
 
     def __init__(self, planned: list[int]) -> None:
@@ -152,7 +158,7 @@ class _BranchPlan:
         return options[self._planned[position] if position < len(self._planned) else 0]
 
     def list_alternatives(self) -> Iterator[list[int]]:
-        """Yield the plans that differ from this one at one choice after the planned ones."""
+        """Yield the plans for the other branches of each choice that was not planned."""
         branches = [*self._planned, *[0] * (len(self._counts) - len(self._planned))]
         for position in range(len(self._planned), len(self._counts)):
             for branch in range(1, self._counts[position]):
@@ -160,7 +166,7 @@ class _BranchPlan:
 
 
 class MachinePlayer(Struct, frozen=True, dict=True):
-    """Runs a state machine."""
+    """Player of a state machine."""
 
     graph: Graph
     machine: Machine
@@ -174,7 +180,7 @@ class MachinePlayer(Struct, frozen=True, dict=True):
     def pulses(self) -> frozenset[str]:
         return frozenset(
             variable.name
-            for variable in step.list_inputs(self.machine)
+            for variable in machine_interpreter.list_inputs(self.machine)
             if not self._is_lasting(variable)
         )
 
@@ -183,9 +189,9 @@ class MachinePlayer(Struct, frozen=True, dict=True):
         return element is not None and element.kind in _LASTING_KINDS
 
     def initial(self, inputs: Mapping[str, Literal]) -> list[Valuation]:
-        return step.initial_steps(self.machine, inputs)
+        return machine_interpreter.initial_steps(self.machine, inputs)
 
     def successors(
         self, now: Mapping[str, Literal], inputs: Mapping[str, Literal]
     ) -> list[Valuation]:
-        return step.next_steps(self.machine, now, inputs)
+        return machine_interpreter.next_steps(self.machine, now, inputs)

@@ -1,4 +1,4 @@
-"""Reports of scenario runs: as text, as JUnit XML, and as a sequence diagram."""
+"""Reports of played scenarios: as text, as JUnit XML, and as a sequence diagram."""
 
 from collections.abc import Iterator
 from xml.etree import ElementTree
@@ -6,10 +6,9 @@ from xml.etree import ElementTree
 from msgspec import Struct, field
 
 from sysmlc.logic.formula import Literal
+from sysmlc.logic.machines.interpreter import Valuation
 from sysmlc.support.escapes import escape_invisible
 from sysmlc.support.plantuml_text import escape_line
-
-Valuation = dict[str, Literal]
 
 
 class Difference(Struct, frozen=True):
@@ -27,8 +26,9 @@ class Difference(Struct, frozen=True):
 
 
 class Result(Struct, frozen=True):
-    """Result of one scenario; ``trace`` is a run that shows the expected values, or comes
-    closest.
+    """Result of one scenario.
+
+    ``trace`` is a run of the diagram that shows the expected values, or the run that comes closest.
     """
 
     name: str
@@ -58,11 +58,11 @@ class Report(Struct, frozen=True):
 
     def as_text(self) -> str:
         """Return one line for each scenario, and the number that passed."""
-        lines = [line for result in self.results for line in self._result_lines(result)]
+        lines = [line for result in self.results for line in self._iter_result_lines(result)]
         passed = sum(result.passed for result in self.results)
         return "\n".join([*lines, f"{passed} of {len(self.results)} scenarios passed"]) + "\n"
 
-    def _result_lines(self, result: Result) -> Iterator[str]:
+    def _iter_result_lines(self, result: Result) -> Iterator[str]:
         title = escape_invisible(f"{result.component}: {result.name}")
         if result.passed:
             yield f"passed  {title} ({_count_steps(len(result.trace))})"
@@ -75,7 +75,7 @@ class Report(Struct, frozen=True):
 
     def as_junit(self) -> str:
         """Return the report as JUnit XML."""
-        # Without times, equal runs give equal bytes.
+        # The report has no times, so that equal runs give equal bytes.
         failures = sum(result.difference is not None for result in self.results)
         errors = sum(not result.is_valid for result in self.results)
         counts = {"tests": len(self.results), "failures": failures, "errors": errors}
@@ -89,12 +89,12 @@ class Report(Struct, frozen=True):
         return f'<?xml version="1.0" encoding="UTF-8"?>\n{text}\n'
 
     def _add_case(self, suite: ElementTree.Element, result: Result) -> None:
-        place = {"file": self.file, "line": str(result.line)}
+        position = {"file": self.file, "line": str(result.line)}
         names = {
             "classname": _drop_invalid_characters(result.component),
             "name": _drop_invalid_characters(result.name),
         }
-        case = ElementTree.SubElement(suite, "testcase", {**names, **place})
+        case = ElementTree.SubElement(suite, "testcase", {**names, **position})
         if result.difference is not None:
             message = _drop_invalid_characters(str(result.difference))
             failure = ElementTree.SubElement(case, "failure", {"message": message})
@@ -105,13 +105,13 @@ class Report(Struct, frozen=True):
     def sequence_diagram(self) -> str:
         """Return the first failing run, else the first run, as a PlantUML diagram.
 
-        It has one message for each variable that changes: from the environment for inputs, from the
-        component for the others. The text is empty if nothing was run.
+        Each change of a variable is a message: from the environment for inputs, from the component
+        for outputs. The text is empty if no scenario could be played.
         """
         results_with_trace = [result for result in self.results if result.trace]
         failed = [result for result in results_with_trace if result.difference is not None]
         shown = next(iter([*failed, *results_with_trace]), None)
-        return "" if shown is None else "\n".join(_diagram_lines(shown)) + "\n"
+        return "" if shown is None else "\n".join(_iter_diagram_lines(shown)) + "\n"
 
 
 def _drop_invalid_characters(text: str) -> str:
@@ -133,7 +133,7 @@ def show_value(value: Literal | None) -> str:
 # -- the diagram -------------------------------------------------------------------------------
 
 
-def _diagram_lines(result: Result) -> Iterator[str]:
+def _iter_diagram_lines(result: Result) -> Iterator[str]:
     yield "@startuml"
     yield f"title {escape_line(result.name)}"
     yield "hide footbox"
@@ -141,18 +141,18 @@ def _diagram_lines(result: Result) -> Iterator[str]:
     yield f'participant "{escape_line(result.component)}" as component'
     previous: Valuation = {}
     for number, valuation in enumerate(result.trace):
-        messages = list(_message_lines(result, previous, valuation))
-        failed = result.difference is not None and result.difference.step == number
-        if messages or failed:
+        messages = list(_iter_message_lines(result, previous, valuation))
+        is_failing = result.difference is not None and result.difference.step == number
+        if messages or is_failing:
             yield f"== step {number} =="
         yield from messages
-        if failed:
-            yield from _note_lines(result)
+        if is_failing:
+            yield from _iter_note_lines(result)
         previous = valuation
     yield "@enduml"
 
 
-def _message_lines(result: Result, before: Valuation, after: Valuation) -> Iterator[str]:
+def _iter_message_lines(result: Result, before: Valuation, after: Valuation) -> Iterator[str]:
     """Yield a message for each value that differs from the previous step, inputs first.
 
     Before the first step all values count as false.
@@ -163,7 +163,7 @@ def _message_lines(result: Result, before: Valuation, after: Valuation) -> Itera
         yield f"{arrow} : {escape_line(name)} = {escape_line(show_value(after[name]))}"
 
 
-def _note_lines(result: Result) -> Iterator[str]:
+def _iter_note_lines(result: Result) -> Iterator[str]:
     assert result.difference is not None
     difference = result.difference
     yield "note over component #FFDDDD"

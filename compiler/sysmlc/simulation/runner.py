@@ -1,4 +1,4 @@
-"""Runner of scenarios: a scenario passes if some run of the diagram shows every expected value."""
+"""Plays scenarios: one passes if some run of the diagram shows every expected value."""
 
 from collections.abc import Iterable, Mapping
 from difflib import get_close_matches
@@ -8,8 +8,9 @@ from sysmlc.ir import Graph
 from sysmlc.logic.contract import Owner, Variable
 from sysmlc.logic.domains import contains, describe
 from sysmlc.logic.formula import Literal
+from sysmlc.logic.machines.interpreter import Valuation
 from sysmlc.simulation import rules
-from sysmlc.simulation.players import Player, Valuation, find_players, find_resting_value
+from sysmlc.simulation.players import Player, find_players, find_resting_value
 from sysmlc.simulation.report import Difference, Report, Result, show_value
 from sysmlc.simulation.scenario import Entry, Scenario, read_scenarios
 from sysmlc.sources import Source
@@ -21,9 +22,9 @@ _Trace = tuple[Valuation, ...]
 
 
 def run_scenarios(graph: Graph, scenario_source: Source, sink: Sink) -> Report:
-    """Play every scenario of the file on the graph, which the passes have refined.
+    """Play every scenario of a file on a graph that the passes have refined.
 
-    Faults of the file are reported to *sink*; a scenario with a fault fails.
+    Faults of the file are reported to *sink*. A scenario with a fault is not played.
     """
     scenarios = read_scenarios(scenario_source, sink)
     players = find_players(graph) if scenarios else {}
@@ -120,18 +121,19 @@ def _suggest_name(name: str, names: Iterable[str]) -> str:
 
 
 def _follow_runs(scenario: Scenario, player: Player, resting_values: Valuation) -> Result:
-    """Follow all runs that show the expected values.
+    """Follow all runs of the diagram that show the expected values, step by step.
 
-    The first step without such a run is the difference; the run nearest to it is the trace.
+    If no run remains after a step, the result has that step as its difference, and as its trace the
+    run that shows most of the values expected in it.
     """
     inputs = dict(resting_values)
     traces: list[_Trace] = [()]
     for number, step in enumerate(scenario.steps):
-        # Other inputs keep their value until a scenario sets them again.
+        # Inputs that are not pulses retain their value until the scenario sets them again.
         inputs.update({name: resting_values[name] for name in player.pulses})
         inputs.update({entry.name: entry.value for entry in step.inputs})
         traces = _extend_traces(player, traces, dict(inputs))
-        matching = [trace for trace in traces if _find_missed(trace[-1], step.expect) is None]
+        matching = [trace for trace in traces if _find_missed_entry(trace[-1], step.expect) is None]
         if not matching:
             trace, entry = _find_nearest(traces, step.expect)
             actual = trace[-1].get(entry.name)
@@ -160,7 +162,7 @@ def _input_names(player: Player) -> frozenset[str]:
 
 
 def _extend_traces(player: Player, traces: list[_Trace], inputs: Valuation) -> list[_Trace]:
-    """Extend each run by one step; keep one run for each state that is reached."""
+    """Extend each run by each possible step; retain one run for each valuation that is reached."""
     traces_by_state: dict[frozenset[tuple[str, Literal]], _Trace] = {}
     for trace in traces:
         valuations = player.successors(trace[-1], inputs) if trace else player.initial(inputs)
@@ -169,17 +171,17 @@ def _extend_traces(player: Player, traces: list[_Trace], inputs: Valuation) -> l
     return list(traces_by_state.values())[:_MAX_RUNS]
 
 
-def _find_missed(valuation: Valuation, expect: Iterable[Entry]) -> Entry | None:
+def _find_missed_entry(valuation: Valuation, expect: Iterable[Entry]) -> Entry | None:
     return next((entry for entry in expect if valuation.get(entry.name) != entry.value), None)
 
 
 def _find_nearest(traces: list[_Trace], expect: tuple[Entry, ...]) -> tuple[_Trace, Entry]:
-    """Return the run that shows most of the expected values, and the first value that it misses."""
+    """Return the run whose last step misses the fewest expected values, and the first of these."""
 
     def count_missed(trace: _Trace) -> int:
         return sum(trace[-1].get(entry.name) != entry.value for entry in expect)
 
     nearest = min(traces, key=count_missed)
-    entry = _find_missed(nearest[-1], expect)
+    entry = _find_missed_entry(nearest[-1], expect)
     assert entry is not None
     return nearest, entry

@@ -1,4 +1,4 @@
-"""Reader of scenarios: YAML, validated against a schema, with the location of every value."""
+"""Reads scenarios from YAML, validates them, and records the location of every value."""
 
 import json
 import warnings
@@ -44,8 +44,10 @@ class Step(Struct, frozen=True):
 
 
 class Scenario(Struct, frozen=True):
-    """One scenario. Its steps are expanded: ``repeat`` is unrolled, and ``trace`` is added to what
-    they expect.
+    """One scenario, with its steps as they are played.
+
+    A step with ``repeat`` occurs that many times, and each step also expects the values that
+    ``trace`` lists for it.
     """
 
     name: str
@@ -61,7 +63,7 @@ class Scenario(Struct, frozen=True):
 
 
 def read_scenarios(source: Source, sink: Sink) -> list[Scenario]:
-    """Return the scenarios of a file; report a file that cannot be read, and return none."""
+    """Return the scenarios of a file; a file that cannot be read is reported and has none."""
     try:
         return _read_document(source, sink)
     except RecursionError:
@@ -153,7 +155,7 @@ def _locate_path(node: object, path: Sequence[str | int]) -> Location:
 
 
 def _locate_item(node: object, key: str | int) -> Location | None:
-    """Return the start of the value of a key, or of a list item."""
+    """Return where the value of a key, or an item of a list, starts; None if it is unknown."""
     position = getattr(node, "lc", None)
     data = getattr(position, "data", None) or {}
     if key not in data:
@@ -177,8 +179,8 @@ def _read_scenario(
     trace = _list_items(part.get("trace") or [])
     location = _locate_item(part, "component") or Location()
     if len(trace) > len(steps):
-        where = _subject_at(source, _locate_item(part, "trace") or location)
-        sink.report(rules.LONG_TRACE, where, lines=len(trace), steps=len(steps))
+        subject = _subject_at(source, _locate_item(part, "trace") or location)
+        sink.report(rules.LONG_TRACE, subject, lines=len(trace), steps=len(steps))
         return None
     for index, item in enumerate(trace):
         step = steps[index]
@@ -205,7 +207,7 @@ def _read_values(mapping: object) -> tuple[Entry, ...]:
 
 
 def _as_literal(value: object) -> Literal:
-    """Return a value of Python's own types."""
+    """Return a scalar of YAML as a plain Python value."""
     # The scalars of ruamel are subclasses that carry comments and formatting.
     if isinstance(value, bool):
         return value
