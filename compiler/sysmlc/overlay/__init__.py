@@ -1,4 +1,4 @@
-"""Overlays: additions to a model that its language cannot express (thesis 3.4)."""
+"""Overlays: YAML files that add to a model what its language cannot express (thesis 3.4)."""
 
 from sysmlc.overlay.model import Refinement
 from sysmlc.overlay.reading import list_files, read_overlay

@@ -17,14 +17,17 @@ class Spot(NamedTuple):
 
 
 class Term(NamedTuple):
-    """A word of the overlay: a name, an id, a path or ``file#qualified name``."""
+    """A text that names an element: a name, an id, a path or ``file#qualified name``."""
 
     text: str
     spot: Spot
 
 
 class Key(NamedTuple):
-    """The subject of an entry: an id or a path, and the path that replaces an id that is gone."""
+    """The element that an entry is about.
+
+    ``text`` is its id or path. ``path`` finds the element if no element has that id any more.
+    """
 
     text: str
     path: str
@@ -32,7 +35,7 @@ class Key(NamedTuple):
 
 
 class ItemEntry(Struct, frozen=True):
-    """An item type. A plain name makes a new block."""
+    """An item type. A key that is a plain name defines a new block."""
 
     key: Key
     domain: str
@@ -41,7 +44,10 @@ class ItemEntry(Struct, frozen=True):
 
 
 class PortEntry(Struct, frozen=True):
-    """The direction and type of a port; empty and None where the model is left unchanged."""
+    """The direction and type of a port.
+
+    Empty and None mean that the overlay does not change the direction or the type.
+    """
 
     key: Key
     direction: str
@@ -49,7 +55,7 @@ class PortEntry(Struct, frozen=True):
 
 
 class FlowEntry(Struct, frozen=True):
-    """An item that flows over a connector, to one end, from one end, or both ways."""
+    """An item that flows over a connector: to one end, from one end, or in both directions."""
 
     item: Term
     source: Term | None
@@ -59,14 +65,14 @@ class FlowEntry(Struct, frozen=True):
 
 
 class ConnectorEntry(Struct, frozen=True):
-    """Item flows of a connector."""
+    """The item flows of a connector."""
 
     key: Key
     flows: tuple[FlowEntry, ...]
 
 
 class ParameterEntry(Struct, frozen=True):
-    """A parameter of an operation, in its place among the others."""
+    """A parameter of an operation."""
 
     name: Term
     type: Term | None
@@ -74,7 +80,11 @@ class ParameterEntry(Struct, frozen=True):
 
 
 class OperationEntry(Struct, frozen=True):
-    """An operation; ``parameters`` is None if those of its method count."""
+    """An operation of a block.
+
+    ``method`` is the behaviour that implements it. If ``parameters`` is None, the operation has the
+    parameters of its method.
+    """
 
     name: Term
     parameters: tuple[ParameterEntry, ...] | None
@@ -83,7 +93,7 @@ class OperationEntry(Struct, frozen=True):
 
 
 class ValueEntry(Struct, frozen=True):
-    """A value property, for parts of the state that a plant does not describe."""
+    """A value property, for state of the block that the plant does not describe."""
 
     name: Term
     type: Term | None
@@ -91,7 +101,11 @@ class ValueEntry(Struct, frozen=True):
 
 
 class BlockEntry(Struct, frozen=True):
-    """The additions to a block."""
+    """The additions to a block.
+
+    ``behavior`` becomes its classifier behaviour. ``calls`` are pairs of a call operation action in
+    the behaviours of the block and the operation that it calls.
+    """
 
     key: Key
     specializes: tuple[Term, ...]
@@ -110,7 +124,11 @@ class Allocation(Struct, frozen=True):
 
 
 class Refinement(Struct, frozen=True):
-    """One overlay. The order of its entries does not depend on the file."""
+    """The content of an overlay.
+
+    Entries are sorted, so that their order in the file has no effect on outputs. ``package`` is the
+    path of the package for new item types.
+    """
 
     file: str
     package: str
@@ -122,10 +140,13 @@ class Refinement(Struct, frozen=True):
     allocations: tuple[Allocation, ...]
 
     def subject(self, term: Term | Key, about: str = "") -> Subject:
-        """Return a word of the overlay as the subject of a diagnostic on element *about*."""
+        """Return the subject of a diagnostic at a text of the overlay.
+
+        *about* is the id of the element that the diagnostic is about, if there is one.
+        """
         return Subject(term.text, about, place_of(self.file, term.spot))
 
 
 def place_of(file: str, spot: Spot) -> Place:
-    """Return the place of a position in a file."""
+    """Return a position in a file as the place of a diagnostic."""
     return Place(file, line=spot.line, column=spot.column)

@@ -1,4 +1,4 @@
-"""Converts YAML to the entries of an overlay, in an order that does not depend on the file."""
+"""Reads overlays: converts YAML to entries, and sorts them."""
 
 from collections.abc import Iterator
 
@@ -23,11 +23,11 @@ from sysmlc.overlay.schema import SYNTAX, check_schema
 from sysmlc.overlay.yaml_tree import TreeError, Value, parse_yaml
 from sysmlc.sources import Source
 
-_NOTHING = Value(Spot(), entries={})
+_EMPTY = Value(Spot(), entries={})
 
 
 def read_overlay(source: Source, sink: Sink) -> Refinement | None:
-    """Return the content of an overlay, or None if it cannot be used, which is reported."""
+    """Return the content of an overlay; report the faults of an unusable one, and return None."""
     try:
         top = parse_yaml(source.data)
     except TreeError as error:
@@ -40,7 +40,7 @@ def read_overlay(source: Source, sink: Sink) -> Refinement | None:
 
 
 def list_files(refinement: Refinement) -> list[str]:
-    """Return the files that the overlay names before a ``#``, each once, as it writes them."""
+    """Return the files that texts ``file#qualified name`` of an overlay name, each once."""
     names = [term.text.partition("#") for term in _list_terms(refinement)]
     return list(dict.fromkeys(file for file, sign, _ in names if sign and file))
 
@@ -51,7 +51,7 @@ def _list_terms(refinement: Refinement) -> Iterator[Term]:
     terms += [flow.item for connector in refinement.connectors for flow in connector.flows]
     for block in refinement.blocks:
         terms += [*block.specializes, block.behavior, *(value.type for value in block.values)]
-        terms += [called for _, called in block.calls]
+        terms += [operation for _, operation in block.calls]
         for operation in block.operations:
             terms += [operation.method, *(p.type for p in operation.parameters or ())]
     terms += [end for pair in refinement.allocations for end in (pair.source, pair.target)]
@@ -63,22 +63,22 @@ def _build_refinement(top: Value, file: str) -> Refinement:
         file=file,
         package=_read_text(top, "package") or "Items",
         spot=(_find_value(top, "items") or top).spot,
-        items=tuple(_build_item(key, value) for key, value in _list_keyed(top, "items")),
-        ports=tuple(_build_port(key, value) for key, value in _list_keyed(top, "ports")),
+        items=tuple(_build_item(key, value) for key, value in _sort_by_key(top, "items")),
+        ports=tuple(_build_port(key, value) for key, value in _sort_by_key(top, "ports")),
         connectors=tuple(
-            _build_connector(key, value) for key, value in _list_keyed(top, "connectors")
+            _build_connector(key, value) for key, value in _sort_by_key(top, "connectors")
         ),
-        blocks=tuple(_build_block(key, value) for key, value in _list_keyed(top, "blocks")),
+        blocks=tuple(_build_block(key, value) for key, value in _sort_by_key(top, "blocks")),
         allocations=tuple(
             sorted(
                 (_build_allocation(entry) for entry in _list_values(top, "allocations")),
-                key=_allocation_order,
+                key=_make_allocation_key,
             )
         ),
     )
 
 
-def _allocation_order(allocation: Allocation) -> tuple[str, str]:
+def _make_allocation_key(allocation: Allocation) -> tuple[str, str]:
     return allocation.source.text, allocation.target.text
 
 
@@ -86,7 +86,7 @@ def _allocation_order(allocation: Allocation) -> tuple[str, str]:
 
 
 def _build_item(key: Key, value: Value) -> ItemEntry:
-    general = _sorted_terms(value, "specializes")
+    general = _list_sorted_terms(value, "specializes")
     return ItemEntry(key, _read_text(value, "domain"), _read_text(value, "description"), general)
 
 
@@ -96,7 +96,7 @@ def _build_port(key: Key, value: Value) -> PortEntry:
 
 def _build_connector(key: Key, value: Value) -> ConnectorEntry:
     flows = [_build_flow(entry) for entry in _list_values(value, "flows")]
-    return ConnectorEntry(key, tuple(sorted(flows, key=_flow_order)))
+    return ConnectorEntry(key, tuple(sorted(flows, key=_make_flow_key)))
 
 
 def _build_flow(value: Value) -> FlowEntry:
@@ -105,19 +105,19 @@ def _build_flow(value: Value) -> FlowEntry:
     return FlowEntry(item, _read_term(value, "from"), _read_term(value, "to"), is_both, item.spot)
 
 
-def _flow_order(flow: FlowEntry) -> tuple[str, str, str]:
+def _make_flow_key(flow: FlowEntry) -> tuple[str, str, str]:
     source, target = (end.text if end else "" for end in (flow.source, flow.target))
     return flow.item.text, source, target
 
 
 def _build_block(key: Key, value: Value) -> BlockEntry:
-    calls = _list_named(value, "calls")
+    calls = _sort_by_name(value, "calls")
     return BlockEntry(
         key=key,
-        specializes=_sorted_terms(value, "specializes"),
-        values=tuple(_build_value(name, entry) for name, entry in _list_named(value, "values")),
+        specializes=_list_sorted_terms(value, "specializes"),
+        values=tuple(_build_value(name, entry) for name, entry in _sort_by_name(value, "values")),
         operations=tuple(
-            _build_operation(name, entry) for name, entry in _list_named(value, "operations")
+            _build_operation(name, entry) for name, entry in _sort_by_name(value, "operations")
         ),
         behavior=_read_term(value, "behavior"),
         calls=tuple((name, Term(entry.text, entry.spot)) for name, entry in calls),
@@ -157,11 +157,11 @@ def _find_value(value: Value, key: str) -> Value | None:
 
 
 def _list_values(value: Value, key: str) -> list[Value]:
-    return (_find_value(value, key) or _NOTHING).items or []
+    return (_find_value(value, key) or _EMPTY).items or []
 
 
 def _read_text(value: Value, key: str) -> str:
-    return (_find_value(value, key) or _NOTHING).text
+    return (_find_value(value, key) or _EMPTY).text
 
 
 def _read_term(value: Value, key: str) -> Term | None:
@@ -169,19 +169,22 @@ def _read_term(value: Value, key: str) -> Term | None:
     return None if entry is None else Term(entry.text, entry.spot)
 
 
-def _sorted_terms(value: Value, key: str) -> tuple[Term, ...]:
+def _list_sorted_terms(value: Value, key: str) -> tuple[Term, ...]:
     return tuple(sorted(Term(entry.text, entry.spot) for entry in _list_values(value, key)))
 
 
-def _list_named(value: Value, key: str) -> list[tuple[Term, Value]]:
-    """Return the entries of a mapping below a key, sorted by name."""
-    mapping = _find_value(value, key) or _NOTHING
+def _sort_by_name(value: Value, key: str) -> list[tuple[Term, Value]]:
+    """Return the entries of the mapping that *value* has below *key*, sorted by name."""
+    mapping = _find_value(value, key) or _EMPTY
     pairs = [
         (Term(name, mapping.keys[name]), entry) for name, entry in (mapping.entries or {}).items()
     ]
     return sorted(pairs, key=lambda pair: pair[0].text)
 
 
-def _list_keyed(value: Value, key: str) -> list[tuple[Key, Value]]:
-    named = _list_named(value, key)
-    return [(Key(name.text, _read_text(entry, "path"), name.spot), entry) for name, entry in named]
+def _sort_by_key(value: Value, key: str) -> list[tuple[Key, Value]]:
+    """Return the same entries with names that are keys of elements."""
+    return [
+        (Key(name.text, _read_text(entry, "path"), name.spot), entry)
+        for name, entry in _sort_by_name(value, key)
+    ]

@@ -48,7 +48,7 @@ KEY_TWICE = rule(
 
 _MAX_MESSAGE = 200
 _MAX_FAULTS = 100
-"""Faults that are reported for one overlay; a file of another kind has thousands."""
+"""Faults that are reported for one overlay; a file that is no overlay has thousands."""
 
 
 def check_schema(top: Value, file: str, sink: Sink) -> bool:
@@ -57,7 +57,7 @@ def check_schema(top: Value, file: str, sink: Sink) -> bool:
     for where, key, spot in repeated[:_MAX_FAULTS]:
         subject = Subject(place=place_of(file, spot))
         sink.report(KEY_TWICE, subject, where=where, key=key)
-    errors = sorted(_load_validator().iter_errors(top.as_json()), key=_path_of)
+    errors = sorted(_load_validator().iter_errors(top.as_json()), key=_list_path)
     for error in errors[:_MAX_FAULTS]:
         _report_error(error, top, file, sink)
     return not errors and not repeated
@@ -71,12 +71,15 @@ def _load_validator() -> "Draft202012Validator":
     return Draft202012Validator(json.loads(schema))
 
 
-def _path_of(error: "ValidationError") -> list[str]:
+def _list_path(error: "ValidationError") -> list[str]:
     return [str(step) for step in error.absolute_path]
 
 
 def _find_repeated_keys(top: Value) -> Iterator[tuple[str, str, Spot]]:
-    """Yield the keys that a mapping has twice; a mapping with an anchor is visited once."""
+    """Yield the path of the mapping, the key and its position for every key that occurs twice.
+
+    A mapping that is used several times, through an alias, is visited once.
+    """
     worklist: list[tuple[Value, tuple[str | int, ...]]] = [(top, ())]
     visited: set[int] = set()
     for value, path in worklist:
@@ -90,7 +93,7 @@ def _find_repeated_keys(top: Value) -> Iterator[tuple[str, str, Spot]]:
 
 def _report_error(error: "ValidationError", top: Value, file: str, sink: Sink) -> None:
     path = list(error.absolute_path)
-    value = _find_at(top, path)
+    value = _find_value(top, path)
     where = _describe_path(path)
     if error.validator == "additionalProperties" and value.entries is not None:
         allowed = list(error.schema.get("properties", {})) if isinstance(error.schema, dict) else []
@@ -109,7 +112,7 @@ def _describe_path(path: Sequence[str | int]) -> str:
     return f"at '{text}'" if text else "at the top"
 
 
-def _find_at(top: Value, path: Sequence[str | int]) -> Value:
+def _find_value(top: Value, path: Sequence[str | int]) -> Value:
     for step in path:
         inner = (top.entries or {}).get(step) if isinstance(step, str) else (top.items or [])[step]
         top = inner or top

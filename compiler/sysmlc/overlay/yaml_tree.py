@@ -1,7 +1,7 @@
-"""YAML as a tree in which every value knows its position; no tag of the file is executed.
+"""YAML as a tree of values with their positions; tags that would create objects are refused.
 
-The tree is built from events (YAML 1.2 chapter 3): deeply nested files do not exhaust the stack,
-and an alias shares its value, so that a small file cannot grow without limit.
+The tree is built from events (YAML 1.2, chapter 3), without recursion. An alias shares the value of
+its anchor, so that aliases of aliases take no memory; their sizes are counted and limited.
 """
 
 import re
@@ -32,7 +32,7 @@ _REAL = re.compile(r"[-+]?(\.[0-9]+|[0-9]+(\.[0-9]*)?)([eE][-+]?[0-9]{1,3})?")
 
 
 class TreeError(Exception):
-    """The text is not valid YAML, or uses a part that is not read; ``spot`` is the position."""
+    """The text is not YAML, exceeds a limit or has a tag; ``spot`` is the position of the fault."""
 
     def __init__(self, problem: str, spot: Spot) -> None:
         super().__init__(problem)
@@ -42,7 +42,10 @@ class TreeError(Exception):
 
 @dataclass(slots=True)
 class Value:
-    """A scalar, a list or a mapping; ``size`` counts its values, those of an alias at every use."""
+    """A scalar, a list (``items``) or a mapping (``entries``).
+
+    ``size`` is the number of values in it, where the values of an alias count at every use.
+    """
 
     spot: Spot
     scalar: Scalar = None
@@ -51,12 +54,13 @@ class Value:
     items: "list[Value] | None" = None
     entries: "dict[str, Value] | None" = None
     keys: dict[str, Spot] = field(default_factory=dict)
+    """The positions of the keys of a mapping."""
     repeated: list[tuple[str, Spot]] = field(default_factory=list)
-    """Keys that a mapping has a second time."""
+    """Keys that occur again in a mapping; the first entry counts."""
     size: int = 1
 
     def as_json(self) -> object:
-        """The value as JSON types."""
+        """Return the value as lists, dictionaries and scalars."""
         if self.items is not None:
             return [value.as_json() for value in self.items]
         if self.entries is not None:
@@ -65,20 +69,20 @@ class Value:
 
 
 def parse_yaml(data: bytes) -> Value:
-    """Return the document in a file; an empty file is an empty mapping. Raises TreeError."""
+    """Return the top value of a file; an empty file is an empty mapping. Raises TreeError."""
     if len(data) > _MAX_BYTES:
         raise TreeError(f"it is larger than {_MAX_BYTES >> 20} MB", Spot())
     try:
         text = data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         before = data[: error.start].decode("utf-8", "replace")
-        spot = Lines(before, 0).find_spot(len(before))
+        spot = _Lines(before, 0).find_spot(len(before))
         raise TreeError("it is not UTF-8 here", spot) from None
     return _Builder(text, len(data) - len(text.encode())).build_document()
 
 
-class Lines:
-    """Converts positions of characters to lines, columns and bytes."""
+class _Lines:
+    """Converts indices of characters to positions; *mark* is the length of the byte order mark."""
 
     def __init__(self, text: str, mark: int) -> None:
         self._text = text
@@ -88,7 +92,7 @@ class Lines:
             self._bytes.append(self._bytes[-1] + len(text[start:end].encode()))
 
     def find_spot(self, index: int) -> Spot:
-        """Return the position of a character, counted from 0."""
+        """Return the position of the character with an index from 0."""
         line = bisect_right(self._starts, index) - 1
         start = self._starts[line]
         offset = self._bytes[line] + len(self._text[start:index].encode())
@@ -96,11 +100,11 @@ class Lines:
 
 
 class _Builder:
-    """Builds the tree from events."""
+    """Builds the tree from the events of the YAML parser."""
 
     def __init__(self, text: str, mark: int) -> None:
         self._text = text
-        self._lines = Lines(text, mark)
+        self._lines = _Lines(text, mark)
         self._open: list[_OpenCollection] = []
         self._anchors: dict[str, Value | None] = {}
         self._top: Value | None = None
@@ -178,7 +182,7 @@ class _Builder:
 
 @dataclass(slots=True)
 class _OpenCollection:
-    """A list or mapping that is not closed; ``key`` waits for its value."""
+    """A list or mapping that has not ended; ``key`` is a key whose value has not been read."""
 
     value: Value
     anchor: str
