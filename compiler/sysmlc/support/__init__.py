@@ -1,1 +1,1 @@
-"""Helpers for all layers: output files, cache, escapes, suggestions, resources, TOML."""
+"""Helpers for all layers that know nothing of models: files, cache, escapes, text formats."""

@@ -1,4 +1,4 @@
-"""Writing a file in one step, so that no reader and no crash sees half of it."""
+"""Writes files in one step, so that no reader and no crash sees half of a file."""
 
 import os
 import re
@@ -21,7 +21,7 @@ def write_if_changed(target: Path, text: str) -> bool:
 def write(target: Path | str, data: bytes) -> None:
     """Create or replace the file *target* in one step.
 
-    The content reaches the disk before the name does, so that not even a power failure leaves
+    The content is on the disk before the file has its name, so that not even a power failure leaves
     half a file.
     """
     temporary = write_temporary(os.path.dirname(target), data)  # noqa: PTH120
@@ -49,7 +49,7 @@ def write_temporary(folder: str, data: bytes) -> str:
 
 
 def is_temporary(name: str) -> bool:
-    """Whether a file name is one of ``write_temporary``: a crash may leave such a file."""
+    """Whether ``write_temporary`` chose this file name; a crash may leave such a file behind."""
     return _TEMPORARY.fullmatch(name) is not None
 
 
@@ -68,7 +68,7 @@ def sync(path: Path | str) -> None:
 
 
 def _write_all(handle: int, data: bytes) -> None:
-    """Write *data* without a file object, which would cost as much as a small file."""
+    """Write *data* without a file object, whose creation takes as long as writing a small file."""
     written = os.write(handle, data)
     while written < len(data):
         data = data[written:]

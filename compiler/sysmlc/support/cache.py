@@ -1,9 +1,9 @@
 """The cache: results of earlier runs in a private folder of the user.
 
-An entry is found by a key, the digest of everything that its content depends on. A missing,
-damaged or misplaced entry costs time only. Because an entry decides what a run reports, nobody else
-may be able to write one: the folder belongs to the user, is closed to others, and lies outside the
-project, whose files a stranger may have written.
+The key of an entry is the digest of everything that its content depends on. A missing or damaged
+entry only costs time. Because an entry decides what a run reports, nobody else may be able to write
+one: the folder belongs to the user, is closed to others, and lies outside the project, whose files
+may be untrusted.
 """
 
 import hashlib
@@ -18,9 +18,10 @@ from msgspec import Struct
 from platformdirs import user_cache_path
 
 VARIABLE = "SYSMLC_CACHE"
-"""Environment variable: another folder for the cache, or ``off``."""
+"""Environment variable whose value is the folder of the cache, or ``off``."""
 
 _LIMIT = 512 * 2**20
+"""Bytes of all entries."""
 _SUFFIX = ".entry"
 _FOLDER_MODE = 0o700
 _FILE_MODE = 0o600
@@ -28,13 +29,16 @@ _WRITABLE_BY_OTHERS = stat.S_IWGRP | stat.S_IWOTH
 _DIGEST_BYTES = hashlib.sha256().digest_size
 
 _TALLY = "tally"
-"""File with a byte for each ``limit / 8192`` bytes stored since entries were last evicted."""
-_ROUND = 128
-"""Entries are evicted when the tally has so many bytes: at 1/64 of the limit."""
+"""File whose length measures what was stored since entries were last evicted.
+
+It has one byte for each ``limit / 8192`` bytes, so that a process need not list all entries.
+"""
+_TALLY_LENGTH = 128
+"""Bytes of the tally at which entries are evicted: when 1/64 of the limit was stored."""
 
 
 class CacheError(Exception):
-    """The folder must not be used as a cache; the message says why and what to do."""
+    """The folder is not safe as a cache; the message gives the reason and what to do."""
 
 
 class Cache(Struct, frozen=True):
@@ -67,13 +71,13 @@ class Cache(Struct, frozen=True):
             except BaseException:
                 Path(temporary).unlink(missing_ok=True)
                 raise
-            self._count(len(content))
+            self._record_size(len(content))
 
-    def _count(self, size: int) -> None:
-        """Note the size of a new entry; evict old ones once enough has been stored."""
+    def _record_size(self, size: int) -> None:
+        """Add the size of a new entry to the tally; evict entries when the tally is full."""
         with open(self.folder / _TALLY, "ab", opener=_open_private) as tally:
-            tally.write(b"." * (1 + size * 64 * _ROUND // self.limit))
-            if tally.tell() >= _ROUND:
+            tally.write(b"." * (1 + size * 64 * _TALLY_LENGTH // self.limit))
+            if tally.tell() >= _TALLY_LENGTH:
                 tally.truncate(0)
                 self._evict()
 
@@ -81,15 +85,16 @@ class Cache(Struct, frozen=True):
         return self.folder / key[:2] / f"{key}{_SUFFIX}"
 
     def _evict(self) -> None:
-        entries = sorted(self._entries())
-        size = sum(entry[1] for entry in entries)
-        for _, entry_size, path in entries:
-            if size <= self.limit:
+        """Remove the least recently used entries until the others are within the limit."""
+        entries = sorted(self._iter_entries())
+        total = sum(size for _, size, _ in entries)
+        for _, size, path in entries:
+            if total <= self.limit:
                 return
             Path(path).unlink(missing_ok=True)
-            size -= entry_size
+            total -= size
 
-    def _entries(self) -> Iterator[tuple[int, int, str]]:
+    def _iter_entries(self) -> Iterator[tuple[int, int, str]]:
         """Yield the time of last use, the size and the path of each entry."""
         for folder in os.scandir(self.folder):
             for entry in os.scandir(folder) if folder.is_dir() else ():
@@ -101,13 +106,13 @@ class Cache(Struct, frozen=True):
 def open_cache(project_roots: Iterable[Path]) -> Cache | None:
     """Return the cache of this user, or None if it is switched off or cannot be created.
 
-    Raises CacheError for a folder that others could have written to: one inside *project_roots*, a
-    symbolic link, or one that belongs to or is open to somebody else.
+    Raises CacheError for a folder to which others could have written: it is inside one of the
+    *project_roots*, is a symbolic link, belongs to another user or is writable by others.
     """
-    chosen = os.environ.get(VARIABLE, "")
-    if chosen.lower() == "off":
+    setting = os.environ.get(VARIABLE, "")
+    if setting.lower() == "off":
         return None
-    folder = Path(chosen).absolute() if chosen else _find_user_folder()
+    folder = Path(setting).absolute() if setting else user_cache_path("sysmlc", appauthor=False)
     _check_location(folder, project_roots)
     try:
         folder.parent.mkdir(parents=True, exist_ok=True)
@@ -136,7 +141,7 @@ def _check_owner(folder: Path) -> None:
         raise CacheError(
             f"the cache folder '{folder}' is a symbolic link; set {VARIABLE} to the folder itself"
         )
-    # Windows has neither: there the user's profile is private.
+    # Windows has no such owner and mode: there the profile of the user is private.
     if not hasattr(os, "geteuid"):
         return
     if status.st_uid != os.geteuid():
@@ -156,12 +161,7 @@ def _open_private(path: str, flags: int) -> int:
 
 
 def _compute_digest(key: str, content: bytes) -> bytes:
-    """Return the digest of an entry; with its key, so that an entry is no other entry's."""
+    """Return the digest of key and content, so that a file under a wrong key is no valid entry."""
     digest = hashlib.sha256(f"{len(key)}:{key}".encode())
     digest.update(content)
     return digest.digest()
-
-
-def _find_user_folder() -> Path:
-
-    return user_cache_path("sysmlc", appauthor=False)

@@ -29,7 +29,7 @@ class DisjointSets(Generic[T]):
         self._parents[self.find(right)] = self.find(left)
 
     def has_merged(self, item: T) -> bool:
-        """Return whether *item* was ever an operand of ``union``."""
+        """Whether *item* was ever an argument of ``union``."""
         return item in self._parents
 
     def group_items(self, items: Iterable[T]) -> list[list[T]]:

@@ -1,4 +1,4 @@
-"""Escapes for text of models and file names that terminals and Markdown would interpret."""
+"""Escapes texts of models and file names, which terminals and Markdown would interpret."""
 
 import re
 import unicodedata
@@ -6,7 +6,7 @@ import unicodedata
 _INVISIBLE = frozenset(["Cc", "Cf", "Cs", "Zl", "Zp"])
 """Unicode categories of controls, bidirectional and zero-width signs, surrogates, separators."""
 _BLANK_LETTERS = frozenset("\u034f\u115f\u1160\u17b4\u17b5\u3164\uffa0")
-"""Letters and marks that take part in names but are displayed as nothing."""
+"""Letters and marks that may occur in names but are displayed as nothing."""
 
 _MARKDOWN = re.compile(
     r"[\\`*|~]|<(?=[A-Za-z/!?])|\](?=[(\[])|(?<![^\W_])_|_(?![^\W_])|&(?=#?\w+;)"
@@ -21,9 +21,8 @@ _SURROGATE = re.compile("[\ud800-\udfff]")
 def escape_invisible(text: str, allowed: str = "") -> str:
     r"""Return *text* with invisible characters as escapes such as ``\x1b`` and ``\u202e``.
 
-    A name in a model or of a file must neither steer the terminal nor change the order in which
-    the rest of the line is displayed. Characters of *allowed* (``\n`` in a text of several lines)
-    stay as they are.
+    A name in a model must neither control the terminal nor change the order in which the rest of
+    the line is displayed. Characters in *allowed*, such as ``\n``, are not escaped.
     """
     if text.isascii() and text.isprintable():
         return text

@@ -6,15 +6,15 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 _CALLS_PER_LEVEL = 20
-"""An upper bound for the calls that a function makes for one level of nesting."""
+"""Upper bound of the nested calls of a function for one level of the model."""
 
 
 @contextmanager
 def pause_garbage_collection() -> Iterator[None]:
-    """Disable the cyclic garbage collector, and exempt from it what is created meanwhile.
+    """Disable the cyclic garbage collector, and exempt the objects created meanwhile from it.
 
-    A reader creates millions of objects that all stay alive, and the collector would traverse
-    them again and again: with it, reading a large model takes a third longer.
+    A reader creates millions of objects that all stay alive. The collector would traverse them
+    again and again: with it, reading a large model takes a third longer.
     """
     was_enabled = gc.isenabled()
     gc.disable()

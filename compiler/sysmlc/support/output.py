@@ -13,8 +13,8 @@ from msgspec import Struct
 class Artefact(Struct, frozen=True):
     """One file that a back end writes.
 
-    ``path`` is relative to the output folder, with ``/``; ``trace`` names the elements (ids)
-    that the content comes from: an error about one of them withholds the file.
+    ``path`` is relative to the output folder, with ``/``. ``trace`` contains the ids of the
+    elements from which the content is derived: the file is withheld if one of them has an error.
     """
 
     path: str
@@ -30,7 +30,7 @@ class OutputPathError(ValueError):
 def check_output_path(path: str) -> None:
     """Raise OutputPathError unless *path* names a file below the output folder.
 
-    Windows reads backslashes and drives in a path, and ignores case; so does this check.
+    The check takes backslashes, drives and upper case as Windows does, on every system.
     """
     parts = path.split("/")
     is_plain = all(part not in ("", ".", "..") for part in parts)
@@ -41,10 +41,11 @@ def check_output_path(path: str) -> None:
 
 
 def find_obstacle(folder: Path, path: str) -> Path | None:
-    """Return what prevents *path* from being a regular file in *folder*; None if nothing does.
+    """Return what prevents writing a regular file *path* in *folder*; None if nothing does.
 
-    An obstacle is a symbolic link, a file in place of a folder, or anything but a file at *path*.
-    The links that lead to *folder* itself are the user's choice. Raises OutputPathError.
+    Obstacles are symbolic links below *folder*, a file where *path* has a folder, and anything but
+    a regular file at *path* itself. Links that lead to *folder* are the user's choice. Raises
+    OutputPathError.
     """
     check_output_path(path)
     *parents, name = path.split("/")
@@ -62,7 +63,7 @@ def find_obstacle(folder: Path, path: str) -> Path | None:
 
 
 def _read_mode(path: Path) -> int | None:
-    """Return the mode of *path* itself, links not followed; None if nothing is there."""
+    """Return the mode of *path*, of a link its own; None if nothing exists there."""
     try:
         return path.lstat().st_mode
     except FileNotFoundError:
@@ -103,9 +104,9 @@ _RESERVED_ON_WINDOWS = frozenset(
 def assign_file_names(qualified_names: Iterable[str]) -> dict[str, str]:
     """Return a file name without suffix, valid on every file system, for each qualified name.
 
-    ``::`` becomes ``.``; other special characters are percent-encoded; a name has at most 120
-    bytes. Names that differ only in case all get ``~`` and six hexadecimal digits of the digest of
-    their qualified name.
+    ``::`` becomes ``.``, other special characters are percent-encoded, and a name has at most 120
+    bytes. To each of several names that differ only in case, ``~`` and six hexadecimal digits of
+    the digest of its qualified name are appended.
     """
     encoded_names = {name: _encode(name) for name in qualified_names}
     counts: dict[str, int] = {}
@@ -147,6 +148,6 @@ def encode_row(content: object) -> str:
 
 
 def append_members(head: Mapping[str, object], members: Iterable[str]) -> str:
-    """Return a JSON file with the members of *head* and then *members*, which are JSON already."""
+    """Return a JSON file with the members of *head*, and then *members*, which are JSON texts."""
     start = encode_json(head, 2).removesuffix("\n}\n")
     return ",\n".join((start, *members)) + "\n}\n"

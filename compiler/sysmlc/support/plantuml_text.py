@@ -1,4 +1,4 @@
-"""Text that PlantUML displays as written: escaped characters, wrapped lines, safe comments."""
+"""Escapes, wraps and formats texts, so that PlantUML displays them as written."""
 
 import re
 import textwrap
@@ -9,35 +9,41 @@ from functools import lru_cache
 from sysmlc.support.escapes import escape_invisible
 
 WIDTH = 36
-"""Characters in one line of a name before it is broken."""
+"""Characters of a line of a name; longer names are broken."""
 
 _LONGEST = 4_000
-"""Characters of a text that a diagram shows; nobody reads more in a box."""
+"""Characters of a text that a diagram shows; longer texts are cut."""
 
-_REMEMBERED = 1 << 12
-"""Texts whose spelling is kept: ports and values of many blocks read the same."""
+_CACHE_SIZE = 1 << 12
+"""Texts whose escaped form is cached: ports and values of many blocks have the same names."""
 _BREAK = "\\n"
 _BACKSLASH_BEFORE_T = "<U+005C><U+200B>"
-"""PlantUML 1.2026.2 reads ``<U+005C>t`` as a tab, unless something stands between."""
-_ALWAYS = frozenset('"\\<>~%$&{')
+"""A backslash before ``t``, and a zero-width space: PlantUML 1.2026.2 reads ``<U+005C>t`` as a tab."""
+_ALWAYS_ESCAPED = frozenset('"\\<>~%$&{')
 _TRAPS = re.compile(
     r'["\\<>~%$&{]|^[^A-Za-z0-9]|(?<=\*)\*|(?<=/)/|(?<=_)_|(?<=-)-|(?<=\[)\[|(?<=/)\'|(?<=\')[/\']|[^\x00-\x7f]'
 )
-"""Markup, what a line may not begin with, second characters of pairs, what may not be seen."""
+"""Characters that may need an escape.
+
+They are markup, the first character of a line unless it is a letter or digit, the second character
+of a pair such as ``**``, and characters beyond ASCII, which may be invisible.
+"""
 _HARMLESS_FIRST = frozenset("«([:/≤≥→←…✕⚡")
-_UNSEEN = frozenset(["Cf", "Zl", "Zp", "Co", "Cn"])
+"""Characters with which a line may start, in addition to letters and digits."""
+_INVISIBLE = frozenset(["Cf", "Zl", "Zp", "Co", "Cn"])
+"""Unicode categories of characters that are displayed as nothing or as a box."""
 _HARMLESS = re.compile(r"[A-Za-z0-9](?:[A-Za-z0-9.,:;()=+]|[ _-](?=[A-Za-z0-9.,:;()=+]))*")
-"""Text that stays as it is; most names are such, and to look at each character takes long."""
+"""Text without any character that may need an escape: a fast path for most names."""
 _BLANKS = re.compile(r"[\t\n\x0b\x0c\r]|  |^ | $|^$")
-"""Blanks other than one between two words."""
-_JOINT = re.compile(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[_:./\-,;])(?=\w)")
+"""White space other than one blank between two words."""
+_WORD_BREAK = re.compile(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[_:./\-,;])(?=\w)")
 
 
-@lru_cache(_REMEMBERED)
+@lru_cache(_CACHE_SIZE)
 def escape_line(text: str) -> str:
-    """Return one line that PlantUML displays as written.
+    """Return *text* as one line in which PlantUML interprets nothing.
 
-    Markup, preprocessor directives and Unicode traps are escaped.
+    Markup, preprocessor directives and invisible characters are escaped.
     """
     if len(text) <= _LONGEST and _HARMLESS.fullmatch(text):
         return text
@@ -45,10 +51,11 @@ def escape_line(text: str) -> str:
     return _TRAPS.sub(_escape_trap, line)
 
 
-@lru_cache(_REMEMBERED)
+@lru_cache(_CACHE_SIZE)
 def wrap_lines(text: str, width: int = WIDTH) -> tuple[str, ...]:
-    """Return the text in escaped lines of at most *width* characters; its own line ends are
-    preserved.
+    """Return *text* in escaped lines of at most *width* characters.
+
+    A line end in the text ends a line; empty lines are dropped.
     """
     if len(text) <= width and _HARMLESS.fullmatch(text):
         return (text,)
@@ -57,12 +64,12 @@ def wrap_lines(text: str, width: int = WIDTH) -> tuple[str, ...]:
 
 
 def format_label(text: str, width: int = WIDTH) -> str:
-    """Return the text for a label between quotes or after a colon: lines joined by ``\\n``."""
+    """Return *text* as a label, between quotes or after a colon: lines joined by ``\\n``."""
     return _BREAK.join(wrap_lines(text, width))
 
 
 def join_rows(rows: Iterable[str]) -> str:
-    """Join rows that are already escaped, one above the other in one label."""
+    """Join escaped rows to one label, one above the other; empty rows are dropped."""
     return _BREAK.join(row for row in rows if row)
 
 
@@ -72,22 +79,21 @@ def shrink(text: str) -> str:
 
 
 def format_keyword_label(text: str) -> str:
-    """Return the label of a line; a label of only a keyword, ``«copy»``, would lose its
-    guillemets.
+    """Return *text* as the label of a line, a keyword such as ``«copy»`` in smaller size.
+
+    Without the size, PlantUML would drop the guillemets of a label that is only a keyword.
     """
     rows = wrap_lines(text)
     return join_rows(map(shrink, rows)) if text.startswith("«") else join_rows(rows)
 
 
 def pad_label(text: str) -> str:
-    """Return the text for the end of a line, with a blank on each side between it and the arrow
-    head.
-    """
+    """Return *text* as the label at an end of a line, with a blank before and after each row."""
     return join_rows(f"<U+00A0>{row}<U+00A0>" for row in wrap_lines(text))
 
 
 def format_comment(text: str) -> str:
-    """Return the text for a line comment that ends with its line.
+    """Return *text* for a line comment that cannot extend beyond its line.
 
     PlantUML joins a line that ends with a backslash with the next one, and starts a block comment
     at a slash with a quote.
@@ -114,15 +120,15 @@ def _is_invalid(char: str) -> bool:
 
 
 def _escape_trap(match: re.Match[str]) -> str:
-    """Return the replacement of a character that PlantUML may interpret."""
+    """Return the character of *match*, or its escape if PlantUML would interpret it."""
     char = match[0]
     if char == "\\":
         return _BACKSLASH_BEFORE_T if match.string.startswith("t", match.end()) else _escape(char)
-    if match.start() == 0 and char not in _ALWAYS:
+    if match.start() == 0 and char not in _ALWAYS_ESCAPED:
         is_shown = char.isalnum() or char in _HARMLESS_FIRST or char > "\u02ff"
     else:
         is_shown = not char.isascii()
-    return char if is_shown and unicodedata.category(char) not in _UNSEEN else _escape(char)
+    return char if is_shown and unicodedata.category(char) not in _INVISIBLE else _escape(char)
 
 
 def _escape(char: str) -> str:
@@ -150,11 +156,14 @@ def _fill_rows(words: list[str], width: int) -> list[str]:
 
 
 def _break_word(row: str, width: int) -> list[str]:
-    """Break a row that is one long word at its joints (camelCase, ``_``, ``::``), else anywhere."""
+    """Break a row that is one long word: between its parts (camelCase, ``_``, ``::``), or anywhere.
+
+    It is broken within a part only if the part is longer than *width*.
+    """
     if len(row) <= width:
         return [row]
     pieces, current = [], ""
-    for word in _JOINT.split(row):
+    for word in _WORD_BREAK.split(row):
         if current and len(current) + len(word) > width:
             pieces.append(current)
             current = ""

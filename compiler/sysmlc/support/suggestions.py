@@ -9,9 +9,9 @@ _CACHE_SIZE = 64
 
 
 def did_you_mean(word: str, known: Iterable[str]) -> str:
-    """Return the end of a message about the unknown *word*.
+    """Return the advice at the end of a message about the unknown *word*.
 
-    The text is ``did you mean 'recipe'?`` if a similar name exists, else it lists the names.
+    It is ``did you mean 'recipe'?`` if a similar name is known, else a list of the known names.
     """
     names = sorted(set(known))
     similar = _find_similar(word, tuple(names))

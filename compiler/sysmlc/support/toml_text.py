@@ -1,4 +1,4 @@
-"""TOML text with limits that end in a located message instead of a hang or an exhausted stack."""
+"""Parses TOML; text that would exhaust the stack or take minutes is refused with its position."""
 
 import re
 import tomllib
@@ -6,8 +6,8 @@ from typing import Any
 
 _MAX_CHARACTERS = 1_000_000
 _MAX_DEPTH = 50
-"""Nested brackets, and parts of a dotted key: the parser recurses for the first and takes time
-that grows with the square of the second."""
+"""Nested brackets, for which the parser recurses, and parts of a dotted key, for which its time is
+quadratic."""
 _MAX_WORD = 1_000
 """Characters of a number or a bare key; Python refuses integers of more than 4,300 digits."""
 
@@ -20,7 +20,7 @@ _POSITION = re.compile(r"(.*) \(at (?:line (\d+), column (\d+)|end of document)\
 
 
 class TomlError(Exception):
-    """Text that is not TOML or exceeds a limit; line and column count characters from 1."""
+    """The text is not TOML or exceeds a limit; line and column count characters from 1."""
 
     def __init__(self, message: str, line: int, column: int = 1) -> None:
         super().__init__(message)
@@ -30,18 +30,17 @@ class TomlError(Exception):
 
 def parse_toml(text: str) -> dict[str, Any]:
     """Return the table that *text* defines. Raises TomlError."""
-
     if len(text) > _MAX_CHARACTERS:
         raise TomlError(f"the file has more than {_MAX_CHARACTERS:,} characters", 1)
     _check_limits(text)
     try:
         return tomllib.loads(text)
     except tomllib.TOMLDecodeError as problem:
-        raise _locate(str(problem), text) from problem
+        raise _make_located_error(str(problem), text) from problem
 
 
-def _locate(message: str, text: str) -> TomlError:
-    """Split the position off a message of tomllib."""
+def _make_located_error(message: str, text: str) -> TomlError:
+    """Return the error for a message of tomllib, which ends with the position."""
     match = _POSITION.fullmatch(message)
     if match is None:
         return TomlError(message, 1)
@@ -59,7 +58,10 @@ def _check_limits(text: str) -> None:
             depth += 1
         elif token in "]}":
             depth = max(depth - 1, 0)
-        dots = dots + 1 if token == "." else 0 if token in "[]{},=\n" else dots
+        if token == ".":
+            dots += 1
+        elif token in "[]{},=\n":
+            dots = 0
         problem = ""
         if depth > _MAX_DEPTH:
             problem = f"more than {_MAX_DEPTH} nested brackets"
