@@ -3,8 +3,8 @@
 import os
 import sys
 
-# Python puts the working folder first: a repository with a file jinja2.py, or with a folder that
-# looks like an installed plug-in, would run code. The command ``sysmlc`` has no such entry.
+# ``python -m`` puts the working folder first: a file jinja2.py in it, or a folder that looks like
+# an installed plug-in, would be imported and run. The command ``sysmlc`` has no such entry.
 if sys.path and sys.path[0] == os.getcwd():  # noqa: PTH109 - pathlib is not yet imported
     del sys.path[0]
 

@@ -1,4 +1,4 @@
-"""The Python API: compile models, read the graph and what is derived from it (docs/python-api.md).
+"""The Python API: compile models, and read the graph and its derived values (docs/python-api.md).
 
 Programs import these names from ``sysmlc``. Everything else in the package may change with any
 version.
@@ -49,9 +49,9 @@ def compile_model(
     """Compile files or folders as one compile unit, in memory; no file is written.
 
     *emit* names back ends as ``--emit`` does; without it the compilation has no artefacts.
-    *passes* run in addition to those of sysmlc, after the passes that they name in ``after``.
-    *config* is by default the configuration of the project that contains the first path. A
-    ``Request`` instead of paths contains all options itself.
+    *passes* run in addition to those of sysmlc, each after the passes in its ``after``. *config* is
+    by default the configuration of the project that contains the first path. A ``Request`` in
+    place of paths contains all these options, so that the others are ignored.
 
     Faults of the model, including missing files, are diagnostics of the result. Raises
     ``ConfigError`` for a configuration that cannot be used and ``BackendError`` for an unknown

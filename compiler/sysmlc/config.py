@@ -1,4 +1,4 @@
-"""Configuration: ``sysmlc.toml`` or ``[tool.sysmlc]``, checked against its JSON Schema."""
+"""Reads and checks the configuration of a project: ``sysmlc.toml`` or ``[tool.sysmlc]``."""
 
 import json
 import os
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 FILE_NAME = "sysmlc.toml"
 _MAX_PARTS = 100
-"""Folders in a path of the configuration."""
+"""Parts of a path in the configuration."""
 _MAX_BYTES = 240
 """Bytes of the name of one folder: file systems allow 255, and outputs add suffixes."""
 _MAX_MESSAGE = 300
@@ -45,9 +45,10 @@ class ModelUnit(Struct, frozen=True):
 
 
 class Config(Struct, frozen=True):
-    """The settings of a project; ``folder``, ``root`` and ``file`` are None without a file.
+    """The settings of a project, with their defaults.
 
-    ``folder`` contains the file. Paths may not lead out of ``root``, the project root.
+    ``file`` is the configuration file, ``folder`` contains it, and ``root`` is the project root,
+    out of which no path in the file may lead. All three are None without a configuration file.
     """
 
     folder: Path | None = None
@@ -72,8 +73,8 @@ class Config(Struct, frozen=True):
 def find_project_root(start: Path) -> Path:
     """Return the nearest folder from *start* upwards that holds ``sysmlc.toml`` or ``.git``.
 
-    *start* is a model or a folder. Without such a folder the root is *start* itself, or the folder
-    of the model. ``.git`` is a file in worktrees and submodules.
+    *start* is a model or a folder. If there is no such folder, the root is *start* itself, or the
+    folder that contains the model. ``.git`` is a file in worktrees and submodules.
     """
     folder = _folder_of(start)
     for parent in (folder, *folder.parents):
@@ -83,10 +84,11 @@ def find_project_root(start: Path) -> Path:
 
 
 def find_boundary(output: Path) -> Path:
-    """Return the folder outside which a run with ``-o output`` writes nothing.
+    """Return the folder outside which ``-o output`` must not write: the project around *output*.
 
-    A user may name any folder. But where the path as it is written lies in a project, a symbolic
-    link in it must not lead out of the project, because the repository may contain that link.
+    A user may name any folder. But if the path, as it is written, lies in a project, its symbolic
+    links may come from the repository, so that they must not lead out of the project. Outside of
+    projects the result is *output* itself.
     """
     for folder in Path(os.path.abspath(output)).parents:  # noqa: PTH100 - links stay as written
         if (folder / FILE_NAME).is_file() or (folder / ".git").exists():
@@ -97,9 +99,9 @@ def find_boundary(output: Path) -> Path:
 def find_config_file(start: Path) -> Path | None:
     """Return the configuration file of the project that holds *start*, if it has one.
 
-    ``sysmlc.toml`` of the project root wins; else the nearest ``pyproject.toml`` inside the root
-    that has ``[tool.sysmlc]`` counts. Files above the root are ignored: they belong to others.
-    Raises ConfigError.
+    It is ``sysmlc.toml`` in the project root, else the nearest ``pyproject.toml`` inside the root
+    that has a table ``[tool.sysmlc]``. Files above the root are ignored, because they belong to
+    something else. Raises ConfigError.
     """
     root = find_project_root(start)
     if (root / FILE_NAME).is_file():
@@ -121,7 +123,7 @@ def _folder_of(start: Path) -> Path:
 
 
 def _refuse_outside(file: Path, root: Path) -> Path:
-    """Return *file* unless it is a symbolic link that leads out of *root*."""
+    """Return *file*. Raises ConfigError if it is a symbolic link that leads out of *root*."""
     if not Roots((root,)).allows(file):
         raise ConfigError(
             f"{file}: is a link that leads out of the project root; "
@@ -141,9 +143,9 @@ def read_config(file: Path | None) -> Config:
 
 
 def _check_paths(file: Path, text: str, config: Config) -> None:
-    """Refuse paths that lead out of the project root. Raises ConfigError.
+    """Raise ConfigError for a path that is too long or leads out of the project root.
 
-    A repository must not choose what is read or written elsewhere on the machine.
+    A repository must not decide which files elsewhere on the machine are read or written.
     """
     _check_lengths(file, text, config)
     entries = [("templates", config.templates)]
@@ -164,7 +166,7 @@ def _check_paths(file: Path, text: str, config: Config) -> None:
 
 
 def _check_lengths(file: Path, text: str, config: Config) -> None:
-    """Refuse paths that are longer than file systems allow. Raises ConfigError."""
+    """Raise ConfigError for a path that is longer than file systems allow."""
     entries = [("output", config.output), ("templates", config.templates)]
     for unit in config.models:
         entries += [("name", unit.name), ("output", unit.output)]
@@ -177,12 +179,12 @@ def _check_lengths(file: Path, text: str, config: Config) -> None:
 
 
 def _is_inside(name: str) -> bool:
-    """Whether a relative path stays below its folder, as far as its text shows."""
+    """Whether a path is relative and has no ``..``, so that it leads into its folder."""
     return not Path(name).is_absolute() and ".." not in Path(name).parts and "\0" not in name
 
 
 def _is_confined(pattern: str, config: Config) -> bool:
-    """Whether a path, or the part of a pattern before its wildcards, is in the project root."""
+    """Whether a path is in the project root; of a pattern, the part before its wildcards."""
     if "\0" in pattern:
         return False
     parts = Path(pattern).parts
@@ -197,9 +199,9 @@ def _is_confined(pattern: str, config: Config) -> bool:
 
 
 def expand_files(config: Config, patterns: Iterable[str]) -> list[Path]:
-    """Return the files that patterns of the configuration name, in order.
+    """Return the files that match patterns of the configuration, sorted for each pattern.
 
-    Files that links lead to outside the project root are refused. Raises ConfigError.
+    Raises ConfigError for a symbolic link to a file outside the project root.
     """
     folder, root = config.folder or Path.cwd(), config.root or Path.cwd()
     files: list[Path] = []
@@ -219,7 +221,7 @@ def expand_files(config: Config, patterns: Iterable[str]) -> list[Path]:
 
 
 def _read_settings(file: Path, text: str) -> dict[str, Any]:
-    """Return the settings of a file, which the JSON Schema allows. Raises ConfigError."""
+    """Return the settings in a file. Raises ConfigError for those that the JSON Schema forbids."""
     table = _parse_file(file, text)
     if file.name == "pyproject.toml":
         table = _find_tool_table(table) or {}
@@ -280,7 +282,10 @@ def _explain_error(file: Path, text: str, error: "ValidationError") -> str:
 
 
 def _find_line(text: str, key: str) -> int:
-    """Return the first line that mentions a key: tomllib does not store the lines of keys."""
+    """Return the number of the first line that mentions *key*, 1 if none does.
+
+    It is searched in the text, because tomllib does not return the lines of keys.
+    """
     for number, line in enumerate(text.splitlines(), 1):
         head = line.partition("=")[0] if "=" in line else line
         if key and key in head.strip(" []").replace('"', "").split("."):
@@ -341,9 +346,10 @@ def _make_pass_options(table: dict[str, Any]) -> dict[str, dict[str, object]]:
 
 
 def _read_levels(table: dict[str, str | list[str]]) -> dict[str, str]:
-    """Return the levels by element.
+    """Return the level of each element in the table ``[recipe.levels]``.
 
-    The table has entries by element (``"A::B" = "task"``) or by level (``task = "A::B"``).
+    An entry gives the level of an element (``"A::B" = "task"``), or the elements of a level
+    (``task = "A::B"``).
     """
     levels: dict[str, str] = {}
     for key, value in table.items():
