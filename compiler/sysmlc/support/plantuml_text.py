@@ -18,7 +18,7 @@ _CACHE_SIZE = 1 << 12
 """Texts whose escaped form is cached: ports and values of many blocks have the same names."""
 _BREAK = "\\n"
 _BACKSLASH_BEFORE_T = "<U+005C><U+200B>"
-"""A backslash before ``t``, and a zero-width space: PlantUML 1.2026.2 reads ``<U+005C>t`` as a tab."""
+"""A backslash before ``t``, and a zero-width space: alone, PlantUML 1.2026.2 reads it as a tab."""
 _ALWAYS_ESCAPED = frozenset('"\\<>~%$&{')
 _TRAPS = re.compile(
     r'["\\<>~%$&{]|^[^A-Za-z0-9]|(?<=\*)\*|(?<=/)/|(?<=_)_|(?<=-)-|(?<=\[)\[|(?<=/)\'|(?<=\')[/\']|[^\x00-\x7f]'
