@@ -3,7 +3,7 @@
 from importlib import import_module
 from typing import TYPE_CHECKING
 
-from sysmlc.ir.element import AttrValue, Element, derived_id
+from sysmlc.ir.element import AttrValue, Element, as_items, derived_id, list_items
 from sysmlc.ir.graph import Graph
 from sysmlc.ir.kinds import Edge, Kind
 from sysmlc.ir.pending import Reference
@@ -20,7 +20,9 @@ __all__ = [
     "IrSyntaxError",
     "Kind",
     "Reference",
+    "as_items",
     "derived_id",
+    "list_items",
     "parse_text",
     "print_text",
     "verify",

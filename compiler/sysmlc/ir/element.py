@@ -9,6 +9,16 @@ AttrValue = str | int | float | bool | None | tuple["AttrValue", ...]
 """Value of an attribute: a JSON value, with tuples for lists."""
 
 
+def list_items(value: AttrValue) -> tuple[AttrValue, ...]:
+    """Return the items of a list value; empty for None and any other value."""
+    return value if isinstance(value, tuple) else ()
+
+
+def as_items(value: AttrValue) -> tuple[AttrValue, ...]:
+    """Return the items of a list value; any other value is the only item."""
+    return value if isinstance(value, tuple) else (value,)
+
+
 class Element:
     """One element of the model. It has identity and is changed only through its ``Graph``.
 

@@ -189,10 +189,11 @@ def _find_installed() -> Path | None:
         spec = find_spec(_DISTRIBUTION)
     except (ImportError, ValueError):
         return None
-    for folder in (spec.submodule_search_locations or ()) if spec else ():
-        models = Path(folder) / "stdlib"
-        if models.is_dir():
-            return models
+    if spec:
+        for folder in spec.submodule_search_locations or ():
+            models = Path(folder) / "stdlib"
+            if models.is_dir():
+                return models
     return None
 
 

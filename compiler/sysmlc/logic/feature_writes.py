@@ -90,7 +90,9 @@ def _last_name(path: str) -> str:
 
 def _iter_bound_names(graph: Graph, action: Element) -> Iterator[str]:
     """Yield the names of features to which outputs of what the action calls are bound."""
-    for pin in graph.owned(action) if action.kind is Kind.ACTION else ():
+    if action.kind is not Kind.ACTION:
+        return
+    for pin in graph.owned(action):
         if pin.attrs.get("direction") in ("out", "inout", "return"):
             text = pin.attrs.get("value")
             name = _parse_name(text) if isinstance(text, str) else None

@@ -5,7 +5,7 @@ from typing import ClassVar
 from msgspec import Struct
 
 from sysmlc.diagnostics import Severity, Sink, rule
-from sysmlc.ir import Edge, Element, Graph, Kind
+from sysmlc.ir import Edge, Element, Graph, Kind, list_items
 from sysmlc.ir.query import BEHAVIORS, features, parameters, redefined_features
 
 CALL_OF_NOTHING = rule(
@@ -232,5 +232,4 @@ def _check_behavior(
 
 
 def _list_unresolved(element: Element) -> tuple[object, ...]:
-    unresolved = element.attrs.get("unresolved")
-    return unresolved if isinstance(unresolved, tuple) else ()
+    return list_items(element.attrs.get("unresolved"))

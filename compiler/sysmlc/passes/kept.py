@@ -85,12 +85,13 @@ def _redirect_references(graph: Graph, elements: list[StoredElement]) -> None:
         if stub is None or replacement is None or stub.id not in graph:
             continue
         for edge in Edge:
-            for source in graph.sources(stub, edge) if edge is not Edge.OWNS else ():
-                targets = [
-                    replacement if element is stub else element
-                    for element in graph.targets(source, edge)
-                ]
-                graph.replace_targets(edge, source, targets)
+            if edge is not Edge.OWNS:
+                for source in graph.sources(stub, edge):
+                    targets = [
+                        replacement if element is stub else element
+                        for element in graph.targets(source, edge)
+                    ]
+                    graph.replace_targets(edge, source, targets)
         if not graph.owned(stub):
             graph.remove(stub)
 

@@ -105,7 +105,9 @@ def _place_robots(study: Study) -> Iterator[Conjunct]:
 
 def count_timers(study: Study) -> Iterator[Conjunct]:
     """State that timers count the steps since the assignment of a target, if there is a limit."""
-    for robot in study.robots if study.within is not None else ():
+    if study.within is None:
+        return
+    for robot in study.robots:
         yield from _count_timer(robot, (study.within or 0) + 1)
 
 
@@ -220,7 +222,9 @@ def _forbid_following(study: Study) -> Iterator[Conjunct]:
 
 
 def _limit_timers(study: Study) -> Iterator[Conjunct]:
-    for robot in study.robots if study.within is not None else ():
+    if study.within is None:
+        return
+    for robot in study.robots:
         text = f"'{robot.name}' reaches a target within {study.within} steps."
         limit = f.compare(Op.LE, f.var(terms.timer(robot)), f.const(study.within or 0))
         yield terms.safety_conjunct(limit, robot.origin, text)

@@ -248,12 +248,13 @@ class _EvasionPlanner(Generic[P]):
                         without(remaining, barred_cells[neighbour]), self.blocked_path[neighbour]
                     ),
                 )
-            for neighbour in neighbours if remaining != none else ():
-                moving = without(remaining, barred_cells[neighbour])
-                if moving != none:
-                    remaining = self._move_to(
-                        robot, neighbour, remaining, moving & self._is_ahead(cell, neighbour)
-                    )
+            if remaining != none:
+                for neighbour in neighbours:
+                    moving = without(remaining, barred_cells[neighbour])
+                    if moving != none:
+                        remaining = self._move_to(
+                            robot, neighbour, remaining, moving & self._is_ahead(cell, neighbour)
+                        )
 
     def _move_to(self, robot: int, cell: int, remaining: P, moving: P) -> P:
         """Move the robot to a cell in the runs *moving*, and return the other remaining runs."""

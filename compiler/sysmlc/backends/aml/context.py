@@ -9,7 +9,7 @@ from msgspec import Struct
 from sysmlc.backends.aml.class_kinds import ClassKind
 from sysmlc.backends.aml.node import Node
 from sysmlc.backends.aml.rules import Losses
-from sysmlc.ir import Edge, Element, Graph, Kind
+from sysmlc.ir import Edge, Element, Graph, Kind, list_items
 from sysmlc.ir.element import derived_id
 
 _BRACKETED = frozenset("/@[]")
@@ -182,7 +182,6 @@ def find_unresolved(element: Element, *tags: str) -> str:
 
 def iter_unresolved(element: Element, *tags: str) -> Iterator[tuple[str, str]]:
     """Yield tag and path of the references that could not be resolved, as they were written."""
-    pairs = element.attrs.get("unresolved_paths")
-    for pair in pairs if isinstance(pairs, tuple) else ():
+    for pair in list_items(element.attrs.get("unresolved_paths")):
         if isinstance(pair, tuple) and pair[0] in tags:
             yield str(pair[0]), str(pair[1])

@@ -14,7 +14,7 @@ from sysmlc.backends.aml.instances import (
 )
 from sysmlc.backends.aml.interfaces import write_interface
 from sysmlc.backends.aml.node import Node
-from sysmlc.ir import Edge, Element, Kind
+from sysmlc.ir import Edge, Element, Kind, list_items
 from sysmlc.ir.element import derived_id
 
 _REFERENCE = "RefBaseSystemUnitPath"
@@ -260,10 +260,9 @@ def _make_group(context: Context, element: Element, file: File) -> Node:
 
 def _list_mirrors(element: Element, target: Element) -> list[tuple[str, str]]:
     """Return name and ID of each stored mirror of *target*, else its name and an empty ID."""
-    triples = element.attrs.get("mirrors")
     mirrors = [
         (str(triple[1]), str(triple[2]))
-        for triple in (triples if isinstance(triples, tuple) else ())
+        for triple in list_items(element.attrs.get("mirrors"))
         if isinstance(triple, tuple) and triple[0] == target.id
     ]
     return mirrors or [(target.name, "")]

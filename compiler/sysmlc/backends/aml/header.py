@@ -5,7 +5,7 @@ import re
 from sysmlc.backends.aml.context import Context
 from sysmlc.backends.aml.node import Node, parse_fragment
 from sysmlc.backends.aml.rules import ADDED
-from sysmlc.ir import Edge, Element, Kind
+from sysmlc.ir import Edge, Element, Kind, list_items
 
 _DEFAULT_DATE = "1970-01-01T00:00:00Z"
 """Written where the schema requires a date and the source has none.
@@ -61,8 +61,7 @@ def write_header(context: Context, element: Element, node: Node) -> None:
 
 def write_semantics(element: Element, node: Node) -> None:
     """Add the references to dictionaries of terms."""
-    paths = element.attrs.get("semantics")
-    for path in paths if isinstance(paths, tuple) else ():
+    for path in list_items(element.attrs.get("semantics")):
         node.add(Node("RefSemantic", {"CorrespondingAttributePath": str(path)}))
 
 

@@ -13,7 +13,7 @@ from sysmlc.backends.aml.context import Context, File
 from sysmlc.backends.aml.header import add_description, write_header
 from sysmlc.backends.aml.interfaces import find_or_repeat, write_port_attributes
 from sysmlc.backends.aml.node import Node, format_value
-from sysmlc.ir import Edge, Element, Kind
+from sysmlc.ir import Edge, Element, Kind, list_items
 
 _COPIED = frozenset({"DefaultValue", "Value", "RefSemantic", "Constraint", "Attribute"})
 """Children of an attribute that its copy repeats."""
@@ -118,8 +118,7 @@ def write_feature_description(context: Context, unit: SystemUnit, comment: Eleme
 def write_interface_ids(context: Context, unit: SystemUnit) -> None:
     """Write the ids that interfaces of the class have in an internal element."""
     for element in unit.elements:
-        pairs = element.attrs.get("interface_ids")
-        for pair in pairs if isinstance(pairs, tuple) else ():
+        for pair in list_items(element.attrs.get("interface_ids")):
             if isinstance(pair, tuple) and len(pair) == 2:
                 port = context.graph.get(str(pair[0]))
                 if port is not None:
@@ -146,13 +145,14 @@ def _iter_features(context: Context, type_: Element) -> Iterator[Node]:
     visited: set[tuple[str, str]] = set()
     for base in context.iter_bases(type_):
         node = context.nodes.get(base.id)
-        for child in node.children if node is not None else ():
-            key = (child.tag, child.attributes.get("Name", ""))
-            if child.tag in _FEATURES and key not in visited:
-                visited.add(key)
-                # A copy holds the value of one part; it is no feature that instances inherit.
-                if not child.is_copy:
-                    yield child
+        if node is not None:
+            for child in node.children:
+                key = (child.tag, child.attributes.get("Name", ""))
+                if child.tag in _FEATURES and key not in visited:
+                    visited.add(key)
+                    # A copy holds the value of one part; it is no feature that instances inherit.
+                    if not child.is_copy:
+                        yield child
 
 
 def _copy_interface_attributes(node: Node, class_interface: Node, type_paths: set[str]) -> None:

@@ -54,9 +54,10 @@ def _find_holder(context: Context, element: Element, ends: Iterable[Element]) ->
     tops = [context.graph.target(end, Edge.PATH) for end in ends]
     linked = [context.nodes[top.id] for top in tops if top is not None and top.id in context.nodes]
     is_one_element = bool(linked) and all(item is linked[0] for item in linked)
-    for child in node.children if is_one_element else ():
-        if child.tag == "InternalElement" and child not in linked:
-            return child
+    if is_one_element:
+        for child in node.children:
+            if child.tag == "InternalElement" and child not in linked:
+                return child
     return linked[0] if linked else None
 
 

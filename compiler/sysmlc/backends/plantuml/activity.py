@@ -13,7 +13,7 @@ from sysmlc.backends.plantuml.block_definition import ACTIVITY_NODES
 from sysmlc.backends.plantuml.labels import make_notes
 from sysmlc.backends.plantuml.state_machine import draw_parts, format_guard
 from sysmlc.backends.plantuml.views import Aliases, Diagram, GraphView, Line, Node
-from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind
+from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind, list_items
 from sysmlc.support.plantuml_text import escape_line, format_label, join_rows, shrink
 
 TINTS = 6
@@ -262,8 +262,7 @@ def _iter_sections(owner: Element) -> Iterator[tuple[str, tuple[str, ...]]]:
         tested = "while" if owner.attrs.get("tested_first") else "until test"
         keys = {"setup_part": "setup", "test": tested, "body_part": "body"}
         yield from ((title, _list_ids(owner.attrs.get(key))) for key, title in keys.items())
-    clauses = owner.attrs.get("clauses")
-    for number, clause in enumerate(clauses if isinstance(clauses, tuple) else (), 1):
+    for number, clause in enumerate(list_items(owner.attrs.get("clauses")), 1):
         tests, bodies = clause if isinstance(clause, tuple) and len(clause) == 2 else ((), ())
         yield f"if {number}", _list_ids(tests)
         yield f"then {number}", _list_ids(bodies)

@@ -7,7 +7,7 @@ from msgspec import Struct
 from sysmlc.backends.plantuml import labels
 from sysmlc.backends.plantuml.relations import list_node_allocations
 from sysmlc.backends.plantuml.state_machine import format_trigger
-from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind
+from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind, as_items, list_items
 from sysmlc.support.plantuml_text import format_label, wrap_lines
 
 _CONTROL_SHAPES = {
@@ -62,9 +62,8 @@ def iter_handlers(graph: Graph, node: Element) -> Iterator[tuple[str, list[str]]
 
     Each is the id of the handler body with the names of the exception types.
     """
-    value = node.attrs.get("handlers")
-    for handler in value if isinstance(value, tuple) else ():
-        parts = handler if isinstance(handler, tuple) else ()
+    for handler in list_items(node.attrs.get("handlers")):
+        parts = list_items(handler)
         body, types = (_list_ids(parts[index]) if len(parts) > index else () for index in (0, 2))
         elements = (graph.get(id) for id in types)
         yield (
@@ -74,7 +73,7 @@ def iter_handlers(graph: Graph, node: Element) -> Iterator[tuple[str, list[str]]
 
 
 def _list_ids(value: AttrValue) -> tuple[str, ...]:
-    return tuple(map(str, value)) if isinstance(value, tuple) else (str(value),)
+    return tuple(map(str, as_items(value)))
 
 
 def _look_of_control(graph: Graph, node: Element) -> Look:

@@ -4,7 +4,7 @@ import re
 from collections.abc import Iterable
 
 from sysmlc.backends.plantuml import labels
-from sysmlc.ir import Edge, Element, Graph, Kind
+from sysmlc.ir import Edge, Element, Graph, Kind, as_items
 from sysmlc.ir.query import interactions
 
 _TIMES = ("duration", "time")
@@ -25,8 +25,7 @@ def format_arguments(item: Element) -> str:
     values = item.attrs.get("arguments")
     if values is None:
         return ""
-    texts = values if isinstance(values, tuple) else (values,)
-    words = (" ".join(labels.literal(text).split()) for text in texts)
+    words = (" ".join(labels.literal(value).split()) for value in as_items(values))
     return f"({', '.join(words)})"
 
 

@@ -16,7 +16,7 @@ from sysmlc.backends.sysml.references import format_reference, visible_members
 from sysmlc.backends.sysml.rules import UNSAID_ATTRIBUTE
 from sysmlc.backends.sysml.shapes import is_part_port
 from sysmlc.backends.sysml.writer import Writer
-from sysmlc.ir import AttrValue, Edge, Element, Kind
+from sysmlc.ir import AttrValue, Edge, Element, Kind, list_items
 from sysmlc.ir.query import CLASSIFIERS
 
 _STRUCTURAL_SUBKINDS = frozenset({"part", "model", "caex", "internal-link", "alias", "variable"})
@@ -153,8 +153,7 @@ def _flatten(value: AttrValue) -> AttrValue:
 
 def _iter_interface_ids(writer: Writer, member: Member, element: Element) -> Iterator[Line]:
     """Yield redefined ports with the ids that an InternalElement gives to inherited interfaces."""
-    pairs = element.attrs.get("interface_ids")
-    for pair in pairs if isinstance(pairs, tuple) else ():
+    for pair in list_items(element.attrs.get("interface_ids")):
         port_id, id = pair if isinstance(pair, tuple) else ("", "")
         port = writer.graph.get(str(port_id))
         name = None if port is None else writer.refer_to_redefined(member, port)

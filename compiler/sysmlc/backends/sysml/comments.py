@@ -8,7 +8,7 @@ from sysmlc.backends.sysml.plan import Member
 from sysmlc.backends.sysml.preserved_facts import list_all_facts
 from sysmlc.backends.sysml.printing import Line, format_comment, quote_name, quote_string
 from sysmlc.backends.sysml.writer import Writer
-from sysmlc.ir import AttrValue, Edge, Element, Kind
+from sysmlc.ir import AttrValue, Edge, Element, Kind, as_items
 
 _UNLISTED_ATTRIBUTES = frozenset({"external", "library", "subkind", "unresolved"})
 
@@ -53,7 +53,7 @@ def write_opaque_bodies(writer: Writer, element: Element) -> list[Line]:
     """Return the bodies of an opaque element as representations in their languages."""
     bodies = element.attrs.get("bodies", element.attrs.get("body"))
     languages = element.attrs.get("languages", element.attrs.get("language", ""))
-    texts = bodies if isinstance(bodies, tuple) else () if bodies is None else (bodies,)
+    texts = () if bodies is None else as_items(bodies)
     if not isinstance(languages, tuple):
         languages = (languages,) * len(texts)
     if any(str(text) != _strip_lines(str(text)) for text in texts):

@@ -119,10 +119,11 @@ class _ExpressionPrinter:
 
     def _find_first_name(self, name: str) -> Member | None:
         scope = self._scope
-        for namespace in () if scope is None else (scope, *scope.namespaces):
-            member = find_by_model_name(self._plan, namespace, name)
-            if member is not None and member.shape.keyword not in _WITHOUT_VALUE:
-                return member
+        if scope is not None:
+            for namespace in (scope, *scope.namespaces):
+                member = find_by_model_name(self._plan, namespace, name)
+                if member is not None and member.shape.keyword not in _WITHOUT_VALUE:
+                    return member
         return look_up(self._plan, None, name)
 
     def _find_by_suffix(self, path: tuple[str, ...]) -> Member | None:
@@ -200,16 +201,17 @@ def _format_number(writer: Writer, scope: Member | None, feature: Element, value
 def _format_text(writer: Writer, scope: Member | None, feature: Element, text: str) -> str:
     """Return a text as an enumeration literal or number if the type allows it, else as a string."""
     type_ = type_of(writer.graph, feature)
-    for general in () if type_ is None else (type_, *generals(writer.graph, type_)):
-        if general.kind is Kind.ENUMERATION:
-            for literal in writer.graph.owned(general):
-                if literal.kind is Kind.ENUMERATION_LITERAL and literal.name == text:
-                    name = writer.refer_to(scope, feature, Edge.REFERENCES, literal)
-                    return name or quote_string(text)
-        is_primitive = general.name in _NUMBERS and general.attrs.get("external")
-        if is_primitive and _is_number(text):
-            number = float(text) if "." in text else int(text)
-            return _format_number(writer, scope, feature, number)
+    if type_ is not None:
+        for general in (type_, *generals(writer.graph, type_)):
+            if general.kind is Kind.ENUMERATION:
+                for literal in writer.graph.owned(general):
+                    if literal.kind is Kind.ENUMERATION_LITERAL and literal.name == text:
+                        name = writer.refer_to(scope, feature, Edge.REFERENCES, literal)
+                        return name or quote_string(text)
+            is_primitive = general.name in _NUMBERS and general.attrs.get("external")
+            if is_primitive and _is_number(text):
+                number = float(text) if "." in text else int(text)
+                return _format_number(writer, scope, feature, number)
     return quote_string(text)
 
 

@@ -6,7 +6,7 @@ from sysmlc.backends.sysml.expressions import format_value
 from sysmlc.backends.sysml.plan import Member
 from sysmlc.backends.sysml.printing import Line, quote_name
 from sysmlc.backends.sysml.writer import Writer
-from sysmlc.ir import Edge, Element, Kind
+from sysmlc.ir import Edge, Element, Kind, list_items
 
 
 def write_instance(writer: Writer, member: Member) -> list[Line]:
@@ -51,8 +51,7 @@ def _write_body(writer: Writer, member: Member, element: Element) -> list[Line]:
 def _write_part(writer: Writer, member: Member, element: Element, part: Element) -> list[Line]:
     """Write the values of a part, nested in redefinitions of the parts that lead to it."""
     body = _write_body(writer, member, element)
-    ids = element.attrs.get("path", ())
-    path = [writer.graph.get(str(id)) for id in ids] if isinstance(ids, tuple) else []
+    path = [writer.graph.get(str(id)) for id in list_items(element.attrs.get("path"))]
     steps = [*(step for step in path if step is not None and step is not part), part]
     name = writer.refer_to_redefined(member.parent, steps[0])
     if name is None:

@@ -8,7 +8,7 @@ from sysmlc.backends.sysml.plan import Member
 from sysmlc.backends.sysml.printing import Line, quote_name, quote_string
 from sysmlc.backends.sysml.references import format_element_reference
 from sysmlc.backends.sysml.writer import Writer
-from sysmlc.ir import AttrValue, Edge, Element, Kind
+from sysmlc.ir import AttrValue, Edge, Element, Kind, list_items
 from sysmlc.ir.query import type_of
 
 _LIFELINE_KEYWORDS = {"part def": "part ", "item def": "part ", "port def": "port "}
@@ -77,11 +77,10 @@ def _record_events(writer: Writer, message: Element) -> None:
 
 def _write_message_facts(writer: Writer, member: Member, element: Element) -> list[Line]:
     """Return the sort of a message and the operation that it calls as metadata, and arguments."""
-    arguments = element.attrs.get("arguments")
-    texts = arguments if isinstance(arguments, tuple) else ()
+    arguments = list_items(element.attrs.get("arguments"))
     lines = [
-        Line(f"attribute argument{number} = {quote_string(str(text))}")
-        for number, text in enumerate(texts, 1)
+        Line(f"attribute argument{number} = {quote_string(str(argument))}")
+        for number, argument in enumerate(arguments, 1)
     ]
     called = writer.graph.target(element, Edge.CALLS)
     called_member = writer.plan.find(called)

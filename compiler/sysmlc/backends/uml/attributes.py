@@ -19,7 +19,7 @@ from sysmlc.backends.uml.values import (
     write_multiplicity,
     write_value,
 )
-from sysmlc.ir import AttrValue, Edge, Element, Kind
+from sysmlc.ir import AttrValue, Edge, Element, Kind, as_items, list_items
 from sysmlc.ir.query import flow_properties, type_of
 
 _Writer = Callable[[Context, Element, str, AttrValue], None]
@@ -105,7 +105,7 @@ def _write_references(
     context: Context, element: Element, key: str, feature: str, value: AttrValue
 ) -> bool:
     """Write a value that consists of ids as references; return whether it does."""
-    ids = _as_tuple(value)
+    ids = as_items(value)
     targets = [context.graph.get(id) if isinstance(id, str) else None for id in ids]
     elements = [target for target in targets if target is not None]
     if not elements or len(elements) < len(targets):
@@ -114,13 +114,9 @@ def _write_references(
     return True
 
 
-def _as_tuple(value: AttrValue) -> tuple[AttrValue, ...]:
-    return value if isinstance(value, tuple) else (value,)
-
-
 def _join_ids(context: Context, values: AttrValue) -> str:
     """Return the ids in the file of those elements that are written."""
-    ids = [str(id) for id in _as_tuple(values)]
+    ids = [str(id) for id in as_items(values)]
     return " ".join(context.ids[id] for id in ids if id in context.nodes)
 
 
@@ -144,7 +140,7 @@ def _write_any_value(context: Context, element: Element, key: str, value: AttrVa
         fill_packaged_value(context, element)
     elif element.kind is Kind.SLOT:
         node = context.find_node(element)
-        for item in _as_tuple(value):
+        for item in as_items(value):
             add_literal(context, element, node, "value", item)
     else:
         write_value(context, element, key, _VALUE_FEATURES.get(element.kind, "value"))
@@ -218,7 +214,7 @@ def _make_text_writer(tag: str) -> _Writer:
 
 
 def _write_arguments(context: Context, element: Element, _key: str, value: AttrValue) -> None:
-    for argument in _as_tuple(value):
+    for argument in as_items(value):
         add_text(context, element, context.find_node(element), "argument", argument)
 
 
@@ -293,7 +289,7 @@ def _write_first_event(context: Context, element: Element, _key: str, value: Att
     """Write ``firstEvent``: one value for each end of a duration, a single one for a time."""
     node = context.find_node(element)
     if isinstance(value, tuple) or element.subkind == "duration":
-        for item in _as_tuple(value):
+        for item in as_items(value):
             node.add(Node("firstEvent", text=format_value(item)))
     else:
         node.attributes["firstEvent"] = format_value(value)
@@ -310,11 +306,10 @@ def _make_record_writer(tag: str, metaclass: str, *features: str) -> _Writer:
     def write_records(context: Context, element: Element, _key: str, value: AttrValue) -> None:
         """Write each record as a child; each column of a record lists ids for one feature."""
         node = context.find_node(element)
-        for index, record in enumerate(value if isinstance(value, tuple) else ()):
+        for index, record in enumerate(list_items(value)):
             child = _find_or_add_record(context, element, node, tag, metaclass, index)
-            columns = record if isinstance(record, tuple) else ()
-            for feature, ids in zip(features, columns, strict=False):
-                references = _join_ids(context, ids) if isinstance(ids, tuple) else ""
+            for feature, ids in zip(features, list_items(record), strict=False):
+                references = _join_ids(context, list_items(ids))
                 if references:
                     child.attributes[feature] = references
 
@@ -338,7 +333,7 @@ def _write_extended_signature(
     context: Context, element: Element, _key: str, value: AttrValue
 ) -> None:
     """Write ``extendedSignature``; the value has ids of templates, not of their signatures."""
-    templates = [context.graph[str(id)] for id in _as_tuple(value) if str(id) in context.nodes]
+    templates = [context.graph[str(id)] for id in as_items(value) if str(id) in context.nodes]
     ids = [find_or_add_signature(context, template).id for template in templates]
     if ids:
         signature = find_or_add_signature(context, element)

@@ -107,7 +107,9 @@ def write_document(graph: Graph, sink: Sink) -> str:
 def _note_respelt_ids(context: Context) -> None:
     """Count the values that name an element by an id which the saved element does not have."""
     respelt = {id for id, new_id in context.ids.items() if id != new_id}
-    for element in context.graph if respelt else ():
+    if not respelt:
+        return
+    for element in context.graph:
         if any(element.attrs.get(key) in respelt for key in _VALUES):
             context.losses.record(RESPELT_ID, element)
 

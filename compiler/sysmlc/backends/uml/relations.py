@@ -9,7 +9,7 @@ from sysmlc.backends.uml.hrefs import is_external, make_href
 from sysmlc.backends.uml.node import Node
 from sysmlc.backends.uml.sysml_profile import is_implied, iter_applications
 from sysmlc.backends.uml.values import add_instance_value
-from sysmlc.ir import Edge, Element, Kind
+from sysmlc.ir import Edge, Element, Kind, as_items
 
 _Targets = Sequence[Element]
 _Writer = Callable[[Context, Element, _Targets], None]
@@ -70,8 +70,7 @@ def _is_group_member(context: Context, comment: Element, target: Element) -> boo
         return False
     for application in iter_applications(context.graph, comment):
         for name in ("tag.member", "tag.orderedMember"):
-            value = application.attrs.get(name)
-            if target.id in (value if isinstance(value, tuple) else (value,)):
+            if target.id in as_items(application.attrs.get(name)):
                 return True
     return False
 
@@ -248,9 +247,10 @@ def _write_generalization_set(context: Context, element: Element, targets: _Targ
 def _find_generalization_id(context: Context, element: Element) -> str:
     """Return the id of the first generalization of an element, or the empty string."""
     node = context.nodes.get(element.id)
-    for child in node.children if node is not None else ():
-        if child.tag == "generalization":
-            return child.id
+    if node is not None:
+        for child in node.children:
+            if child.tag == "generalization":
+                return child.id
     return ""
 
 

@@ -126,10 +126,11 @@ class RoundTripFacts:
         for name in element.attrs:
             self.store_attribute(element, name)
         for edge in Edge:
-            for target in () if edge in _IMPLIED_EDGES else self.graph.targets(element, edge):
-                self.store_edge(edge, element, target)
-                if "href" in target.attrs:
-                    self.store_element(target)
+            if edge not in _IMPLIED_EDGES:
+                for target in self.graph.targets(element, edge):
+                    self.store_edge(edge, element, target)
+                    if "href" in target.attrs:
+                        self.store_element(target)
 
     def store_libraries(self) -> None:
         """Store the library elements that no file holds: units, standard libraries."""

@@ -12,7 +12,7 @@ from sysmlc.backends.uml.features import to_class_name
 from sysmlc.backends.uml.hrefs import is_external, make_reference
 from sysmlc.backends.uml.node import Node
 from sysmlc.backends.uml.rules import UNSUPPORTED_KIND
-from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind
+from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind, as_items
 
 _UNKNOWN_PROFILE = "urn:sysmlc:stereotypes"
 """Namespace of stereotypes whose profile is not known."""
@@ -173,7 +173,7 @@ class StereotypeWriter:
     def _write_tag(self, application: Element, node: Node, tag: str, value: AttrValue) -> None:
         """Write a tagged value: references if all its items are ids of elements, else texts."""
         context = self._context
-        items = value if isinstance(value, tuple) else (value,)
+        items = as_items(value)
         targets = [context.graph.get(item) if isinstance(item, str) else None for item in items]
         elements = [target for target in targets if target is not None]
         are_written = all(

@@ -5,7 +5,7 @@ import re
 from collections.abc import Iterator
 from functools import cache
 
-from sysmlc.ir import Edge, Element, Graph, Kind
+from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind, as_items, query
 from sysmlc.support import resources
 
 NAMESPACE = "http://www.eclipse.org/papyrus/sysml/1.6/SysML/"
@@ -178,10 +178,8 @@ def _list_recognised_names(graph: Graph, application: Element) -> tuple[str, ...
 
 
 def list_lineage(application: Element) -> tuple[str, ...]:
-    """Return the names of an applied stereotype and its generals, as ``classify`` stored them."""
-    lineage = application.attrs.get("lineage")
-    names = lineage if isinstance(lineage, tuple) else (application.attrs.get("stereotype", ""),)
-    return tuple(re.sub(r"\W", "_", str(name)) for name in names)
+    """Return the names of an applied stereotype and its generals, valid as names in XML."""
+    return tuple(re.sub(r"\W", "_", name) for name in query.lineage(application))
 
 
 def _is_structural(graph: Graph, element: Element) -> bool:
@@ -273,9 +271,9 @@ def _is_tagged(graph: Graph, source: Element, edge: Edge, target: Element | None
     return False
 
 
-def _iter_named_ids(graph: Graph, value: object) -> Iterator[str]:
+def _iter_named_ids(graph: Graph, value: AttrValue) -> Iterator[str]:
     """Yield the ids in a tagged value; for an application, also the ids of its base elements."""
-    for id in value if isinstance(value, tuple) else (value,):
+    for id in as_items(value):
         element = graph.get(str(id))
         if element is not None and element.kind is Kind.APPLICATION:
             yield from (base.id for base in graph.targets(element, Edge.SUBJECT))

@@ -72,11 +72,12 @@ def _quote_name(node: Node, document: Document) -> str:
 def _report_unknown_attributes(context: Context, document: Document) -> None:
     unknown = _find_unknown_attributes(set(_iter_shapes(document)))
     rows_by_attribute: dict[tuple[str, str], list[int]] = {}
-    for row in _find_rows(document, unknown) if unknown else ():
-        tag = document.tags[row]
-        for name in unknown[tag, tuple(document.attributes[row])]:
-            if not is_unchecked(document, row):
-                rows_by_attribute.setdefault((tag, name), []).append(row)
+    if unknown:
+        for row in _find_rows(document, unknown):
+            tag = document.tags[row]
+            for name in unknown[tag, tuple(document.attributes[row])]:
+                if not is_unchecked(document, row):
+                    rows_by_attribute.setdefault((tag, name), []).append(row)
     for (tag, name), rows in rows_by_attribute.items():
         for row in rows:
             if document.verdicts[row] is Verdict.MAPPED:

@@ -9,7 +9,7 @@ from sysmlc.frontends.caex.document import Document, Node
 from sysmlc.frontends.caex.identifiers import Identifiers, LocatedNode
 from sysmlc.frontends.caex.types import MissingTarget, Type, TypeTable, split_path
 from sysmlc.frontends.caex.vocabulary import LIBRARIES, ROLE_REFERENCES, Family
-from sysmlc.ir import AttrValue, Element, Graph, Kind
+from sysmlc.ir import AttrValue, Element, Graph, Kind, list_items
 
 LibraryProvider = Callable[["Context", Family, str], bool]
 """Adds the standard library of a name to the graph, and returns whether there is one to add."""
@@ -179,8 +179,7 @@ class Context:
 
     def record_unresolved_path(self, element: Element, node: Node) -> None:
         """Store the text of an unresolved reference; the back end ``aml`` writes it again."""
-        stored = element.attrs.get("unresolved_paths")
-        paths = stored if isinstance(stored, tuple) else ()
+        paths = list_items(element.attrs.get("unresolved_paths"))
         path = (node.tag, read_class_reference(node))
         if path not in paths:
             self.graph.set(element, unresolved_paths=(*paths, path))

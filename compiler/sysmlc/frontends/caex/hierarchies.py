@@ -116,10 +116,11 @@ class Components:
         groups.lower_group(self._context, component, kind)
         self._groups.append(component)
         document = component.document
-        for row in component.child_rows if kind is Kind.GROUP else ():
-            child = Component(document, row, component)
-            if groups.find_group_kind(self._context, child) is Kind.GROUP:
-                self._lower_group(self._add_component(document, row, component))
+        if kind is Kind.GROUP:
+            for row in component.child_rows:
+                child = Component(document, row, component)
+                if groups.find_group_kind(self._context, child) is Kind.GROUP:
+                    self._lower_group(self._add_component(document, row, component))
         return True
 
     def _lower_members(self, component: Component) -> None:

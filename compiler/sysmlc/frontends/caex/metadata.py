@@ -57,9 +57,10 @@ def _find_described_rows(document: Document) -> list[int]:
 def _lower_texts(context: Context, node: Node, element: Element) -> None:
     """Add descriptions as comments, and set version and change mode of an element."""
     has_content = bool(node.texts or node.children)
-    for text in node.child_texts("Description") if has_content else ():
-        if text.strip():
-            _add_comment(context, element, text)
+    if has_content:
+        for text in node.child_texts("Description"):
+            if text.strip():
+                _add_comment(context, element, text)
     version = node.child_text("Version") if has_content else None
     if version and "version" not in element.attrs:
         context.graph.set(element, version=version)

@@ -86,9 +86,10 @@ def find_meaning(type: Type | None, meanings: Mapping[tuple[str, ...], str]) -> 
     Classes of plants have the meaning of the standard class that they specialise: inheritance
     decides, never the name alone.
     """
-    for general in type.iter_chain() if type is not None else ():
-        if general.path in meanings:
-            return meanings[general.path]
+    if type is not None:
+        for general in type.iter_chain():
+            if general.path in meanings:
+                return meanings[general.path]
     return ""
 
 

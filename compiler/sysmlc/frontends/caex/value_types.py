@@ -8,7 +8,7 @@ from sysmlc.frontends.caex.data_types import PRIMITIVES, local_name
 from sysmlc.frontends.caex.document import Document, Node
 from sysmlc.frontends.caex.types import Type
 from sysmlc.frontends.caex.vocabulary import BASE_ATTRIBUTE
-from sysmlc.ir import AttrValue, Edge, Element, Kind, Reference
+from sysmlc.ir import AttrValue, Edge, Element, Kind, Reference, list_items
 
 _PRIMITIVE_TYPES = "http://www.omg.org/spec/UML/20161101/PrimitiveTypes.xmi#"
 _HREFS = {name: _PRIMITIVE_TYPES + name for name in ("String", *PRIMITIVES.values())}
@@ -37,8 +37,7 @@ def set_multiplicity(attrs: dict[str, AttrValue], declared: Type | None) -> None
 
     CAEX 3.0 has attribute types for lists, CAEX 2.15 marks lists by semantics (IEC 62714-1).
     """
-    semantics = attrs.get("semantics")
-    markers = semantics if isinstance(semantics, tuple) else ()
+    markers = list_items(attrs.get("semantics"))
     for name in ("ListType", "OrderedListType"):
         is_typed = declared is not None and declared.conforms_to(*BASE_ATTRIBUTE, name)
         if name in markers or is_typed:

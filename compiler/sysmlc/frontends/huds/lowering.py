@@ -6,7 +6,7 @@ from sysmlc.diagnostics import Coverage, Place, Rule, Severity, Sink, Subject, V
 from sysmlc.frontends.huds import vocabulary as v
 from sysmlc.frontends.huds.records import Record, read_records
 from sysmlc.frontends.huds.relations import add_relations
-from sysmlc.ir import Edge, Element, Graph, Kind
+from sysmlc.ir import Edge, Element, Graph, Kind, list_items
 from sysmlc.ir.element import derived_id
 from sysmlc.sources import DEFAULT_LIMITS, Fault, Source, SourceError
 
@@ -198,8 +198,7 @@ class FileLowering:
 
     def mark_loose_end(self, record: Record, flow: Element, edge: Edge) -> None:
         """Mark a flow that leads from or to a node that is not read."""
-        unresolved = flow.attrs.get("unresolved")
-        edges = unresolved if isinstance(unresolved, tuple) else ()
+        edges = list_items(flow.attrs.get("unresolved"))
         flow.attrs["unresolved"] = (*edges, edge.value)
         self.verdicts[record.ordinal] = Verdict.APPROXIMATED
         key = LOOSE_END.code, record.local_type

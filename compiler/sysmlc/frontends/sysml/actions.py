@@ -7,7 +7,7 @@ from sysmlc.frontends.sysml.activities import list_members_beside
 from sysmlc.frontends.sysml.definitions import visibility_attributes
 from sysmlc.frontends.sysml.successions import lower_steps
 from sysmlc.frontends.sysml.triggers import lower_trigger
-from sysmlc.ir import AttrValue, Edge, Element, Kind
+from sysmlc.ir import AttrValue, Edge, Element, Kind, as_items
 from sysmlc.language.tree import Node
 from sysmlc.logic.expressions.expression import print_statement
 
@@ -142,8 +142,7 @@ def _defer_partition(
 
 
 def _list_texts(value: AttrValue) -> list[str]:
-    items = value if isinstance(value, tuple) else () if value is None else (value,)
-    return [str(item) for item in items]
+    return [] if value is None else [str(item) for item in as_items(value)]
 
 
 # -- sending, accepting, assigning -------------------------------------------------------------

@@ -229,8 +229,9 @@ def _find_opposite_feature(lowering: "Lowering", end: Node, ends: list[Node]) ->
     opposite = ends[1] if end is ends[0] else ends[0]
     for type_ in nodes.types_of(lowering, opposite):
         classifier = lowering.element_of(type_)
-        for feature in lowering.graph.owned(classifier) if classifier is not None else ():
-            is_same = feature.name == nodes.name_of(end) and feature.kind in _FEATURES
-            if is_same and type_of(lowering.graph, feature) in end_types:
-                return feature
+        if classifier is not None:
+            for feature in lowering.graph.owned(classifier):
+                is_same = feature.name == nodes.name_of(end) and feature.kind in _FEATURES
+                if is_same and type_of(lowering.graph, feature) in end_types:
+                    return feature
     return None

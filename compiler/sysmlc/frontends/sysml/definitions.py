@@ -259,11 +259,12 @@ def _defer_unit(lowering: "Lowering", node: Node, type_: Element, reference: Ref
     def connect() -> None:
         name, symbol = _unit_name_and_symbol(reference)
         unit = lowering.element_of(reference.target)
-        for instance in lowering.graph.of_kind(Kind.INSTANCE) if unit is None else ():
-            is_same = instance.attrs.get("symbol") == symbol or instance.name == name
-            if instance.role == "unit" and is_same:
-                unit = instance
-                break
+        if unit is None:
+            for instance in lowering.graph.of_kind(Kind.INSTANCE):
+                is_same = instance.attrs.get("symbol") == symbol or instance.name == name
+                if instance.role == "unit" and is_same:
+                    unit = instance
+                    break
         if unit is None:
             unit = lowering.add_derived(node, Kind.UNIT, name, type_, symbol=symbol, **_LIBRARY)
         lowering.graph.connect(Edge.REFERENCES, type_, unit)

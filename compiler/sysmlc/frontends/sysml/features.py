@@ -9,7 +9,7 @@ from sysmlc.frontends.sysml.definitions import (
     variation_attributes,
     visibility_attributes,
 )
-from sysmlc.ir import AttrValue, Edge, Element, Kind
+from sysmlc.ir import AttrValue, Edge, Element, Kind, list_items
 from sysmlc.ir.query import generals
 from sysmlc.language.tree import Node, Relation
 
@@ -229,8 +229,7 @@ def _add_interface_id(
 ) -> None:
     port = lowering.element_of(target)
     if port is not None and element.kind is not Kind.CLASS:
-        interface_ids = element.attrs.get("interface_ids")
-        pairs = interface_ids if isinstance(interface_ids, tuple) else ()
+        pairs = list_items(element.attrs.get("interface_ids"))
         lowering.graph.set(element, interface_ids=(*pairs, (port.id, interface_id)))
 
 

@@ -15,7 +15,7 @@ from sysmlc.frontends.sysml.coverage import Verdicts
 from sysmlc.frontends.sysml.positions import DocumentPositions
 from sysmlc.frontends.sysml.qualified_names import QualifiedNames
 from sysmlc.frontends.sysml.rules import NOT_IN_GRAPH
-from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind
+from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind, list_items
 from sysmlc.ir import Reference as Pending
 from sysmlc.ir.query.activities import is_joined
 from sysmlc.language.tree import Document, Node, Reference, Relation
@@ -166,7 +166,9 @@ class Lowering(Verdicts):
                 self.run_deferred()
         # Edges to stubs are pending until the pass `resolve`. Generalizations stated after one of
         # them become pending too, so that their order stays that of the text.
-        for source, general in self._generalizations if self._has_pending_general else ():
+        if not self._has_pending_general:
+            return
+        for source, general in self._generalizations:
             self.graph.disconnect(Edge.SPECIALIZES, source, general)
             self.graph.pending.append(Pending(Edge.SPECIALIZES, source.id, general.id))
 
@@ -286,8 +288,7 @@ class Lowering(Verdicts):
             self.connect_library_element(edge, source, name, kind)
 
     def _mark_unresolved(self, source: Element, edge: Edge) -> None:
-        unresolved = source.attrs.get("unresolved")
-        edges = unresolved if isinstance(unresolved, tuple) else ()
+        edges = list_items(source.attrs.get("unresolved"))
         if str(edge.value) not in edges:
             self.graph.set(source, unresolved=(*edges, str(edge.value)))
 

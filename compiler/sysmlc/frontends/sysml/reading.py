@@ -152,7 +152,9 @@ def _is_mentioned(library: Document, models: Sequence[Source]) -> bool:
 def _mark_external(graph: Graph, libraries: Sequence[Document]) -> None:
     """Mark the elements of libraries as external: no file of the model contains them."""
     paths = {document.path for document in libraries}
-    for root in graph.roots() if paths else ():
+    if not paths:
+        return
+    for root in graph.roots():
         if root.source in paths:
             for element in graph.subtree(root):
                 graph.set(element, external=True)

@@ -94,9 +94,10 @@ class Unit:
         self._holders: dict[str, list[LoweredDocument]] = {}
         self._href_targets: dict[tuple[str, str], Target | None] = {}
         """Targets of hrefs, by the file that contains the href."""
-        for file in self.files if len(self.files) > 1 else ():
-            for id in file.document.ids:
-                self._holders.setdefault(id, []).append(file)
+        if len(self.files) > 1:
+            for file in self.files:
+                for id in file.document.ids:
+                    self._holders.setdefault(id, []).append(file)
         self.clashes = {id for id, holders in self._holders.items() if len(holders) > 1}
         self.clashes.update(e.id for e in graph if any(e.id in d.ids for d in documents))
 

@@ -168,7 +168,9 @@ def quantity_kind_of(graph: Graph, feature: Element) -> Element | None:
 def _iter_references(graph: Graph, feature: Element) -> Iterator[Element]:
     is_feature = feature.kind in (*STRUCTURAL_FEATURES, Kind.PARAMETER)
     type_ = type_of(graph, feature) if is_feature else feature
-    for classifier in () if type_ is None else (type_, *generals(graph, type_)):
+    if type_ is None:
+        return
+    for classifier in (type_, *generals(graph, type_)):
         yield from graph.targets(classifier, Edge.REFERENCES)
 
 

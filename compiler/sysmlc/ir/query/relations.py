@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterable, Iterator
 
-from sysmlc.ir.element import Element
+from sysmlc.ir.element import Element, list_items
 from sysmlc.ir.graph import Graph
 from sysmlc.ir.kinds import Edge, Kind
 from sysmlc.ir.query.classifiers import flow_properties, type_of
@@ -49,8 +49,7 @@ def flow_path(graph: Graph, flow: Element, edge: Edge) -> list[Element]:
 
     The path is empty for a feature of the owner itself. *edge* is FLOW_SOURCE or FLOW_TARGET.
     """
-    path = flow.attrs.get("source_path" if edge is Edge.FLOW_SOURCE else "target_path")
-    ids = path if isinstance(path, tuple) else ()
+    ids = list_items(flow.attrs.get("source_path" if edge is Edge.FLOW_SOURCE else "target_path"))
     return [part for id in ids if (part := graph.get(str(id))) is not None]
 
 

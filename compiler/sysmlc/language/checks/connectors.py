@@ -182,7 +182,9 @@ _TYPING = frozenset({"FeatureTyping"})
 
 def check_cross_feature(model: Model, node: Node) -> Iterator[Finding]:
     """Report an end that crosses a feature which is not its cross feature."""
-    for relation, crossed in iter_stated(node, _CROSSES) if _is_binary(node.owner) else ():
+    if not _is_binary(node.owner):
+        return
+    for relation, crossed in iter_stated(node, _CROSSES):
         facts = {"name": name_of(model, crossed), "owner": name_of(model, node.owner)}
         start = relation.reference.start
         if not _is_opposite(node, relation.reference):

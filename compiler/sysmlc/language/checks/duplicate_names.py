@@ -33,9 +33,10 @@ def check_names(model: Model, node: Node) -> Iterator[Finding]:
         for name in {member.name, member.short_name} - {None}:
             members_by_name.setdefault(str(name), []).append(member)
     for name, members in members_by_name.items():
-        for member in members if len(members) > 1 else ():
-            facts = {"owner": name_of(model, node), "count": str(len(members)), "name": name}
-            yield Finding(DUPLICATE, member.name_start, facts)
+        if len(members) > 1:
+            for member in members:
+                facts = {"owner": name_of(model, node), "count": str(len(members)), "name": name}
+                yield Finding(DUPLICATE, member.name_start, facts)
 
 
 def check_inherited(model: Model, node: Node) -> Iterator[Finding]:

@@ -61,10 +61,11 @@ def _list_base_names(model: Model, node: Node) -> list[str]:
         else []
     )
     kinds_of_types = {type_.kind for type_ in _list_stated_types(node)}
-    for kinds, base, part_base in _BASES if kinds_of_types else ():
-        if not kinds.isdisjoint(kinds_of_types):
-            is_inside = bool(part_base) and is_part(node) and _is_owned_by(model, node, kinds)
-            names += [part_base, base] if is_inside else [base]
+    if kinds_of_types:
+        for kinds, base, part_base in _BASES:
+            if not kinds.isdisjoint(kinds_of_types):
+                is_inside = bool(part_base) and is_part(node) and _is_owned_by(model, node, kinds)
+                names += [part_base, base] if is_inside else [base]
     return names
 
 

@@ -265,9 +265,10 @@ class Lookup(ImportLookup):
                         return None
             scope = contexts.find_outer_scope(scope)
         member = self.find_among(self._find_roots(first), names, 0, kinds)
-        for importing in context.importing if member is None else ():
-            hits = self.imported_members(importing, first, inside=True)
-            member = member or self.find_among(hits, names, 0, kinds, context.everything)
+        if member is None:
+            for importing in context.importing:
+                hits = self.imported_members(importing, first, inside=True)
+                member = member or self.find_among(hits, names, 0, kinds, context.everything)
         return member
 
     def _choose_stages(

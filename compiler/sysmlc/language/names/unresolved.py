@@ -125,9 +125,10 @@ def _find_library_package(
         package, element = model.find(package_name), model.find(f"{package_name}::{name}")
         if element is not None and (kinds is None or element.kind in kinds):
             return package
-    for package in model.library.packages(name) if kinds is not None else ():
-        if package.name and _has_visible_member(model.lookup, package, name, kinds):
-            return package
+    if kinds is not None:
+        for package in model.library.packages(name):
+            if package.name and _has_visible_member(model.lookup, package, name, kinds):
+                return package
     return None
 
 

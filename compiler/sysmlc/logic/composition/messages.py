@@ -114,12 +114,11 @@ def _derive_occurrences(member: Member, receipts: _Receipts, is_open: bool) -> I
     sent_formulas = [
         f.either(*(sending.is_sent for sending in sendings)) for _, sendings in receipts
     ]
-    for (receipt, sendings), is_sent in (
-        () if is_open else zip(receipts, sent_formulas, strict=True)
-    ):
-        senders = " or ".join(dict.fromkeys(f"'{sending.member.name}'" for sending in sendings))
-        text = f"'{receipt.message}' occurs at '{member.name}' only when {senders} sends it."
-        yield Conjunct(f.implies(receipt.occurs, is_sent), Class.SAFETY, receipt.origin, text)
+    if not is_open:
+        for (receipt, sendings), is_sent in zip(receipts, sent_formulas, strict=True):
+            senders = " or ".join(dict.fromkeys(f"'{sending.member.name}'" for sending in sendings))
+            text = f"'{receipt.message}' occurs at '{member.name}' only when {senders} sends it."
+            yield Conjunct(f.implies(receipt.occurs, is_sent), Class.SAFETY, receipt.origin, text)
     for group, text in _group_receipts(member, receipts, sent_formulas):
         occurrences = [f.both(receipt.occurs, is_sent) for receipt, is_sent in group]
         formula = f.implies(f.either(*(is_sent for _, is_sent in group)), f.either(*occurrences))

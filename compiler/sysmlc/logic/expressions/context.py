@@ -280,10 +280,11 @@ def _find_mentioned_values(
 
 def _iter_texts(graph: Graph, behaviour: Element) -> Iterator[str]:
     for element in graph.subtree(behaviour):
-        for key in _TEXT_ATTRIBUTES if element.kind is not Kind.COMMENT else ():
-            text = element.attrs.get(key)
-            if isinstance(text, str):
-                yield text
+        if element.kind is not Kind.COMMENT:
+            for key in _TEXT_ATTRIBUTES:
+                text = element.attrs.get(key)
+                if isinstance(text, str):
+                    yield text
 
 
 @lru_cache(_CACHE_SIZE)

@@ -138,9 +138,10 @@ def _iter_output_pins(graph: Graph, owner: Element, prefix: str) -> Iterator[tup
             yield from _iter_output_pins(graph, step, prefix)
             if step.name:
                 yield from _iter_output_pins(graph, step, f"{prefix}{step.name}.")
-        for pin in graph.owned(step) if step.name else ():
-            if pin.kind is Kind.PIN and pin.name and pin.attrs.get("direction") == "out":
-                yield f"{prefix}{step.name}.{pin.name}", pin
+        if step.name:
+            for pin in graph.owned(step):
+                if pin.kind is Kind.PIN and pin.name and pin.attrs.get("direction") == "out":
+                    yield f"{prefix}{step.name}.{pin.name}", pin
 
 
 def _iter_loop_variables(graph: Graph, owner: Element) -> Iterator[tuple[str, Element]]:

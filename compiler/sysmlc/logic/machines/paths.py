@@ -346,10 +346,13 @@ class PathExplorer(Struct, frozen=True):
     def _reenter(self, path: Path, state: Vertex, is_deep: bool) -> list[Path]:
         """Enter *state* again; deep history restores its inner regions too."""
         paths = self._enter(path, state)
-        for region in state.regions if is_deep else ():
-            paths = [
-                after for outer_path in paths for after in self._reenter_region(outer_path, region)
-            ]
+        if is_deep:
+            for region in state.regions:
+                paths = [
+                    after
+                    for outer_path in paths
+                    for after in self._reenter_region(outer_path, region)
+                ]
         return self._drop_infeasible(paths)
 
     def _reenter_region(self, path: Path, region: str) -> list[Path]:

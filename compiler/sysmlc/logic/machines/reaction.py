@@ -272,9 +272,10 @@ def _reenter(
 ) -> Reaction:
     """Enter *state* again; deep history restores its inner regions too."""
     run = _enter_state(machine, run, state)
-    for inner in state.regions if is_deep else ():
-        for last in _last_active_vertices(machine, past, inner):
-            run = _reenter(machine, run, past, last, is_deep)
+    if is_deep:
+        for inner in state.regions:
+            for last in _last_active_vertices(machine, past, inner):
+                run = _reenter(machine, run, past, last, is_deep)
     return run
 
 

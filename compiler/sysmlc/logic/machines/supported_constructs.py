@@ -4,7 +4,7 @@ The check runs before the machine is read, so that a diagnostic names every unsu
 """
 
 from sysmlc.diagnostics import Severity, Sink, rule
-from sysmlc.ir import Edge, Element, Graph, Kind
+from sysmlc.ir import Edge, Element, Graph, Kind, list_items
 
 NOT_DERIVED = rule(
     "SM420",
@@ -169,8 +169,7 @@ def _is_broken(graph: Graph, element: Element, sink: Sink) -> bool:
         "target": graph.target(element, Edge.FLOW_TARGET),
     }
     # References to missing elements were reported when they were resolved.
-    unresolved = element.attrs.get("unresolved")
-    reported = unresolved if isinstance(unresolved, tuple) else ()
+    reported = list_items(element.attrs.get("unresolved"))
     for end, vertex in ends.items():
         if vertex is None and f"flow-{end}" not in reported:
             name = element.name or "<Transition>"

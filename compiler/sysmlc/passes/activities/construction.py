@@ -81,8 +81,9 @@ def _find_listening_actions(draft: Draft, regions: Regions) -> None:
     """
     for region, members in regions:
         idle_actions = [e for e in members if e.subkind in ACCEPTS and not draft.incoming[e.id]]
-        for node in idle_actions if is_entered_later(draft.graph, members) else ():
-            draft.listening_regions[node.id] = region.id
+        if is_entered_later(draft.graph, members):
+            for node in idle_actions:
+                draft.listening_regions[node.id] = region.id
 
 
 def _finish(draft: Draft, regions: Regions) -> TokenGraph:

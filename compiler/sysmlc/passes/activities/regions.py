@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator
 from msgspec import Struct
 from msgspec.structs import replace
 
-from sysmlc.ir import Edge, Element, Graph, Kind, query
+from sysmlc.ir import Edge, Element, Graph, Kind, list_items, query
 from sysmlc.ir.element import derived_id
 
 NODES = (
@@ -52,10 +52,10 @@ def _list_members(graph: Graph, node: Element) -> list[tuple[str, object]]:
         return [("element", members)]
     if node.subkind != "conditional":
         return []
-    clauses = node.attrs.get("clauses") or ()
+    clauses = list_items(node.attrs.get("clauses"))
     return [
         (f"{word} {number}", ids)
-        for number, clause in enumerate(clauses if isinstance(clauses, tuple) else (), 1)
+        for number, clause in enumerate(clauses, 1)
         if isinstance(clause, tuple)
         for word, ids in zip(("test", "body"), clause, strict=False)
     ]

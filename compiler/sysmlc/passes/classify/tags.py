@@ -20,9 +20,10 @@ def apply_tags(graph: Graph, meanings: Mapping[str, tuple[str, ...]]) -> None:
     """Set attributes and edges; *meanings* maps ids of applications to SysML stereotypes."""
     for id, names in meanings.items():
         handlers = [handler for name in names for handler in HANDLERS.get(name, ())]
-        for subject in _find_subjects(graph, graph[id]) if handlers else ():
-            for handler in handlers:
-                handler(graph, graph[id], subject)
+        if handlers:
+            for subject in _find_subjects(graph, graph[id]):
+                for handler in handlers:
+                    handler(graph, graph[id], subject)
 
 
 def _find_subjects(graph: Graph, application: Element) -> list[Element]:
@@ -313,12 +314,13 @@ def check_literals(graph: Graph, sink: Sink) -> None:
     """Report and remove values of direction and aggregation that UML and SysML do not define."""
     for element in graph.of_kind(*_DIRECTED):
         attrs = element.attrs
-        for attribute, literals in _LITERALS.items() if attrs else ():
-            if attribute in attrs and attrs[attribute] not in literals:
-                _report_literal(graph, sink, element, attribute)
-                # SysML 1.6 clause 9.3.2: a flow property without direction has inout.
-                is_flow = element.role == "flow property" and attribute == "direction"
-                graph.set(element, **{attribute: "inout" if is_flow else None})
+        if attrs:
+            for attribute, literals in _LITERALS.items():
+                if attribute in attrs and attrs[attribute] not in literals:
+                    _report_literal(graph, sink, element, attribute)
+                    # SysML 1.6 clause 9.3.2: a flow property without direction has inout.
+                    is_flow = element.role == "flow property" and attribute == "direction"
+                    graph.set(element, **{attribute: "inout" if is_flow else None})
     for port in graph.of_kind(Kind.PORT):
         if port.role == "flow port":
             _check_flow_port(graph, sink, port)

@@ -75,19 +75,19 @@ def _is_in_library(graph: Graph, block: Element) -> bool:
 
 def _describe_unit(graph: Graph, unit: Element) -> None:
     for slot in graph.owned(unit):
-        for feature in graph.targets(slot, Edge.INSTANCE_OF) if slot.kind is Kind.SLOT else ():
-            if feature.name in _TEXT_ATTRIBUTES and slot.attrs.get("value") not in (None, ""):
-                graph.set(unit, **{_TEXT_ATTRIBUTES[feature.name]: slot.attrs["value"]})
-            elif feature.name in ("quantityKind", "quantityKinds"):
-                for kind in graph.targets(slot, Edge.REFERENCES):
-                    graph.connect(Edge.REFERENCES, unit, kind)
+        if slot.kind is Kind.SLOT:
+            for feature in graph.targets(slot, Edge.INSTANCE_OF):
+                if feature.name in _TEXT_ATTRIBUTES and slot.attrs.get("value") not in (None, ""):
+                    graph.set(unit, **{_TEXT_ATTRIBUTES[feature.name]: slot.attrs["value"]})
+                elif feature.name in ("quantityKind", "quantityKinds"):
+                    for kind in graph.targets(slot, Edge.REFERENCES):
+                        graph.connect(Edge.REFERENCES, unit, kind)
     for application in graph.sources(unit, Edge.SUBJECT):
-        for tag, attribute in (
-            _TEXT_ATTRIBUTES.items() if application.kind is Kind.APPLICATION else ()
-        ):
-            text = tag_value(application, tag)
-            if text not in (None, ""):
-                graph.set(unit, **{attribute: text})
+        if application.kind is Kind.APPLICATION:
+            for tag, attribute in _TEXT_ATTRIBUTES.items():
+                text = tag_value(application, tag)
+                if text not in (None, ""):
+                    graph.set(unit, **{attribute: text})
 
 
 # -- value types -------------------------------------------------------------------------------

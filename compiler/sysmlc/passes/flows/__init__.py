@@ -6,7 +6,7 @@ from typing import ClassVar
 from msgspec import Struct
 
 from sysmlc.diagnostics import Severity, Sink, rule
-from sysmlc.ir import Edge, Element, Graph, Kind
+from sysmlc.ir import Edge, Element, Graph, Kind, list_items
 from sysmlc.ir.query import (
     conforms,
     connectors_of,
@@ -130,8 +130,7 @@ def _give_domain(graph: Graph, flow: Element) -> None:
 
 
 def _check_flow(graph: Graph, sink: Sink, flow: Element) -> None:
-    value = flow.attrs.get("unresolved")
-    unresolved = value if isinstance(value, tuple) else ()
+    unresolved = list_items(flow.attrs.get("unresolved"))
     for edge, name in ((Edge.FLOW_SOURCE, "source"), (Edge.FLOW_TARGET, "target")):
         if graph.target(flow, edge) is None and edge.value not in unresolved:
             subject = graph.subject(flow)

@@ -6,7 +6,7 @@ or in a part of the block. The entry ``calls`` of the overlay names it if this i
 
 from collections.abc import Iterator
 
-from sysmlc.ir import Edge, Element, Kind
+from sysmlc.ir import Edge, Element, Kind, list_items
 from sysmlc.ir.query import generals, parameters, type_of
 from sysmlc.overlay.model import BlockEntry, OperationEntry, Term
 from sysmlc.passes.overlay import rules
@@ -136,10 +136,11 @@ def _list_visible_operations(finder: Finder, block: Element) -> Iterator[tuple[s
         yield operation.name, operation
     for part in _list_features(finder, block, Kind.PROPERTY):
         type_ = type_of(graph, part)
-        for operation in _operations(finder, type_) if type_ is not None else ():
-            yield operation.name, operation
-            for sign in ("/", ".", "::"):
-                yield f"{part.name}{sign}{operation.name}", operation
+        if type_ is not None:
+            for operation in _operations(finder, type_):
+                yield operation.name, operation
+                for sign in ("/", ".", "::"):
+                    yield f"{part.name}{sign}{operation.name}", operation
 
 
 def _operations(finder: Finder, block: Element) -> Iterator[Element]:
@@ -205,7 +206,6 @@ def _type_pins(finder: Finder, action: Element, operation: Element) -> None:
 
 def _mark_unresolved(finder: Finder, action: Element) -> None:
     """Mark the call as unresolved, so that later passes do not report it again."""
-    value = action.attrs.get("unresolved")
-    unresolved = value if isinstance(value, tuple) else ()
+    unresolved = list_items(action.attrs.get("unresolved"))
     if Edge.CALLS.value not in unresolved:
         finder.graph.set(action, unresolved=(*unresolved, Edge.CALLS.value))

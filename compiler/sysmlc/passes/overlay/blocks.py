@@ -186,8 +186,9 @@ def add_items(finder: Finder) -> None:
             finder.items[entry.key.text] = item
             _describe_item(finder, entry, item)
     for entry in entries:
-        for general in entry.specializes if entry.key.text in finder.items else ():
-            _specialize(finder, finder.items[entry.key.text], general)
+        if entry.key.text in finder.items:
+            for general in entry.specializes:
+                _specialize(finder, finder.items[entry.key.text], general)
 
 
 def check_domains(finder: Finder) -> None:

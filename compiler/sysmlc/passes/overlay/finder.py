@@ -8,7 +8,7 @@ from typing import NamedTuple
 from unicodedata import normalize
 
 from sysmlc.diagnostics import Rule, Sink
-from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind, derived_id
+from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind, derived_id, list_items
 from sysmlc.ir.query import BEHAVIORS, CLASSIFIERS, generals, type_of
 from sysmlc.overlay.model import Key, Refinement, Spot, Term
 from sysmlc.passes.overlay import rules
@@ -298,8 +298,7 @@ def _list_other_ids(graph: Graph) -> Iterator[tuple[str, Element]]:
         if normalise_guid(element.id) != element.id:
             yield normalise_guid(element.id), element
     for element in graph.of_kind(Kind.PROPERTY, Kind.INSTANCE):
-        pairs = element.attrs.get("interface_ids")
-        for pair in pairs if isinstance(pairs, tuple) else ():
+        for pair in list_items(element.attrs.get("interface_ids")):
             port = graph.get(str(pair[0])) if isinstance(pair, tuple) else None
             if port is not None and isinstance(pair, tuple):
                 yield normalise_guid(str(pair[1])), port

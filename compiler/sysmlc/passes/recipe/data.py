@@ -230,6 +230,7 @@ def list_data_parameters(
 
 def _list_output_pins(context: Context, activity: Element) -> Iterator[Element]:
     for node in context.contents(activity):
-        for pin in context.graph.owned(node) if node.kind is Kind.ACTION else ():
-            if pin.kind is Kind.PIN and pin.attrs.get("direction") == "out":
-                yield pin
+        if node.kind is Kind.ACTION:
+            for pin in context.graph.owned(node):
+                if pin.kind is Kind.PIN and pin.attrs.get("direction") == "out":
+                    yield pin

@@ -110,10 +110,11 @@ def _report_tasks(context: Context, recipe: Element, sink: Sink) -> None:
     for step in list_steps(context, recipe):
         if not context.level(step.node):
             _report_by_position(context, step.definition or step.node, "task", recipe, sink)
-        for namesake in () if step.definition else _find_namesakes(context, step.node):
-            names = context.name(step.node), context.name(namesake)
-            subject = context.graph.subject(step.node)
-            sink.report(SAME_NAME, subject, element=names[0], other=names[1])
+        if not step.definition:
+            for namesake in _find_namesakes(context, step.node):
+                names = context.name(step.node), context.name(namesake)
+                subject = context.graph.subject(step.node)
+                sink.report(SAME_NAME, subject, element=names[0], other=names[1])
     for node in context.nodes(recipe):
         if node.kind is Kind.CONTROL and node.subkind == "decision":
             names = context.name(node), context.name(recipe)

@@ -61,8 +61,9 @@ def report_unresolved(graph: Graph, sink: Sink, unresolved: list[Use]) -> None:
     for use in unresolved:
         lists.setdefault((use.holder.id, use.relation), []).append(use)
     for uses in lists.values():
-        for use in uses if len(uses) <= _MAX_SINGLE_REPORTS else ():
-            _report_broken(graph, sink, use)
+        if len(uses) <= _MAX_SINGLE_REPORTS:
+            for use in uses:
+                _report_broken(graph, sink, use)
         if len(uses) > _MAX_SINGLE_REPORTS:
             _report_many(graph, sink, uses)
 

@@ -154,14 +154,15 @@ def is_counter(reachable: ReachableStrategy, name: str) -> bool:
         for change in changes:
             unexplained = unexplained & ~states_with_value(strategy, mode.outputs, name, change)
         is_counting = is_counting or unexplained != changed
-        for value in values if unexplained != manager.false else ():
-            if (
-                unexplained & states_with_value(strategy, mode.outputs, name, Const(value))
-                != manager.false
-            ):
-                set_to.add(value)
-            if len(set_to) > MAX_SET_VALUES:
-                return False
+        if unexplained != manager.false:
+            for value in values:
+                if (
+                    unexplained & states_with_value(strategy, mode.outputs, name, Const(value))
+                    != manager.false
+                ):
+                    set_to.add(value)
+                if len(set_to) > MAX_SET_VALUES:
+                    return False
     return is_counting
 
 

@@ -4,7 +4,7 @@ from functools import cached_property
 
 from msgspec import Struct
 
-from sysmlc.ir import Edge, Element, Graph, Kind
+from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind, as_items, list_items
 
 FEATURES = frozenset(
     [
@@ -58,9 +58,7 @@ class Selection(Struct, frozen=True, dict=True):
     @cached_property
     def nesting(self) -> tuple[tuple[str, ...], ...]:
         """The ids along each path of nested shapes, outermost first."""
-        paths = self.view.attrs.get("nesting")
-        entries = paths if isinstance(paths, tuple) else ()
-        return tuple(_convert_to_texts(path) for path in entries)
+        return tuple(map(_convert_to_texts, list_items(self.view.attrs.get("nesting"))))
 
     @cached_property
     def listed(self) -> frozenset[str]:
@@ -97,5 +95,5 @@ class Selection(Struct, frozen=True, dict=True):
         return self.relations is None or (edge.value, source, target) in self.relations
 
 
-def _convert_to_texts(values: object) -> tuple[str, ...]:
-    return tuple(map(str, values)) if isinstance(values, tuple) else (str(values),)
+def _convert_to_texts(value: AttrValue) -> tuple[str, ...]:
+    return tuple(map(str, as_items(value)))

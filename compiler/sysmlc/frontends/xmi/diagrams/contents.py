@@ -83,8 +83,9 @@ class RelationReader:
             owner, id = self._ids[-2:]
             self._add(FOLDED_REFERENCES[name], owner, id, read_target(attributes))
         id = attributes.get("xmi:id", "")
-        for feature in FOLDED_REFERENCES.keys() & attributes.keys() if self._ids else ():
-            self._add(FOLDED_REFERENCES[feature], self._ids[-1], id, attributes[feature])
+        if self._ids:
+            for feature in FOLDED_REFERENCES.keys() & attributes.keys():
+                self._add(FOLDED_REFERENCES[feature], self._ids[-1], id, attributes[feature])
         self._ids.append(id)
 
     def end(self, _name: str) -> None:

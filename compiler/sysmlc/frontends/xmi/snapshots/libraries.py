@@ -237,11 +237,12 @@ def report_unknown_attributes(
     for source in sources:
         names = snapshots.attribute_names.get(source.name, frozenset())
         unknown = frozenset(filter(_is_unknown, names))
-        for name, holders in _find_holders(source, unknown).items() if unknown else ():
-            added = {id: ordinal for id, ordinal in holders.items() if id in unit.library_ids}
-            if added:
-                _report(snapshots, source, unit, sink, name, added)
-                incomplete |= added.keys()
+        if unknown:
+            for name, holders in _find_holders(source, unknown).items():
+                added = {id: ordinal for id, ordinal in holders.items() if id in unit.library_ids}
+                if added:
+                    _report(snapshots, source, unit, sink, name, added)
+                    incomplete |= added.keys()
     return incomplete
 
 

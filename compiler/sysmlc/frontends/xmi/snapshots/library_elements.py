@@ -177,7 +177,9 @@ class LibraryLowering:
     def _store_tag(self, application: Element, slot: Entry, stereotypes: frozenset[str]) -> None:
         """Store a slot as a tag if its feature belongs to one of the stereotypes."""
         values = [self._read_value(owned) for owned in self._snapshots.owned(slot.id)]
-        for id in slot.targets("definingFeature") if values else ():
+        if not values:
+            return
+        for id in slot.targets("definingFeature"):
             feature = self._snapshots.entries.get(id)
             if feature is not None and feature.owner in stereotypes:
                 value = values[0] if len(values) == 1 else tuple(values)
