@@ -32,6 +32,8 @@ BOOLEAN, NUMBER, WORD = "boolean", "number", "word"
 is known has the domain as its kind.
 """
 Kind = str | EnumerationDomain
+_CHAINS: dict[Op, Callable[..., Formula]] = {Op.AND: f.both, Op.OR: f.either}
+_FOLDING: dict[Op, Callable[[Formula, Formula], Formula]] = {Op.IMPLIES: f.implies, Op.IFF: f.iff}
 
 
 class Term(NamedTuple):
@@ -264,10 +266,6 @@ def _compare_enumerations(op: Op, left: Term, right: Term) -> Formula:
         )
     )
     return equality if op is Op.EQ else f.negate(equality)
-
-
-_CHAINS: dict[Op, Callable[..., Formula]] = {Op.AND: f.both, Op.OR: f.either}
-_FOLDING: dict[Op, Callable[[Formula, Formula], Formula]] = {Op.IMPLIES: f.implies, Op.IFF: f.iff}
 
 
 def _apply_connective(op: Op, left: Formula, right: Formula) -> Formula:

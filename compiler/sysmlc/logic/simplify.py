@@ -15,6 +15,20 @@ _CACHED_ANSWERS = 1 << 16
 """Cache size: similar machines ask the same questions."""
 _MAX_VALUATIONS_REDUNDANCY = 300
 """Most valuations tried to decide whether a part of a formula is redundant."""
+_TEMPORAL = frozenset(
+    [
+        *(Op.NEXT, Op.ALWAYS, Op.EVENTUALLY, Op.UNTIL, Op.RELEASE, Op.WEAK_UNTIL),
+        *(Op.PREVIOUS, Op.ONCE, Op.HISTORICALLY, Op.SINCE),
+    ]
+)
+_OPPOSITE = {
+    Op.EQ: Op.NE,
+    Op.NE: Op.EQ,
+    Op.LT: Op.GE,
+    Op.GE: Op.LT,
+    Op.GT: Op.LE,
+    Op.LE: Op.GT,
+}
 
 
 def substitute(formula: Formula, values: Mapping[str, Formula]) -> Formula:
@@ -283,12 +297,4 @@ _CONNECTIVES: dict[Op, Callable[..., Formula]] = {
     Op.NOT: f.negate,
     Op.IMPLIES: f.implies,
     Op.IFF: _fold_equivalence,
-}
-_OPPOSITE = {
-    Op.EQ: Op.NE,
-    Op.NE: Op.EQ,
-    Op.LT: Op.GE,
-    Op.GE: Op.LT,
-    Op.GT: Op.LE,
-    Op.LE: Op.GT,
 }

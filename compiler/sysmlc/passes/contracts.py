@@ -41,6 +41,7 @@ SAME_COMPONENT = rule(
     "{count} components have the name '{component}'; a number tells their contracts apart",
     help="give them or their owners different names",
 )
+_IN_FILES = "packages of two files have one name: rename one, or compile the files one by one"
 
 
 class Contracts(Struct, frozen=True):
@@ -148,9 +149,6 @@ def _report_same_name(graph: Graph, contract: Contract, same: list[Contract], si
         count=len(same),
         component=name,
     )
-
-
-_IN_FILES = "packages of two files have one name: rename one, or compile the files one by one"
 
 
 # -- formulas ----------------------------------------------------------------------------------

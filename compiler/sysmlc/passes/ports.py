@@ -57,6 +57,20 @@ EMPTY_MULTIPLICITY = rule(
     "port '{port}' has multiplicity {multiplicity}, so no block has it",
     help="remove the port, or allow at least one",
 )
+UNDIRECTED_PLANT_PORTS = rule(
+    "SM121",
+    "undirected-plant-ports",
+    Severity.INFO,
+    "{count} of {all} ports of '{file}' have no direction: {ports}",
+    help="give the interfaces an attribute Direction, or say in an overlay what flows",
+)
+UNTYPED_PLANT_PORTS = rule(
+    "SM122",
+    "untyped-plant-ports",
+    Severity.WARNING,
+    "{count} of {all} ports of '{file}' have no type: {ports}",
+    help="let the interfaces refer to interface classes",
+)
 
 
 _MAX_LISTED = 8
@@ -281,22 +295,6 @@ def _report_undirected(graph: Graph, sink: Sink, ports: list[Element]) -> None:
 
 
 # -- AutomationML ------------------------------------------------------------------------------
-
-
-UNDIRECTED_PLANT_PORTS = rule(
-    "SM121",
-    "undirected-plant-ports",
-    Severity.INFO,
-    "{count} of {all} ports of '{file}' have no direction: {ports}",
-    help="give the interfaces an attribute Direction, or say in an overlay what flows",
-)
-UNTYPED_PLANT_PORTS = rule(
-    "SM122",
-    "untyped-plant-ports",
-    Severity.WARNING,
-    "{count} of {all} ports of '{file}' have no type: {ports}",
-    help="let the interfaces refer to interface classes",
-)
 
 
 def find_plant_files(graph: Graph) -> frozenset[str]:

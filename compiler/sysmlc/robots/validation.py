@@ -23,6 +23,8 @@ from sysmlc.synthesis import Limits, Manager, Node
 
 MAX_STEPS = 1_000
 """Steps after which a mission without a deadline fails."""
+MAX_CHUNK_RUNS = 1 << 17
+"""Number of runs that are simulated at once: larger sets do not fit into the processor's cache."""
 
 
 class Validation(Struct, frozen=True):
@@ -232,9 +234,6 @@ class _ExplicitValidation:
 
 
 # -- admissible starts -------------------------------------------------------------------------
-
-MAX_CHUNK_RUNS = 1 << 17
-"""Number of runs that are simulated at once: larger sets do not fit into the processor's cache."""
 
 
 def count_starts(study: Study) -> int:

@@ -36,6 +36,8 @@ ACTIVITY_NODES = frozenset(
 _BOX_KINDS = frozenset([*BOXES, Kind.ACTIVITY])
 _REVERSED_ARROWS = {"--|>": "<|--", "..|>": "<|.."}
 _DRAWN_AS_LINE = frozenset(["part", "reference"])
+_STUB_KINDS = (Kind.ACTIVITY, Kind.STATE_MACHINE, Kind.USE_CASE, Kind.UNIT, Kind.PACKAGE)
+_BOXABLE = frozenset([*BOXES, *_STUB_KINDS])
 
 
 def draw_block_definitions(graph: Graph) -> Iterator[Diagram]:
@@ -153,10 +155,6 @@ def _is_between_boxes(graph: Graph, relation: Relation) -> bool:
 
 def _is_boxable(element: Element) -> bool:
     return element.kind in _BOXABLE and element.role != "requirement"
-
-
-_STUB_KINDS = (Kind.ACTIVITY, Kind.STATE_MACHINE, Kind.USE_CASE, Kind.UNIT, Kind.PACKAGE)
-_BOXABLE = frozenset([*BOXES, *_STUB_KINDS])
 
 
 def _list_containments(graph: Graph, classifiers: list[Element]) -> list[Relation]:

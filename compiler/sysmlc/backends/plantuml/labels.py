@@ -52,6 +52,7 @@ _KIND_WORDS = {
     Kind.USE_CASE: "useCase",
     Kind.PACKAGE: "package",
 }
+_ALWAYS_NAMED = frozenset([Kind.INTERFACE, Kind.ENUMERATION, Kind.SIGNAL, Kind.ACTOR])
 
 
 def keywords(graph: Graph, element: Element) -> tuple[str, ...]:
@@ -104,9 +105,6 @@ def _is_shown(application: Element) -> bool:
     if "on" in application.attrs:
         return False
     return not _TOOL_NAMESPACE.match(str(application.attrs.get("namespace", "")))
-
-
-_ALWAYS_NAMED = frozenset([Kind.INTERFACE, Kind.ENUMERATION, Kind.SIGNAL, Kind.ACTOR])
 
 
 def guillemets(words: Iterable[str]) -> str:

@@ -19,6 +19,7 @@ _EDGES = {
     Edge.TRACES: "trace",
 }
 _TEXT_WIDTH = 44
+_ROW_KINDS = (Kind.CONSTRAINT, Kind.PROPERTY)
 
 
 def draw_requirements(graph: Graph) -> Iterator[Diagram]:
@@ -126,9 +127,6 @@ def make_box(graph: Graph, item: Element, aliases: Aliases) -> Box:
         tuple(part for part in compartments if part.rows),
         (item.id, *(part.id for part in members)),
     )
-
-
-_ROW_KINDS = (Kind.CONSTRAINT, Kind.PROPERTY)
 
 
 def _format_row(graph: Graph, part: Element) -> tuple[str, ...]:

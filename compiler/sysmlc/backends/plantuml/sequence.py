@@ -19,6 +19,7 @@ from sysmlc.ir.query import interactions
 from sysmlc.support.plantuml_text import escape_line, format_label, join_rows, shrink, wrap_lines
 
 _NOTE_WIDTH = 44
+_FRAME_KINDS = (Kind.PARAMETER,)
 
 
 @dataclass(slots=True)
@@ -106,9 +107,6 @@ def _make_diagram(graph: Graph, interaction: Element, lifelines: list[Element]) 
         about=interaction.id,
         details=tuple(features),
     )
-
-
-_FRAME_KINDS = (Kind.PARAMETER,)
 
 
 def _make_participant(graph: Graph, lifeline: Element, aliases: Aliases) -> Participant:

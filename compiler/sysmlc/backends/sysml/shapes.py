@@ -13,6 +13,12 @@ from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.ir.query import type_of
 from sysmlc.ir.query.activities import is_joined
 
+_BEHAVIOUR_KEYWORDS = ("action", "state", "verification", "occurrence")
+_NAMES_IN_BEHAVIOURS = frozenset({"start", "done", "self", "this", "that"})
+_NAMESPACES = frozenset(
+    {"package", "library package", "comment", "doc", "dependency", "import", "start"}
+)
+
 
 class Shape(Struct, frozen=True):
     """The keyword of a member, and whether the text has to name the member."""
@@ -46,11 +52,6 @@ class Shape(Struct, frozen=True):
         return _NAMES_IN_BEHAVIOURS if self.usage_keyword in _BEHAVIOUR_KEYWORDS else frozenset()
 
 
-_BEHAVIOUR_KEYWORDS = ("action", "state", "verification", "occurrence")
-_NAMES_IN_BEHAVIOURS = frozenset({"start", "done", "self", "this", "that"})
-_NAMESPACES = frozenset(
-    {"package", "library package", "comment", "doc", "dependency", "import", "start"}
-)
 _DEFINITIONS = {
     Kind.PACKAGE: "package",
     Kind.PROFILE: "package",

@@ -24,6 +24,10 @@ HIDING = rule(
     "'{name}' of '{owner}' hides the '{name}' that it inherits from '{general}'",
     help="redefine the inherited feature (':>> {name}'), or give the new feature another name",
 )
+MEMBERSHIPS = frozenset({"FeatureMembership", "OwningMembership", "EndFeatureMembership"})
+"""Memberships of checked members. Parameters of cases are those of the included case."""
+_METADATA = kinds_of("MetadataFeature")
+"""Their bodies give values to attributes and declare nothing (SysML 2.0, 8.2.2.27)."""
 
 
 def check_names(model: Model, node: Node) -> Iterator[Finding]:
@@ -74,10 +78,6 @@ def _redefines(model: Model, member: Node, hit: Node) -> bool:
     return bool(redefined) and not redefined.isdisjoint(model.lookup.redefined_features(element))
 
 
-MEMBERSHIPS = frozenset({"FeatureMembership", "OwningMembership", "EndFeatureMembership"})
-"""Memberships of checked members. Parameters of cases are those of the included case."""
-_METADATA = kinds_of("MetadataFeature")
-"""Their bodies give values to attributes and declare nothing (SysML 2.0, 8.2.2.27)."""
 CHECKS = (
     (kinds_of("Namespace"), check_names),
     (DECLARED_TYPES, check_inherited),

@@ -15,6 +15,7 @@ from sysmlc.language.text.lexer import TokenTypes, tokenize
 
 _TAB_WIDTH = 4
 _NOTE_OR_LINE_END = re.compile(r"//\*(?s:.)*?\*/|//[^\n]*|\n")
+_OPERANDS = {")", "]", "}", "true", "false", "null", "*"}
 
 
 class Sort(Enum):
@@ -51,9 +52,6 @@ class Token(Struct, frozen=True):
     def is_operand(self) -> bool:
         """Whether an expression can end with the token."""
         return self.sort in (Sort.NAME, Sort.LITERAL) or self.text in _OPERANDS
-
-
-_OPERANDS = {")", "]", "}", "true", "false", "null", "*"}
 
 
 def read_tokens(text: str, types: TokenTypes) -> list[Token]:

@@ -18,6 +18,7 @@ ITSELF = ""
 """Path of the block itself."""
 _MAX_COPIES = 16
 _STEPS = (Kind.ACTION, Kind.CONTROL, Kind.CONTROL_FLOW, Kind.STRUCTURED)
+_ACTIONS = (Kind.OPERATION, Kind.ACTIVITY)
 
 
 class Usage(Struct, frozen=True):
@@ -211,9 +212,6 @@ def iter_performed_steps(graph: Graph, block: Element, path: str) -> Iterator[tu
                 if len(performers) == 1:
                     feature = join_path(step.name, EXECUTED)
                     yield End(operation.path, feature), End(performers[0].path, EXECUTED)
-
-
-_ACTIONS = (Kind.OPERATION, Kind.ACTIVITY)
 
 
 def is_end_observable(graph: Graph, step: Element) -> bool:

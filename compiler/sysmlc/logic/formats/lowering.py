@@ -29,6 +29,8 @@ _CACHED_EXPANSIONS = 1 << 12
 Domains = Mapping[str, Domain]
 """The domains of variables by name."""
 Rewrite = Callable[[Formula], Formula]
+_MIRRORED = {Op.LT: Op.GT, Op.GT: Op.LT, Op.LE: Op.GE, Op.GE: Op.LE}
+"""The comparison with its sides exchanged."""
 
 
 class TooManyValuesError(ValueError):
@@ -221,10 +223,6 @@ def flatten_atom(atom: Formula, variable_domains: Domains) -> Formula:
             return expand_comparison(atom, variable_domains)
         case _:
             return atom
-
-
-_MIRRORED = {Op.LT: Op.GT, Op.GT: Op.LT, Op.LE: Op.GE, Op.GE: Op.LE}
-"""The comparison with its sides exchanged."""
 
 
 def is_boolean(formula: Formula, variable_domains: Domains) -> bool:

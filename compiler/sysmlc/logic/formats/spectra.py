@@ -36,6 +36,11 @@ _UNSUPPORTED = ("import", "regexp", "weight", "GE", "forall", "exists", "separat
 _SUM_PRECEDENCE = SYNTAX.precedence[Op.ADD]
 _MAX_EXPANSIONS = 20_000
 """Most expansions of defines, predicates and patterns in one file."""
+_END_STEPS: dict[str, Callable[[Formula, Formula, Formula], Formula]] = {
+    "keep": lambda following, end, other_end: f.eq(following, end),
+    "modulo": lambda following, end, other_end: f.eq(following, other_end),
+    "false": lambda following, end, other_end: f.FALSE,
+}
 
 
 def read(file: SpecificationFile) -> tuple[Contract, ...]:
@@ -383,10 +388,3 @@ def _build_counter_rules(
         f.implies(f.both(goes_down, f.negate(is_low)), minus_one),
         f.implies(f.both(goes_down, is_low), underflow),
     ]
-
-
-_END_STEPS: dict[str, Callable[[Formula, Formula, Formula], Formula]] = {
-    "keep": lambda following, end, other_end: f.eq(following, end),
-    "modulo": lambda following, end, other_end: f.eq(following, other_end),
-    "false": lambda following, end, other_end: f.FALSE,
-}

@@ -60,6 +60,29 @@ _SIGNS = {
 """Operators written as words, with the signs that mean the same."""
 _MAX_OPERATORS = MAX_DEPTH * 8
 _NO_SETS = "sets are not read; a range is, as 0 <= i < n"
+_TEMPORAL = {"X": Op.NEXT, "F": Op.EVENTUALLY, "G": Op.ALWAYS}
+_ARITHMETIC: dict[str, Callable[[int, int], int]] = {
+    "+": operator.add,
+    "-": operator.sub,
+    "*": operator.mul,
+    "/": operator.floordiv,
+    "%": operator.mod,
+}
+_COMPARISONS: dict[str, Callable[[int, int], bool]] = {
+    "==": operator.eq,
+    "!=": operator.ne,
+    "<": operator.lt,
+    "<=": operator.le,
+    ">": operator.gt,
+    ">=": operator.ge,
+}
+_CONNECTIVES: dict[str, Callable[[Formula, Formula], Formula]] = {
+    "->": f.implies,
+    "<->": f.iff,
+    "U": lambda left, right: Apply(Op.UNTIL, (left, right)),
+    "R": lambda left, right: Apply(Op.RELEASE, (left, right)),
+    "W": lambda left, right: Apply(Op.WEAK_UNTIL, (left, right)),
+}
 
 
 # -- parsing ---------------------------------------------------------------------------------------
@@ -341,28 +364,3 @@ class Evaluator:
         "infix": _evaluate_infix,
         "quantifier": _evaluate_quantifier,
     }
-
-
-_TEMPORAL = {"X": Op.NEXT, "F": Op.EVENTUALLY, "G": Op.ALWAYS}
-_ARITHMETIC: dict[str, Callable[[int, int], int]] = {
-    "+": operator.add,
-    "-": operator.sub,
-    "*": operator.mul,
-    "/": operator.floordiv,
-    "%": operator.mod,
-}
-_COMPARISONS: dict[str, Callable[[int, int], bool]] = {
-    "==": operator.eq,
-    "!=": operator.ne,
-    "<": operator.lt,
-    "<=": operator.le,
-    ">": operator.gt,
-    ">=": operator.ge,
-}
-_CONNECTIVES: dict[str, Callable[[Formula, Formula], Formula]] = {
-    "->": f.implies,
-    "<->": f.iff,
-    "U": lambda left, right: Apply(Op.UNTIL, (left, right)),
-    "R": lambda left, right: Apply(Op.RELEASE, (left, right)),
-    "W": lambda left, right: Apply(Op.WEAK_UNTIL, (left, right)),
-}

@@ -11,6 +11,8 @@ from functools import cache
 from sysmlc.ir import Edge
 from sysmlc.passes.resolve.libraries import load_libraries
 
+_LIBRARIES = ("SysML", "MD Customization for SysML", "MD Customization for Requirements")
+
 
 class Family(StrEnum):
     """The origin of a stereotype's profile."""
@@ -240,6 +242,3 @@ def find_generals(name: str) -> tuple[str, ...]:
         general for library in _LIBRARIES for general in load_libraries().generals(library, name)
     )
     return tuple(general for general in dict.fromkeys(map(mangle, names)) if general != name)
-
-
-_LIBRARIES = ("SysML", "MD Customization for SysML", "MD Customization for Requirements")

@@ -21,6 +21,8 @@ from sysmlc.passes.recipe.expressions import (
 from sysmlc.recipe.expression import make_variable, map_operands, variable_name
 from sysmlc.recipe.model import Parameter
 
+_DOTTED = re.compile(r"[^\W\d]\w*\.[^\W\d]\w*")
+
 
 class Data(Struct, frozen=True):
     """The variables of one activity.
@@ -213,9 +215,6 @@ def _find_dotted_names(context: Context, activity: Element) -> frozenset[str]:
         texts += [pin.attrs.get("value") for pin in context.graph.owned(node)]
     dotted = (_DOTTED.findall(text) for text in texts if isinstance(text, str) and "." in text)
     return frozenset(name for names in dotted for name in names)
-
-
-_DOTTED = re.compile(r"[^\W\d]\w*\.[^\W\d]\w*")
 
 
 def list_data_parameters(

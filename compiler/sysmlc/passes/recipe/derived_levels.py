@@ -30,6 +30,12 @@ _NODE_ID = re.compile(
 )
 _DURATION_QUANTITIES = ("duration", "time")
 _CLASSES = (Kind.CLASS, Kind.COMPONENT)
+_LEVEL_TEXTS = {
+    "machine": "a machine",
+    "opc ua call": "a stereotype of OPC UA calls",
+    "opc ua variable": "a stereotype of OPC UA variables",
+    "delay": "a pause",
+}
 
 
 class DerivedLevel(Struct, frozen=True):
@@ -59,14 +65,6 @@ def report_derived_levels(context: Context, derived: list[DerivedLevel], sink: S
             level=_LEVEL_TEXTS[entry.level],
             because=entry.because,
         )
-
-
-_LEVEL_TEXTS = {
-    "machine": "a machine",
-    "opc ua call": "a stereotype of OPC UA calls",
-    "opc ua variable": "a stereotype of OPC UA variables",
-    "delay": "a pause",
-}
 
 
 def _derive_machines(context: Context) -> Iterator[DerivedLevel]:

@@ -31,6 +31,8 @@ from sysmlc.recipe.loops import add_loop_nodes
 from sysmlc.recipe.model import FlowEdge, FlowGraph, Node
 
 _CALLED_LEVELS = {"service": "service", "function": "machine function"}
+_ENDS = ("final", "flow-final")
+_OUT = ("out", "inout", "return")
 
 
 def refine(context: Context, activity: Element, activity_level: str) -> Refinement:
@@ -66,9 +68,6 @@ def _list_remarks(
             yield node.id, ""
         elif is_by_position(context, node, kind):
             yield (context.definition(node) or node).id, _CALLED_LEVELS[kind]
-
-
-_ENDS = ("final", "flow-final")
 
 
 @dataclass(slots=True)
@@ -160,9 +159,6 @@ def add_results(context: Context, activity: Element, data: Data, draft: Draft) -
         mark = "" if number == 1 else f"#{number}"
         results = [_build_result(context, element, data, mark) for element in computed]
         _insert_before(results, end, draft)
-
-
-_OUT = ("out", "inout", "return")
 
 
 def is_computed(parameter: Element) -> bool:

@@ -43,6 +43,7 @@ MAX_CASES = 5_000
 
 Pair = frozenset[str]
 """Two compared variables, or one variable whose values in two steps are compared."""
+_COMPARISONS = (Op.EQ, Op.NE, Op.LT, Op.LE, Op.GT, Op.GE)
 
 
 def build_machine(draft: DraftMachine, contract: Contract, max_cases: int = MAX_CASES) -> Machine:
@@ -75,9 +76,6 @@ def compared_pairs(contract: Contract) -> Iterator[Pair]:
                 stack += parts
             case _:
                 pass
-
-
-_COMPARISONS = (Op.EQ, Op.NE, Op.LT, Op.LE, Op.GT, Op.GE)
 
 
 class _Fact(Struct, frozen=True):

@@ -23,6 +23,9 @@ _Ids = tuple[str, ...]
 _PORTS = (Kind.PORT,)
 _PARTS = (Kind.PROPERTY, Kind.FLOW_PROPERTY)
 _PORT_WIDTH = 24
+_IMPLIED_STEREOTYPES = frozenset(["partProperty", "referenceProperty"])
+"""Stereotypes that tools apply to every part; the border already shows the difference."""
+_CONNECTIONS = (Kind.CONNECTOR, Kind.ITEM_FLOW)
 
 
 def build_view(selection: Selection) -> InternalView:
@@ -200,15 +203,8 @@ class _AuthorDrawing:
                     yield Line(source, "..>", target, text, shows=(item.id,))
 
 
-_IMPLIED_STEREOTYPES = frozenset(["partProperty", "referenceProperty"])
-"""Stereotypes that tools apply to every part; the border already shows the difference."""
-
-
 def _format_row(graph: Graph, feature: Element) -> str:
     return join_rows(map(shrink, wrap_lines(labels.feature(graph, feature))))
-
-
-_CONNECTIONS = (Kind.CONNECTOR, Kind.ITEM_FLOW)
 
 
 def _make_line(source: str, target: str, connection: Connection) -> Line:

@@ -18,6 +18,17 @@ from sysmlc.language.text.lexer import BuildFault, Tokens
 from sysmlc.language.tree import Node, Reference, Relation
 
 _END = "EndFeatureMembership"
+_KINDS_BY_WORD = {
+    "connect": ("ConnectionUsage", "InterfaceUsage"),
+    "allocate": ("AllocationUsage",),
+    "bind": ("BindingConnectorAsUsage",),
+    "first": ("SuccessionAsUsage", "TransitionUsage"),
+    "of": ("FlowUsage", "SuccessionFlowUsage", "Flow", "SuccessionFlow"),
+    "from": ("FlowUsage", "SuccessionFlowUsage", "Flow", "SuccessionFlow", "Connector"),
+    "then": ("Succession",),
+    "step": ("ActionUsage", "PerformActionUsage"),
+}
+"""Words that begin a tail, and the kinds of usages that may have it."""
 
 
 class End(NamedTuple):
@@ -152,17 +163,6 @@ def apply_tail(node: Node, tail: Tail, tokens: Tokens) -> Node:
     return node
 
 
-_KINDS_BY_WORD = {
-    "connect": ("ConnectionUsage", "InterfaceUsage"),
-    "allocate": ("AllocationUsage",),
-    "bind": ("BindingConnectorAsUsage",),
-    "first": ("SuccessionAsUsage", "TransitionUsage"),
-    "of": ("FlowUsage", "SuccessionFlowUsage", "Flow", "SuccessionFlow"),
-    "from": ("FlowUsage", "SuccessionFlowUsage", "Flow", "SuccessionFlow", "Connector"),
-    "then": ("Succession",),
-    "step": ("ActionUsage", "PerformActionUsage"),
-}
-"""Words that begin a tail, and the kinds of usages that may have it."""
 _DECLARATIONS_BY_WORD = {
     "connect": "connections and interfaces",
     "allocate": "allocations",
