@@ -26,7 +26,7 @@ DECLARED_TYPES = TYPES - _EXPRESSION_KINDS
 DECLARED_FEATURES = FEATURES - _EXPRESSION_KINDS
 """Types and features that are declared, without those that only make up an expression."""
 Check = Callable[[Model, Node], Iterable[Finding]]
-"""Returns the findings about one node. ``registry`` has the metaclasses that a check is for."""
+"""Returns the findings about one node; the tables of ``checks`` have the metaclasses for it."""
 
 
 def iter_stated(node: Node, kinds: frozenset[str]) -> Iterator[tuple[Relation, Node]]:

@@ -11,7 +11,7 @@ from sysmlc.language.tree import Node, Relation
 
 
 class GeneralizationQueries(Protocol):
-    """Queries about generals and roles; ``generals.Generals`` answers and memoises them."""
+    """Queries about generals and roles; ``generals.GeneralLookup`` answers and memoises them."""
 
     def target(self, node: Node, relation: Relation) -> Node | None:
         """Return the element that a relation of ``node`` leads to, or None if it is unresolved."""

@@ -1,4 +1,4 @@
-"""Variables of a composite: joined features share a variable, others have one of their own."""
+"""Names and ranges of the variables of a composite: joined features share one variable."""
 
 from collections.abc import Iterable, Iterator, Mapping
 
@@ -45,38 +45,39 @@ def find_wires(block: Block, members: Iterable[Member]) -> list[Wire]:
     for member in members:
         by_path.setdefault(member.path, []).append(member)
     slots = [(path, name) for path, names in block.names.items() for name in names]
-    result = []
+    wires = []
     for group in block.features.group_items(slots):
         ends = [
-            (member, _variable_of(member, name))
+            (member, _find_variable(member, name))
             for path, name in group
             for member in by_path.get(path, ())
             if name in member.features
         ]
         if len(ends) > 1:
             block_feature = next((name for path, name in group if path == ITSELF), "")
-            result.append(Wire(_wire_name(block_feature, ends), tuple(ends)))
-    return result
+            wires.append(Wire(_name_wire(block_feature, ends), tuple(ends)))
+    return wires
 
 
-def _variable_of(member: Member, feature: str) -> Variable:
+def _find_variable(member: Member, feature: str) -> Variable:
     name = member.features[feature]
     return next(variable for variable in member.contract.variables if variable.name == name)
 
 
-def _wire_name(block_feature: str, ends: list[tuple[Member, Variable]]) -> str:
-    at_block = next((variable.name for member, variable in ends if member.path == ITSELF), "")
+def _name_wire(block_feature: str, ends: list[tuple[Member, Variable]]) -> str:
     if block_feature:
-        return at_block or block_feature.replace(".", "_")
-    driver = next((end for end in ends if end[1].owner is Owner.SYSTEM), ends[0])
-    return join_path(driver[0].path, driver[1].name)
+        of_block = next((variable.name for member, variable in ends if member.path == ITSELF), "")
+        return of_block or block_feature.replace(".", "_")
+    drivers = (end for end in ends if end[1].owner is Owner.SYSTEM)
+    member, variable = next(drivers, ends[0])
+    return join_path(member.path, variable.name)
 
 
 def has_single_type(wire: Wire) -> bool:
     """Return whether the domains of all ends have the same type and, for texts, are equal."""
-    domains = [domain.domain for _, domain in wire.ends]
+    domains = [variable.domain for _, variable in wire.ends]
     has_texts = any(isinstance(domain, EnumerationDomain) and domain.texts for domain in domains)
-    return len(set(domains) if has_texts else {type(domain) for domain in domains}) == 1
+    return len(set(domains) if has_texts else set(map(type, domains))) == 1
 
 
 def rename_contract(member: Member, wires: Iterable[Wire]) -> Contract:
@@ -86,43 +87,30 @@ def rename_contract(member: Member, wires: Iterable[Wire]) -> Contract:
     them. A member that decides the variable then guarantees its own range, and a member that reads
     the variable assumes its own range.
     """
-    wire_by_variable: dict[str, Wire] = {}
-    for wire in wires:
-        for own_variable, variable in wire.ends:
-            if own_variable is member:
-                wire_by_variable[variable.name] = wire
-    names = {
-        own_variable.name: _composite_name(member, own_variable, wire_by_variable)
-        for own_variable in member.contract.variables
+    wire_by_variable = {
+        end_variable.name: wire
+        for wire in wires
+        for end_member, end_variable in wire.ends
+        if end_member is member
     }
-    variables = tuple(
-        replace(
-            own_variable,
-            name=names[own_variable.name],
-            domain=_common_domain(own_variable, wire_by_variable.get(own_variable.name)),
-        )
-        for own_variable in member.contract.variables
-    )
-    bounds = [
-        (own_variable.owner, conjunct)
-        for own_variable in member.contract.variables
-        for conjunct in _range_conjuncts(
-            own_variable,
-            names[own_variable.name],
-            _common_domain(own_variable, wire_by_variable.get(own_variable.name)),
-        )
-    ]
+    names: dict[str, str] = {}
+    variables: list[Variable] = []
+    bounds: dict[Owner, list[Conjunct]] = {owner: [] for owner in Owner}
+    for variable in member.contract.variables:
+        wire = wire_by_variable.get(variable.name)
+        name = join_path(member.path, variable.name) if wire is None else wire.name
+        domain = variable.domain if wire is None else _find_common_domain(wire)
+        names[variable.name] = name
+        variables.append(replace(variable, name=name, domain=domain))
+        bounds[variable.owner] += _iter_range_conjuncts(variable, name, domain)
+    contract = member.contract
+    assumptions = _rename_conjuncts(contract.assumptions, names)
+    guarantees = _rename_conjuncts(contract.guarantees, names)
     return replace(
-        member.contract,
+        contract,
         variables=tuple(_drop_duplicates(variables)),
-        assumptions=(
-            *(c for owner, c in bounds if owner is Owner.ENVIRONMENT),
-            *_rename_conjuncts(member.contract.assumptions, names),
-        ),
-        guarantees=(
-            *(c for owner, c in bounds if owner is Owner.SYSTEM),
-            *_rename_conjuncts(member.contract.guarantees, names),
-        ),
+        assumptions=(*bounds[Owner.ENVIRONMENT], *assumptions),
+        guarantees=(*bounds[Owner.SYSTEM], *guarantees),
     )
 
 
@@ -138,17 +126,10 @@ def _drop_duplicates(variables: Iterable[Variable]) -> Iterable[Variable]:
 def name_in_composite(member: Member, variable: str, wires: Iterable[Wire]) -> str:
     """Return the name of a member's variable in the composite."""
     for wire in wires:
-        for other_member, end_variable in wire.ends:
-            if other_member is member and end_variable.name == variable:
+        for end_member, end_variable in wire.ends:
+            if end_member is member and end_variable.name == variable:
                 return wire.name
     return join_path(member.path, variable)
-
-
-def _composite_name(
-    member: Member, variable: Variable, wire_by_variable: Mapping[str, Wire]
-) -> str:
-    wire = wire_by_variable.get(variable.name)
-    return join_path(member.path, variable.name) if wire is None else wire.name
 
 
 def _rename_conjuncts(
@@ -172,11 +153,9 @@ def rename_variables(formula: Formula, names: Mapping[str, str]) -> Formula:
 # -- ranges ------------------------------------------------------------------------------------
 
 
-def _common_domain(variable: Variable, wire: Wire | None) -> Domain:
-    """Return the domain that contains the values of all members of the wire."""
-    if wire is None:
-        return variable.domain
-    domains = [end_variable.domain for _, end_variable in wire.ends]
+def _find_common_domain(wire: Wire) -> Domain:
+    """Return the domain that contains the values of all ends of the wire."""
+    domains = [variable.domain for _, variable in wire.ends]
     numbers = [domain for domain in domains if isinstance(domain, IntegerDomain)]
     if numbers:
         return IntegerDomain(min(d.low for d in numbers), max(d.high for d in numbers))
@@ -187,9 +166,9 @@ def _common_domain(variable: Variable, wire: Wire | None) -> Domain:
     return BooleanDomain()
 
 
-def _range_conjuncts(variable: Variable, name: str, domain: Domain) -> Iterator[Conjunct]:
+def _iter_range_conjuncts(variable: Variable, name: str, domain: Domain) -> Iterator[Conjunct]:
     """Yield the conjuncts that a variable stays in the member's range if the wire's is wider."""
-    in_range = f.both(*_range_bounds(variable, f.var(name), domain))
+    in_range = f.both(*_iter_range_bounds(variable, f.var(name), domain))
     if in_range == f.TRUE:
         return
     text = f"'{variable.name}' is one of {describe(variable.domain)}."
@@ -197,7 +176,7 @@ def _range_conjuncts(variable: Variable, name: str, domain: Domain) -> Iterator[
     yield Conjunct(f.prime(in_range), Class.SAFETY, variable.origin, text)
 
 
-def _range_bounds(variable: Variable, value: Formula, domain: Domain) -> Iterator[Formula]:
+def _iter_range_bounds(variable: Variable, value: Formula, domain: Domain) -> Iterator[Formula]:
     if isinstance(variable.domain, IntegerDomain) and isinstance(domain, IntegerDomain):
         if domain.low < variable.domain.low:
             yield f.compare(Op.GE, value, Const(variable.domain.low))

@@ -27,7 +27,7 @@ MAX_MOVES = 5_000
 """States and moves of a machine above which a controller is a table instead."""
 
 Answer = tuple[tuple[Formula, ...], int]
-"""The outputs, as in ``mealy.Move``, and the next state."""
+"""The outputs, as in ``forms.Move``, and the next state."""
 
 
 class DraftMachine(Struct, frozen=True):
