@@ -43,14 +43,14 @@ class Call(Struct, frozen=True):
 class Refinement(Struct, frozen=True):
     """The content of an activity that refines a task or a service.
 
-    ``remarks`` are pairs of an element id and a text, which the pass reports: the id of a node
-    whose content the recipe omits, with an empty text, or the id of a called definition without a
-    stated level, with the level that the position of the call gives it.
+    ``decisions`` are pairs of an element id and a text for ``reports.report_decisions``: a node
+    whose content the recipe omits, with an empty text, or a called definition without a stated
+    level, with the level that the position of the call gives it.
     """
 
     graph: FlowGraph
     calls: tuple[Call, ...]
-    remarks: tuple[tuple[str, str], ...]
+    decisions: tuple[tuple[str, str], ...]
 
 
 class Context(Struct, frozen=True):

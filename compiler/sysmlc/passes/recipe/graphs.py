@@ -18,7 +18,7 @@ from sysmlc.passes.recipe.context import (
     is_inlined,
     list_steps,
 )
-from sysmlc.passes.recipe.data import Data
+from sysmlc.passes.recipe.data_flow import DataFlow
 from sysmlc.passes.recipe.nodes import (
     build_nodes,
     find_flow_ends,
@@ -45,7 +45,7 @@ def refine(context: Context, activity: Element, activity_level: str) -> Refineme
         graph = build_flow_graph(context, activity, activity_level)
         calls = tuple(_list_calls(context, activity, activity_level))
         refinement = Refinement(
-            graph, calls, tuple(_list_remarks(context, activity, activity_level))
+            graph, calls, tuple(_list_decisions(context, activity, activity_level))
         )
         context.refinements[activity_level, activity.id] = refinement
     return refinement
@@ -59,7 +59,7 @@ def _list_calls(context: Context, activity: Element, activity_level: str) -> Ite
             yield Call(kind, node.id, definition.id)
 
 
-def _list_remarks(
+def _list_decisions(
     context: Context, activity: Element, activity_level: str
 ) -> Iterator[tuple[str, str]]:
     for node in context.nodes(activity):
@@ -84,11 +84,57 @@ class Draft:
     last: dict[str, str] = field(default_factory=dict)
 
 
+def build_flow_graph(context: Context, activity: Element, activity_level: str) -> FlowGraph:
+    """Return the graph of an activity; *activity_level* is its level, ``task`` or ``service``."""
+    data = DataFlow.build(context, activity)
+    draft = Draft()
+    nodes = context.nodes(activity)
+    for node in nodes:
+        _add_nodes(context, node, step_kind(context, node, activity_level), data, draft)
+    regions = [node for node in nodes if is_inlined(context.graph, node)]
+    for region in regions:
+        _remove_region_ends(context, region, draft)
+    draft.edges.extend(_list_control_edges(context, activity, data, draft))
+    # After the control edges: only object flows that no control flow already orders count.
+    draft.edges.extend(_list_object_edges(context, activity, data, draft))
+    for region in regions:
+        _connect_region(context, region, draft)
+    _add_ends(context, activity, draft)
+    _add_results(context, activity, data, draft)
+    graph = FlowGraph(
+        context.name(activity),
+        data.list_parameters("in", "inout"),
+        data.list_parameters(*_OUT),
+        data.list_variables(),
+        tuple(sorted(draft.nodes, key=lambda node: node.id)),
+        tuple(draft.edges),
+        activity.id,
+    )
+    return _sort_graph(add_loop_nodes(graph, _read_loop_bounds(context, activity, draft)))
+
+
+def _sort_graph(graph: FlowGraph) -> FlowGraph:
+    """Return the graph with nodes in the order of execution and edges in the order of their ends.
+
+    The order does not depend on the order of the model.
+    """
+    by_id = {node.id: node for node in sorted(graph.nodes, key=lambda node: node.id)}
+    graph = replace(graph, nodes=tuple(by_id.values()))
+    rank = {id: number for number, id in enumerate(sort_nodes(graph))}
+    edges = sorted(graph.edges, key=lambda e: (rank[e.source], rank[e.target], e.text, e.item))
+    nodes = sorted(graph.nodes, key=lambda node: rank[node.id])
+    return replace(graph, nodes=tuple(nodes), edges=tuple(edges))
+
+
 # -- regions -----------------------------------------------------------------------------------
 
 
-def open_region(context: Context, region: Element, draft: Draft) -> None:
-    """Remove initial and final nodes in a region; their edges then join its first or last node."""
+def _remove_region_ends(context: Context, region: Element, draft: Draft) -> None:
+    """Remove the initial and final nodes of a region.
+
+    Edges from an initial node then leave the first recipe node of the region, and edges to a final
+    node reach its last one.
+    """
     for node in list_steps(context.graph, region):
         if node.kind is Kind.CONTROL and node.subkind in ("initial", *_ENDS):
             draft.nodes = [
@@ -98,7 +144,7 @@ def open_region(context: Context, region: Element, draft: Draft) -> None:
             draft.first[node.id] = draft.last[region.id]
 
 
-def close_region(context: Context, region: Element, draft: Draft) -> None:
+def _connect_region(context: Context, region: Element, draft: Draft) -> None:
     """Connect the first and last node of a region with its content.
 
     Both are the same node if the region is a for-each loop.
@@ -123,7 +169,7 @@ def _assign_role(context: Context, region: Element, edge: FlowEdge, draft: Draft
 # -- begin and end -----------------------------------------------------------------------------
 
 
-def add_ends(context: Context, activity: Element, draft: Draft) -> None:
+def _add_ends(context: Context, activity: Element, draft: Draft) -> None:
     """Add an initial and a final node where the model draws none (UML 2.5.1 clause 15.2.3.2)."""
     id = context.name(activity)
     top_nodes = [node for node in draft.nodes if context.graph[node.element].owner == activity.id]
@@ -145,12 +191,12 @@ def _edge_to_final(node: Node, final: str) -> FlowEdge:
     return FlowEdge(node.id, final, role="exit" if node.kind == "forEach" else "")
 
 
-def add_results(context: Context, activity: Element, data: Data, draft: Draft) -> None:
+def _add_results(context: Context, activity: Element, data: DataFlow, draft: Draft) -> None:
     """Add assignments before the end, for outputs whose values are given by expressions."""
     computed = [
         element
         for element in query.parameters(context.graph, activity, *_OUT)
-        if is_computed(element)
+        if _is_computed(element)
     ]
     ends = [node for node in draft.nodes if node.kind == "final"]
     # A flow final node ends its own flow only, so that it counts only if nothing else is an end.
@@ -161,14 +207,14 @@ def add_results(context: Context, activity: Element, data: Data, draft: Draft) -
         _insert_before(results, end, draft)
 
 
-def is_computed(parameter: Element) -> bool:
+def _is_computed(parameter: Element) -> bool:
     """Whether an expression determines the value of an output, not only its initial value."""
     is_text = isinstance(parameter.attrs.get("default"), str)
     is_expression = is_text and "default_language" in parameter.attrs
     return is_expression and not parameter.attrs.get("initial")
 
 
-def _build_result(context: Context, parameter: Element, data: Data, mark: str) -> Node:
+def _build_result(context: Context, parameter: Element, data: DataFlow, mark: str) -> Node:
     value = data.read(str(parameter.attrs["default"]))
     name = context.label(parameter)
     id = f"{context.name(parameter)}{mark}"
@@ -190,49 +236,7 @@ def _insert_before(inserted: list[Node], end: Node, draft: Draft) -> None:
     draft.nodes += inserted
 
 
-def build_flow_graph(context: Context, activity: Element, activity_level: str) -> FlowGraph:
-    """Return the graph of an activity; *activity_level* is its level, ``task`` or ``service``."""
-    data = Data.build(context, activity)
-    draft = Draft()
-    nodes = context.nodes(activity)
-    for node in nodes:
-        _add_nodes(context, node, step_kind(context, node, activity_level), data, draft)
-    regions = [node for node in nodes if is_inlined(context.graph, node)]
-    for region in regions:
-        open_region(context, region, draft)
-    draft.edges.extend(_list_control_edges(context, activity, data, draft))
-    # After the control edges: only object flows that no control flow already orders count.
-    draft.edges.extend(_list_object_edges(context, activity, data, draft))
-    for region in regions:
-        close_region(context, region, draft)
-    add_ends(context, activity, draft)
-    add_results(context, activity, data, draft)
-    graph = FlowGraph(
-        context.name(activity),
-        data.list_parameters("in", "inout"),
-        data.list_parameters("out", "inout", "return"),
-        data.list_variables(),
-        tuple(sorted(draft.nodes, key=lambda node: node.id)),
-        tuple(draft.edges),
-        activity.id,
-    )
-    return _sort_graph(add_loop_nodes(graph, _read_loop_bounds(context, activity, draft)))
-
-
-def _sort_graph(graph: FlowGraph) -> FlowGraph:
-    """Return the graph with nodes in the order of execution and edges in the order of their ends.
-
-    The order does not depend on the order of the model.
-    """
-    by_id = {node.id: node for node in sorted(graph.nodes, key=lambda node: node.id)}
-    graph = replace(graph, nodes=tuple(by_id.values()))
-    rank = {id: number for number, id in enumerate(sort_nodes(graph))}
-    edges = sorted(graph.edges, key=lambda e: (rank[e.source], rank[e.target], e.text, e.item))
-    nodes = sorted(graph.nodes, key=lambda node: rank[node.id])
-    return replace(graph, nodes=tuple(nodes), edges=tuple(edges))
-
-
-def _add_nodes(context: Context, node: Element, kind: str, data: Data, draft: Draft) -> None:
+def _add_nodes(context: Context, node: Element, kind: str, data: DataFlow, draft: Draft) -> None:
     if not kind:
         return
     new_nodes = build_nodes(context, node, kind, data)
@@ -250,7 +254,7 @@ def _chain(nodes: Sequence[Node], element: str) -> list[FlowEdge]:
 
 
 def _list_control_edges(
-    context: Context, activity: Element, data: Data, draft: Draft
+    context: Context, activity: Element, data: DataFlow, draft: Draft
 ) -> Iterator[FlowEdge]:
     for flow in list_flows(context, activity):
         source, target = find_flow_ends(context, flow)
@@ -261,7 +265,7 @@ def _list_control_edges(
 
 
 def _list_object_edges(
-    context: Context, activity: Element, data: Data, draft: Draft
+    context: Context, activity: Element, data: DataFlow, draft: Draft
 ) -> Iterator[FlowEdge]:
     """Yield the edges of object flows between nodes that no control flow orders."""
     ordered = [(edge.source, edge.target) for edge in draft.edges]
@@ -279,9 +283,9 @@ def _find_targets(context: Context, flow: Element, draft: Draft) -> list[Element
     """Return the nodes that an object flow reaches, directly or through buffers of data."""
     targets: dict[str, Element] = {}
     seen: set[str] = set()
-    stack = [flow]
-    while stack:
-        current = stack.pop(0)
+    worklist = [flow]
+    while worklist:
+        current = worklist.pop(0)
         _, target = find_flow_ends(context, current)
         if target is None or current.id in seen:
             continue
@@ -289,12 +293,12 @@ def _find_targets(context: Context, flow: Element, draft: Draft) -> list[Element
         if target.id in draft.first:
             targets[target.id] = target
         elif target.kind is not Kind.ACTIVITY_PARAMETER:
-            stack.extend(query.outgoing(context.graph, target))
+            worklist.extend(query.outgoing(context.graph, target))
     return list(targets.values())
 
 
 def _build_edge(
-    context: Context, flow: Element, source: Element, target: Element, data: Data, draft: Draft
+    context: Context, flow: Element, source: Element, target: Element, data: DataFlow, draft: Draft
 ) -> FlowEdge:
     text = str(flow.attrs.get("guard", ""))
     is_else = text.strip() == "else"
@@ -310,7 +314,7 @@ def _build_edge(
 
 
 def _read_guard(
-    context: Context, flow: Element, source: Element, text: str, data: Data
+    context: Context, flow: Element, source: Element, text: str, data: DataFlow
 ) -> Expression | None:
     """Return a guard. A literal is compared with the decision input as in fUML 1.5, 8.5.2.2."""
     is_literal = bool(flow.attrs.get("guard_literal"))
@@ -326,7 +330,7 @@ def _read_guard(
     return Binary("==", tested, expression)
 
 
-def _find_decision_input(context: Context, decision: Element, data: Data) -> Expression | None:
+def _find_decision_input(context: Context, decision: Element, data: DataFlow) -> Expression | None:
     chosen = context.graph.get(str(decision.attrs.get("decision_input_flow", "")))
     incoming = query.incoming(context.graph, decision, Kind.OBJECT_FLOW)
     flows = [chosen] if chosen is not None else incoming

@@ -13,7 +13,7 @@ from msgspec.structs import replace
 from sysmlc.ir import Edge, Element, Kind, query
 from sysmlc.logic.expressions.expression import Expression
 from sysmlc.passes.recipe.context import Context, segment_word
-from sysmlc.passes.recipe.data import Data
+from sysmlc.passes.recipe.data_flow import DataFlow
 from sysmlc.passes.recipe.expressions import find_member, literal_default, value_type
 from sysmlc.passes.recipe.graphs import refine
 from sysmlc.passes.recipe.machines import build_machine, build_material, find_opcua_node
@@ -94,7 +94,7 @@ def _build_recipe(
 ) -> Recipe:
     tags = context.tags(activity, "Recipe")
     product = tags.text("product")
-    data = Data.build(context, activity)
+    data = DataFlow.build(context, activity)
     tasks = [build_task(context, activity, step, data) for step in steps]
     return Recipe(
         context.name(activity),

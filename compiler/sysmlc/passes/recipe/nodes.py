@@ -6,7 +6,7 @@ from msgspec.structs import replace
 
 from sysmlc.ir import Edge, Element, Kind, query
 from sysmlc.passes.recipe.context import SERVICES, Context, is_block, is_for_each
-from sysmlc.passes.recipe.data import Data
+from sysmlc.passes.recipe.data_flow import DataFlow
 from sysmlc.passes.recipe.expressions import read_assignments, read_optional, read_time
 from sysmlc.recipe.model import Node
 
@@ -126,17 +126,17 @@ def _list_triggers(context: Context, node: Element) -> Iterator[Element]:
             yield trigger
 
 
-def build_nodes(context: Context, node: Element, kind: str, data: Data) -> list[Node]:
+def build_nodes(context: Context, node: Element, kind: str, data: DataFlow) -> list[Node]:
     """Return the recipe nodes for one activity node: several for a block or several assignments."""
     recipe_node = Node(context.name(node), kind, element=node.id)
     return _MAKERS.get(kind, _build_bare)(context, node, recipe_node, data)
 
 
-def _build_bare(context: Context, node: Element, base: Node, data: Data) -> list[Node]:
+def _build_bare(context: Context, node: Element, base: Node, data: DataFlow) -> list[Node]:
     return [base]
 
 
-def _build_call(context: Context, node: Element, base: Node, data: Data) -> list[Node]:
+def _build_call(context: Context, node: Element, base: Node, data: DataFlow) -> list[Node]:
     definition = context.definition(node)
     # The graph of a helper is named after the activity that describes it.
     if base.kind == "call":
@@ -145,7 +145,7 @@ def _build_call(context: Context, node: Element, base: Node, data: Data) -> list
     return [_change(base, ref=ref, bind=data.bind_inputs(node), assign=data.assign_outputs(node))]
 
 
-def _build_assignments(context: Context, node: Element, base: Node, data: Data) -> list[Node]:
+def _build_assignments(context: Context, node: Element, base: Node, data: DataFlow) -> list[Node]:
     body = str(node.attrs.get("body", ""))
     return [
         _change(base, id=f"{base.id}#{number}" if number > 1 else base.id, variable=v, expression=e)
@@ -153,12 +153,12 @@ def _build_assignments(context: Context, node: Element, base: Node, data: Data) 
     ]
 
 
-def _build_action(context: Context, node: Element, base: Node, data: Data) -> list[Node]:
+def _build_action(context: Context, node: Element, base: Node, data: DataFlow) -> list[Node]:
     text = str(node.attrs.get("body", "") or node.name or node.subkind)
     return [_change(base, text=text, bind=data.bind_inputs(node), assign=data.assign_outputs(node))]
 
 
-def _build_wait(context: Context, node: Element, base: Node, data: Data) -> list[Node]:
+def _build_wait(context: Context, node: Element, base: Node, data: DataFlow) -> list[Node]:
     trigger = next(_list_triggers(context, node), None)
     event = None if trigger is None else context.graph.target(trigger, Edge.TYPED_BY)
     condition = "" if trigger is None else str(trigger.attrs.get("condition", ""))
@@ -170,12 +170,12 @@ def _build_wait(context: Context, node: Element, base: Node, data: Data) -> list
     ]
 
 
-def _build_block(context: Context, node: Element, base: Node, data: Data) -> list[Node]:
+def _build_block(context: Context, node: Element, base: Node, data: DataFlow) -> list[Node]:
     """Return the merge nodes at the start and at the end of a block."""
     return [_change(base, kind="merge"), _change(base, kind="merge", id=f"{base.id}::end")]
 
 
-def _build_for_each(context: Context, node: Element, base: Node, data: Data) -> list[Node]:
+def _build_for_each(context: Context, node: Element, base: Node, data: DataFlow) -> list[Node]:
     variable = next(
         (element for element in context.graph.owned(node) if element.subkind == "variable"), None
     )
@@ -185,7 +185,7 @@ def _build_for_each(context: Context, node: Element, base: Node, data: Data) -> 
     return [_change(base, variable=name, expression=collection, max_iterations=limit)]
 
 
-def _build_delay(context: Context, node: Element, base: Node, data: Data) -> list[Node]:
+def _build_delay(context: Context, node: Element, base: Node, data: DataFlow) -> list[Node]:
     duration = next((value for _, value in data.bind_inputs(node)), None)
     if duration is not None:
         return [_change(base, expression=duration)]
@@ -198,7 +198,7 @@ def _change(node: Node, **changes: object) -> Node:
     return replace(node, **changes)
 
 
-_Maker = Callable[[Context, Element, Node, Data], list[Node]]
+_Maker = Callable[[Context, Element, Node, DataFlow], list[Node]]
 _MAKERS: dict[str, _Maker] = {
     "service": _build_call,
     "function": _build_call,

@@ -102,7 +102,7 @@ def report_decisions(context: Context, model: Model, sink: Sink) -> None:
     graphs += [(flow_graph, "service") for flow_graph in model.function_graphs]
     for graph, activity_level in graphs:
         activity = context.graph[graph.element]
-        for id, level in refine(context, activity, activity_level).remarks:
+        for id, level in refine(context, activity, activity_level).decisions:
             _report_step(context, activity, context.graph[id], level, sink)
 
 

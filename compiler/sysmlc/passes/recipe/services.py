@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 from sysmlc.ir import Element, Kind, query
 from sysmlc.passes.recipe.context import Context
-from sysmlc.passes.recipe.data import list_data_parameters
+from sysmlc.passes.recipe.data_flow import list_data_parameters
 from sysmlc.passes.recipe.expressions import build_parameter, is_data, read_optional
 from sysmlc.passes.recipe.machines import (
     Relation,

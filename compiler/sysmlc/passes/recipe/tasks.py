@@ -6,7 +6,7 @@ from msgspec import Struct
 
 from sysmlc.ir import Element, Kind, query
 from sysmlc.passes.recipe.context import Context
-from sysmlc.passes.recipe.data import Data
+from sysmlc.passes.recipe.data_flow import DataFlow
 from sysmlc.passes.recipe.expressions import read_optional
 from sysmlc.passes.recipe.machines import (
     Relation,
@@ -41,7 +41,7 @@ def list_steps(context: Context, recipe: Element) -> list[Step]:
     return steps
 
 
-def build_task(context: Context, recipe: Element, step: Step, data: Data) -> Task:
+def build_task(context: Context, recipe: Element, step: Step, data: DataFlow) -> Task:
     """Return the task for a task node."""
     holder = step.definition or step.node
     source = step.node if context.find_application(step.node, "Task") else holder

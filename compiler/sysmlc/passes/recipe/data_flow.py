@@ -3,8 +3,9 @@
 import re
 from collections import Counter
 from collections.abc import Iterator, Mapping
+from functools import cached_property
 
-from msgspec import Struct, field
+from msgspec import Struct
 
 from sysmlc.ir import Edge, Element, Kind, query
 from sysmlc.logic.expressions.expression import Expression, Literal
@@ -22,10 +23,11 @@ from sysmlc.recipe.expression import make_variable, map_operands, variable_name
 from sysmlc.recipe.model import Parameter
 
 _DOTTED = re.compile(r"[^\W\d]\w*\.[^\W\d]\w*")
+"""A name ``action.pin`` or ``parameter.feature`` in an expression."""
 
 
-class Data(Struct, frozen=True):
-    """The variables of one activity.
+class DataFlow(Struct, frozen=True, dict=True):
+    """The variables of one activity, by which its actions pass values on.
 
     An output pin assigns the variable of its own name. This is an attribute or parameter of the
     activity (``declared``), or else a variable that the pin declares. If several pins declare the
@@ -40,19 +42,21 @@ class Data(Struct, frozen=True):
     """Names ``action.pin`` in expressions of the activity; they may refer to output pins."""
     outputs: tuple[Element, ...] = ()
     """Output pins of the actions of the activity."""
-    _renamed: dict[str, str] = field(default_factory=dict)
 
     @classmethod
-    def build(cls, context: Context, activity: Element) -> "Data":
-        """Return the variables of an activity; see the class."""
-        elements = context.contents(activity)
+    def build(cls, context: Context, activity: Element) -> "DataFlow":
+        """Return the data flow of an activity."""
         kinds = (Kind.PARAMETER, Kind.PROPERTY)
-        names = {context.label(element) for element in elements if element.kind in kinds}
+        declared = frozenset(
+            context.label(element)
+            for element in context.contents(activity)
+            if element.kind in kinds
+        )
         outputs = tuple(_list_output_pins(context, activity))
-        pins = Counter(map(context.label, outputs))
-        shared = {name for name, count in pins.items() if count > 1}
+        pin_counts = Counter(map(context.label, outputs))
+        repeated = {name for name, count in pin_counts.items() if count > 1}
         dotted = _find_dotted_names(context, activity)
-        return cls(context, activity, frozenset(names), frozenset(shared - names), dotted, outputs)
+        return cls(context, activity, declared, frozenset(repeated - declared), dotted, outputs)
 
     # -- reads and writes of actions -----------------------------------------------------------
 
@@ -62,33 +66,27 @@ class Data(Struct, frozen=True):
             self.context.label(pin): self._find_value(pin) for pin in self._list_pins(node, "in")
         }
         return tuple(
-            (name, value) for name, value in sorted(values.items(), key=_first) if value is not None
+            (name, value) for name in sorted(values) if (value := values[name]) is not None
         )
 
     def assign_outputs(self, node: Element) -> tuple[tuple[str, str], ...]:
         """Return the names of output pins with the variables that they assign, sorted."""
-        return tuple(sorted(self._list_outputs(node)))
-
-    def _list_outputs(self, node: Element) -> Iterator[tuple[str, str]]:
-        for pin in self._list_pins(node, "out"):
-            yield self.context.label(pin), self.variable_of(pin)
+        return tuple(
+            sorted(
+                (self.context.label(pin), self.variable_of(pin))
+                for pin in self._list_pins(node, "out")
+            )
+        )
 
     def read(self, text: str) -> Expression:
         """Return the expression of a text; names of output pins become their variables."""
         expression = resolve_literals(self.context, self.activity, read_expression(text))
-        if not self.dotted:
-            return expression
-        if not self._renamed:
-            self._renamed.update(self._map_dotted_names())
-        return _rename_variables(expression, self._renamed)
+        return _rename_variables(expression, self._variables) if self.dotted else expression
 
-    def _map_dotted_names(self) -> Iterator[tuple[str, str]]:
-        """Yield the names ``action.pin`` of output pins, with the variables that they assign."""
-        for pin in self.outputs:
-            owner = self.context.graph.owner(pin)
-            if owner is not None:
-                label = f"{self.context.label(owner)}.{self.context.label(pin)}"
-                yield label, self.variable_of(pin)
+    @cached_property
+    def _variables(self) -> dict[str, str]:
+        """The variables that output pins assign, by the names ``action.pin`` of the pins."""
+        return {self._dotted_name(pin): self.variable_of(pin) for pin in self.outputs}
 
     def variable_of(self, pin: Element) -> str:
         """Return the variable that an output pin assigns."""
@@ -96,10 +94,13 @@ class Data(Struct, frozen=True):
             target = query.flow_target(self.context.graph, flow)
             if target is not None and target.kind is Kind.ACTIVITY_PARAMETER:
                 return self._parameter_name(target)
-        name = self.context.label(pin)
-        owner = self.context.graph.owner(pin)
-        full = name if owner is None else f"{self.context.label(owner)}.{name}"
-        return full if name in self.shared or full in self.dotted else name
+        name, dotted_name = self.context.label(pin), self._dotted_name(pin)
+        return dotted_name if name in self.shared or dotted_name in self.dotted else name
+
+    def _dotted_name(self, pin: Element) -> str:
+        """Return ``action.pin``."""
+        name, action = self.context.label(pin), self.context.graph.owner(pin)
+        return name if action is None else f"{self.context.label(action)}.{name}"
 
     def max_size(self, collection: Expression) -> int | None:
         """Return the largest size of a collection by its multiplicity, or None if unlimited."""
@@ -158,12 +159,11 @@ class Data(Struct, frozen=True):
         for element in query.parameters(self.context.graph, self.activity, "in"):
             if element.name in heads and not is_input(self.context, element):
                 by_name[element.name] = build_parameter(self.context, element)
-        known_names = self.declared
         for pin in self.outputs:
             name = self.variable_of(pin)
-            if name not in known_names and is_data(self.context, pin):
-                declared = build_parameter(self.context, pin)
-                by_name.setdefault(name, Parameter(name, declared.type, declared.unit))
+            if name not in self.declared and is_data(self.context, pin):
+                parameter = build_parameter(self.context, pin)
+                by_name.setdefault(name, Parameter(name, parameter.type, parameter.unit))
         return tuple(by_name[name] for name in sorted(by_name))
 
     def _list_pins(self, node: Element, direction: str) -> Iterator[Element]:
@@ -182,9 +182,9 @@ class Data(Struct, frozen=True):
         if isinstance(value, bool | int | float):
             return read_time(f"{value} {unit}") if isinstance(unit, str) else Literal(value)
         for flow in query.incoming(self.context.graph, pin):
-            carried = self.source_of(flow)
-            if carried is not None:
-                return carried
+            source = self.source_of(flow)
+            if source is not None:
+                return source
         # A pin without value and flow reads the variable that an output pin of its name assigns.
         name = self.context.label(pin)
         return make_variable(name) if name in self.declared else None
@@ -192,10 +192,6 @@ class Data(Struct, frozen=True):
     def _parameter_name(self, node: Element) -> str:
         parameter = self.context.graph.target(node, Edge.REFERENCES)
         return self.context.label(node if parameter is None else parameter)
-
-
-def _first(pair: tuple[str, Expression | None]) -> str:
-    return pair[0]
 
 
 def _rename_variables(expression: Expression, names: Mapping[str, str]) -> Expression:
