@@ -98,14 +98,14 @@ def recognise(
         scores = [(frontend.detect(source), frontend) for frontend in frontends]
         score, best = max(scores, key=lambda pair: pair[0])
         if score > 0:
-            if is_blank(source.data):
+            if _is_blank(source.data):
                 sink.report(faults.EMPTY, faults.about_file(source.name), path=source.name)
             yield Recognised(source, best)
         elif otherwise is not None:
             names = ", ".join(frontend.name for frontend in frontends)
             reason = "it is empty"
-            if not is_blank(source.data):
-                reason = f"it is {describe_content(source.data)}"
+            if not _is_blank(source.data):
+                reason = f"it is {_describe_content(source.data)}"
             subject = faults.about_file(source.name)
             sink.report(otherwise, subject, path=source.name, reason=reason, frontends=names)
 
@@ -207,13 +207,13 @@ _ROOT = re.compile(rb"<([A-Za-z_][\w.:-]*)")
 _HEAD = 4_096
 
 
-def is_blank(data: bytes) -> bool:
+def _is_blank(data: bytes) -> bool:
     """Whether a file is empty or holds only white space and a byte order mark."""
     # The head decides for nearly all files, without a copy of the whole content.
     return not data[:_HEAD].strip(_BLANKS) and not data.strip(_BLANKS)
 
 
-def describe_content(data: bytes) -> str:
+def _describe_content(data: bytes) -> str:
     """Return a description of the content that its first bytes suggest: ``an HTML page``."""
     for signature, description in _SIGNATURES:
         if data.startswith(signature):

@@ -27,7 +27,7 @@ COVERAGE = "coverage.json"
 TRACE = "trace.json"
 
 
-def format_coverage(compilation: Compilation) -> str:
+def _format_coverage(compilation: Compilation) -> str:
     """Return the verdict on every element of the inputs."""
     return encode_json({"format": "sysmlc-coverage/2", **compilation.coverage.as_json()})
 
@@ -133,7 +133,7 @@ def summarize(compilation: Compilation, has_files: bool = True) -> Outcome:
 
 def _collect_texts(compilation: Compilation) -> dict[str, str]:
     texts = {artefact.path: artefact.text for artefact in compilation.list_published()}
-    return texts | {COVERAGE: format_coverage(compilation), TRACE: format_trace(compilation)}
+    return texts | {COVERAGE: _format_coverage(compilation), TRACE: format_trace(compilation)}
 
 
 def compute_text_digest(text: str) -> str:

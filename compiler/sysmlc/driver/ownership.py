@@ -55,7 +55,7 @@ def is_output_folder(folder: Path) -> bool:
     return False
 
 
-def read_manifest(file: Path) -> dict[str, str]:
+def _read_manifest(file: Path) -> dict[str, str]:
     """Return the digest of each file that a manifest lists; nothing if there is no manifest.
 
     Entries with a wrong type or a path out of the folder are ignored. Raises ForeignManifestError
@@ -169,7 +169,7 @@ def read_ownership(folder: Path, protected: Iterable[Path], written: Iterable[st
     file of the repository with its right digest. Raises ForeignManifestError and OSError.
     """
     files = [file for file in protected if file.exists()]
-    listed, pending = read_manifest(folder / MANIFEST), read_manifest(folder / PENDING)
+    listed, pending = _read_manifest(folder / MANIFEST), _read_manifest(folder / PENDING)
     real = folder.resolve()
     below = [file for file in files if file.resolve().is_relative_to(real)]
     is_shared = bool(below) or (real / ".git").exists()

@@ -116,7 +116,7 @@ def publish(outcome: Outcome, target: Target) -> Publication:
     try:
         if _check_boundary(target, sink):
             target.folder.mkdir(parents=True, exist_ok=True)
-            with lock_folder(target.folder):
+            with _lock_folder(target.folder):
                 plan = _plan(outcome, target, sink)
                 if not plan.refused:
                     changed = _apply(plan, outcome, target.folder)
@@ -331,7 +331,7 @@ _PAUSE = 0.05
 
 
 @contextmanager
-def lock_folder(folder: Path) -> Iterator[None]:
+def _lock_folder(folder: Path) -> Iterator[None]:
     """Exclude other processes that publish to *folder*, if the system can lock folders.
 
     Raises OSError if another process holds the lock for too long.

@@ -30,13 +30,13 @@ class LoadedOverlay(Struct, frozen=True):
     refinement: Refinement | None
 
 
-def find_overlay(model: Path) -> Path | None:
+def _find_overlay(model: Path) -> Path | None:
     """Return the overlay beside a model, ``gate.overlay.yaml`` for ``gate.aml``, if it exists."""
     path = model.with_name(model.stem + SUFFIX)
     return path if os.path.lexists(path) else None
 
 
-def load_overlay(
+def _load_overlay(
     path: Path, root: Path, roots: Roots, sink: Sink, *, is_named: bool
 ) -> LoadedOverlay | None:
     """Read an overlay; report it if it cannot be read or lies outside the allowed roots.
@@ -65,7 +65,7 @@ def store_refinements(overlays: Iterable[LoadedOverlay], graph: Graph) -> None:
         graph.store(Refinement, refinements)
 
 
-def list_models(overlay: LoadedOverlay) -> list[str]:
+def _list_models(overlay: LoadedOverlay) -> list[str]:
     """Return the files that the entries of an overlay name, each once, as written there."""
     if overlay.refinement is None:
         return []
@@ -182,7 +182,7 @@ class _Reader:
             self.recognised[name] = item
             self._sources.setdefault(real, []).append(name)
             self._worklist.append((path, item))
-        overlay = find_overlay(path) if sources else None
+        overlay = _find_overlay(path) if sources else None
         if overlay is not None:
             self._add_reference(path, overlay)
             self.read_overlay(overlay, is_named=False)
@@ -194,14 +194,14 @@ class _Reader:
             return
         self._overlay_files.add(real)
         self._visited.add(real)
-        overlay = load_overlay(path, self._root, self._roots, self._sink, is_named=is_named)
+        overlay = _load_overlay(path, self._root, self._roots, self._sink, is_named=is_named)
         if overlay is None:
             return
         self.overlays[overlay.source.name] = overlay
         self._sources[real] = [overlay.source.name]
         if is_named:
             self._named.add(real)
-        for file in list_models(overlay):
+        for file in _list_models(overlay):
             target = self._roots.resolve(path, file)
             if target is not None:
                 self._add_reference(path, target)

@@ -60,12 +60,12 @@ class Contracts(Struct, frozen=True):
 
     def run(self, graph: Graph, sink: Sink) -> None:
         """Store the Contracts of behaviours, of subjects of requirements and of services."""
-        # `add_formulas` finds contracts by component, so that these names must be distinct before.
+        # `_add_formulas` finds contracts by component, so that these names must be distinct before.
         derived = [*self._derive_machines(graph, sink), *_derive_activities(graph)]
-        derived = add_formulas(graph, _number_components(graph, derived, sink), sink)
+        derived = _add_formulas(graph, _number_components(graph, derived, sink), sink)
         assumed_range = self.assumed_low, self.assumed_high
         required = list(requirements.derive(graph, derived, assumed_range, sink))
-        report_general(graph, required, sink)
+        _report_general(graph, required, sink)
         derived = [*derived, *required]
         components = [contract.component for contract in derived]
         derived = _number_components(
@@ -181,7 +181,7 @@ OUTSIDE_GR1 = rule(
 )
 
 
-def add_formulas(graph: Graph, contracts: list[Contract], sink: Sink) -> list[Contract]:
+def _add_formulas(graph: Graph, contracts: list[Contract], sink: Sink) -> list[Contract]:
     """Return the contracts, extended by the formulas in constraints of the model."""
     by_component = {contract.component: contract for contract in contracts}
     performed = _Performers(graph, contracts)
@@ -291,7 +291,7 @@ def _add_formula(graph: Graph, contract: Contract, constraint: Element, sink: Si
     return add_history_bits(_extend(contract, conjuncts))
 
 
-def report_general(graph: Graph, contracts: Iterable[Contract], sink: Sink) -> None:
+def _report_general(graph: Graph, contracts: Iterable[Contract], sink: Sink) -> None:
     """Report each constraint of requirements that no reduction transforms to GR(1)."""
     general = [
         conjunct.origin

@@ -104,7 +104,7 @@ class Ports(Struct, frozen=True):
             graph.set(
                 port, direction=port.attrs.get("direction") or _redefined_direction(graph, port)
             )
-        plants = find_plant_files(graph)
+        plants = _find_plant_files(graph)
         drawn_ports = [port for port in ports if port.source not in plants]
         for port in drawn_ports:
             if not _is_typed(graph, port):
@@ -255,9 +255,9 @@ def _is_typed(graph: Graph, port: Element) -> bool:
 def _report_plants(graph: Graph, sink: Sink, ports: list[Element]) -> None:
     internal = [port for port in ports if not port.attrs.get("external")]
     untyped = [port for port in internal if not _is_typed(graph, port)]
-    report_by_file(graph, sink, UNTYPED_PLANT_PORTS, untyped, internal)
-    undirected = find_undirected_plant_ports(graph, internal)
-    report_by_file(graph, sink, UNDIRECTED_PLANT_PORTS, undirected, internal)
+    _report_by_file(graph, sink, UNTYPED_PLANT_PORTS, untyped, internal)
+    undirected = _find_undirected_plant_ports(graph, internal)
+    _report_by_file(graph, sink, UNDIRECTED_PLANT_PORTS, undirected, internal)
 
 
 def _check_multiplicity(graph: Graph, sink: Sink, feature: Element) -> None:
@@ -297,13 +297,13 @@ def _report_undirected(graph: Graph, sink: Sink, ports: list[Element]) -> None:
 # -- AutomationML ------------------------------------------------------------------------------
 
 
-def find_plant_files(graph: Graph) -> frozenset[str]:
+def _find_plant_files(graph: Graph) -> frozenset[str]:
     """Return the AutomationML files of the unit."""
     documents = graph.of_kind(Kind.DOCUMENT)
     return frozenset(document.source for document in documents if document.subkind == "caex")
 
 
-def find_undirected_plant_ports(graph: Graph, ports: Iterable[Element]) -> list[Element]:
+def _find_undirected_plant_ports(graph: Graph, ports: Iterable[Element]) -> list[Element]:
     """Return the ports without direction, in files where other ports have a direction.
 
     Ports that refer to a document, such as a drawing of the element, need no direction.
@@ -321,7 +321,7 @@ def _leads_to_document(graph: Graph, port: Element) -> bool:
     return any(element.kind is Kind.DOCUMENT for element in referring)
 
 
-def report_by_file(
+def _report_by_file(
     graph: Graph, sink: Sink, rule: Rule, faulty: Iterable[Element], ports: Iterable[Element]
 ) -> None:
     """Report the *faulty* ones of *ports* once for each file, at the first faulty port."""

@@ -152,10 +152,10 @@ class CrewCache(Struct, frozen=True):
             self.cache.put(self._key(study), msgspec.json.encode(_encode_crew(crew)))
 
     def _key(self, study: Study) -> str:
-        return sha256(repr((_FORMAT, self.tool, cache_identity(study))).encode()).hexdigest()
+        return sha256(repr((_FORMAT, self.tool, _cache_identity(study))).encode()).hexdigest()
 
 
-def cache_identity(study: Study) -> Study:
+def _cache_identity(study: Study) -> Study:
     """Return the study reduced to what a crew depends on, as part of the cache key.
 
     The mission, the starts of the robots and ids of model elements are removed.

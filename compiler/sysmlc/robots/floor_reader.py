@@ -28,12 +28,12 @@ def read_studies(graph: Graph, sink: Sink) -> Iterator[Study]:
     names: set[str] = set()
     for block in graph.of_kind(Kind.CLASS):
         is_drawn = not block.attrs.get("external") and not block.attrs.get("abstract")
-        if is_drawn and specialises_library(graph, block, "Floor"):
+        if is_drawn and _specialises_library(graph, block, "Floor"):
             reader = _FloorReader(graph, block, sink)
             yield from reader.read_study() if reader.check_name(names) else ()
 
 
-def specialises_library(graph: Graph, element: Element, name: str) -> bool:
+def _specialises_library(graph: Graph, element: Element, name: str) -> bool:
     """Return whether a classifier specialises the named definition of the library."""
     return any(
         _is_library_element(graph, general, name) for general in query.generals(graph, element)
@@ -122,7 +122,7 @@ class _FloorReader:
         cells = zip(floor.grid.blocked, floor.obstacles, strict=True)
         placed_obstacles = [_PlacedPart(self.graph[id], cell) for cell, id in cells]
         self._check_cells(floor.grid, placed_obstacles, targets)
-        orders = tuple(read_orders(self, missions, target_parts))
+        orders = tuple(_read_orders(self, missions, target_parts))
         deadlines = [self._read_number(self._type_of(part), "deadline") for part in missions]
         if not self.is_good:
             return None
@@ -148,7 +148,7 @@ class _FloorReader:
         type_ = self._type_of(part)
         if type_ is None:
             return False
-        return _is_library_element(self.graph, type_, kind) or specialises_library(
+        return _is_library_element(self.graph, type_, kind) or _specialises_library(
             self.graph, type_, kind
         )
 
@@ -281,7 +281,7 @@ class Reader(Protocol):
         """Return whether a part is typed by the library's definition *kind*."""
 
 
-def read_orders(
+def _read_orders(
     reader: Reader, missions: Sequence[Element], targets: Sequence[Element]
 ) -> Iterator[Order]:
     """Return the orders between targets of the missions.

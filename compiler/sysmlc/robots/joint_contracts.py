@@ -28,7 +28,7 @@ class JointContracts:
         self.system = system_contract(study)
         self.environment = environment_contract(study)
         self.robots = [robot_contract(study, robot, is_alone=False) for robot in study.robots]
-        self.wiring = [rule for robot in study.robots for rule in define_targets(study, robot)]
+        self.wiring = [rule for robot in study.robots for rule in _define_targets(study, robot)]
         self.wiring += count_timers(study)
         self.parts = (self.environment, *self.robots)
         self._owner = {name: robot for robot in study.robots for name in variable_names(robot)}
@@ -36,7 +36,7 @@ class JointContracts:
     @property
     def variables(self) -> dict[str, Variable]:
         """All variables by name."""
-        goal_variables = (goal_variable(self.study, robot) for robot in self.study.robots)
+        goal_variables = (_goal_variable(self.study, robot) for robot in self.study.robots)
         all_variables = (
             variable for part in (self.system, *self.parts) for variable in part.variables
         )
@@ -83,18 +83,18 @@ def _names_in(conjunct: Conjunct) -> set[str]:
     return {variable.name for variable in f.variables(conjunct.formula)}
 
 
-def goal_variable(study: Study, robot: Robot) -> Variable:
+def _goal_variable(study: Study, robot: Robot) -> Variable:
     """Declare the goal of a robot in an arbitrary mission on this floor: a cell or none."""
     cells = tuple(f"cell_{cell}" for cell in study.grid.cells)
     return Variable(terms.goal(robot), Owner.SYSTEM, EnumerationDomain((NONE, *cells)))
 
 
-def is_sent_to(robot: Robot, cell: int) -> Formula:
+def _is_sent_to(robot: Robot, cell: int) -> Formula:
     """Return the predicate that the mission sends a robot to a cell."""
     return terms.equals(terms.goal(robot), f"cell_{cell}")
 
 
-def define_targets(study: Study, robot: Robot) -> Iterator[Conjunct]:
+def _define_targets(study: Study, robot: Robot) -> Iterator[Conjunct]:
     """State that a robot starts in its target, and adopts a goal when it is in its target.
 
     An unreachable goal is ignored: no mission needs one, because its target is never reached.
@@ -106,12 +106,12 @@ def define_targets(study: Study, robot: Robot) -> Iterator[Conjunct]:
     text = f"'{robot.name}' takes its goal when it is in its target."
     for cell in study.grid.cells:
         reach = terms.is_in_any(terms.position(robot), sorted(study.grid.distances(cell)))
-        receives_goal = f.both(terms.is_at_target(robot), is_sent_to(robot, cell), reach)
+        receives_goal = f.both(terms.is_at_target(robot), _is_sent_to(robot, cell), reach)
         next_target = f.prime(terms.equals(terms.target(robot), cell))
         yield terms.safety_conjunct(f.implies(receives_goal, next_target), robot.origin, text)
         keeps_target = f.eq(f.prime(target_value), target_value)
         has_unreachable_goal = f.both(
-            terms.is_at_target(robot), is_sent_to(robot, cell), f.negate(reach)
+            terms.is_at_target(robot), _is_sent_to(robot, cell), f.negate(reach)
         )
         yield terms.safety_conjunct(
             f.implies(has_unreachable_goal, keeps_target), robot.origin, text
@@ -135,7 +135,7 @@ def mission_guarantees(study: Study) -> Iterator[Conjunct]:
             yield _keep_goal(robot, cell)
     for first, second in combinations(study.robots, 2):
         for cell in study.grid.cells:
-            share_goal = f.both(is_sent_to(first, cell), is_sent_to(second, cell))
+            share_goal = f.both(_is_sent_to(first, cell), _is_sent_to(second, cell))
             text = f"One robot goes to cell {cell}."
             yield terms.safety_conjunct(f.negate(share_goal), second.origin, text)
 
@@ -149,10 +149,10 @@ def never_sent(robot: Robot) -> Conjunct:
 def _keep_goal(robot: Robot, cell: int) -> Conjunct:
     """State that a goal stays until the robot has reached it as its target."""
     has_arrived = f.both(terms.is_in_cell(robot, cell), terms.equals(terms.target(robot), cell))
-    is_under_way = f.both(is_sent_to(robot, cell), f.negate(f.prime(has_arrived)))
+    is_under_way = f.both(_is_sent_to(robot, cell), f.negate(f.prime(has_arrived)))
     text = f"'{robot.name}' keeps a target until it has reached it."
     return terms.safety_conjunct(
-        f.implies(is_under_way, f.prime(is_sent_to(robot, cell))), robot.origin, text
+        f.implies(is_under_way, f.prime(_is_sent_to(robot, cell))), robot.origin, text
     )
 
 

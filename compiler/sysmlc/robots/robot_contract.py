@@ -27,7 +27,7 @@ def robot_contract(study: Study, robot: Robot, is_alone: bool = True) -> Contrac
     ]
     if not is_alone:
         text = f"Again and again '{robot.name}' is in its target, or may go nearer."
-        is_nearer = f.either(terms.is_at_target(robot), nearer_offered(study, robot))
+        is_nearer = f.either(terms.is_at_target(robot), _nearer_offered(study, robot))
         assumptions.append(terms.liveness_conjunct(is_nearer, robot.origin, text))
     variables = (
         terms.cell_variable(terms.position(robot), _ENVIRONMENT, study.grid, robot.origin),
@@ -86,7 +86,7 @@ def _state_sensor(robot: Robot, cell: int, way: str, is_free: bool) -> Conjunct:
     )
 
 
-def nearer_offered(study: Study, robot: Robot) -> Formula:
+def _nearer_offered(study: Study, robot: Robot) -> Formula:
     """Return the predicate that a sensor offers a direction nearer to the target."""
     ways: list[Formula] = []
     for cell in study.grid.cells:

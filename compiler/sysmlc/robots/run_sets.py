@@ -78,7 +78,7 @@ def starts_without_collision(starts: Sequence[Sequence[int]], every_run: int) ->
     return difference(every_run, colliding)
 
 
-def runs_with_several(run_sets: Sequence[P], none: P) -> P:
+def _runs_with_several(run_sets: Sequence[P], none: P) -> P:
     """Return the runs that are in two or more of the sets."""
     any_seen, several = none, none
     for run_set in run_sets:

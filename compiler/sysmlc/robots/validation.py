@@ -126,7 +126,7 @@ def validate_allocation(
     study: Study, allocation: Allocation, answers: Sequence[Answers]
 ) -> Validation:
     """Simulate the mission from all admissible starts until it is over or fails somewhere."""
-    if count_starts(study) > MAX_EXPLICIT_STARTS:
+    if _count_starts(study) > MAX_EXPLICIT_STARTS:
         return validate_symbolically(study, allocation, answers)
     return _ExplicitValidation(study, partial(World, study, allocation, answers)).run()
 
@@ -138,7 +138,7 @@ def validate_symbolically(
     runs, start_count = symbolic_starts(study)
     simulation = Simulation(World(study, allocation, answers, runs))
     failure = simulation.run()
-    failed = pick_start(runs, failure.runs) if failure else ()
+    failed = _pick_start(runs, failure.runs) if failure else ()
     return _make_validation(start_count, simulation, simulation.reached, failure, failed)
 
 
@@ -176,7 +176,7 @@ class _ExplicitValidation:
 
     def run(self) -> Validation:
         """Simulate all batches up to a step, then merge the reached states into new batches."""
-        until = FIRST_MERGE_STEP if count_starts(self.study) > MIN_MERGED_STARTS else None
+        until = FIRST_MERGE_STEP if _count_starts(self.study) > MIN_MERGED_STARTS else None
         batches = self._first_batches()
         while True:
             states = StateSet(len(self.study.robots))
@@ -216,7 +216,7 @@ class _ExplicitValidation:
             self.start_count += runs.all.bit_count()
             base = chunk_number << _CHUNK_BITS
             origins = range(base, base + runs.all.bit_length())
-            yield _RunBatch(self.create_world(runs), origins, partial(pick_start, runs))
+            yield _RunBatch(self.create_world(runs), origins, partial(_pick_start, runs))
 
     def _next_batches(self, batches: Iterator[Batch], time: int) -> Iterator[_RunBatch]:
         for batch in batches:
@@ -230,13 +230,13 @@ class _ExplicitValidation:
         origin = origins[(states & -states).bit_length() - 1]
         chunk_number = origin >> _CHUNK_BITS
         runs = next(islice(iter_start_chunks(self.study, MAX_CHUNK_RUNS), chunk_number, None))
-        return pick_start(runs, 1 << (origin - (chunk_number << _CHUNK_BITS)))
+        return _pick_start(runs, 1 << (origin - (chunk_number << _CHUNK_BITS)))
 
 
 # -- admissible starts -------------------------------------------------------------------------
 
 
-def count_starts(study: Study) -> int:
+def _count_starts(study: Study) -> int:
     """Return the number of starts, including those with two robots in one cell."""
     return prod(len(possible_starts(study, robot)) for robot in range(len(study.robots)))
 
@@ -312,7 +312,7 @@ def _build_chunk(
     )
 
 
-def pick_start(runs: RunSpace[P], runs_of_interest: P) -> tuple[int, ...]:
+def _pick_start(runs: RunSpace[P], runs_of_interest: P) -> tuple[int, ...]:
     """Return the start of one run of a set, as a cell for each robot."""
     cells: list[int] = []
     remaining = runs_of_interest

@@ -143,7 +143,7 @@ def check_compositions(
 
 def _list_groups(composite: Composite) -> list[Composite]:
     """Return the groups of parts to compose, without single parts of a block without a contract."""
-    groups = split_composite(composite)
+    groups = _split_composite(composite)
     return [group for group in groups if len(group.parts) > 1 or group.whole is not None]
 
 
@@ -220,7 +220,7 @@ def _build_witnesses(composite: Composite, composition: Composition) -> Iterator
         yield Witness(composite.component, failure.conjunct, failure.trace, parties)
 
 
-def split_composite(composite: Composite) -> list[Composite]:
+def _split_composite(composite: Composite) -> list[Composite]:
     """Return the groups of parts that share variables, in the order of their first parts.
 
     The contract of the whole belongs to the group with its variables; the other groups have one
@@ -247,7 +247,7 @@ def split_composite(composite: Composite) -> list[Composite]:
 def has_shared_variables(composite: Composite) -> bool:
     """Return whether two parts, or a part and the whole, share variables."""
     return any(
-        len(group.parts) > 1 or _has_variables(group.whole) for group in split_composite(composite)
+        len(group.parts) > 1 or _has_variables(group.whole) for group in _split_composite(composite)
     )
 
 

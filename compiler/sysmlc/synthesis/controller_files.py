@@ -97,8 +97,8 @@ def machine_json(machine: Machine, contract: Contract) -> str:
         "format": MACHINE_FORMAT,
         "name": contract.component,
         "origin": contract.origin,
-        "inputs": [encode_variable(variable) for variable in machine.inputs],
-        "outputs": [encode_variable(variable) for variable in machine.outputs],
+        "inputs": [_encode_variable(variable) for variable in machine.inputs],
+        "outputs": [_encode_variable(variable) for variable in machine.outputs],
         "registers": [{"name": name, "of": of} for of, name in names.items()],
     }
     states = ",\n".join(f"    [{_encode_moves(moves, names)}]" for moves in machine.states)
@@ -117,18 +117,18 @@ def register_names(machine: Machine) -> dict[str, str]:
     return registers
 
 
-def rename_registers(formula: Formula, registers: Mapping[str, str]) -> Formula:
+def _rename_registers(formula: Formula, registers: Mapping[str, str]) -> Formula:
     """Replace the variables of a move by names: primed ones are inputs, unprimed ones registers."""
     match formula:
         case Var(name, primed):
             return Var(name if primed else registers[name])
         case Apply(op, parts):
-            return Apply(op, tuple(rename_registers(part, registers) for part in parts))
+            return Apply(op, tuple(_rename_registers(part, registers) for part in parts))
         case _:
             return formula
 
 
-def encode_variable(variable: Variable) -> dict[str, object]:
+def _encode_variable(variable: Variable) -> dict[str, object]:
     """Return a variable as a JSON value."""
     return {
         "name": variable.name,
@@ -163,7 +163,7 @@ def _describe_output(output: Formula, names: Mapping[str, str]) -> object:
 
 
 def _print_with_registers(formula: Formula, names: Mapping[str, str]) -> str:
-    return print_formula(rename_registers(formula, names))
+    return print_formula(_rename_registers(formula, names))
 
 
 def has_diagram(machine: Machine) -> bool:
@@ -228,8 +228,8 @@ def table_json(table: Table, contract: Contract) -> str:
         "format": TABLE_FORMAT,
         "name": contract.component,
         "origin": contract.origin,
-        "inputs": [encode_variable(variable) for variable in table.inputs],
-        "outputs": [encode_variable(variable) for variable in table.outputs],
+        "inputs": [_encode_variable(variable) for variable in table.inputs],
+        "outputs": [_encode_variable(variable) for variable in table.outputs],
     }
     members = (
         _encode_list("bits", _encode_bits(table)),

@@ -40,7 +40,7 @@ class Witness(Struct, frozen=True):
     parties: tuple[Party, ...]
 
 
-def iter_changes(trace: Trace) -> Iterator[Values]:
+def _iter_changes(trace: Trace) -> Iterator[Values]:
     """Yield for each step the values that have changed; for the first step all values."""
     previous: Values = {}
     for values in trace.steps:
@@ -54,7 +54,7 @@ def describe_run(trace: Trace, broken: Conjunct | None = None) -> Iterator[str]:
     With *broken*, variables are omitted that never change and that *broken* does not read.
     """
     hidden = _constant_variables(trace, broken) if broken else set()
-    for number, changed in enumerate(iter_changes(trace), 1):
+    for number, changed in enumerate(_iter_changes(trace), 1):
         if number > _MAX_SHOWN_STEPS:
             yield f"and {len(trace.steps) - _MAX_SHOWN_STEPS} more"
             break
@@ -66,7 +66,7 @@ def describe_run(trace: Trace, broken: Conjunct | None = None) -> Iterator[str]:
 
 def _constant_variables(trace: Trace, broken: Conjunct) -> set[str]:
     """Return the variables that never change and that the conjunct does not read."""
-    changing = {name for changed in list(iter_changes(trace))[1:] for name in changed}
+    changing = {name for changed in list(_iter_changes(trace))[1:] for name in changed}
     read = {variable.name for variable in f.variables(broken.formula)}
     return set(trace.steps[0]) - changing - read
 
@@ -122,7 +122,7 @@ def print_temporal(conjunct: Conjunct) -> str:
 
 
 def _diagram_steps(trace: Trace, contracts: Sequence[Contract]) -> Iterator[str]:
-    for number, changed in enumerate(iter_changes(trace)):
+    for number, changed in enumerate(_iter_changes(trace)):
         if number == trace.loop:
             yield "group again and again"
         yield f"== step {number + 1} =="

@@ -20,7 +20,7 @@ TINTS = 6
 """Number of tints in ``_style.j2``; a seventh partition has the tint of the first."""
 
 
-def choose_tint(number: int) -> str:
+def _choose_tint(number: int) -> str:
     """Return the style of the nodes in the partition with this number, from 0."""
     return f"lane{number % TINTS + 1}"
 
@@ -94,7 +94,7 @@ class _ActivityDrawing:
 
     def _assign_tints(self) -> dict[str, str]:
         partitions = (item for item in self.inside if item.kind is _PARTITION)
-        return {partition.id: choose_tint(number) for number, partition in enumerate(partitions)}
+        return {partition.id: _choose_tint(number) for number, partition in enumerate(partitions)}
 
     def _find_region(self, node: Element) -> Element | None:
         """Return the interruptible region that contains the node."""

@@ -105,13 +105,13 @@ def _is_shown(graph: Graph, element: Element) -> bool:
     if owner is not None and owner.kind is Kind.TEMPLATE_PARAMETER:
         return False
     if element.kind is not Kind.ACTIVITY:
-        return element.kind is not Kind.INSTANCE or not is_in_frame(graph, element)
+        return element.kind is not Kind.INSTANCE or not _is_in_frame(graph, element)
     is_free = owner is None or owner.kind is Kind.PACKAGE
     is_drawn = any(item.kind in ACTIVITY_NODES for item in graph.owned(element))
     return is_free and not is_drawn and not element.attrs.get("external")
 
 
-def is_in_frame(graph: Graph, instance: Element) -> bool:
+def _is_in_frame(graph: Graph, instance: Element) -> bool:
     """Whether an internal block diagram shows the instance.
 
     It does if the instance, or an instance that contains it, owns a connector.
@@ -129,7 +129,7 @@ def _draw_package(
     in_rows = {r.row: r.shows for r in candidates if r.row and r.target not in own_ids}
     lines = [relation for relation in candidates if relation.row not in in_rows]
     lines += _list_containments(graph, [graph[id] for id in ids])
-    lines, rows = fold_foreign_clients(lines, own_ids)
+    lines, rows = _fold_foreign_clients(lines, own_ids)
     adjacency = find_neighbours(own_ids, lines)
     parts = partitioning.partition(ids, adjacency)
     title = graph.qualified_name(about) if about is not None else "model"
@@ -229,7 +229,7 @@ def _build_view(
     in_lines = {id for relation in inside for id in relation.shows}
     boxes = [make_box(graph, item, aliases, in_lines, in_rows) for item in shown]
     boxes = [
-        add_client_rows(graph, classifier_box, rows.get(item.id, []))
+        _add_client_rows(graph, classifier_box, rows.get(item.id, []))
         for item, classifier_box in zip(shown, boxes, strict=True)
     ]
     outside = [id for r in inside for id in (r.source, r.target) if id not in aliases]
@@ -264,7 +264,7 @@ _CLIENTS_TITLE = "depended on by"
 _CLIENT_WIDTH = 46
 
 
-def fold_foreign_clients(
+def _fold_foreign_clients(
     candidates: Iterable[Relation], own: set[str]
 ) -> tuple[list[Relation], dict[str, list[Relation]]]:
     """Return the relations to draw as lines, and by box the relations to show as rows.
@@ -288,7 +288,7 @@ def _is_inward(relation: Relation, own: set[str]) -> bool:
     return is_plain and relation.source not in own and relation.target in own
 
 
-def add_client_rows(graph: Graph, box: Box, rows: list[Relation]) -> Box:
+def _add_client_rows(graph: Graph, box: Box, rows: list[Relation]) -> Box:
     """Return the box with a row for each relation."""
     if not rows:
         return box

@@ -65,10 +65,10 @@ def make_box(
         rows["allocations"], allocations = list_block_allocations(graph, item)
         shows += allocations
     compartments = tuple(Compartment(t, tuple(rows[t])) for t in _ORDER if rows.get(t))
-    measures = list_measure_rows(graph, item)
+    measures = _list_measure_rows(graph, item)
     if measures:
         compartments = (Compartment("", measures), *compartments)
-        shows += iter_measure_ids(graph, item)
+        shows += _iter_measure_ids(graph, item)
     alias = aliases.make(item.id, item.name, str(item.kind))
     return Box(alias, make_heading(graph, item), _choose_style(item), compartments, tuple(shows))
 
@@ -166,7 +166,7 @@ def _iter_shown(graph: Graph, feature: Element) -> Iterator[Element]:
         yield from graph.owned(feature)
 
 
-def list_measure_rows(graph: Graph, item: Element) -> tuple[str, ...]:
+def _list_measure_rows(graph: Graph, item: Element) -> tuple[str, ...]:
     """Return rows such as ``unit = kilogram (kg)`` of a value type."""
     if item.role != "value type" or is_unit(item) or is_quantity_kind(item):
         return ()
@@ -179,8 +179,8 @@ def list_measure_rows(graph: Graph, item: Element) -> tuple[str, ...]:
     )
 
 
-def iter_measure_ids(graph: Graph, item: Element) -> Iterator[str]:
-    """Yield the ids of the units and quantity kinds that ``list_measure_rows`` shows."""
+def _iter_measure_ids(graph: Graph, item: Element) -> Iterator[str]:
+    """Yield the ids of the units and quantity kinds that ``_list_measure_rows`` shows."""
     for element in graph.targets(item, Edge.REFERENCES):
         if is_unit(element) or is_quantity_kind(element):
             yield element.id

@@ -56,7 +56,7 @@ class Connection(Struct, frozen=True):
 
     def format_label(self) -> str:
         """Return the label of the line as PlantUML text."""
-        rows = [color_text(format_label(text), domain) for text, domain in self.carried]
+        rows = [_color_text(format_label(text), domain) for text, domain in self.carried]
         return join_rows([format_keyword_label(self.label), *rows])
 
 
@@ -268,7 +268,7 @@ def style_arrow(arrow: str, domain: str) -> str:
     return arrow
 
 
-def color_text(row: str, domain: str) -> str:
+def _color_text(row: str, domain: str) -> str:
     """Return escaped text in the colour of a domain."""
     return f"<color:${domain}>{row}</color>" if domain in DOMAINS else row
 

@@ -39,7 +39,7 @@ class Binding(Struct, frozen=True):
         return self.source, self.target
 
 
-def list_usages(graph: Graph, block: Element) -> list[Element]:
+def _list_usages(graph: Graph, block: Element) -> list[Element]:
     """Return the constraint properties of a block, inherited ones included."""
     return [feature for feature in features(graph, block) if feature.role == "constraint property"]
 
@@ -67,7 +67,7 @@ def _find_users(graph: Graph) -> dict[str, list[Element]]:
     """Return the blocks that use each constraint block, by its id."""
     users: dict[str, list[Element]] = {}
     for block in graph.of_kind(*OWNERS):
-        types = (type_of(graph, usage) for usage in list_usages(graph, block))
+        types = (type_of(graph, usage) for usage in _list_usages(graph, block))
         for id in dict.fromkeys(type_.id for type_ in types if type_ is not None):
             users.setdefault(id, []).append(block)
     return users
@@ -153,7 +153,9 @@ def draw_parametric_diagrams(graph: Graph) -> Iterator[Diagram]:
     for block in graph.of_kind(*OWNERS):
         has_usages = any(_is_constraint(graph, member) for member in graph.owned(block))
         if (has_usages or block.id in bound) and not block.attrs.get("external"):
-            yield from _draw_block(graph, block, list_usages(graph, block), bound.get(block.id, []))
+            yield from _draw_block(
+                graph, block, _list_usages(graph, block), bound.get(block.id, [])
+            )
 
 
 def build_selected_view(

@@ -103,7 +103,7 @@ def _make_diagram(graph: Graph, interaction: Element, lifelines: list[Element]) 
         name=title,
         frame=escape_line(f"sd {labels.name(interaction)}{labels.signature(graph, interaction)}"),
         heading=("Sequence diagram", title),
-        view=SequenceView(participants, tuple(iter_steps(graph, interaction, aliases))),
+        view=SequenceView(participants, tuple(_iter_steps(graph, interaction, aliases))),
         about=interaction.id,
         details=tuple(features),
     )
@@ -160,7 +160,7 @@ _ARROWS = {
 """Arrows by message sort; a filled head is a synchronous call (17.4.4)."""
 
 
-def iter_message_steps(walk: Walk, message: Element) -> Iterator[Step]:
+def _iter_message_steps(walk: Walk, message: Element) -> Iterator[Step]:
     """Yield the message once, at the first of its two occurrences."""
     source, target = (
         _find_end(walk, message, Edge.FLOW_SOURCE),
@@ -207,7 +207,7 @@ _OPERATOR_KEYWORDS = frozenset(["alt", "opt", "loop", "par", "break", "critical"
 """Operators with a keyword in PlantUML; other operators are drawn as ``group``."""
 
 
-def iter_steps(graph: Graph, interaction: Element, aliases: Aliases) -> Iterator[Step]:
+def _iter_steps(graph: Graph, interaction: Element, aliases: Aliases) -> Iterator[Step]:
     """Yield the steps of an interaction in their order; *aliases* has the lifelines."""
     walk = Walk(graph, aliases)
     walk.begin(interaction)
@@ -228,7 +228,7 @@ def _iter_all_steps(walk: Walk, interaction: Element) -> Iterator[Step]:
     yield from _iter_container(walk, interaction)
     # Messages without occurrences in a fragment come last; is_new skips those already drawn.
     for message in interactions.messages(graph, interaction):
-        yield from iter_message_steps(walk, message)
+        yield from _iter_message_steps(walk, message)
 
 
 def _iter_container(walk: Walk, container: Element) -> Iterator[Step]:
@@ -251,7 +251,7 @@ def _iter_occurrence(walk: Walk, item: Element) -> Iterator[Step]:
     )
     messages = [message for message in candidates if message is not None]
     for message in messages:
-        yield from iter_message_steps(walk, message)
+        yield from _iter_message_steps(walk, message)
     if not messages:
         yield from _iter_note_steps(walk, item)
     # Finish before start: a bar that ends where the next one starts is not nested in it.

@@ -176,7 +176,7 @@ def _list_rows(graph: Graph, state: Element) -> tuple[tuple[str, ...], list[str]
     ids: list[str] = []
     for word, edge in (("entry", Edge.ENTRY), ("do", Edge.DO), ("exit", Edge.EXIT)):
         for behaviour in graph.targets(state, edge):
-            rows += wrap_lines(f"{word} / {format_behaviour(behaviour)}", _ROW_WIDTH)
+            rows += wrap_lines(f"{word} / {_format_behaviour(behaviour)}", _ROW_WIDTH)
             ids.append(behaviour.id)
     for item in graph.owned(state):
         if item.kind is Kind.TRIGGER:
@@ -188,7 +188,7 @@ def _list_rows(graph: Graph, state: Element) -> tuple[tuple[str, ...], list[str]
         ids.append(item.id)
     for transition in graph.sources(state, Edge.FLOW_SOURCE):
         if transition.subkind == "internal":
-            rows += wrap_lines(format_transition(graph, transition), _ROW_WIDTH)
+            rows += wrap_lines(_format_transition(graph, transition), _ROW_WIDTH)
             ids += _list_label_ids(graph, transition)
     return tuple(rows), ids
 
@@ -200,7 +200,7 @@ def _iter_transitions(graph: Graph, machine: Element, aliases: Aliases) -> Itera
         source = graph.target(item, Edge.FLOW_SOURCE)
         target = graph.target(item, Edge.FLOW_TARGET)
         if source is not None and target is not None and {source.id, target.id} <= aliases.keys():
-            text = format_label(format_transition(graph, item))
+            text = format_label(_format_transition(graph, item))
             shows = tuple(_list_label_ids(graph, item))
             yield Line(aliases[source.id], "-->", aliases[target.id], text, shows=shows)
 
@@ -212,13 +212,13 @@ def _list_label_ids(graph: Graph, transition: Element) -> list[str]:
     return [item.id for item in (transition, *members, *effects)]
 
 
-def format_transition(graph: Graph, transition: Element) -> str:
+def _format_transition(graph: Graph, transition: Element) -> str:
     """Return ``trigger [guard] / effect`` (UML 2.5.1, 14.2.4).
 
     A protocol transition also has ``/ [postcondition]``.
     """
     triggers = [format_trigger(graph, item) for item in graph.targets(transition, Edge.TRIGGER)]
-    effects = [format_behaviour(item) for item in graph.targets(transition, Edge.EFFECT)]
+    effects = [_format_behaviour(item) for item in graph.targets(transition, Edge.EFFECT)]
     effects += [
         f"[{item.attrs.get('body') or labels.name(item)}]"
         for item in graph.owned(transition)
@@ -240,7 +240,7 @@ def format_guard(graph: Graph, flow: Element) -> str:
     return "" if text in ("", None) else f"[{labels.literal(text)}]"
 
 
-def format_behaviour(behaviour: Element) -> str:
+def _format_behaviour(behaviour: Element) -> str:
     """Return the body of an opaque behaviour, else the behaviour's name."""
     return str(behaviour.attrs.get("body") or labels.name(behaviour))
 

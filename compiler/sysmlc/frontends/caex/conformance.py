@@ -52,7 +52,7 @@ def report_unknown_content(context: Context, sources: Sequence[Source]) -> None:
             _report_stray_texts(context, document, sources_by_name[document.name])
 
 
-def is_unchecked(document: Document, row: int) -> bool:
+def _is_unchecked(document: Document, row: int) -> bool:
     """Whether a row is below an element that may hold any XML, or that CAEX does not have."""
     ancestor = document.parents[row]
     while ancestor >= 0:
@@ -76,7 +76,7 @@ def _report_unknown_attributes(context: Context, document: Document) -> None:
         for row in _find_rows(document, unknown):
             tag = document.tags[row]
             for name in unknown[tag, tuple(document.attributes[row])]:
-                if not is_unchecked(document, row):
+                if not _is_unchecked(document, row):
                     rows_by_attribute.setdefault((tag, name), []).append(row)
     for (tag, name), rows in rows_by_attribute.items():
         for row in rows:
@@ -147,7 +147,7 @@ def _has_stray_text_of_rows(document: Document) -> bool:
     """Whether a checked row has text although its tag allows none."""
     texts, tags = document.texts[""].items(), document.tags
     rows = (row for row, text in texts if tags[row] in _TEXTLESS_TAGS and text.strip())
-    return any(not is_unchecked(document, row) for row in rows)
+    return any(not _is_unchecked(document, row) for row in rows)
 
 
 def _find_stray_texts(source: Source) -> list[tuple[str, int, str]]:
@@ -208,7 +208,7 @@ def _find_repeated_rows(document: Document) -> Iterator[int]:
     for row, (tag, parent, attributes) in enumerate(columns):
         if tag in _NAMED_TAGS:
             key = parent, tag, attributes.get("Name", "")
-            if key in keys and not is_unchecked(document, row):
+            if key in keys and not _is_unchecked(document, row):
                 yield row
             keys.add(key)
 

@@ -24,7 +24,7 @@ MEMBER_FAMILIES = {"Attribute": Family.ATTRIBUTE, "ExternalInterface": Family.IN
 _GUID_LENGTH = 36
 
 
-def read_master_id(node: Node) -> str:
+def _read_master_id(node: Node) -> str:
     """Return the ID that a reference holds in place of a class path, or the empty string."""
     text = node.attributes.get(_MIRROR_REFERENCES.get(node.tag, ""), "").strip()
     return text.partition("/")[0] if node.tag == "Attribute" else text
@@ -32,7 +32,7 @@ def read_master_id(node: Node) -> str:
 
 def is_mirror(context: Context, node: Node) -> bool:
     """Whether the node names another element and no class."""
-    id = read_master_id(node)
+    id = _read_master_id(node)
     if is_id_reference(context, id):
         return True
     if node.tag != "Attribute" or "." not in id:
@@ -104,7 +104,7 @@ def find_master(context: Context, document: Document, node: Node) -> Node | None
         node = master
     first = next(iter(chain), node)
     if chain:
-        context.report_inexact_id(document, first, read_master_id(first))
+        context.report_inexact_id(document, first, _read_master_id(first))
     if node in chain or node in circular:
         circular.update(chain)
         _report_cycle(context, document, first)
@@ -115,7 +115,7 @@ def find_master(context: Context, document: Document, node: Node) -> Node | None
 
 def _find_next(context: Context, document: Document, mirror: Node) -> Node | str:
     """Return the node that a mirror names, or its reference if that leads nowhere."""
-    located = context.find_node(read_master_id(mirror), document)
+    located = context.find_node(_read_master_id(mirror), document)
     if located is None:
         return read_class_reference(mirror)
     if mirror.tag == "Attribute":
@@ -149,7 +149,7 @@ def _report_missing(context: Context, document: Document, node: Node, reference:
 
 def _report_cycle(context: Context, document: Document, node: Node) -> None:
     _record_path(context, node)
-    facts = {"element": node.name, "reference": read_master_id(node)}
+    facts = {"element": node.name, "reference": _read_master_id(node)}
     context.report(rules.MIRROR_CYCLE, document, node, **facts)
 
 

@@ -29,7 +29,7 @@ def connect_type(
         context.graph.connect(Edge.TYPED_BY, element, context.graph[type.id])
     else:
         data_type = node.attributes.get("AttributeDataType", "")
-        refer_to_primitive(context, Edge.TYPED_BY, element.id, data_type, element.ordinal)
+        _refer_to_primitive(context, Edge.TYPED_BY, element.id, data_type, element.ordinal)
 
 
 def set_multiplicity(attrs: dict[str, AttrValue], declared: Type | None) -> None:
@@ -53,7 +53,7 @@ def complete_attribute_type(context: Context, type: Type) -> None:
     if data_type:
         element.attrs["data_type"] = data_type
     if data_type and type.base is None:
-        refer_to_primitive(context, Edge.SPECIALIZES, type.id, data_type, element.ordinal)
+        _refer_to_primitive(context, Edge.SPECIALIZES, type.id, data_type, element.ordinal)
     unit = _read_unit(context, node, type.document)
     if unit:
         element.attrs["unit"] = unit
@@ -66,7 +66,7 @@ def find_primitive(data_type: str) -> str:
     return PRIMITIVES.get(local_name(data_type), "String")
 
 
-def refer_to_primitive(
+def _refer_to_primitive(
     context: Context, edge: Edge, source: str, data_type: str, ordinal: int
 ) -> None:
     """Add a pending reference to the UML primitive of an XML Schema data type."""
@@ -121,7 +121,7 @@ def _find_measured_type(context: Context, node: Node, type: Type | None, unit: s
     if type is not None:
         context.graph.connect(Edge.SPECIALIZES, id, type.id)
     else:
-        refer_to_primitive(context, Edge.SPECIALIZES, id, stated, -1)
+        _refer_to_primitive(context, Edge.SPECIALIZES, id, stated, -1)
     return id
 
 

@@ -98,7 +98,7 @@ def lower_textual_representation(lowering: "Lowering", node: Node, owner: Elemen
 
 def lower_metadata(lowering: "Lowering", node: Node, owner: Element | None) -> None:
     """Lower metadata to an applied stereotype; metadata of our library describes its owner."""
-    shipped_name = shipped_metadata_name(node)
+    shipped_name = _shipped_metadata_name(node)
     if shipped_name:
         if owner is not None and shipped_name in _SHIPPED_HANDLERS:
             _SHIPPED_HANDLERS[shipped_name](lowering, node, owner)
@@ -116,7 +116,7 @@ def lower_metadata(lowering: "Lowering", node: Node, owner: Element | None) -> N
         lowering.defer_until_elements(
             lambda: _connect_stereotype(lowering, application, definition)
         )
-    for key, value in iter_values(node):
+    for key, value in _iter_values(node):
         set_tag(lowering, application, key, value)
 
 
@@ -149,7 +149,7 @@ _SHIPPED_HANDLERS: dict[str, Callable[["Lowering", Node, Element], None]] = {
 
 def is_owned_by_type(node: Node) -> bool:
     """Whether metadata is an element that the class of its feature owns, not the feature."""
-    is_element = shipped_metadata_name(node) == "Element"
+    is_element = _shipped_metadata_name(node) == "Element"
     return is_element and bool(dict(iter_constants(node)).get("isOfType"))
 
 
@@ -169,7 +169,7 @@ def _namespace_of(definition: Node | None) -> str:
     if root_member is not definition and nodes.name_of(root_member) == RECIPES:
         return PROFILE
     for member in nodes.iter_by_metaclass(definition, "MetadataUsage"):
-        if shipped_metadata_name(member) == "External":
+        if _shipped_metadata_name(member) == "External":
             return str(dict(iter_constants(member)).get("href", ""))
     return ""
 
@@ -217,7 +217,7 @@ def _write_tag(lowering: "Lowering", value: AttrValue) -> AttrValue:
     return lowering.id_of(text) or text if "::" in text else text
 
 
-def iter_values(node: Node) -> Iterator[tuple[str, Node]]:
+def _iter_values(node: Node) -> Iterator[tuple[str, Node]]:
     """Yield the names and expressions of the values in metadata."""
     for member in node.members:
         value = nodes.value_of(member)
@@ -228,13 +228,13 @@ def iter_values(node: Node) -> Iterator[tuple[str, Node]]:
 
 def iter_constants(node: Node) -> Iterator[tuple[str, AttrValue]]:
     """Yield the names and values of the constants in metadata."""
-    for name, expression in iter_values(node):
+    for name, expression in _iter_values(node):
         value = values.constant_of(expression)
         if value is not None:
             yield name, value
 
 
-def shipped_metadata_name(node: Node) -> str:
+def _shipped_metadata_name(node: Node) -> str:
     """Return the name of the definition in our library that types metadata, else ''."""
     reference = nodes.find_reference(node, "FeatureTyping")
     definition = None if reference is None else reference.target
@@ -249,7 +249,7 @@ def shipped_metadata_of(node: Node) -> dict[str, Node]:
     return {
         name: member
         for member in node.members
-        if member.kind == "MetadataUsage" and (name := shipped_metadata_name(member))
+        if member.kind == "MetadataUsage" and (name := _shipped_metadata_name(member))
     }
 
 

@@ -116,10 +116,10 @@ def _read_feature_reference(node: Node) -> Expression:
     reference = nodes.find_reference(node, "Membership")
     if reference is None:
         raise NotExpressibleError(node.kind)
-    return read_reference(reference)
+    return _read_reference(reference)
 
 
-def read_reference(reference: Reference) -> Expression:
+def _read_reference(reference: Reference) -> Expression:
     """Return the expression for a reference to a feature or to a chain of features."""
     return _append_members(_read_first_link(reference), reference.chain[1:])
 
@@ -249,7 +249,7 @@ def _read_assignment(node: Node) -> Statement | None:
     if reference is None or not inputs:
         return None
     value = read_expression(inputs[-1])
-    target = read_reference(reference)
+    target = _read_reference(reference)
     for expression in inputs[:-1]:
         base = read_expression(expression)
         target = target if base is None else _prepend_base(base, target)
@@ -283,7 +283,7 @@ def _read_performance(node: Node) -> Statement | None:
     reference = nodes.find_reference(node, "ReferenceSubsetting")
     if reference is None or node.name or node.members:
         return None
-    return Invocation(read_reference(reference))
+    return Invocation(_read_reference(reference))
 
 
 _STATEMENT_READERS = {

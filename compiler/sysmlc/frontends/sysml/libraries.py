@@ -69,7 +69,7 @@ _BASE_NAMES = """
 _BASES = frozenset(_BASE_NAMES.split())
 
 
-def href_of(qualified_name: str) -> str:
+def _href_of(qualified_name: str) -> str:
     """Return the href by which the pass ``resolve`` finds an element of the library."""
     scalar = SCALARS.get(qualified_name)
     if scalar:
@@ -82,7 +82,7 @@ def ensure_stub(graph: Graph, kind: Kind, qualified_name: str) -> str:
 
     A scalar type needs no stub: its href is returned.
     """
-    href = href_of(qualified_name)
+    href = _href_of(qualified_name)
     if qualified_name in SCALARS:
         return href
     id_ = derived_id(href, "stub")

@@ -29,7 +29,7 @@ def read(
 ) -> None:
     """Read the files into the graph. Raises SourceError for a file that exceeds the limits."""
     models = [source for source in sources if not is_description(source)]
-    documents = [parse_document(source, sink) for source in models]
+    documents = [_parse_document(source, sink) for source in models]
     standard = _load_standard_library(library, sink)
     if any(map(_is_interchange, documents)):
         interchange.link(documents, sink, standard)
@@ -59,7 +59,7 @@ def read(
     _mark_external(graph, lowered)
 
 
-def parse_document(source: Source, sink: Sink) -> Document:
+def _parse_document(source: Source, sink: Sink) -> Document:
     """Parse one text or interchange file and report its faults."""
     if is_xml(source):
         return interchange.read(source, sink)
@@ -197,6 +197,6 @@ def _parse_root(source: Source) -> Node:
     if is_description(source):
         return Node("Namespace")
     try:
-        return parse_document(source, Sink()).root
+        return _parse_document(source, Sink()).root
     except SourceError:
         return Node("Namespace")

@@ -122,7 +122,7 @@ def _defer_argument(lowering: "Lowering", usage: Element, parameter: Node, value
 def lower_requirement(lowering: "Lowering", node: Node, owner: Element | None) -> None:
     """Lower a requirement: its short name is the id, its first documentation the text."""
     if node.membership == "RequirementVerificationMembership":
-        lower_verification(lowering, node, owner)
+        _lower_verification(lowering, node, owner)
         return
     if node.membership == "ObjectiveMembership":
         lower_objective(lowering, node, owner)
@@ -236,14 +236,14 @@ def lower_objective(lowering: "Lowering", node: Node, owner: Element | None) -> 
         lowering.mark_approximated(node, "the type of an objective", "nothing")
     for member in nodes.body_of(node):
         if member.membership == "RequirementVerificationMembership":
-            lower_verification(lowering, member, owner)
+            _lower_verification(lowering, member, owner)
         elif nodes.is_annotation(member):
             lowering.lower(member, owner)
         elif member.membership != "SubjectMembership":
             lowering.mark_approximated(member, "a part of an objective", "nothing")
 
 
-def lower_verification(lowering: "Lowering", node: Node, owner: Element | None) -> None:
+def _lower_verification(lowering: "Lowering", node: Node, owner: Element | None) -> None:
     """Lower the verification of a requirement by the case that contains it."""
     package = _find_package(lowering, owner)
     verification = lowering.add_element(

@@ -177,7 +177,7 @@ def _read_stereotypes(context: Context, element: Element, row: int) -> None:
 
 
 def _apply(context: Context, element: Element, row: int, qualified_name: str) -> None:
-    name, namespace = split_stereotype_name(context, qualified_name)
+    name, namespace = _split_stereotype_name(context, qualified_name)
     applied = {mangle_name(app.name) for app in _list_applications(context, element)}
     if not name or mangle_name(name) in applied:
         return
@@ -228,11 +228,11 @@ def read_stereotype_name(context: Context, row: int) -> tuple[str, str]:
     name, namespace = document.features[row], document.namespace(row)
     qualified_name = document.attributes[row].get("__EAStereoName")
     if qualified_name:
-        return split_stereotype_name(context, qualified_name, namespace)
+        return _split_stereotype_name(context, qualified_name, namespace)
     return _capitalise_sysml(name, namespace), namespace
 
 
-def split_stereotype_name(
+def _split_stereotype_name(
     context: Context, qualified_name: str, default_namespace: str = ""
 ) -> tuple[str, str]:
     """Return name and namespace of the stereotype ``Prefix::Name``.

@@ -264,7 +264,7 @@ def check_bounds(model: Model, node: Node) -> Iterator[Finding]:
     if own_bounds is None:
         return
     for relation, target in iter_stated(node, _BOUNDED_RELATIONS):
-        general_bounds = find_bounds(model, target)
+        general_bounds = _find_bounds(model, target)
         if general_bounds is not None:
             names = {"name": name_of(model, node), "general": name_of(model, target)}
             start = relation.reference.start
@@ -282,12 +282,12 @@ def check_bounds(model: Model, node: Node) -> Iterator[Finding]:
                 yield Finding(FEWER, start, {**names, **least})
 
 
-def find_bounds(model: Model, feature: Node, depth: int = 0) -> Bounds | None:
+def _find_bounds(model: Model, feature: Node, depth: int = 0) -> Bounds | None:
     """Return the bounds of a feature: stated, redefined, or 1 by default; None if unknown."""
     if any(member.kind == "MultiplicityRange" for member in feature.members):
         return _find_stated_bounds(model, feature)
     for _, target in iter_stated(feature, _REDEFINITION):
-        return find_bounds(model, target, depth + 1) if depth < _MAX_DEPTH else None
+        return _find_bounds(model, target, depth + 1) if depth < _MAX_DEPTH else None
     is_single = feature.kind in _SINGLE and find_owning_type(feature) is not None
     return Bounds(1, 1) if is_single else None
 

@@ -51,7 +51,7 @@ _WHITE_SPACE = " \t\f\v"
 _TAB_WIDTH = 4
 
 
-def reindent_comment(text: str, column: int, indent: str) -> list[str]:
+def _reindent_comment(text: str, column: int, indent: str) -> list[str]:
     """Return the lines of a comment that is moved from ``column`` to after ``indent``."""
     first, *rest = text.split("\n")
     if not rest:
@@ -98,19 +98,19 @@ WIDTH = 100
 """Maximal length of a line, including its indentation."""
 
 
-def wrap_pieces(pieces: Sequence[Piece], first_indent: str, next_indent: str) -> list[str]:
+def _wrap_pieces(pieces: Sequence[Piece], first_indent: str, next_indent: str) -> list[str]:
     """Return the pieces as lines: the first with ``first_indent``, others with ``next_indent``."""
     lines: list[str] = []
     indent = first_indent
     start = 0
     while start < len(pieces):
         end = _find_line_end(pieces, start, len(indent))
-        lines.append(indent + join_pieces(pieces[start:end]))
+        lines.append(indent + _join_pieces(pieces[start:end]))
         indent, start = next_indent, end
     return lines
 
 
-def join_pieces(pieces: Sequence[Piece]) -> str:
+def _join_pieces(pieces: Sequence[Piece]) -> str:
     """Return the pieces in one line."""
     return "".join(
         piece.space + piece.text if index else piece.text for index, piece in enumerate(pieces)
@@ -188,7 +188,7 @@ class Printer:
 
     def print_note(self, note: Note, indent: str) -> None:
         """Print a note on lines of its own."""
-        self.lines += reindent_comment(note.text, note.column, indent)
+        self.lines += _reindent_comment(note.text, note.column, indent)
 
 
 class _StatementPrinter:
@@ -220,7 +220,7 @@ class _StatementPrinter:
             self._print_notes_between(token.notes)
         if token.sort is Sort.COMMENT and "\n" in token.text:
             self._flush()
-            self._printer.lines += reindent_comment(token.text, token.column, self._indent)
+            self._printer.lines += _reindent_comment(token.text, token.column, self._indent)
         else:
             self._pieces.append(self._spacing.add_token(token))
 
@@ -251,7 +251,7 @@ class _StatementPrinter:
     def _flush(self) -> None:
         """Print the pieces so far; the next pieces begin a new line."""
         if self._pieces:
-            self._printer.lines += wrap_pieces(self._pieces, self._first_indent, self._next_indent)
+            self._printer.lines += _wrap_pieces(self._pieces, self._first_indent, self._next_indent)
             self._first_indent = self._next_indent
             self._pieces = []
 
@@ -266,7 +266,7 @@ def _fits_on_line(statement: Statement, indent: str) -> bool:
     blocks = [item for item in statement if isinstance(item, Block) and item.is_expression]
     if not blocks or not all(_needs_no_line(block) for block in blocks):
         return False
-    return len(indent) + len(join_pieces(list(_iter_header(statement)))) <= WIDTH
+    return len(indent) + len(_join_pieces(list(_iter_header(statement)))) <= WIDTH
 
 
 def _iter_header(statement: Statement) -> Iterator[Piece]:

@@ -36,7 +36,7 @@ _OPERATOR_PARAMETERS = {
 """Parameters of the functions of operators; operands redefine them (KerML 9.4)."""
 
 
-def map_ids(document: Document) -> dict[str, Node]:
+def _map_ids(document: Document) -> dict[str, Node]:
     """Return the nodes of a document by the ids that they and their memberships have."""
     root = unfold(document.root)
     assign_ids(root, document)
@@ -265,7 +265,7 @@ class _IdIndex:
         if file not in self._ids and self._library is not None:
             # Hrefs name .kermlx files, the library has .kerml files of the same stem.
             stem = basename(splitext(file)[0])
-            self._ids[file] = map_ids(self._library.document(self._stems[stem]))
+            self._ids[file] = _map_ids(self._library.document(self._stems[stem]))
         return self._ids[file]
 
 

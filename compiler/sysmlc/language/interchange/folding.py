@@ -18,7 +18,7 @@ from sysmlc.language.tree import Node, Relation
 _LAZY_OPERATORS = {"if", "and", "or", "implies", "??"}
 
 
-def fold_constructor_arguments(result: Node) -> None:
+def _fold_constructor_arguments(result: Node) -> None:
     """Let the result of a constructor own the values of its parameters (KerML 8.2.5.8.3)."""
     for index, node in enumerate(result.members):
         if node.membership == "ParameterMembership" and node.kind == "Feature":
@@ -28,7 +28,7 @@ def fold_constructor_arguments(result: Node) -> None:
                 result.members[index] = value
 
 
-def unwrap_argument(node: Node, owner: Node) -> Node:
+def _unwrap_argument(node: Node, owner: Node) -> Node:
     """Return the expression of a parameter that only carries an argument, else the parameter."""
     value = _find_carried_value(node)
     if value is node:
@@ -126,9 +126,9 @@ class Folding:
         if membership in _PARAMETERS:
             node.attributes.pop("direction", None)
         if owner.kind == "ConstructorExpression":
-            fold_constructor_arguments(node)
+            _fold_constructor_arguments(node)
         elif owner.kind in _INSTANTIATIONS:
-            node = unwrap_argument(node, owner.node)
+            node = _unwrap_argument(node, owner.node)
         node.membership = membership if node is inner.node else "ParameterMembership"
         if not node.role:
             node.role = _find_role(frame)

@@ -28,7 +28,7 @@ _ALGORITHMS = {
 _BLAKE_DIGEST_SIZES = {"BLAKE2B256": 32, "BLAKE2B384": 48, "BLAKE2B512": 64}
 
 
-def compute_checksum(source: Source, algorithm: str) -> str | None:
+def _compute_checksum(source: Source, algorithm: str) -> str | None:
     """Return the checksum in hex, or None for an unknown algorithm; hyphens are ignored."""
     canonical_name = algorithm.upper().replace("-", "")
     if canonical_name == "SHA256":
@@ -84,7 +84,7 @@ def open_archive(archive: Source, sink: Sink, limits: Limits = DEFAULT_LIMITS) -
     Raises SourceError for an archive that exceeds the limits.
     """
     try:
-        sources = read_entries(archive, is_project_file, limits)
+        sources = read_entries(archive, _is_project_file, limits)
     except SourceError as problem:
         if problem.fault is Fault.LIMIT:
             raise
@@ -94,7 +94,7 @@ def open_archive(archive: Source, sink: Sink, limits: Limits = DEFAULT_LIMITS) -
     return read_project(archive.name, sources, sink)
 
 
-def is_project_file(entry: str) -> bool:
+def _is_project_file(entry: str) -> bool:
     """Whether a file of an archive or a folder is a model or describes the project."""
     name = entry.rpartition("/")[2]
     return name in (PROJECT, META) or name.endswith(MODELS)
@@ -201,7 +201,7 @@ def _check_checksum(
     project: Project, source: Source, checksum: Mapping[str, Any], place: Place, sink: Sink
 ) -> None:
     algorithm, expected = str(checksum.get("algorithm")), str(checksum.get("value")).lower()
-    computed = compute_checksum(source, algorithm)
+    computed = _compute_checksum(source, algorithm)
     if computed is None:
         _report(sink, rules.UNKNOWN_ALGORITHM, place, file=source.name, algorithm=algorithm)
     elif computed != expected:

@@ -75,7 +75,7 @@ _END = "EndFeatureMembership"
 _RESULTLESS = {"ConstructorExpression", "AssignmentActionUsage", "TransitionUsage"}
 
 
-def wrap_argument(value: Element) -> Element:
+def _wrap_argument(value: Element) -> Element:
     """Return the parameter that carries an argument (KerML 1.0, 8.2.5.8.1)."""
     parameter = Element("Feature")
     parameter.attributes["direction"] = "in"
@@ -83,7 +83,7 @@ def wrap_argument(value: Element) -> Element:
     return parameter
 
 
-def wrap_lazy_argument(value: Element) -> Element:
+def _wrap_lazy_argument(value: Element) -> Element:
     """Return the reference to an expression that is evaluated only on demand."""
     reference = Element("FeatureReferenceExpression")
     reference.add_owned(Element("FeatureMembership")).add_owned(value)
@@ -91,7 +91,7 @@ def wrap_lazy_argument(value: Element) -> Element:
     return reference
 
 
-def add_implicit(element: Element, node: Node) -> None:
+def _add_implicit(element: Element, node: Node) -> None:
     """Add the elements that follow from the kind of the node, unless the node owns them."""
     if node.kind in REFERRING_KINDS and node.kind not in _RESULTLESS:
         if not any(member.membership == "ReturnParameterMembership" for member in node.members):
@@ -155,7 +155,7 @@ def _fill_element(element: Element, worklist: list[Element]) -> None:
                 element.add_owned(_make_relationship(item, element))
             else:
                 _add_member(element, item, worklist)
-    add_implicit(element, node)
+    _add_implicit(element, node)
 
 
 def _make_element(node: Node, worklist: list[Element]) -> Element:
@@ -325,7 +325,9 @@ def _make_membership(owner: Element, node: Node, worklist: list[Element]) -> Ele
         membership.targets.append(("annotatedElement", owner))
     member = _make_element(node, worklist)
     if _is_argument(node):
-        member = wrap_argument(wrap_lazy_argument(member) if node.role == "expression" else member)
+        member = _wrap_argument(
+            _wrap_lazy_argument(member) if node.role == "expression" else member
+        )
     membership.add_owned(member)
     return membership
 

@@ -170,7 +170,7 @@ def _write_value(fact: AttributeValue) -> str:
     return FORBIDDEN.sub(_REPLACEMENT, str(fact))
 
 
-def find_unwritable(element: Element) -> Iterator[str]:
+def _find_unwritable(element: Element) -> Iterator[str]:
     """Yield the features of the element with characters that XML cannot have."""
     for name, fact in element.attributes.items():
         if isinstance(fact, str) and name in list_features(element.kind) and FORBIDDEN.search(fact):
@@ -259,7 +259,7 @@ class _Writer:
         node = self._document.root
         for element, _ in walk_elements(self.root):
             node = element.node or node
-            for feature in find_unwritable(element):
+            for feature in _find_unwritable(element):
                 self._report(rules.UNWRITABLE_TEXT, node, feature)
             lost = {owned: next(_find_lost(owned), None) for owned in element.owned}
             for name in filter(None, lost.values()):

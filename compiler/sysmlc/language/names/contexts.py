@@ -107,10 +107,10 @@ def _make_context(node: Node, relation: Relation) -> LookupContext:
         return LookupContext(_find_end_scope(node.owner), without=node)
     if kind == "Redefinition":
         return LookupContext(
-            find_namespace(node), inherited=len(relation.reference.chain) == 1, without=node
+            _find_namespace(node), inherited=len(relation.reference.chain) == 1, without=node
         )
     if kind in _TYPING:
-        scope = node if kind == "TypeFeaturing" else find_expression_scope(node)
+        scope = node if kind == "TypeFeaturing" else _find_expression_scope(node)
         return LookupContext(scope, without=node, is_metadata=node.kind in _METADATA)
     if kind in _IMPORTED:
         return _make_import_context(
@@ -118,15 +118,15 @@ def _make_context(node: Node, relation: Relation) -> LookupContext:
         )
     # Each FeatureChaining after the first is looked up in the target of the one before.
     before = _find_previous_link(node, relation) if kind == "FeatureChaining" else None
-    return LookupContext(find_namespace(node), without=node, before=before)
+    return LookupContext(_find_namespace(node), without=node, before=before)
 
 
 def _make_import_context(node: Node, everything: bool) -> LookupContext:
     """Return the context of an import. Another import owns the package of a filtered one."""
-    scope = find_namespace(node)
+    scope = _find_namespace(node)
     importing = [] if scope is None else [scope]
     while importing and importing[-1].owner is not None and importing[-1].owner.kind in _IMPORTS:
-        namespace = find_namespace(importing[-1].owner)
+        namespace = _find_namespace(importing[-1].owner)
         if namespace is None:
             break
         importing.append(namespace)
@@ -141,18 +141,18 @@ def _find_previous_link(node: Node, relation: Relation) -> Relation | None:
 
 def _make_membership_context(node: Node) -> LookupContext:
     if node.kind == "Membership":
-        return LookupContext(find_namespace(node), without=node)
+        return LookupContext(_find_namespace(node), without=node)
     if node.kind == "FeatureChainExpression":
         return LookupContext(None, operand=node.members[0] if node.members else None)
     if node.kind == "AssignmentActionUsage":
         operand = _find_assigned_operand(node)
         return LookupContext(None, operand=operand) if operand else LookupContext(node)
     if node.kind in _TRANSPARENT:
-        scope = find_expression_scope(node)
+        scope = _find_expression_scope(node)
         is_subject_binding = scope is not None and scope.kind == "SatisfyRequirementUsage"
         return LookupContext(scope, past_subjects=is_subject_binding)
     return (
-        LookupContext(find_namespace(node))
+        LookupContext(_find_namespace(node))
         if node.kind == "TransitionUsage"
         else LookupContext(node)
     )
@@ -187,11 +187,13 @@ def _find_end_scope(connector: Node | None) -> Node | None:
 
     The ends of the succession of a transition are looked up outside of the transition.
     """
-    scope = find_namespace(connector) if connector else None
-    return find_namespace(scope) if scope is not None and scope.kind == "TransitionUsage" else scope
+    scope = _find_namespace(connector) if connector else None
+    return (
+        _find_namespace(scope) if scope is not None and scope.kind == "TransitionUsage" else scope
+    )
 
 
-def find_namespace(node: Node) -> Node | None:
+def _find_namespace(node: Node) -> Node | None:
     """Return the nearest namespace around ``node``."""
     owner = node.owner
     while owner is not None and owner.kind not in NAMESPACES:
@@ -199,12 +201,12 @@ def find_namespace(node: Node) -> Node | None:
     return owner
 
 
-def find_expression_scope(node: Node) -> Node | None:
+def _find_expression_scope(node: Node) -> Node | None:
     """Return the nearest namespace around ``node`` in which an expression is looked up."""
-    owner = find_namespace(node)
+    owner = _find_namespace(node)
     while owner is not None and (node.membership == "FeatureValue" or owner.kind in _TRANSPARENT):
         node = owner
-        owner = find_namespace(node)
+        owner = _find_namespace(node)
     return owner
 
 

@@ -42,7 +42,7 @@ def is_part(node: Node) -> bool:
     return is_composite(node) if node.kind in USAGES else bool(node.attributes.get("isComposite"))
 
 
-def find_ends(node: Node) -> list[Node]:
+def _find_ends(node: Node) -> list[Node]:
     """Return the end features that a connector or association owns."""
     return [
         member
@@ -60,7 +60,7 @@ def make_key(node: Node) -> _Key:
     kind, owner, facts = node.kind, node.owner, node.attributes
     count = 0
     if kind in _WITH_COUNT:
-        count = _count_clauses(node) if kind == "IfActionUsage" else len(find_ends(node))
+        count = _count_clauses(node) if kind == "IfActionUsage" else len(_find_ends(node))
     attributes_in_key = tuple([facts.get(name) for name in _KEY_ATTRIBUTES]) if facts else ()
     return kind, node.membership, node.role, owner.kind if owner else "", count, attributes_in_key
 
@@ -101,7 +101,7 @@ def _count_clauses(node: Node) -> int:
 
 
 def _list_connector_bases(node: Node) -> list[str]:
-    count = len(find_ends(node))
+    count = len(_find_ends(node))
     if node.kind == "FlowUsage" and count:
         return ["Flows::flows"]
     if node.kind == "Flow" and count:

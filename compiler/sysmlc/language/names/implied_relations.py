@@ -21,7 +21,7 @@ _CLASSES = kinds_of("Class")
 _PORTIONS = "Occurrences::Occurrence::portions"
 
 
-def find_typed_generals(model: Model, node: Node) -> tuple[Node, ...]:
+def _find_typed_generals(model: Model, node: Node) -> tuple[Node, ...]:
     """Return the bases of a feature by its stated types that no general of it has."""
     bases = _find_type_bases(model, node)
     if not bases:
@@ -126,7 +126,7 @@ def _list_relations(model: Model, node: Node) -> list[tuple[str, Node]]:
     relations = [("Redefinition", target) for target in model.lookup.redefined_by_position(node)]
     if node.kind not in _DECLARED:
         return relations
-    by_type = find_typed_generals(model, node)
+    by_type = _find_typed_generals(model, node)
     needed = dict.fromkeys(model.needed_generals(node, by_type))
     # A redefined feature is no implied general too.
     for _, target in relations:

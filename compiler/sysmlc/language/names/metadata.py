@@ -103,7 +103,7 @@ def _is_classified(expression: Node, element: Node, lookup: LookupQueries) -> bo
 def _has_classifier(element: Node, wanted: Node, lookup: LookupQueries) -> bool:
     if _is_reflective(wanted):
         return is_a(element.kind, wanted.name or "")
-    return any(lookup.conforms(usage, wanted) for usage in find_metadata(element))
+    return any(lookup.conforms(usage, wanted) for usage in _find_metadata(element))
 
 
 def _is_reflective(wanted: Node) -> bool:
@@ -116,7 +116,7 @@ def _is_reflective(wanted: Node) -> bool:
     return False
 
 
-def find_metadata(element: Node) -> list[Node]:
+def _find_metadata(element: Node) -> list[Node]:
     """Return the metadata that an element owns."""
     return [member for member in element.members if member.kind in _METADATA]
 
@@ -134,7 +134,7 @@ def _evaluate_reference(expression: Node, element: Node, lookup: LookupQueries) 
 def _evaluate_feature(feature: Node, element: Node, lookup: LookupQueries) -> Value:
     if feature.owner is not None and _is_reflective(feature.owner):
         return _read_metaclass_attribute(feature, element)
-    for usage in find_metadata(element):
+    for usage in _find_metadata(element):
         for member in usage.members:
             if feature in lookup.redefined_features(member):
                 return _evaluate_bound_value(member, element, lookup)

@@ -50,7 +50,7 @@ _OPERATORS = frozenset({"OperatorExpression"})
 _MEMBERSHIP_IMPORTS = kinds_of("MembershipImport")
 
 
-def make_advice(
+def _make_advice(
     model: Model,
     use: tuple[Node, Relation],
     names: tuple[str, ...],
@@ -239,7 +239,7 @@ def report_unresolved(
         make_subject(document, node, _find_link_offset(document, reference, index)),
         name=name,
         inside=inside,
-        advice=make_advice(model, (node, relation), reference.chain[index], context, container),
+        advice=_make_advice(model, (node, relation), reference.chain[index], context, container),
     )
 
 

@@ -81,7 +81,7 @@ class Errors:
             rules.SYNTAX,
             self._tokens.starts[index],
             found=self._describe_token(index),
-            expected=describe_expected(expected, self.beginnings),
+            expected=_describe_expected(expected, self.beginnings),
             advice=hints.advise_unexpected(self._tokens, index, expected, self.beginnings),
         )
 
@@ -205,7 +205,7 @@ _SEPARATORS = ("';'", "'{'", "'}'")
 _MAX_ALTERNATIVES = 5
 
 
-def describe_expected(expected: Collection[str], beginnings: Collection[str]) -> str:
+def _describe_expected(expected: Collection[str], beginnings: Collection[str]) -> str:
     """Return the tokens that are valid in a place, in words.
 
     ``expected`` has names of token types and the texts of keywords and symbols. ``beginnings``

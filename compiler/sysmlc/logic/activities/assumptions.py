@@ -34,7 +34,7 @@ class Loop(Struct, frozen=True):
     exits: tuple[TokenEdge, ...]
 
 
-def find_loops(graph: TokenGraph) -> list[Loop]:
+def _find_loops(graph: TokenGraph) -> list[Loop]:
     """Return the loops with at least one exit that the environment opens, outer before inner.
 
     A loop is a strongly connected component. The inner loops are the components that remain when
@@ -144,7 +144,7 @@ def derive_assumptions(formulas: StepFormulas) -> Iterator[Conjunct]:
             yield Conjunct(ended, Class.LIVENESS, node.origin, text)
     for node in formulas.graph.nodes:
         yield from _decision_assumption(formulas, node)
-    for loop in find_loops(formulas.graph):
+    for loop in _find_loops(formulas.graph):
         yield from _loop_assumption(formulas, loop)
 
 

@@ -54,7 +54,7 @@ def derive_contract(graph: TokenGraph) -> Contract:
         assumptions=tuple(derive_assumptions(formulas)),
         guarantees=(
             *_derive_start_tokens(graph),
-            *(conjunct for store in graph.stores for conjunct in derive_initial_value(store)),
+            *(conjunct for store in graph.stores for conjunct in _derive_initial_value(store)),
             *(_derive_completion(formulas, region, name) for region, name in graph.quiets),
             *(
                 _derive_edge_update(formulas, edge)
@@ -70,7 +70,7 @@ def derive_contract(graph: TokenGraph) -> Contract:
             *(
                 conjunct
                 for store in graph.stores
-                for conjunct in derive_store_updates(formulas, store)
+                for conjunct in _derive_store_updates(formulas, store)
             ),
             *_derive_progress(formulas),
         ),
@@ -280,7 +280,7 @@ def _derive_progress(formulas: StepFormulas) -> Iterator[Conjunct]:
         yield Conjunct(reached, Class.LIVENESS, entry.origin, text)
 
 
-def derive_initial_value(store: Store) -> Iterator[Conjunct]:
+def _derive_initial_value(store: Store) -> Iterator[Conjunct]:
     """Yield the initial value of a variable, if the model gives one."""
     if store.first is not None:
         text = f"At the start '{store.variable.name}' is {print_literal(store.first)}."
@@ -288,7 +288,7 @@ def derive_initial_value(store: Store) -> Iterator[Conjunct]:
         yield Conjunct(value, Class.INIT, store.variable.origin, text)
 
 
-def derive_store_updates(formulas: StepFormulas, store: Store) -> Iterator[Conjunct]:
+def _derive_store_updates(formulas: StepFormulas, store: Store) -> Iterator[Conjunct]:
     """Yield the conjuncts for the writes of a variable, its reset at a restart, and its frame."""
     restart = (
         formulas.begin_formula(ACTIVITY_REGION)

@@ -51,7 +51,7 @@ class State(Struct, frozen=True):
     stored: tuple[tuple[str, Literal], ...] = ()
 
 
-def choose_first(node: TokenNode, options: Sequence[_T]) -> _T:
+def _choose_first(node: TokenNode, options: Sequence[_T]) -> _T:
     """Return the first option."""
     del node
     return options[0]
@@ -102,7 +102,7 @@ def next_state(
     state: State,
     inputs: Inputs,
     holds: Callable[[Formula, Inputs], bool],
-    choose: Choose = choose_first,
+    choose: Choose = _choose_first,
 ) -> State:
     """Return the state after one step; *holds* evaluates a condition over the inputs.
 

@@ -40,13 +40,13 @@ class SearchResult(Struct, frozen=True):
     is_complete: bool
 
 
-def search_saturating_writes(graph: TokenGraph, writes: Iterable[Write]) -> SearchResult:
+def _search_saturating_writes(graph: TokenGraph, writes: Iterable[Write]) -> SearchResult:
     """Search until each write has saturated, all states are visited, or the limit is reached."""
     open_writes = list(writes)
-    return _Search(reduce_to_relevant(graph, open_writes), open_writes).run()
+    return _Search(_reduce_to_relevant(graph, open_writes), open_writes).run()
 
 
-def reduce_to_relevant(graph: TokenGraph, relevant_writes: Sequence[Write]) -> TokenGraph:
+def _reduce_to_relevant(graph: TokenGraph, relevant_writes: Sequence[Write]) -> TokenGraph:
     """Return the graph with only the variables that are relevant for these writes."""
     guards = (edge.guard.condition for edge in graph.edges if edge.guard is not None)
     formulas = [*guards, *(node.done for node in graph.nodes)]
@@ -215,7 +215,7 @@ def find_saturating_writes(tokens: TokenGraph) -> tuple[tuple[Store, Write, Poss
     ]
     concurrency = ConcurrencyRelation(tokens)
     estimates = [(*write, _analyse_values(tokens, concurrency, *write)) for write in candidates]
-    result = search_saturating_writes(
+    result = _search_saturating_writes(
         tokens, [write for _, write, possibility in estimates if possibility is Possibility.PERHAPS]
     )
     remaining = Possibility.NO if result.is_complete else Possibility.PERHAPS
@@ -239,7 +239,7 @@ def _analyse_values(
     """Return the result of the data-flow analysis for a write."""
     if domains.size(store.variable.domain) > MAX_VALUES:
         return Possibility.PERHAPS
-    analysis = ValueAnalysis(reduce_to_relevant(tokens, [write]), concurrency, store)
+    analysis = ValueAnalysis(_reduce_to_relevant(tokens, [write]), concurrency, store)
     if not analysis.may_stop(write):
         return Possibility.NO
     return Possibility.YES if analysis.is_exact else Possibility.PERHAPS

@@ -68,11 +68,11 @@ def compose_blocks(graph: Graph, contracts: Iterable[Contract], sink: Sink) -> I
         whole = _add_own_contracts(block) if block.members else None
         if len(block.members) + (whole is not None) < 2:
             continue
-        open_steps += find_open_steps(block)
+        open_steps += _find_open_steps(block)
         composite = _make_composite(block, whole, sink)
         if composite is not None:
             yield composite
-    report_open_steps(graph, open_steps, sink)
+    _report_open_steps(graph, open_steps, sink)
 
 
 def _list_blocks(graph: Graph, by_origin: Mapping[str, Contract]) -> list[Element]:
@@ -253,14 +253,14 @@ class OpenStep(Struct, frozen=True):
     called: Element
 
 
-def find_open_steps(block: Block) -> Iterator[OpenStep]:
+def _find_open_steps(block: Block) -> Iterator[OpenStep]:
     """Yield the steps of operations in a block whose end is not observable."""
     for member in block.members:
         for step, called in _iter_open_steps(block, member):
             yield OpenStep(block.element, member.name, step, called)
 
 
-def report_open_steps(graph: Graph, open_steps: Iterable[OpenStep], sink: Sink) -> None:
+def _report_open_steps(graph: Graph, open_steps: Iterable[OpenStep], sink: Sink) -> None:
     """Report each step once, at the innermost block that contains its operation."""
     nearest: dict[str, OpenStep] = {}
     for open_step in open_steps:

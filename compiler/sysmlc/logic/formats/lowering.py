@@ -278,10 +278,10 @@ def _expand_variables(
         cases.append((value, case))
     if len({case for _, case in cases}) == 1:
         return cases[0][1]
-    return f.either(*(f.both(build_equality(variable, value), case) for value, case in cases))
+    return f.either(*(f.both(_build_equality(variable, value), case) for value, case in cases))
 
 
-def build_equality(variable: Var, value: Literal) -> Formula:
+def _build_equality(variable: Var, value: Literal) -> Formula:
     """Return the formula that a variable has a value."""
     if isinstance(value, bool):
         return variable if value else f.negate(variable)

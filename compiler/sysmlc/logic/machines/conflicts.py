@@ -93,7 +93,7 @@ def may_compete(
         return False
     is_state = vertex.kind == "state"
     return any(
-        (not is_state or can_coincide(left, right)) and comparison.are_compatible(left, right)
+        (not is_state or _can_coincide(left, right)) and comparison.are_compatible(left, right)
         for left, right in combinations(outgoing, 2)
     )
 
@@ -121,7 +121,7 @@ def _have_equal_trigger(left_transition: Transition, right_transition: Transitio
     return any(type(a) is type(b) and _can_share_step(a, b) for a, b in pairs)
 
 
-def can_coincide(left_transition: Transition, right_transition: Transition) -> bool:
+def _can_coincide(left_transition: Transition, right_transition: Transition) -> bool:
     """Return whether two transitions with the same source can be triggered in one step.
 
     A completion transition and a triggered transition never compete: the completion goes first.
@@ -156,7 +156,7 @@ def can_be_simultaneous(left: Transition, right: Transition) -> bool:
         for occurrence in (*left.occurrences, *right.occurrences)
         if not isinstance(occurrence, OnEvent)
     ]
-    return bool(other_occurrences) or can_coincide(left, right)
+    return bool(other_occurrences) or _can_coincide(left, right)
 
 
 def _find_domains(source: Expression, scope: Scope) -> Iterator[tuple[str, Domain]]:

@@ -103,7 +103,7 @@ def next_steps(
     return _drop_duplicates(valuations)
 
 
-def run_trace(
+def _run_trace(
     machine: Machine,
     inputs: Sequence[Mapping[str, Literal]],
     choose: Callable[[list[Valuation]], Valuation] = lambda options: options[0],

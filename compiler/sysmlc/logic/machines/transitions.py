@@ -41,7 +41,7 @@ from sysmlc.logic.machines.well_formedness import find_common_state
 from sysmlc.logic.names import make_unique
 
 
-def read_occurrence(draft: MachineDraft, trigger: Element, vertex: Vertex) -> Occurrence:
+def _read_occurrence(draft: MachineDraft, trigger: Element, vertex: Vertex) -> Occurrence:
     """Return the occurrence that makes *trigger* fire; create its variables on first use."""
     kind = trigger.subkind
     if kind == "time" or (not kind and "when" in trigger.attrs):
@@ -69,9 +69,9 @@ def _read_event(draft: MachineDraft, trigger: Element) -> str:
 
 def _read_time(draft: MachineDraft, trigger: Element, vertex: Vertex) -> Occurrence:
     """Return the occurrence of a time trigger; an input replaces a time that is not constant."""
-    count = count_ticks(draft.reading, trigger)
+    count = _count_ticks(draft.reading, trigger)
     if count is None:
-        return OnInput(make_time_input(draft.reading, trigger))
+        return OnInput(_make_time_input(draft.reading, trigger))
     draft.bounds[vertex.id] = max(count, draft.bounds.get(vertex.id, 0))
     return AfterTicks(count)
 
@@ -118,7 +118,7 @@ _SECONDS = {
 _TIME = re.compile(r"^\s*(?:after\b)?\s*\(?\s*(\d+(?:\.\d+)?)\s*([A-Za-z]*)\s*\)?\s*$")
 
 
-def count_ticks(reading: ReadingContext, trigger: Element) -> int | None:
+def _count_ticks(reading: ReadingContext, trigger: Element) -> int | None:
     """Return the number of steps after which a time trigger occurs, at least 1.
 
     The result is None if the time is not constant. A number without a unit counts steps; with a
@@ -144,7 +144,7 @@ def parse_milliseconds(text: str) -> int | None:
     return round(float(match[1]) * _SECONDS[match[2].lower()] * 1000)
 
 
-def make_time_input(reading: ReadingContext, trigger: Element) -> str:
+def _make_time_input(reading: ReadingContext, trigger: Element) -> str:
     """Report a time that is not constant and return the Boolean input that replaces it."""
     text = str(trigger.attrs.get("when", "")) or trigger.name
     variable = reading.input_for(f"time {text}", f"time_{text}", trigger.id)
@@ -194,7 +194,7 @@ def _read_transition(
         vertex.id,
         _resolve_target(draft, within, target),
         element.subkind or "external",
-        tuple(read_occurrence(draft, trigger, vertex) for trigger in triggers),
+        tuple(_read_occurrence(draft, trigger, vertex) for trigger in triggers),
         guard,
         read_behaviours(draft.reading, element, Edge.EFFECT),
     )

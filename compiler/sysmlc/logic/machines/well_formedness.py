@@ -81,7 +81,7 @@ def _report_strays(graph: Graph, machine: Machine, sink: Sink) -> Iterator[str]:
         if machine.find_main_region(transition) is None:
             yield _report_stray(graph, transition, "out of its region", sink)
         elif source.kind == "initial" or source.kind in HISTORIES:
-            targets = list_stable_targets(machine, transition)
+            targets = _list_stable_targets(machine, transition)
             if not all(source.region in machine.list_enclosing_regions(end) for end in targets):
                 yield _report_stray(graph, transition, "out of its region", sink)
 
@@ -140,7 +140,7 @@ def collect_segments(machine: Machine, first: Transition) -> list[Transition]:
     return transitions
 
 
-def list_stable_targets(machine: Machine, transition: Transition) -> list[str]:
+def _list_stable_targets(machine: Machine, transition: Transition) -> list[str]:
     """List the stable vertices to which the compound transition can lead."""
     targets = (segment.target for segment in collect_segments(machine, transition))
     return [segment for segment in dict.fromkeys(targets) if machine.vertices[segment].is_stable]

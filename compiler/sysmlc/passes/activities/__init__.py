@@ -71,7 +71,7 @@ class Activities(Struct, frozen=True):
         self, graph: Graph, activity: Element, context: _OtherBehaviours, sink: Sink
     ) -> TokenGraph | None:
         """Return the token graph of an activity or of an operation that performs one, or None."""
-        drawn = find_drawn(graph, activity)
+        drawn = _find_drawn(graph, activity)
         try:
             if drawn is activity:
                 return self._build(graph, activity, context, sink)
@@ -172,7 +172,7 @@ def has_steps(graph: Graph, activity: Element) -> bool:
     return any(element.kind in _STEPS for element in graph.owned(activity))
 
 
-def find_drawn(graph: Graph, usage: Element) -> Element:
+def _find_drawn(graph: Graph, usage: Element) -> Element:
     """Return the activity whose nodes the activity or operation *usage* performs.
 
     For an operation this is its method. For an activity without nodes this is the nearest general

@@ -37,16 +37,16 @@ def complete_requirement(graph: Graph, requirement: Element) -> None:
     for attribute, tag_name in (("req_id", "id"), ("text", "text")):
         value = tag(graph, requirement, tag_name)
         if value is not None:
-            text = strip_markup(value) if isinstance(value, str) else value
+            text = _strip_markup(value) if isinstance(value, str) else value
             graph.set(requirement, **{attribute: text})
 
 
-def strip_markup(text: str) -> str:
+def _strip_markup(text: str) -> str:
     """Return a text without markup: MagicDraw stores formatted texts as HTML documents."""
     if not text.lstrip()[:6].lower().startswith("<html"):
         return text
 
-    return extract_text(text)
+    return _extract_text(text)
 
 
 # -- rules -------------------------------------------------------------------------------------
@@ -97,7 +97,7 @@ _BLOCK_TAGS = frozenset(["p", "br", "li", "tr", "div", "h1", "h2", "h3", "h4", "
 _SILENT_TAGS = frozenset(["head", "style", "script"])
 
 
-def extract_text(text: str) -> str:
+def _extract_text(text: str) -> str:
     """Return the text of an HTML document, with one line for each block element."""
     parser = _TextExtractor()
     parser.feed(text)

@@ -34,7 +34,7 @@ def link_units(graph: Graph, meanings: Mapping[str, tuple[str, ...]]) -> None:
     for unit in graph.of_kind(*_KINDS):
         if is_unit(unit) or is_quantity_kind(unit):
             _describe_unit(graph, unit)
-    give_symbols(graph)
+    _give_symbols(graph)
     for id in (id for id, names in meanings.items() if "ValueType" in names or "Unit" in names):
         for subject in graph.targets(graph[id], Edge.SUBJECT):
             _link_by_tags(graph, graph[id], subject)
@@ -170,7 +170,7 @@ def _list_users(graph: Graph, value_type: Element) -> Iterator[Element]:
     yield from graph.sources(value_type, Edge.SPECIALIZES)
 
 
-def give_symbols(graph: Graph) -> None:
+def _give_symbols(graph: Graph) -> None:
     """Set the symbol of each derived unit without a symbol, such as ``m·s^-1``, from its factors.
 
     A DerivedUnit of QUDV has UnitFactors, each with a unit and an exponent, which is a number or an

@@ -29,10 +29,10 @@ class Overlay(Struct, frozen=True):
 
     def run(self, graph: Graph, sink: Sink) -> None:
         """Apply the overlays in place and report; see the class."""
-        apply_overlays(graph.derived(Refinement), graph, sink)
+        _apply_overlays(graph.derived(Refinement), graph, sink)
 
 
-def apply_overlays(refinements: Sequence[Refinement], graph: Graph, sink: Sink) -> None:
+def _apply_overlays(refinements: Sequence[Refinement], graph: Graph, sink: Sink) -> None:
     """Apply overlays in steps, each of them for all overlays before the next one.
 
     Elements that an entry may refer to are added in an earlier step than the entry.
@@ -45,7 +45,7 @@ def apply_overlays(refinements: Sequence[Refinement], graph: Graph, sink: Sink) 
         add_items(finder)
     for finder in finders:
         for port in finder.refinement.ports:
-            refine_port(finder, port)
+            _refine_port(finder, port)
         for connector in finder.refinement.connectors:
             add_flows(finder, connector)
         check_domains(finder)
@@ -60,10 +60,10 @@ def apply_overlays(refinements: Sequence[Refinement], graph: Graph, sink: Sink) 
         for block in finder.refinement.blocks:
             resolve_calls(finder, block)
         for allocation in finder.refinement.allocations:
-            add_allocation(finder, allocation)
+            _add_allocation(finder, allocation)
 
 
-def add_allocation(finder: Finder, entry: Allocation) -> None:
+def _add_allocation(finder: Finder, entry: Allocation) -> None:
     """Add the dependency of an allocation (SysML 1.6 clause 15).
 
     The pass ``classify`` derives the edges that the dependency means.
@@ -90,7 +90,7 @@ def add_allocation(finder: Finder, entry: Allocation) -> None:
     graph.connect(Edge.SUPPLIER, dependency, supplier)
 
 
-def refine_port(finder: Finder, entry: PortEntry) -> None:
+def _refine_port(finder: Finder, entry: PortEntry) -> None:
     """Set direction and type of a port; report a direction that contradicts the model."""
     graph = finder.graph
     port = finder.find_entry(entry.key, PORT)

@@ -24,7 +24,7 @@ def find_behaviors(finder: Finder, entry: BlockEntry) -> None:
 
 def add_behaviors(finder: Finder, entry: BlockEntry) -> None:
     """Make the stated behaviours methods of operations, or the block's classifier behaviour."""
-    block = find_block(finder, entry)
+    block = _find_block(finder, entry)
     if block is None:
         return
     if entry.behavior is not None:
@@ -34,13 +34,13 @@ def add_behaviors(finder: Finder, entry: BlockEntry) -> None:
             _give_method(finder, block, operation, operation.method)
 
 
-def list_behaviors(finder: Finder, block: Element) -> list[Element]:
+def _list_behaviors(finder: Finder, block: Element) -> list[Element]:
     """Return the behaviours that a block owns, including those that overlays gave it."""
     owned = finder.graph.owned(block)
     return [element for element in owned if element.kind in BEHAVIOR.kinds]
 
 
-def find_block(finder: Finder, entry: BlockEntry) -> Element | None:
+def _find_block(finder: Finder, entry: BlockEntry) -> Element | None:
     """Return the block of an entry, or None for an unknown or ambiguous one, already reported."""
     for word in (entry.key.text, entry.key.path):
         blocks = finder.find_named(word, BLOCK) if word else []
@@ -108,10 +108,10 @@ _Scope = dict[str, list[Element]]
 
 def resolve_calls(finder: Finder, entry: BlockEntry) -> None:
     """Resolve the calls without an operation in the behaviours of the block."""
-    block = find_block(finder, entry)
+    block = _find_block(finder, entry)
     if block is None:
         return
-    behaviors = list_behaviors(finder, block)
+    behaviors = _list_behaviors(finder, block)
     calls = [
         action for top in behaviors for action in finder.graph.subtree(top) if _is_call(action)
     ]

@@ -57,7 +57,7 @@ def _add_value(finder: Finder, block: Element, entry: ValueEntry) -> None:
     )
     if type_ is not None:
         graph.connect(Edge.TYPED_BY, value, type_)
-        if entry.default is not None and not fits_type(graph, entry.default, type_):
+        if entry.default is not None and not _fits_type(graph, entry.default, type_):
             facts = {"value": str(entry.default), "feature": entry.name.text, "type": type_.name}
             finder.report(rules.INVALID_VALUE, entry.name, **facts)
 
@@ -150,7 +150,7 @@ _PYTHON_TYPES: dict[str, tuple[type, ...]] = {
 """Python types of YAML values that UML's primitive types accept."""
 
 
-def fits_type(graph: Graph, value: AttrValue, type_: Element) -> bool:
+def _fits_type(graph: Graph, value: AttrValue, type_: Element) -> bool:
     """Whether the value is valid for a primitive type, an enumeration or a special of these.
 
     Values of other types cannot be checked and count as valid.

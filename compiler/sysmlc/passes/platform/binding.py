@@ -41,7 +41,7 @@ def list_allocations(graph: Graph, element: Element) -> Iterator[Statement]:
             yield Statement(target, "allocation", element)
 
 
-def list_machine_statements(graph: Graph, machine: Machine) -> Iterator[Statement]:
+def _list_machine_statements(graph: Graph, machine: Machine) -> Iterator[Statement]:
     """Yield the statements about a machine: its tag ``plantElement``, and allocations.
 
     Without statements about the machine itself, statements about its block hold (for a part or an
@@ -63,7 +63,7 @@ def _list_tagged(graph: Graph, element: Element) -> Iterator[Statement]:
             yield Statement(target, "tag", application)
 
 
-def is_structure(element: Element) -> bool:
+def _is_structure(element: Element) -> bool:
     """Whether an element outside AutomationML can be part of a plant: a block, part or instance."""
     return element.kind in (Kind.CLASS, Kind.COMPONENT, Kind.PROPERTY, Kind.INSTANCE)
 
@@ -116,9 +116,9 @@ class Context:
     def has_plant(self) -> bool:
         """Whether the unit has a plant in AutomationML, or binds a machine to another structure."""
         return bool(self.plant) or any(
-            is_structure(statement.target) and not self.is_machine(statement.target)
+            _is_structure(statement.target) and not self.is_machine(statement.target)
             for machine in self.machines.values()
-            for statement in list_machine_statements(self.graph, machine)
+            for statement in _list_machine_statements(self.graph, machine)
         )
 
     def is_machine(self, element: Element) -> bool:
@@ -137,7 +137,7 @@ class Context:
         """Return the plant elements that an element of the graph represents."""
         if self.plant:
             return self.plant.find_represented(element)
-        if not is_structure(element) or self.is_machine(element):
+        if not _is_structure(element) or self.is_machine(element):
             return []
         is_class = element.kind in (Kind.CLASS, Kind.COMPONENT)
         block = element if is_class else query.type_of(self.graph, element)
@@ -213,7 +213,7 @@ def _list_statements(context: Context, machine: Machine) -> Iterator[tuple[Plant
     by_id = context.plant.find_by_id(machine.aml_id) if machine.aml_id else None
     if by_id is not None:
         yield by_id, "id", element.id
-    for target, how, source in list_machine_statements(graph, machine):
+    for target, how, source in _list_machine_statements(graph, machine):
         if not context.is_machine(target):
             yield from ((part, how, source.id) for part in context.find_plant_elements(target))
 
@@ -224,7 +224,7 @@ def _report_reasons(context: Context, machine: Machine) -> bool:
     if machine.aml_id and context.plant:
         _report_unknown_id(context, machine)
         has_reported = True
-    for target, _, source in list_machine_statements(context.graph, machine):
+    for target, _, source in _list_machine_statements(context.graph, machine):
         if not context.is_machine(target) and not context.find_plant_elements(target):
             element = context.graph[machine.element]
             _report_misplaced(context, machine.id, element, target, source)

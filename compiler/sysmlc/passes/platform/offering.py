@@ -121,7 +121,7 @@ def _find_operation(
     mismatch: tuple[Element, str] | None = None
     for operation in _list_operations(context, block):
         if element.name and operation.name == element.name:
-            problem = describe_difference(context.graph, element, operation, context.is_machine)
+            problem = _describe_difference(context.graph, element, operation, context.is_machine)
             if not problem:
                 return _OfferingOperation(operation, "name", operation.id), None
             mismatch = mismatch or (operation, problem)
@@ -216,7 +216,7 @@ def _report_foreign_operations(
 _OUTPUTS = frozenset({"out", "return"})
 
 
-def describe_difference(
+def _describe_difference(
     graph: Graph, service: Element, operation: Element, is_machine: Callable[[Element], bool]
 ) -> str:
     """Return the difference of the signatures as a clause; empty if they fit.

@@ -33,7 +33,7 @@ class Recipe(Struct, frozen=True):
     def run(self, graph: Graph, sink: Sink) -> None:
         """Store the recipe models of the graph."""
         context = Context.build(graph, self.levels)
-        activities = list(find_recipes(context))
+        activities = list(_find_recipes(context))
         if activities or graph.derived(Model):
             self._store(context, activities, sink)
 
@@ -52,7 +52,7 @@ class Recipe(Struct, frozen=True):
         context.graph.store(Model, models)
 
 
-def find_recipes(context: Context) -> Iterator[Element]:
+def _find_recipes(context: Context) -> Iterator[Element]:
     """Yield the activities at the level recipe, and those without a level that call tasks.
 
     An activity without steps that other recipes specialise is not a recipe itself.

@@ -172,7 +172,7 @@ class Context(Struct, frozen=True):
         """Return the elements that an activity owns, and the content of inlined nodes."""
         elements = self._contents.get(activity.id)
         if elements is None:
-            elements = self._contents[activity.id] = list(list_contents(self.graph, activity))
+            elements = self._contents[activity.id] = list(_list_contents(self.graph, activity))
         return elements
 
     def nodes(self, activity: Element) -> list[Element]:
@@ -296,12 +296,12 @@ def is_inlined(graph: Graph, node: Element) -> bool:
     return node.kind is Kind.STRUCTURED and (is_for_each(node) or is_block(graph, node))
 
 
-def list_contents(graph: Graph, activity: Element) -> Iterator[Element]:
+def _list_contents(graph: Graph, activity: Element) -> Iterator[Element]:
     """Yield the elements that an activity owns; each inlined node is followed by its content."""
     for element in graph.owned(activity):
         yield element
         if is_inlined(graph, element):
-            yield from list_contents(graph, element)
+            yield from _list_contents(graph, element)
 
 
 def list_steps(graph: Graph, region: Element) -> list[Element]:

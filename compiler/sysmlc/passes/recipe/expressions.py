@@ -26,7 +26,7 @@ _OPERATORS = {"%": "mod", "xor": "!="}
 def read_expression(text: str) -> source.Expression:
     """Return the expression of a text, or an opaque one if the text has no valid syntax."""
     try:
-        return translate_expression(parse_expression(text))
+        return _translate_expression(parse_expression(text))
     except source.ExpressionError:
         return make_opaque(text)
 
@@ -42,7 +42,7 @@ def read_optional(text: str) -> source.Expression | None:
     return read_expression(text) if text else None
 
 
-def translate_expression(  # noqa: PLR0911 - one for each kind
+def _translate_expression(  # noqa: PLR0911 - one for each kind
     expression: source.Expression,
 ) -> source.Expression:
     """Return a parsed expression in the normal form of recipes."""
@@ -53,26 +53,28 @@ def translate_expression(  # noqa: PLR0911 - one for each kind
         case source.Literal():
             return expression
         case source.Unary("+", operand):
-            return translate_expression(operand)
+            return _translate_expression(operand)
         case source.Binary("implies", left, right):
-            negated = source.Unary("not", translate_expression(left))
-            return source.Binary("or", negated, translate_expression(right))
+            negated = source.Unary("not", _translate_expression(left))
+            return source.Binary("or", negated, _translate_expression(right))
         case source.Binary(op, left, right):
             operator = _OPERATORS.get(op, op)
-            return source.Binary(operator, translate_expression(left), translate_expression(right))
+            return source.Binary(
+                operator, _translate_expression(left), _translate_expression(right)
+            )
         case source.Call(function, args):
             function_name = source.dotted_name(function) or source.print_expression(function)
             return _make_call(function_name, *args)
         case source.Conditional(condition, then, otherwise):
             return _make_call("if", condition, then, otherwise)
         case source.Unary() | source.Index():
-            return map_operands(expression, translate_expression)
+            return map_operands(expression, _translate_expression)
         case _:
             return make_opaque(source.print_expression(expression))
 
 
 def _make_call(function: str, *args: source.Expression) -> source.Expression:
-    return source.Call(make_variable(function), tuple(map(translate_expression, args)))
+    return source.Call(make_variable(function), tuple(map(_translate_expression, args)))
 
 
 def read_assignments(text: str) -> list[tuple[str, source.Expression]] | None:
@@ -88,7 +90,7 @@ def read_assignments(text: str) -> list[tuple[str, source.Expression]] | None:
         target = source.dotted_name(statement.target)
         if target is None:
             return None
-        pairs.append((target, translate_expression(statement.value)))
+        pairs.append((target, _translate_expression(statement.value)))
     return pairs
 
 
@@ -102,7 +104,7 @@ def resolve_literals(
     name = variable_name(expression)
     if name is not None:
         literal = context.find_literal(name) if "::" in name else None
-        return expression if literal is None else source.Literal(literal_value(literal))
+        return expression if literal is None else source.Literal(_literal_value(literal))
     match expression:
         case source.Unary() | source.Binary():
             enumerations = list(_find_enumerations(context, activity, operands(expression)))
@@ -279,7 +281,7 @@ def default_value(element: Element) -> Scalar | tuple[Scalar, ...] | None:
     return default if isinstance(default, bool | int | float | str) else None
 
 
-def literal_value(literal: Element) -> Scalar:
+def _literal_value(literal: Element) -> Scalar:
     """Return the value of an enumeration literal, or its name if it has no value."""
     value = literal.attrs.get("value")
     return value if isinstance(value, bool | int | float | str) else literal.name

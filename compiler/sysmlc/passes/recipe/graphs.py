@@ -42,7 +42,7 @@ def refine(context: Context, activity: Element, activity_level: str) -> Refineme
     """
     refinement = context.refinements.get((activity_level, activity.id))
     if refinement is None:
-        graph = build_flow_graph(context, activity, activity_level)
+        graph = _build_flow_graph(context, activity, activity_level)
         calls = tuple(_list_calls(context, activity, activity_level))
         refinement = Refinement(
             graph, calls, tuple(_list_decisions(context, activity, activity_level))
@@ -84,7 +84,7 @@ class Draft:
     last: dict[str, str] = field(default_factory=dict)
 
 
-def build_flow_graph(context: Context, activity: Element, activity_level: str) -> FlowGraph:
+def _build_flow_graph(context: Context, activity: Element, activity_level: str) -> FlowGraph:
     """Return the graph of an activity; *activity_level* is its level, ``task`` or ``service``."""
     data = DataFlow.build(context, activity)
     draft = Draft()

@@ -86,7 +86,7 @@ def build_model(context: Context, activity: Element) -> Model:
         _sort_by_id(closure.service_graphs.values()),
         _sort_by_id(closure.function_graphs.values()),
     )
-    return derive(add_machine_variables(context, model))
+    return derive(_add_machine_variables(context, model))
 
 
 def _build_recipe(
@@ -108,7 +108,7 @@ def _build_recipe(
         tags.integer("priority"),
         bool(tags.flag("noWait")),
         activity.id,
-        build_performances(context, activity, [*closure.service_graphs, *closure.function_graphs]),
+        _build_performances(context, activity, [*closure.service_graphs, *closure.function_graphs]),
     )
 
 
@@ -158,7 +158,7 @@ def _sort_by_id(values: Iterable[_T]) -> tuple[_T, ...]:
     return tuple(sorted(values, key=lambda value: value.id))
 
 
-def build_performances(
+def _build_performances(
     context: Context, recipe: Element, graphs: Iterable[str]
 ) -> tuple[Performance, ...]:
     """Return, for each block that runs the recipe, its allocations of parameters and steps.
@@ -217,7 +217,7 @@ def _sort_pairs(pairs: dict[str, str]) -> tuple[tuple[str, str], ...]:
 _NAME = re.compile(r"[^\W\d]\w*")
 
 
-def add_machine_variables(context: Context, model: Model) -> Model:
+def _add_machine_variables(context: Context, model: Model) -> Model:
     """Return the model with, for each machine, the variables that expressions refer to."""
     names_by_machine: dict[str, set[str]] = {}
     for parameters, expressions in _list_scopes(model):

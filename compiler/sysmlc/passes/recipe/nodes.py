@@ -54,13 +54,13 @@ def _find_step_kind(context: Context, node: Element, activity_level: str) -> str
     if definition is None or node.subkind not in ("call-behavior", "call-operation"):
         return _plain_kind(context, node)
     if definition.subkind in _HELPERS or (
-        activity_level == "service" and is_helper(context, definition)
+        activity_level == "service" and _is_helper(context, definition)
     ):
         return "call"
     return "service" if activity_level == "task" else "function"
 
 
-def is_helper(context: Context, behavior: Element) -> bool:
+def _is_helper(context: Context, behavior: Element) -> bool:
     """Whether a behaviour without a level that a service calls is a helper, not a machine function.
 
     A helper has steps of its own. If the model marks any behaviour as a machine function, all
@@ -218,7 +218,7 @@ def list_flows(context: Context, activity: Element) -> list[Element]:
     return [element for element in context.contents(activity) if element.kind in kinds]
 
 
-def node_of_end(context: Context, end: Element | None) -> Element | None:
+def _node_of_end(context: Context, end: Element | None) -> Element | None:
     """Return the node at an end of a flow: the action if the end is a pin."""
     if end is None or end.kind is not Kind.PIN:
         return end
@@ -229,4 +229,4 @@ def find_flow_ends(context: Context, flow: Element) -> tuple[Element | None, Ele
     """Return the source and target nodes of a flow."""
     graph = context.graph
     ends = query.flow_source(graph, flow), query.flow_target(graph, flow)
-    return node_of_end(context, ends[0]), node_of_end(context, ends[1])
+    return _node_of_end(context, ends[0]), _node_of_end(context, ends[1])

@@ -40,7 +40,7 @@ def build_service(context: Context, definition: Element, callers: list[Element])
         "machine" if is_machine else "infrastructure",
         list_data_parameters(context, definition, "in", "inout"),
         list_data_parameters(context, definition, "out", "inout", "return"),
-        build_constants(context, definition),
+        _build_constants(context, definition),
         build_material_uses(context, definition),
         offers,
         tags.integer("duration"),
@@ -88,7 +88,7 @@ def _find_relations(
     yield from relations or relations_by_parameters(context, definition)
 
 
-def build_constants(context: Context, definition: Element) -> tuple[Parameter, ...]:
+def _build_constants(context: Context, definition: Element) -> tuple[Parameter, ...]:
     """Return the read-only attributes of a definition, without machines and materials."""
     owned = context.graph.owned(definition)
     attributes = (

@@ -103,7 +103,7 @@ def _list_adjacent(
             yield flow, target
 
 
-def is_machine_flow(context: Context, flow: Element) -> bool:
+def _is_machine_flow(context: Context, flow: Element) -> bool:
     """Whether a flow only states which machine a task needs."""
     return any(find_machine(context, end) is not None for end in find_flow_ends(context, flow))
 
@@ -178,7 +178,7 @@ def find_precedence(
     following: dict[str, list[Element]] = {}
     for flow in list_flows(context, recipe):
         source, target = find_flow_ends(context, flow)
-        if source is not None and target is not None and not is_machine_flow(context, flow):
+        if source is not None and target is not None and not _is_machine_flow(context, flow):
             following.setdefault(source.id, []).append(target)
     ids = {step.node.id for step in steps}
     pairs = {

@@ -41,7 +41,7 @@ class Resolve(Struct, frozen=True):
             use for use in held_ids if resolver.get(use.holder.source, use.target) is None
         ]
         report_unresolved(graph, sink, unresolved)
-        keep_first_ends(graph, sink)
+        _keep_first_ends(graph, sink)
         _rewrite_attributes(graph, resolver, held_ids)
         missing = {
             href: uses
@@ -86,7 +86,7 @@ def _resolve_value(resolver: Resolver, holder: Element, value: AttrValue) -> Att
 _FLOW_ENDS = (Edge.FLOW_SOURCE, Edge.FLOW_TARGET)
 
 
-def keep_first_ends(graph: Graph, sink: Sink) -> None:
+def _keep_first_ends(graph: Graph, sink: Sink) -> None:
     """Reduce each control flow, object flow and transition to one source and one target.
 
     Reports the flows for which a file gives several.

@@ -49,7 +49,7 @@ _COMPARISONS = (Op.EQ, Op.NE, Op.LT, Op.LE, Op.GT, Op.GE)
 def build_machine(draft: DraftMachine, contract: Contract, max_cases: int = MAX_CASES) -> Machine:
     """Return the machine of a draft. Raises TooLargeError if its conditions have too many cases."""
     symbols = draft.strategy.symbols
-    writer = _ConditionWriter(symbols, frozenset(compared_pairs(contract)), max_cases)
+    writer = _ConditionWriter(symbols, frozenset(_compared_pairs(contract)), max_cases)
     states = tuple(tuple(writer.moves(moves)) for moves in draft.states)
     variables = symbols.variables
     read_registers = writer.read_registers
@@ -61,7 +61,7 @@ def build_machine(draft: DraftMachine, contract: Contract, max_cases: int = MAX_
     )
 
 
-def compared_pairs(contract: Contract) -> Iterator[Pair]:
+def _compared_pairs(contract: Contract) -> Iterator[Pair]:
     """Yield the pairs of variables that some conjunct compares."""
     stack = [conjunct.formula for conjunct in (*contract.assumptions, *contract.guarantees)]
     while stack:

@@ -138,12 +138,12 @@ class Table(Struct, frozen=True):
         entry = self.modes[state - 1] if state else self.first
         variables = (*self.inputs, *self.outputs)
         before = {
-            variable.name: encode_value(variable, last[variable.name])
+            variable.name: _encode_value(variable, last[variable.name])
             for variable in variables
             if last
         }
         inputs = {
-            variable.name: encode_value(variable, now[variable.name]) for variable in self.inputs
+            variable.name: _encode_value(variable, now[variable.name]) for variable in self.inputs
         }
         bits = [bool(self.evaluate(position, before, inputs)) for position in entry.outputs]
         is_next = [bool(self.evaluate(position, before, inputs)) for position in entry.successors]
@@ -227,7 +227,7 @@ class _TableBuilder:
         self._manager.check("writing the controller")
 
 
-def encode_value(variable: Variable, value: Literal) -> tuple[bool, ...]:
+def _encode_value(variable: Variable, value: Literal) -> tuple[bool, ...]:
     """Return the bits of a value of a variable, the most significant one first."""
     index = domains.values(variable.domain).index(value)
     return tuple(bool(index >> position & 1) for position in reversed(range(width(variable))))

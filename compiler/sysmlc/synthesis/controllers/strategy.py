@@ -83,7 +83,7 @@ class _StrategyExtractor:
         self.manager, self.symbols = game.manager, game.symbols
         self.goal_count = max(1, len(self.arena.goals))
         self.operator = PredecessorOperator(self.arena)
-        self.open_answers = find_open_answers(self.arena)
+        self.open_answers = _find_open_answers(self.arena)
         self._answer_product = Product(self.manager, self.open_answers.parts, ())
 
     def extract(self) -> Strategy:
@@ -147,9 +147,9 @@ class _StrategyExtractor:
     def _choose(
         self, goal: int, predecessor_choices: Callable[[Node], Node], bits: Sequence[str]
     ) -> Functions:
-        """Return functions for *bits* that lead towards the goal (``choose_targets``)."""
+        """Return functions for *bits* that lead towards the goal (``_choose_targets``)."""
         allowed = self.manager.false
-        for choices in choose_targets(
+        for choices in _choose_targets(
             self.solution, self.operator, goal, predecessor_choices, bits
         ):
             allowed = allowed | choices
@@ -234,7 +234,7 @@ class _StrategyExtractor:
         return completed
 
 
-def choose_targets(
+def _choose_targets(
     solution: Solution,
     operator: PredecessorOperator,
     goal: int,
@@ -321,7 +321,7 @@ class OpenAnswers(Struct, frozen=True):
         return completed
 
 
-def find_open_answers(arena: Arena) -> OpenAnswers:
+def _find_open_answers(arena: Arena) -> OpenAnswers:
     """Divide the last turn of an arena into determined bits and open bits."""
     turn = arena.turns[-1]
     names = [

@@ -121,7 +121,7 @@ def choose_registers(reachable: ReachableStrategy) -> tuple[str, ...]:
         for name in strategy.outputs
         if _is_number(strategy, name) and not read_bits.isdisjoint(symbols.bits(name))
     ]
-    counters = [name for name in counters if is_counter(reachable, name)]
+    counters = [name for name in counters if _is_counter(reachable, name)]
     counter_bits = frozenset(symbols.all_bits(counters))
     input_registers = {
         name
@@ -138,7 +138,7 @@ def _is_number(strategy: Strategy, name: str) -> bool:
     return isinstance(domain, IntegerDomain) and domain.high - domain.low > 1
 
 
-def is_counter(reachable: ReachableStrategy, name: str) -> bool:
+def _is_counter(reachable: ReachableStrategy, name: str) -> bool:
     """Return whether an output counts: each step adds or subtracts one, keeps it or resets it.
 
     It may be reset to ``MAX_SET_VALUES`` different values. An output that is only kept or reset is

@@ -161,7 +161,8 @@ class _Verification:
         ):
             return False
         return not any(
-            has_fair_run(quick_check, quick_check.reachable & ~node) for node in liveness_guarantees
+            _has_fair_run(quick_check, quick_check.reachable & ~node)
+            for node in liveness_guarantees
         )
 
     def _can_step(self, step: Node, parts: Iterable[Node]) -> bool:
@@ -220,7 +221,7 @@ class _Verification:
         """Yield a fair run in which a liveness guarantee never holds again, if there is one."""
         fair_runs, candidates = self.fair_runs, self.runs.reachable & violation
         # Successors decide; predecessors, which take longer, are needed for the lasso only.
-        if not has_fair_run(fair_runs, candidates):
+        if not _has_fair_run(fair_runs, candidates):
             return
         states = fair_runs.fair_within(candidates)
         if states != self.manager.false:
@@ -236,7 +237,7 @@ class _Verification:
         return {name: value for name, value in values.items() if name != self.state_variable.name}
 
 
-def has_fair_run(runs: Runs | QuickCheck, within: Node) -> bool:
+def _has_fair_run(runs: Runs | QuickCheck, within: Node) -> bool:
     """Return whether some fair run stays inside *within* forever.
 
     The fixpoint of Emerson and Lei, computed with successors instead of predecessors, which for

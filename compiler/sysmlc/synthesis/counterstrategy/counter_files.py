@@ -28,7 +28,7 @@ _MAX_LABEL_LINES = 4
 """Lines of conditions on an arrow; further conditions are abbreviated."""
 
 
-def losing_run_diagram(machine: CounterStrategy, contract: Contract) -> str:
+def _losing_run_diagram(machine: CounterStrategy, contract: Contract) -> str:
     """Return a sequence diagram of a run in which the component fails in spite of good answers."""
     title = [f"{format_label(contract.component)}", "cannot keep its contract"]
     trace = example_run(machine)
@@ -40,7 +40,7 @@ def losing_run_diagram(machine: CounterStrategy, contract: Contract) -> str:
     return run_diagram("\\n".join(title), trace, (Party(contract.component, contract),))
 
 
-def state_diagram(machine: CounterStrategy, contract: Contract) -> str:
+def _state_diagram(machine: CounterStrategy, contract: Contract) -> str:
     """Return the counter-strategy as a state diagram: inputs in the states, answers on the arrows.
 
     A note lists the inputs that are the same in all states.
@@ -76,7 +76,7 @@ def _list_arrows(state: State, outputs: Sequence[Variable]) -> Iterator[tuple[in
         ((row, successor),) = state.moves.items()
         yield successor, [f"only {_print_values(outputs, row, range(len(row)))}"]
         return
-    for successor, rows in group_by_successor(state).items():
+    for successor, rows in _group_by_successor(state).items():
         other_rows = [
             row for row, other_successor in state.moves.items() if other_successor != successor
         ]
@@ -92,7 +92,7 @@ def _list_arrows(state: State, outputs: Sequence[Variable]) -> Iterator[tuple[in
         )
 
 
-def group_by_successor(state: State) -> Mapping[int, list[Row]]:
+def _group_by_successor(state: State) -> Mapping[int, list[Row]]:
     """Group the answers of a state by next state."""
     rows_by_successor: dict[int, list[Row]] = {}
     for row, successor in state.moves.items():
@@ -104,11 +104,11 @@ def _describe_conditions(
     rows: Sequence[Row], other_rows: Sequence[Row], variables: Sequence[Variable]
 ) -> Iterator[list[str]]:
     """Yield lists of equations: each row satisfies all of some list, no other row does."""
-    for row, columns in distinguish_rows(rows, other_rows):
+    for row, columns in _distinguish_rows(rows, other_rows):
         yield [f"{variables[column].name}={print_literal(row[column])}" for column in columns]
 
 
-def distinguish_rows(
+def _distinguish_rows(
     rows: Sequence[Row], other_rows: Sequence[Row]
 ) -> Iterator[tuple[Row, list[int]]]:
     """Yield rows, each with columns in which it differs from all *other_rows*.
@@ -150,7 +150,9 @@ QualifiedNames = Callable[[str], str]
 """Returns the qualified name of the element with an id, or an empty string."""
 
 
-def sysml_text(machine: CounterStrategy, contract: Contract, qualified_name: QualifiedNames) -> str:
+def _sysml_text(
+    machine: CounterStrategy, contract: Contract, qualified_name: QualifiedNames
+) -> str:
     """Return the counter-strategy as SysML v2 text: an environment with a state machine."""
     component = contract.component
     comment = f"Made by sysmlc: the environment in which {component} fails."
@@ -211,7 +213,7 @@ def _print_state_machine(machine: CounterStrategy) -> Iterator[str]:
         yield "                }"
         yield "            }"
     for number, state in enumerate(machine.states):
-        for successor, rows in group_by_successor(state).items():
+        for successor, rows in _group_by_successor(state).items():
             other_rows = [
                 row for row, other_successor in state.moves.items() if other_successor != successor
             ]
@@ -224,7 +226,7 @@ def _print_state_machine(machine: CounterStrategy) -> Iterator[str]:
 def _print_guards(
     rows: Sequence[Row], other_rows: Sequence[Row], outputs: Sequence[Variable]
 ) -> Iterator[str]:
-    for row, columns in distinguish_rows(rows, other_rows):
+    for row, columns in _distinguish_rows(rows, other_rows):
         comparisons = [_print_comparison(outputs[column], row[column]) for column in columns]
         yield " and ".join(comparisons) or "true"
 
@@ -258,6 +260,6 @@ def counterstrategy_files(
     for component, name in assign_file_names(machines_by_component).items():
         machine, contract = machines_by_component[component]
         if len(machine.states) <= MAX_DIAGRAM_STATES:
-            yield f"{name}.counter.puml", state_diagram(machine, contract)
-        yield f"{name}.counter-run.puml", losing_run_diagram(machine, contract)
-        yield f"{name}.counter.sysml", sysml_text(machine, contract, qualified_name)
+            yield f"{name}.counter.puml", _state_diagram(machine, contract)
+        yield f"{name}.counter-run.puml", _losing_run_diagram(machine, contract)
+        yield f"{name}.counter.sysml", _sysml_text(machine, contract, qualified_name)

@@ -1,7 +1,7 @@
 """Relational products over partitioned relations, with early quantification.
 
 ``Product`` computes ``exist bits: start & part & part ...`` and quantifies each bit as soon as no
-remaining part depends on it. ``successor_product`` is the product for the next states of a game;
+remaining part depends on it. ``_successor_product`` is the product for the next states of a game;
 for predecessors see ``arena``.
 """
 
@@ -166,7 +166,7 @@ def _count_last_bits(cluster: _Cluster, remaining: Sequence[_Cluster]) -> int:
     return len(cluster.support - other_bits)
 
 
-def successor_product(game: Game) -> Product:
+def _successor_product(game: Game) -> Product:
     """Return the product that maps states to their possible next states, over primed bits."""
     parts = [part.node for part in (*game.assumptions, *game.guarantees)]
     return Product(game.manager, parts, (*game.inputs, *game.outputs))

@@ -30,7 +30,7 @@ def eliminate_determined_variables(game: Game) -> Game:
 
     Constraints of the result do not refer to conjuncts of the contract any more.
     """
-    game = merge_parts(game)
+    game = _merge_parts(game)
     is_changed = True
     while is_changed:
         is_changed = False
@@ -41,7 +41,7 @@ def eliminate_determined_variables(game: Game) -> Game:
     return game
 
 
-def merge_parts(game: Game) -> Game:
+def _merge_parts(game: Game) -> Game:
     """Conjoin the constraints of each list that have the same support."""
     return _replace_lists(
         game, {name: _merge_by_support(game, getattr(game, name)) for name in _STEPS}

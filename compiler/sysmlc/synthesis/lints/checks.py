@@ -229,7 +229,7 @@ def is_forced(contract: Contract, create_manager: ManagerFactory) -> bool:
         ),
         create_manager(),
     )
-    reachable = Runs(system_of_game(game)).reachable
+    reachable = Runs(_system_of_game(game)).reachable
     return reachable & solve(game).winning != game.manager.false
 
 
@@ -266,7 +266,7 @@ def check_runs(contract: Contract, manager: Manager) -> Iterator[LintFinding]:
 
 def _check_game(contract: Contract, game: Game) -> Iterator[LintFinding]:
     manager = game.manager
-    reachable = Runs(system_of_game(game)).reachable
+    reachable = Runs(_system_of_game(game)).reachable
     can_continue = Product(manager, _nodes_of(game.assumptions), game.next_inputs)(manager.true)
     dead_ends = reachable & ~can_continue
     if dead_ends != manager.false:
@@ -276,7 +276,7 @@ def _check_game(contract: Contract, game: Game) -> Iterator[LintFinding]:
             yield from _check_frame(game, variable, reachable & can_continue)
 
 
-def system_of_game(game: Game) -> FairSystem:
+def _system_of_game(game: Game) -> FairSystem:
     """Return the fair system of all steps that assumptions and guarantees allow."""
     initial = game.manager.true
     for part in (*game.init_assumptions, *game.init_guarantees):

@@ -80,13 +80,13 @@ def draw_author_diagrams(graph: Graph, sink: Sink) -> Iterator[Diagram]:
     """Yield one diagram for each View of an author, in the order of the model."""
     drawer = _Drawer(graph)
     for view in graph.of_kind(Kind.VIEW):
-        if is_author_view(view):
+        if _is_author_view(view):
             diagram = drawer.draw(Selection(graph, view), sink)
             if diagram is not None:
                 yield diagram
 
 
-def is_author_view(view: Element) -> bool:
+def _is_author_view(view: Element) -> bool:
     """Whether a View is a diagram, not a view in the sense of SysML."""
     return view.kind is Kind.VIEW and view.subkind == "diagram"
 
@@ -99,7 +99,7 @@ class _Drawer:
 
     @cached_property
     def _relations(self) -> list[Relation]:
-        return list_all_relations(self.graph)
+        return _list_all_relations(self.graph)
 
     @cached_property
     def _bindings(self) -> dict[str, list[Binding]]:
@@ -121,14 +121,14 @@ class _Drawer:
 
     def _build_view(self, selection: Selection, kind: str) -> View | None:
         if kind in ("bdd", "class", "pkg", "req"):
-            return build_box_view(selection, self._relations)
+            return _build_box_view(selection, self._relations)
         if kind == "uc":
             return self._build_use_case_view(selection)
         if kind in ("ibd", "par"):
             return self._build_parametric_view(selection) or author_parts.build_view(selection)
         if kind in ("act", "stm"):
             kind = Kind.ACTIVITY if kind == "act" else Kind.STATE_MACHINE
-            return build_behaviour_view(selection, kind)
+            return _build_behaviour_view(selection, kind)
         return self._find_sequence_view(selection) if kind == "sd" else None
 
     def _build_use_case_view(self, selection: Selection) -> View:
@@ -142,7 +142,7 @@ class _Drawer:
         return replace(view, notes=tuple(notes))
 
     def _find_sequence_view(self, selection: Selection) -> View | None:
-        about = find_behaviour(selection, Kind.INTERACTION)
+        about = _find_behaviour(selection, Kind.INTERACTION)
         diagram = self._sequences.get(about.id) if about is not None else None
         return diagram.view if diagram is not None else None
 
@@ -240,7 +240,7 @@ _DRAW_WHOLE: dict[Kind, Callable[[Graph, Element], GraphView]] = {
 }
 
 
-def find_behaviour(selection: Selection, kind: Kind) -> Element | None:
+def _find_behaviour(selection: Selection, kind: Kind) -> Element | None:
     """Return the behaviour that the frame represents, else the owner of the shown elements."""
     graph, about = selection.graph, selection.about
     starts = [*([about] if about else []), *selection.shown]
@@ -248,12 +248,12 @@ def find_behaviour(selection: Selection, kind: Kind) -> Element | None:
     return next((element for element in candidates if element.kind is kind), None)
 
 
-def build_behaviour_view(selection: Selection, kind: Kind) -> GraphView:
+def _build_behaviour_view(selection: Selection, kind: Kind) -> GraphView:
     """Return the view of a behaviour, reduced to the nodes and lines that the author selected.
 
     A node that the author omitted stays if a selected node lies inside it.
     """
-    about = find_behaviour(selection, kind)
+    about = _find_behaviour(selection, kind)
     if about is None:
         return GraphView((), ())
     whole = _DRAW_WHOLE[kind](selection.graph, about)
@@ -297,7 +297,7 @@ _ARROWS = {"--|>": Edge.SPECIALIZES, "..|>": Edge.REALIZES}
 _COMMENT_WIDTH = 44
 
 
-def list_all_relations(graph: Graph) -> list[Relation]:
+def _list_all_relations(graph: Graph) -> list[Relation]:
     """Return all relations that a diagram of boxes may show as lines."""
     return [
         *list_relations(graph),
@@ -307,7 +307,7 @@ def list_all_relations(graph: Graph) -> list[Relation]:
     ]
 
 
-def build_box_view(selection: Selection, candidates: Iterable[Relation]) -> BoxView:
+def _build_box_view(selection: Selection, candidates: Iterable[Relation]) -> BoxView:
     """Return the boxes that the author selected, and the lines that the diagram shows between
     them.
     """

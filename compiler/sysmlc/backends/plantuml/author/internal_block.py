@@ -47,7 +47,7 @@ class _AuthorDrawing:
     """Connections that are drawn."""
 
     def build(self) -> InternalView:
-        self.paths = find_paths(self.selection)
+        self.paths = _find_paths(self.selection)
         about = self.selection.about
         frame = PartView(
             self.aliases.make("frame", about.name if about else "", "block"),
@@ -222,7 +222,7 @@ def _is_typed(graph: Graph, part: Element, classifier: Element) -> bool:
 # -- nesting -----------------------------------------------------------------------------------
 
 
-def find_paths(selection: Selection) -> dict[_Ids, None]:
+def _find_paths(selection: Selection) -> dict[_Ids, None]:
     """Return a path to each part and port.
 
     The path follows the nesting of the shapes. If the tool stores no nesting, it follows the types

@@ -246,7 +246,7 @@ def _build_effect_declared_step(
     return finish_usage(apply_tail(node, tail, tokens), tokens, stop, body or [])
 
 
-def make_succession(target: End, tokens: Tokens) -> Node:
+def _make_succession(target: End, tokens: Tokens) -> Node:
     """Return the succession that a transition owns; its source end is empty."""
     node = make_node("SuccessionAsUsage", OWNING, tokens, target.begin, target.stop)
     node.add_member(
@@ -312,7 +312,7 @@ def _add_parts(
         node.add_member(make_parameter(None, node.start))
     for part in parts:
         node.add_member(part)
-    node.add_member(make_succession(target, tokens))
+    node.add_member(_make_succession(target, tokens))
     return add_members(node, body)
 
 
@@ -324,7 +324,7 @@ def _build_target_transition(
     # `if g then s` is a guarded succession, which has no transition parameters.
     if parts and len(parts) == 1 and parts[0].role == "guard" and tokens[begin] == "if":
         node.add_member(parts[0])
-        node.add_member(make_succession(target, tokens))
+        node.add_member(_make_succession(target, tokens))
         return add_members(node, body)
     return _add_parts(node, tokens, parts or [], target, body)
 
@@ -333,14 +333,14 @@ def _build_else_transition(
     tokens: Tokens, stop: int, begin: int, target: End, body: list[Node]
 ) -> Node:
     node = _make_transition(tokens, begin, stop)
-    node.add_member(make_succession(target, tokens))
+    node.add_member(_make_succession(target, tokens))
     return add_members(node, body)
 
 
 def _build_first_if_then(
     tokens: Tokens, _stop: int, _begin: int, source: End, guard: Node, target: End
 ) -> Tail:
-    members = [_mark_transition_part(guard, "guard"), make_succession(target, tokens)]
+    members = [_mark_transition_part(guard, "guard"), _make_succession(target, tokens)]
     return Tail("TransitionUsage", "first", members, [Relation("Membership", source.reference)])
 
 

@@ -104,7 +104,7 @@ _END_MAKERS: dict[str, Callable[[End, Tokens], Node]] = {
 }
 
 
-def find_end_maker(node: Node) -> Callable[[End, Tokens], Node]:
+def _find_end_maker(node: Node) -> Callable[[End, Tokens], Node]:
     """Return the function that makes the ends of a usage; a message is an abstract flow."""
     make = _END_MAKERS.get(node.kind, make_connector_end)
     return _make_message_end if make is _make_flow_end and "isAbstract" in node.attributes else make
@@ -157,7 +157,7 @@ def apply_tail(node: Node, tail: Tail, tokens: Tokens) -> Node:
     node.relations += tail.relations
     for member in tail.members:
         node.add_member(member)
-    make = find_end_maker(node)
+    make = _find_end_maker(node)
     for end in tail.ends:
         node.add_member(make(end, tokens))
     return node
@@ -221,7 +221,7 @@ def _build_flow_between(_tokens: Tokens, _stop: int, _begin: int, source: End, t
     return Tail("", "from", ends=[source, target])
 
 
-def build_payload(
+def _build_payload(
     tokens: Tokens,
     stop: int,
     begin: int,
@@ -280,7 +280,7 @@ def _build_usage_tail(
 _KINDS_WITHOUT_DECLARATION = {"of": "FlowUsage", "from": "FlowUsage"}
 
 
-def build_tail_usage(
+def _build_tail_usage(
     tokens: Tokens, stop: int, begin: int, tail: Tail, body: list[Node] | None = None
 ) -> Node:
     """Build a usage without a declaration."""
@@ -343,12 +343,12 @@ ACTIONS = {
     "flow_of": _build_flow_of,
     "flow_of_between": _build_flow_of_between,
     "flow_between": _build_flow_between,
-    "payload": build_payload,
+    "payload": _build_payload,
     "payload_short": _build_payload_short,
     "payload_nameless": _build_payload_nameless,
     "payload_many": _build_payload_many,
     "usage_tail": _build_usage_tail,
-    "tail_usage": build_tail_usage,
+    "tail_usage": _build_tail_usage,
     "usage_ends": _build_usage_ends,
     "usage_many_ends": _build_usage_ends,
     "usage_named_end": _build_usage_named_end,

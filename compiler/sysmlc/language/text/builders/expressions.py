@@ -167,10 +167,10 @@ def _make_body_argument(
 ) -> Node:
     # The brace has no token number here, because the body was reduced without it.
     start = tokens.text.find("{", operand.end)
-    return make_body_expression(body, start, tokens.ends[stop - 1])
+    return _make_body_expression(body, start, tokens.ends[stop - 1])
 
 
-def make_body_expression(body: list[Node], start: int, end: int) -> Node:
+def _make_body_expression(body: list[Node], start: int, end: int) -> Node:
     """Return an expression with a body between braces (KerML 8.2.5.8.3)."""
     node = Node("FeatureReferenceExpression", start=start, end=end)
     add_members(node.add_member(Node("Expression", membership=FEATURE, start=start, end=end)), body)
@@ -178,7 +178,7 @@ def make_body_expression(body: list[Node], start: int, end: int) -> Node:
 
 
 def _build_body_expression(tokens: Tokens, stop: int, begin: int, body: list[Node]) -> Node:
-    return make_body_expression(body, tokens.starts[begin], tokens.ends[stop - 1])
+    return _make_body_expression(body, tokens.starts[begin], tokens.ends[stop - 1])
 
 
 def _make_invocation(

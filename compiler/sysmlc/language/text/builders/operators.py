@@ -36,7 +36,7 @@ _CASTS = {"as", "meta"}
 _METACLASS_OPERATORS = {"@@", "meta"}
 
 
-def group_operands(tokens: Tokens, parts: list[ExpressionPart]) -> Node:
+def _group_operands(tokens: Tokens, parts: list[ExpressionPart]) -> Node:
     """Return the tree of alternating operands and operators, given as numbers of tokens.
 
     This is operator-precedence parsing with two stacks. A type completes its operation at once: the
@@ -51,7 +51,7 @@ def group_operands(tokens: Tokens, parts: list[ExpressionPart]) -> Node:
         while operator_stack and _binds_first(PRECEDENCE[operator_stack[-1]], PRECEDENCE[operator]):
             _reduce_operation(output, operator_stack.pop())
         if isinstance(operand, Reference):
-            output.append(make_operation(operator, output.pop(), operand))
+            output.append(_make_operation(operator, output.pop(), operand))
         else:
             operator_stack.append(operator)
             output.append(operand)
@@ -71,10 +71,10 @@ def _binds_first(left: int, right: int) -> bool:
 
 def _reduce_operation(operands: list[Node], operator: str) -> None:
     right, left = operands.pop(), operands.pop()
-    operands.append(make_operation(operator, left, right))
+    operands.append(_make_operation(operator, left, right))
 
 
-def make_operation(operator: str, left: Node, right: Node | Reference) -> Node:
+def _make_operation(operator: str, left: Node, right: Node | Reference) -> Node:
     """Return a binary operation; the right operand of a classification is the name of a type."""
     node = Node("OperatorExpression", start=left.start, end=right.end)
     node.attributes["operator"] = operator
@@ -84,7 +84,7 @@ def make_operation(operator: str, left: Node, right: Node | Reference) -> Node:
         if operator in _LAZY_OPERATORS:
             right.role = "expression"
     else:
-        node.add_member(make_type_argument(operator, right))
+        node.add_member(_make_type_argument(operator, right))
         if operator in _METACLASS_OPERATORS and left.kind == "FeatureReferenceExpression":
             left.kind = "MetadataAccessExpression"
     return node
@@ -96,7 +96,7 @@ def make_argument(node: Node) -> Node:
     return node
 
 
-def make_type_argument(operator: str, name: Reference) -> Node:
+def _make_type_argument(operator: str, name: Reference) -> Node:
     """Return a feature with the type ``name``: the result of a cast, else an argument."""
     membership = "ReturnParameterMembership" if operator in _CASTS else ARGUMENT
     feature = Node("Feature", membership=membership, start=name.start, end=name.end)
@@ -105,7 +105,7 @@ def make_type_argument(operator: str, name: Reference) -> Node:
 
 
 def _build_grouped(tokens: Tokens, _stop: int, _begin: int, parts: list[ExpressionPart]) -> Node:
-    return group_operands(tokens, parts)
+    return _group_operands(tokens, parts)
 
 
 def _start_operands(
@@ -149,14 +149,14 @@ def _build_unary_type(
 ) -> Node:
     node = make_node("OperatorExpression", "", tokens, begin, stop)
     node.attributes["operator"] = tokens[operator]
-    node.add_member(make_type_argument(tokens[operator], name))
+    node.add_member(_make_type_argument(tokens[operator], name))
     return node
 
 
 def _build_extent(tokens: Tokens, stop: int, begin: int, name: Reference) -> Node:
     node = make_node("OperatorExpression", "", tokens, begin, stop)
     node.attributes["operator"] = "all"
-    node.add_member(make_type_argument("all", name))
+    node.add_member(_make_type_argument("all", name))
     return node
 
 
