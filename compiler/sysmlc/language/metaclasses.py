@@ -148,6 +148,12 @@ FEATURES = kinds_of("Feature")
 TYPES = kinds_of("Type")
 NAMESPACES = kinds_of("Namespace")
 USAGES = kinds_of("Usage")
+EXPRESSIONS_WITHOUT_BODY = (
+    kinds_of("InstantiationExpression")
+    | kinds_of("LiteralExpression")
+    | {"FeatureReferenceExpression", "MetadataAccessExpression", "NullExpression"}
+)
+"""Expressions that declare nothing: they only make up a larger expression."""
 _REFERENTIAL = (
     kinds_of("ReferenceUsage")
     | kinds_of("AttributeUsage")

@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterable, Iterator
 from typing import NamedTuple
 
 from sysmlc.diagnostics import Rule
-from sysmlc.language.metaclasses import FEATURES, TYPES, kinds_of
+from sysmlc.language.metaclasses import EXPRESSIONS_WITHOUT_BODY, FEATURES, TYPES
 from sysmlc.language.names import Model
 from sysmlc.language.tree import Node, Relation
 
@@ -17,13 +17,8 @@ class Finding(NamedTuple):
     facts: dict[str, str]
 
 
-_EXPRESSION_KINDS = (
-    kinds_of("InstantiationExpression")
-    | kinds_of("LiteralExpression")
-    | {"FeatureReferenceExpression", "MetadataAccessExpression", "NullExpression"}
-)
-DECLARED_TYPES = TYPES - _EXPRESSION_KINDS
-DECLARED_FEATURES = FEATURES - _EXPRESSION_KINDS
+DECLARED_TYPES = TYPES - EXPRESSIONS_WITHOUT_BODY
+DECLARED_FEATURES = FEATURES - EXPRESSIONS_WITHOUT_BODY
 """Types and features that are declared, without those that only make up an expression."""
 Check = Callable[[Model, Node], Iterable[Finding]]
 """Returns the findings about one node; the tables of ``checks`` have the metaclasses for it."""

@@ -134,7 +134,7 @@ def _make_import_context(node: Node, everything: bool) -> LookupContext:
 
 
 def _find_previous_link(node: Node, relation: Relation) -> Relation | None:
-    links = [relation for relation in node.relations if relation.kind == "FeatureChaining"]
+    links = [link for link in node.relations if link.kind == "FeatureChaining"]
     index = links.index(relation)
     return links[index - 1] if index else None
 

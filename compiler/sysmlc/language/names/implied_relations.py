@@ -6,7 +6,7 @@ checkFeatureSuboccurrenceSpecialization, checkFeatureObjectSpecialization,
 checkFeatureSubobjectSpecialization, checkFeaturePortionSpecialization.
 """
 
-from sysmlc.language.metaclasses import FEATURES, TYPES, kinds_of
+from sysmlc.language.metaclasses import EXPRESSIONS_WITHOUT_BODY, FEATURES, TYPES, kinds_of
 from sysmlc.language.names.implied import find_owning_type, is_part
 from sysmlc.language.names.model import Model
 from sysmlc.language.tree import Node, Reference, Relation
@@ -87,13 +87,8 @@ def _is_owned_by(model: Model, node: Node, kinds: frozenset[str]) -> bool:
     return owner.kind in kinds
 
 
-_EXPRESSIONS = (
-    kinds_of("InstantiationExpression")
-    | kinds_of("LiteralExpression")
-    | {"FeatureReferenceExpression", "MetadataAccessExpression", "NullExpression"}
-)
 _STEPS = kinds_of("IfActionUsage") | kinds_of("LoopActionUsage")
-_DECLARED = TYPES - kinds_of("Multiplicity") - _EXPRESSIONS
+_DECLARED = TYPES - kinds_of("Multiplicity") - EXPRESSIONS_WITHOUT_BODY
 
 
 def implied_relations(model: Model, node: Node) -> list[Relation]:

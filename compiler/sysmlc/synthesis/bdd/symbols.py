@@ -273,14 +273,15 @@ def _decode_value(variable: Variable, bits: list[bool]) -> Literal:
     return domains.values(variable.domain)[index]
 
 
-def _conjunction(manager: Manager, parts: list[Node]) -> Node:
+def conjoin(manager: Manager, parts: Iterable[Node]) -> Node:
+    """Return the conjunction of the parts; true for none."""
     result = manager.true
     for part in parts:
         result = result & part
     return result
 
 
-def _disjunction(manager: Manager, parts: list[Node]) -> Node:
+def _disjoin(manager: Manager, parts: list[Node]) -> Node:
     result = manager.false
     for part in parts:
         result = result | part
@@ -289,8 +290,8 @@ def _disjunction(manager: Manager, parts: list[Node]) -> Node:
 
 _CONNECTIVES: dict[Op, Callable[[Manager, list[Node]], Node]] = {
     Op.NOT: lambda _, parts: ~parts[0],
-    Op.AND: _conjunction,
-    Op.OR: _disjunction,
+    Op.AND: conjoin,
+    Op.OR: _disjoin,
     Op.IMPLIES: lambda _, parts: parts[0].implies(parts[1]),
     Op.IFF: lambda _, parts: parts[0].equiv(parts[1]),
 }

@@ -14,6 +14,7 @@ from msgspec.structs import replace
 
 from sysmlc.logic.contract import Owner
 from sysmlc.synthesis.bdd.manager import Manager, Node
+from sysmlc.synthesis.bdd.symbols import conjoin
 from sysmlc.synthesis.games.arena import domain_constraint
 from sysmlc.synthesis.games.game import Constraint, Game
 
@@ -52,17 +53,10 @@ def _merge_by_support(game: Game, parts: Iterable[Constraint]) -> list[Constrain
     groups: dict[frozenset[str], list[Node]] = {}
     for part in parts:
         groups.setdefault(game.manager.support(part.node), []).append(part.node)
-    return [Constraint(_conjunction(game.manager, nodes)) for nodes in groups.values()]
+    return [Constraint(conjoin(game.manager, nodes)) for nodes in groups.values()]
 
 
-def _conjunction(manager: Manager, conjuncts: Iterable[Node]) -> Node:
-    result = manager.true
-    for conjunct in conjuncts:
-        result = result & conjunct
-    return result
-
-
-def _small_conjunction(manager: Manager, conjuncts: Iterable[Node]) -> Node | None:
+def _conjoin_within_limit(manager: Manager, conjuncts: Iterable[Node]) -> Node | None:
     """Return the conjunction, or None if an intermediate result is too large."""
     result = manager.true
     for conjunct in conjuncts:
@@ -88,7 +82,7 @@ def _find_definition(game: Game, name: str) -> _Definition | None:
     is_input = symbols.variables[name].owner is Owner.ENVIRONMENT
     parts = _parts_over(game, game.assumptions if is_input else game.guarantees, own_bits)
     parts = [part for part in parts if _is_about_next_step(game, part.node)]
-    relation = _small_conjunction(manager, (part.node for part in parts))
+    relation = _conjoin_within_limit(manager, (part.node for part in parts))
     if not parts or relation is None:
         return None
     # Codes outside of the ranges have no meaning, so the definition may be partial there.
@@ -127,7 +121,7 @@ def _holds_initially(
     manager, symbols = game.manager, game.symbols
     current_bits = {_current_bit(bit): symbols.unprime(node) for bit, node in bits.items()}
     parts = game.init_assumptions if is_input else game.init_guarantees
-    constraint = _conjunction(
+    constraint = conjoin(
         manager, (part.node for part in _parts_over(game, parts, frozenset(current_bits)))
     )
     initial_states = constraint & domain_constraint(symbols, other_names)

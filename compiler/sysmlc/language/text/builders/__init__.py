@@ -1,4 +1,11 @@
-"""Build actions by the names that the grammars give them: they build the tree during the parse."""
+"""Build actions: the parser calls them to build the tree while it parses.
+
+Each module has a table ``ACTIONS`` of functions by the names that the rules of the grammars have
+(``grammars/kerml-common.lark``, ``kerml.lark``, ``sysml.lark``). The parser calls the action of a
+rule when it reduces the rule, with these arguments: the tokens, the index after the last token of
+the rule (``stop``), the index of its first token (``begin``), and the values of its symbols. The
+value of a terminal is the index of its token, and the value of an absent optional symbol is None.
+"""
 
 from collections.abc import Mapping
 from types import ModuleType

@@ -9,7 +9,13 @@ from sysmlc.language.text.builders.declarations import (
     apply_specializations,
     apply_value,
 )
-from sysmlc.language.text.builders.nodes import FEATURE, OWNING, add_members, make_node
+from sysmlc.language.text.builders.nodes import (
+    FEATURE,
+    OWNING,
+    add_members,
+    make_node,
+    prepend_members,
+)
 from sysmlc.language.text.lexer import BuildFault, Tokens
 from sysmlc.language.tree import Node, Reference, Relation
 
@@ -100,6 +106,7 @@ def _make_definition(
 
 
 def read_keyword(tokens: Tokens, keyword: Keyword) -> str:
+    """Return the text of a keyword: several words are a text already, a single one is a token."""
     return keyword if isinstance(keyword, str) else tokens[keyword]
 
 
@@ -155,14 +162,6 @@ def _build_declaration_with_metadata(
 ) -> Node:
     node = _build_declaration(tokens, stop, begin, keyword, names, parts, value)
     return prepend_members(node, metadata)
-
-
-def prepend_members(node: Node, members: list[Node]) -> Node:
-    """Insert ``members`` before the other members of ``node``, and return it."""
-    for member in members:
-        member.owner = node
-    node.members[:0] = members
-    return node
 
 
 def finish_usage(node: Node, tokens: Tokens, stop: int, body: list[Node]) -> Node:

@@ -20,12 +20,19 @@ from sysmlc.language.text.builders.declarations import (
     make_multiplicity,
 )
 from sysmlc.language.text.builders.definitions import (
+    Keyword,
     build_keywordless_usage,
     finish_usage,
-    prepend_members,
+    read_keyword,
 )
 from sysmlc.language.text.builders.namespaces import build_metadata, build_prefix_metadata
-from sysmlc.language.text.builders.nodes import FEATURE, OWNING, add_members, make_node
+from sysmlc.language.text.builders.nodes import (
+    FEATURE,
+    OWNING,
+    add_members,
+    make_node,
+    prepend_members,
+)
 from sysmlc.language.text.builders.usages import Prefix, check_prefixes
 from sysmlc.language.text.lexer import Tokens
 from sysmlc.language.tree import AttributeValue, Node, Reference, Relation
@@ -55,15 +62,10 @@ _FEATURE_KINDS = {
     "flow": "Flow",
     "succession flow": "SuccessionFlow",
 }
-Keyword = int | str
 
 
 def _join_words(tokens: Tokens, _stop: int, _begin: int, *words: int) -> str:
     return " ".join(tokens[word] for word in words)
-
-
-def read_keyword(tokens: Tokens, keyword: Keyword) -> str:
-    return keyword if isinstance(keyword, str) else tokens[keyword]
 
 
 def _build_type(

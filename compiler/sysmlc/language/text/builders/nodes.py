@@ -113,10 +113,12 @@ def _make_empty_parameter(member: Node) -> Node:
     )
 
 
-def prepend_members(member: Node, members_before: list[Node]) -> None:
-    for node in members_before:
-        node.owner = member
-    member.members[:0] = members_before
+def prepend_members(node: Node, members: list[Node]) -> Node:
+    """Insert ``members`` before the other members of ``node``, and return ``node``."""
+    for member in members:
+        member.owner = node
+    node.members[:0] = members
+    return node
 
 
 def _turn_into_transition(member: Node) -> None:
@@ -175,9 +177,9 @@ def _append_members(
 
 
 def _extend_list(
-    _tokens: Tokens, _stop: int, _begin: int, items: list[T], more: list[T]
+    _tokens: Tokens, _stop: int, _begin: int, items: list[T], further_items: list[T]
 ) -> list[T]:
-    items += more
+    items += further_items
     return items
 
 

@@ -13,10 +13,15 @@ from sysmlc.language.text.builders.declarations import (
 from sysmlc.language.text.builders.definitions import (
     build_keywordless_usage,
     finish_usage,
-    prepend_members,
 )
 from sysmlc.language.text.builders.namespaces import apply_visibility
-from sysmlc.language.text.builders.nodes import FEATURE, OWNING, add_members, make_node
+from sysmlc.language.text.builders.nodes import (
+    FEATURE,
+    OWNING,
+    add_members,
+    make_node,
+    prepend_members,
+)
 from sysmlc.language.text.lexer import BuildFault, Tokens
 from sysmlc.language.tree import AttributeValue, Node, Reference, Relation
 
