@@ -176,7 +176,7 @@ def _find_undischarged(
     facts += [
         assumption for assumption in target_assumptions if assumption not in offer_assumptions
     ]
-    facts += [terms.stay_forever(other) for other in study.robots if others_stay]
+    facts += [terms.forbid_moves(other) for other in study.robots if others_stay]
     with manager.guard():
         universe = Universe((environment, robot), manager)
         runs = Entailment(universe, universe.system(facts))

@@ -1,6 +1,6 @@
 """Variables of the contracts of a floor, and conjuncts that several contracts share."""
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from itertools import combinations
 
 from sysmlc.logic import formula as f
@@ -16,28 +16,47 @@ from sysmlc.logic.contract import (
 from sysmlc.logic.formula import Formula, Op
 from sysmlc.robots.study import COMMANDS, STAY, WAYS, Grid, Robot, Study, Target
 
-
-def _variable_namer(suffix: str) -> Callable[[Robot], str]:
-    """Return a function that returns the name of a robot's variable with this suffix."""
-    return lambda robot: f"{robot.word}_{suffix}"
+# -- names of variables ------------------------------------------------------------------------
 
 
-position = _variable_namer("position")
-"""The cell in which a robot is."""
-target = _variable_namer("target")
-"""The cell that the robot shall reach."""
-command = _variable_namer("command")
-"""The command of the robot."""
-steps = _variable_namer("steps")
-"""The number of cells that the robot has passed (thesis 4.3.1)."""
-timer = _variable_namer("timer")
-"""The number of steps since the robot got its target."""
-place = _variable_namer("place")
-"""The target that the robot reached last."""
-goal = _variable_namer("goal")
-"""The target that the robot shall reach next."""
-clock = _variable_namer("clock")
-"""The number of steps that the robot has been on its way."""
+def position(robot: Robot) -> str:
+    """Return the name of the variable for the cell in which the robot is."""
+    return f"{robot.word}_position"
+
+
+def target(robot: Robot) -> str:
+    """Return the name of the variable for the cell that the robot shall reach."""
+    return f"{robot.word}_target"
+
+
+def command(robot: Robot) -> str:
+    """Return the name of the variable for the command of the robot."""
+    return f"{robot.word}_command"
+
+
+def steps(robot: Robot) -> str:
+    """Return the name of the variable for the cells that the robot has passed (thesis 4.3.1)."""
+    return f"{robot.word}_steps"
+
+
+def timer(robot: Robot) -> str:
+    """Return the name of the variable for the number of steps since the robot got its target."""
+    return f"{robot.word}_timer"
+
+
+def place(robot: Robot) -> str:
+    """Return the name of the variable for the target that the robot reached last."""
+    return f"{robot.word}_place"
+
+
+def goal(robot: Robot) -> str:
+    """Return the name of the variable for the target that the robot shall reach next."""
+    return f"{robot.word}_goal"
+
+
+def clock(robot: Robot) -> str:
+    """Return the name of the variable for the number of steps of the robot on its way."""
+    return f"{robot.word}_clock"
 
 
 def sensor(robot: Robot, way: str) -> str:
@@ -55,6 +74,9 @@ def free(cell: int) -> str:
     return f"free_{cell}"
 
 
+# -- predicates --------------------------------------------------------------------------------
+
+
 def equals(name: str, value: int | str) -> Formula:
     """Return the predicate that a variable has a value."""
     return f.eq(f.var(name), f.const(value))
@@ -70,27 +92,37 @@ def is_in_any(name: str, values: Iterable[int]) -> Formula:
     return f.either(*(equals(name, value) for value in values))
 
 
+def is_at_target(robot: Robot) -> Formula:
+    """Return the predicate that a robot is in its target."""
+    return f.eq(f.var(position(robot)), f.var(target(robot)))
+
+
+def is_away_from_target(robot: Robot) -> Formula:
+    """Return the predicate that a robot is not in its target."""
+    return f.compare(Op.NE, f.var(position(robot)), f.var(target(robot)))
+
+
 # -- variables ---------------------------------------------------------------------------------
 
 
-def cell_variable(name: str, owner: Owner, grid: Grid, origin: str) -> Variable:
+def declare_cell(name: str, owner: Owner, grid: Grid, origin: str) -> Variable:
     """Declare a variable whose values are cells."""
     return Variable(name, owner, IntegerDomain(0, grid.size - 1), origin)
 
 
-def position_and_sensors(study: Study, robot: Robot, owner: Owner) -> Iterator[Variable]:
+def declare_position_and_sensors(study: Study, robot: Robot, owner: Owner) -> Iterator[Variable]:
     """Declare position and sensors of a robot."""
-    yield cell_variable(position(robot), owner, study.grid, robot.origin)
+    yield declare_cell(position(robot), owner, study.grid, robot.origin)
     for way in WAYS:
         yield Variable(sensor(robot, way), owner, BooleanDomain(), robot.origin)
 
 
-def command_variable(robot: Robot, owner: Owner) -> Variable:
+def declare_command(robot: Robot, owner: Owner) -> Variable:
     """Declare the command of a robot."""
     return Variable(command(robot), owner, EnumerationDomain(COMMANDS), robot.origin)
 
 
-def free_cell_variables(study: Study, owner: Owner) -> Iterator[Variable]:
+def declare_free_cells(study: Study, owner: Owner) -> Iterator[Variable]:
     """Declare a Boolean for each cell that robots can enter."""
     for cell in study.grid.cells:
         yield Variable(free(cell), owner, BooleanDomain(), study.origin)
@@ -122,13 +154,13 @@ def repeat_in_every_step(conjuncts: Iterable[Conjunct]) -> Iterator[Conjunct]:
         yield safety_conjunct(f.prime(conjunct.formula), conjunct.origin, conjunct.text)
 
 
-def stay_forever(robot: Robot) -> Conjunct:
+def forbid_moves(robot: Robot) -> Conjunct:
     """State that a robot never moves."""
     text = f"'{robot.name}' stays."
     return safety_conjunct(equals(command(robot), STAY), robot.origin, text)
 
 
-def start_positions(robots: Iterable[Robot]) -> Iterator[Conjunct]:
+def define_starts(robots: Iterable[Robot]) -> Iterator[Conjunct]:
     """State the start positions of the robots that have one."""
     for robot in robots:
         if robot.start is not None:
@@ -141,10 +173,10 @@ def place_on_floor(study: Study, robot: Robot) -> Iterator[Conjunct]:
     for cell, origin in zip(study.grid.blocked, study.obstacles, strict=True):
         text = f"An obstacle is in cell {cell}."
         yield initial_conjunct(f.negate(is_in_cell(robot, cell)), origin, text)
-    yield from reachable_targets(study, robot)
+    yield from require_reachable_targets(study, robot)
 
 
-def reachable_targets(study: Study, robot: Robot) -> Iterator[Conjunct]:
+def require_reachable_targets(study: Study, robot: Robot) -> Iterator[Conjunct]:
     """State that targets are in cells that the robot can reach."""
     grid = study.grid
     # Obstacles may divide the floor into regions. Within one region only obstacles are unreachable,
@@ -162,7 +194,7 @@ def reachable_targets(study: Study, robot: Robot) -> Iterator[Conjunct]:
             yield initial_conjunct(f.negate(equals(target(robot), cell)), robot.origin, text)
 
 
-def motion_rules(study: Study, robot: Robot, is_total: bool) -> Iterator[Conjunct]:
+def define_motion(study: Study, robot: Robot, is_total: bool) -> Iterator[Conjunct]:
     """State the effect of each command in each cell.
 
     With ``is_total`` a command into a wall or an obstacle leaves the robot in its cell. The thesis
@@ -179,7 +211,7 @@ def motion_rules(study: Study, robot: Robot, is_total: bool) -> Iterator[Conjunc
             yield safety_conjunct(f.implies(before, after), robot.origin, text)
 
 
-def stable_target_by_cell(study: Study, robot: Robot) -> Iterator[Conjunct]:
+def hold_target_by_cell(study: Study, robot: Robot) -> Iterator[Conjunct]:
     """State that a target stays until it is reached, with one conjunct for each cell.
 
     The thesis does not state it, but if a target may change at any time, no robot can reach it.
@@ -194,7 +226,7 @@ def stable_target_by_cell(study: Study, robot: Robot) -> Iterator[Conjunct]:
         )
 
 
-def stable_target_formula(robot: Robot) -> Conjunct:
+def hold_target(robot: Robot) -> Conjunct:
     """State that a target stays until it is reached, with a comparison of positions."""
     text = f"The target of '{robot.name}' stays until it is reached."
     target_value = f.var(target(robot))
@@ -205,7 +237,7 @@ def stable_target_formula(robot: Robot) -> Conjunct:
     )
 
 
-def sensor_obedience(robot: Robot) -> Iterator[Conjunct]:
+def require_sensor_obedience(robot: Robot) -> Iterator[Conjunct]:
     """State that a robot moves only in directions that its sensors offer."""
     for way in WAYS:
         moves = equals(command(robot), way)
@@ -213,16 +245,6 @@ def sensor_obedience(robot: Robot) -> Iterator[Conjunct]:
         yield safety_conjunct(
             f.prime(f.implies(moves, f.var(sensor(robot, way)))), robot.origin, text
         )
-
-
-def is_at_target(robot: Robot) -> Formula:
-    """Return the predicate that a robot is in its target."""
-    return f.eq(f.var(position(robot)), f.var(target(robot)))
-
-
-def is_away_from_target(robot: Robot) -> Formula:
-    """Return the predicate that a robot is not in its target."""
-    return f.compare(Op.NE, f.var(position(robot)), f.var(target(robot)))
 
 
 def forbid_shared_cells(study: Study) -> Iterator[Conjunct]:

@@ -46,23 +46,23 @@ def environment_contract(study: Study, sharing: Sharing = Sharing.ARBITRATED) ->
         name if sharing is Sharing.ARBITRATED else f"{name}.{sharing}",
         study.origin,
         (
-            *(terms.command_variable(robot, Owner.ENVIRONMENT) for robot in study.robots),
+            *(terms.declare_command(robot, Owner.ENVIRONMENT) for robot in study.robots),
             *(
                 variable
                 for robot in study.robots
-                for variable in terms.position_and_sensors(study, robot, Owner.SYSTEM)
+                for variable in terms.declare_position_and_sensors(study, robot, Owner.SYSTEM)
             ),
-            *terms.free_cell_variables(study, Owner.SYSTEM),
+            *terms.declare_free_cells(study, Owner.SYSTEM),
         ),
         tuple(_list_assumptions(study, sharing)),
         (
-            *terms.start_positions(study.robots),
+            *terms.define_starts(study.robots),
             *forbid_obstacle_cells(study),
             *terms.repeat_in_every_step(rules),
             *(
                 conjunct
                 for robot in study.robots
-                for conjunct in terms.motion_rules(study, robot, False)
+                for conjunct in terms.define_motion(study, robot, False)
             ),
             *(() if is_exact else _guarantee_offers(study)),
         ),

@@ -251,7 +251,7 @@ class _RobotGroup:
             facts = [*self.contracts.steps()]
         self.facts = (*facts, *liveness_guarantees)
         self.mission_conjuncts = [*mission_guarantees(study)]
-        self.resting_conjuncts = [terms.stay_forever(robot) for robot in study.robots]
+        self.resting_conjuncts = [terms.forbid_moves(robot) for robot in study.robots]
         self.resting_conjuncts += [never_sent(robot) for robot in study.robots[1:]]
         with manager.guard():
             self.universe = Universe((contract,), manager)

@@ -20,20 +20,20 @@ def robot_contract(study: Study, robot: Robot, is_alone: bool = True) -> Contrac
     """
     sensor_conjuncts = _barred_ways(study, robot) if not is_alone else _all_ways(study, robot)
     assumptions = [
-        *terms.start_positions((robot,)),
+        *terms.define_starts((robot,)),
         *terms.repeat_in_every_step((*terms.place_on_floor(study, robot), *sensor_conjuncts)),
-        *terms.motion_rules(study, robot, is_total=False),
-        *terms.stable_target_by_cell(study, robot),
+        *terms.define_motion(study, robot, is_total=False),
+        *terms.hold_target_by_cell(study, robot),
     ]
     if not is_alone:
         text = f"Again and again '{robot.name}' is in its target, or may go nearer."
         is_nearer = f.either(terms.is_at_target(robot), _nearer_offered(study, robot))
         assumptions.append(terms.liveness_conjunct(is_nearer, robot.origin, text))
     variables = (
-        terms.cell_variable(terms.position(robot), _ENVIRONMENT, study.grid, robot.origin),
-        terms.cell_variable(terms.target(robot), _ENVIRONMENT, study.grid, robot.origin),
-        *tuple(terms.position_and_sensors(study, robot, _ENVIRONMENT))[1:],
-        terms.command_variable(robot, _SYSTEM),
+        terms.declare_cell(terms.position(robot), _ENVIRONMENT, study.grid, robot.origin),
+        terms.declare_cell(terms.target(robot), _ENVIRONMENT, study.grid, robot.origin),
+        *tuple(terms.declare_position_and_sensors(study, robot, _ENVIRONMENT))[1:],
+        terms.declare_command(robot, _SYSTEM),
         *declare_counter(study, robot),
     )
     name = f"{study.component}.{robot.word}"
@@ -50,7 +50,7 @@ def _list_guarantees(study: Study, robot: Robot) -> Iterator[Conjunct]:
     yield terms.initial_conjunct(
         terms.equals(terms.command(robot), STAY), robot.origin, "At first it stays."
     )
-    yield from terms.sensor_obedience(robot)
+    yield from terms.require_sensor_obedience(robot)
     stays_next = f.prime(terms.equals(terms.command(robot), STAY))
     # The step in which the robot can get its next target.
     text = f"In its target '{robot.name}' stays for a step."

@@ -51,26 +51,26 @@ def system_contract(study: Study, encoding: Encoding = Encoding.THESIS) -> Contr
 def _declare_variables(study: Study, encoding: Encoding) -> Iterator[Variable]:
     mover = _SYSTEM if encoding is Encoding.MOVES else _ENVIRONMENT
     for robot in study.robots:
-        place, *sensors = terms.position_and_sensors(study, robot, mover)
+        place, *sensors = terms.declare_position_and_sensors(study, robot, mover)
         yield place
-        yield terms.cell_variable(terms.target(robot), _ENVIRONMENT, study.grid, robot.origin)
+        yield terms.declare_cell(terms.target(robot), _ENVIRONMENT, study.grid, robot.origin)
         if study.within is not None:
             domain = IntegerDomain(0, study.within + 1)
             yield Variable(terms.timer(robot), _ENVIRONMENT, domain, robot.origin)
         if encoding is Encoding.THESIS:
             yield from sensors
         if encoding is not Encoding.MOVES:
-            yield terms.command_variable(robot, _SYSTEM)
+            yield terms.declare_command(robot, _SYSTEM)
         yield from declare_counter(study, robot)
     if encoding is Encoding.THESIS:
-        yield from terms.free_cell_variables(study, _ENVIRONMENT)
+        yield from terms.declare_free_cells(study, _ENVIRONMENT)
 
 
 # -- assumptions -------------------------------------------------------------------------------
 
 
 def _thesis_assumptions(study: Study) -> Iterator[Conjunct]:
-    yield from terms.start_positions(study.robots)
+    yield from terms.define_starts(study.robots)
     sensor_conjuncts = (
         conjunct for robot in study.robots for conjunct in define_sensors(study, robot)
     )
@@ -79,23 +79,23 @@ def _thesis_assumptions(study: Study) -> Iterator[Conjunct]:
         (*_place_robots(study), *define_free_cells(study), *sensor_conjuncts)
     )
     for robot in study.robots:
-        yield from terms.motion_rules(study, robot, is_total=True)
-        yield from terms.stable_target_by_cell(study, robot)
+        yield from terms.define_motion(study, robot, is_total=True)
+        yield from terms.hold_target_by_cell(study, robot)
 
 
 def _command_assumptions(study: Study) -> Iterator[Conjunct]:
-    yield from terms.start_positions(study.robots)
+    yield from terms.define_starts(study.robots)
     yield from _forbid_meeting(study, terms.initial_conjunct)
     yield from terms.repeat_in_every_step(_place_robots(study))
     for robot in study.robots:
-        yield from terms.motion_rules(study, robot, is_total=True)
-        yield terms.stable_target_formula(robot)
+        yield from terms.define_motion(study, robot, is_total=True)
+        yield terms.hold_target(robot)
 
 
 def _move_assumptions(study: Study) -> Iterator[Conjunct]:
     for robot in study.robots:
-        yield from terms.repeat_in_every_step(terms.reachable_targets(study, robot))
-        yield terms.stable_target_formula(robot)
+        yield from terms.repeat_in_every_step(terms.require_reachable_targets(study, robot))
+        yield terms.hold_target(robot)
 
 
 def _place_robots(study: Study) -> Iterator[Conjunct]:
@@ -132,7 +132,7 @@ def _thesis_guarantees(study: Study) -> Iterator[Conjunct]:
     for conjunct in forbid_shared_cells(study):
         yield terms.safety_conjunct(conjunct.formula, conjunct.origin, conjunct.text)
     for robot in study.robots:
-        yield from terms.sensor_obedience(robot)
+        yield from terms.require_sensor_obedience(robot)
         yield from count_steps(study, robot)
 
 
@@ -145,7 +145,7 @@ def _command_guarantees(study: Study) -> Iterator[Conjunct]:
 
 
 def _move_guarantees(study: Study) -> Iterator[Conjunct]:
-    yield from terms.start_positions(study.robots)
+    yield from terms.define_starts(study.robots)
     yield from forbid_obstacle_cells(study)
     yield from _forbid_meeting(study, terms.initial_conjunct)
     for robot in study.robots:
