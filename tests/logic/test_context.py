@@ -1,4 +1,4 @@
-"""Contexts: domains, ranges and defaults of properties; elaboration and its errors."""
+"""Expressions in their context: domains of properties, and elaboration to formulas."""
 
 import pytest
 
@@ -23,14 +23,14 @@ Class c "C"
   -> specializes g
   Property c.b "open"
     -> typed-by bool
-  Property c.n "bay"
-    -> typed-by count{default}
+  Property c.n "bay"{default}
+    -> typed-by count
   Property c.m "mode" default="Mode::hand"
     -> typed-by mode
   Property c.s "serial"
     -> typed-by string
   Property c.u "untyped" default=false
-{more}DataType bool "Boolean" external=true href="lib#Boolean"
+{members}DataType bool "Boolean" external=true href="lib#Boolean"
 DataType int "Integer"
 DataType count "Count"
   -> specializes int
@@ -41,18 +41,14 @@ Enumeration mode "Mode"
 """
 
 
-def context(more="", default=""):
-    text = CLASS.replace("{more}", more).replace('"bay"', f'"bay"{default}')
-    graph = parse_text(text.replace("{default}", ""))
-    return context_of(graph, graph["c"])
-
-
-def domain(name, **kwargs):
-    return context(**kwargs).features[name].domain
+def read_features(members="", default=""):
+    """Return the features of class C, with *members* and a default value of 'bay' added."""
+    graph = parse_text(CLASS.replace("{members}", members).replace("{default}", default))
+    return context_of(graph, graph["c"]).features
 
 
 def test_domains_come_from_types():
-    features = context().features
+    features = read_features()
     assert {name: feature.domain for name, feature in features.items()} == {
         "bay": IntegerDomain(0, 15),
         "inherited": BooleanDomain(),
@@ -76,23 +72,26 @@ def test_domains_come_from_types():
     ],
 )
 def test_ranges_come_from_constraints(body, low, high):
-    assert domain("bay", more=f'  Constraint k body="{body}"\n') == IntegerDomain(low, high)
+    features = read_features(members=f'  Constraint k body="{body}"\n')
+    assert features["bay"].domain == IntegerDomain(low, high)
 
 
-def test_a_half_open_range_is_no_range():
-    assert domain("bay", more='  Constraint k body="bay >= 3"\n') == IntegerDomain(0, 15)
+def test_a_constraint_with_one_bound_gives_no_range():
+    features = read_features(members='  Constraint k body="bay >= 3"\n')
+    assert features["bay"].domain == IntegerDomain(0, 15)
 
 
-def test_ranges_come_from_tagged_values_of_the_type_too():
+def test_ranges_come_from_tagged_values_of_the_type():
     graph = parse_text(
-        CLASS.replace("{more}", "").replace("{default}", "")
+        CLASS.replace("{members}", "").replace("{default}", "")
         + 'Application t stereotype="Range" tag.min="2" tag.max="4"\n  -> subject count\n'
     )
     assert context_of(graph, graph["c"]).features["bay"].domain == IntegerDomain(2, 4)
 
 
-def test_an_assumed_range_holds_the_default_value():
-    assert domain("bay", default=" default=40") == IntegerDomain(0, 40)
+def test_an_assumed_range_contains_the_default_value():
+    features = read_features(default=" default=40")
+    assert features["bay"].domain == IntegerDomain(0, 40)
 
 
 # -- elaboration -------------------------------------------------------------------------------

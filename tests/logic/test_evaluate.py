@@ -5,6 +5,7 @@ import pickle
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from random_contracts import apply_binary, apply_unary
 
 from long_runs import examples
 from sysmlc.logic import formula as f
@@ -48,17 +49,8 @@ _formulas = st.recursive(
         st.builds(f.negate, inner),
         st.builds(f.both, inner, inner),
         st.builds(f.implies, inner, inner),
-        st.builds(
-            lambda op, a: Apply(op, (a,)),
-            st.sampled_from([Op.NEXT, Op.ALWAYS, Op.EVENTUALLY]),
-            inner,
-        ),
-        st.builds(
-            lambda op, a, b: Apply(op, (a, b)),
-            st.sampled_from([Op.UNTIL, Op.RELEASE, Op.WEAK_UNTIL]),
-            inner,
-            inner,
-        ),
+        apply_unary([Op.NEXT, Op.ALWAYS, Op.EVENTUALLY], inner),
+        apply_binary([Op.UNTIL, Op.RELEASE, Op.WEAK_UNTIL], inner, inner),
     ),
     max_leaves=5,
 )
@@ -81,28 +73,14 @@ def test_spot_agrees_on_the_truth_on_lassos(formula, trace, data):
 _numbers = st.one_of(
     st.integers(-3, 3).map(Const), st.builds(Var, st.sampled_from("xy"), st.booleans())
 )
-_sums = st.builds(
-    lambda op, left, right: Apply(op, (left, right)),
-    st.sampled_from([Op.ADD, Op.SUB, Op.MUL, Op.DIV, Op.MOD]),
-    _numbers,
-    _numbers,
-)
-_comparisons = st.builds(
-    lambda op, left, right: Apply(op, (left, right)),
-    st.sampled_from([Op.EQ, Op.NE, Op.LT, Op.LE, Op.GT, Op.GE]),
-    st.one_of(_numbers, _sums),
-    _numbers,
-)
+_sums = apply_binary([Op.ADD, Op.SUB, Op.MUL, Op.DIV, Op.MOD], _numbers, _numbers)
+_orders = [Op.EQ, Op.NE, Op.LT, Op.LE, Op.GT, Op.GE]
+_comparisons = apply_binary(_orders, st.one_of(_numbers, _sums), _numbers)
 _steps = st.recursive(
     _comparisons,
     lambda inner: st.one_of(
-        inner.map(lambda operand: Apply(Op.NOT, (operand,))),
-        st.builds(
-            lambda op, left, right: Apply(op, (left, right)),
-            st.sampled_from([Op.AND, Op.OR, Op.IMPLIES, Op.IFF]),
-            inner,
-            inner,
-        ),
+        apply_unary([Op.NOT], inner),
+        apply_binary([Op.AND, Op.OR, Op.IMPLIES, Op.IFF], inner, inner),
     ),
     max_leaves=6,
 )
@@ -110,8 +88,8 @@ _values = st.fixed_dictionaries({"x": st.integers(-3, 3), "y": st.integers(-3, 3
 
 
 @given(_steps, _values, _values)
-def test_a_compiled_evaluation_gives_the_value_of_the_formula(formula, now, then):
-    assert compile_evaluation(formula)(now, then) == value_of(formula, now, then)
+def test_a_compiled_evaluation_gives_the_value_of_the_formula(formula, before, after):
+    assert compile_evaluation(formula)(before, after) == value_of(formula, before, after)
 
 
 def test_an_unpickled_formula_is_the_interned_one():

@@ -81,7 +81,7 @@ def test_deep_nesting_is_rejected_without_a_crash():
         parse_expression("not " * 20_000 + "a")
 
 
-def test_effects():
+def test_effects_are_assignments_invocations_and_sent_signals():
     assert parse_effect("x := x + 1; open = true; beep(2); send done(x) to gate; stop;") == (
         Assignment(Name(("x",)), Binary("+", Name(("x",)), Literal(1))),
         Assignment(Name(("open",)), Literal(True)),
@@ -94,12 +94,12 @@ def test_effects():
 
 
 @pytest.mark.parametrize("text", ["f(x) := 2", "3", "x > 2"])
-def test_a_value_is_no_effect(text):
+def test_an_expression_that_is_not_a_call_is_no_effect(text):
     with pytest.raises(ExpressionError):
         parse_effect(text)
 
 
-def test_dotted_names():
+def test_the_dotted_name_of_an_expression():
     assert dotted_name(parse_expression("A::b.c")) == "A::b.c"
     assert dotted_name(parse_expression("f(x).c")) is None
 
@@ -148,23 +148,23 @@ _statements = st.one_of(
 
 @given(st.lists(_statements, max_size=3).map(tuple))
 @settings(max_examples=examples(60), deadline=None)
-def test_effects_survive_printing(effect):
+def test_parsing_a_printed_effect_gives_an_equal_effect(effect):
     assert parse_effect(print_effect(effect)) == effect
 
 
-# -- any sequence of tokens ---------------------------------------------------------------------
+# -- random sequences of tokens -----------------------------------------------------------------
 
 _TOKENS = """\
 a b _c 'x_y' 'it\\'s' 1 42 2.5 1e5 2.5e-3 "text" true FALSE if else implies or OR xor and AND
 not NOT send to || | && & ! = == != <> < <= > >= + - * / % . .. :: : := ( ) [ ] # ( ) , ; ?
 $ ' " // /* */ é ٣
 """
-_soups = st.lists(
+_token_texts = st.lists(
     st.tuples(st.sampled_from(_TOKENS.split()), st.sampled_from(["", " ", " ", "\n"])), max_size=12
 ).map(lambda parts: "".join(token + space for token, space in parts))
 
 
-@given(_soups)
+@given(_token_texts)
 @settings(max_examples=examples(300), deadline=None)
 def test_any_text_is_parsed_or_rejected_at_an_offset_in_it(text):
     for parse in (parse_expression, parse_effect):
@@ -185,7 +185,7 @@ def test_a_boolean_equals_no_number():
     assert Binary("==", Name(("x",)), Literal(1)) != Binary("==", Name(("x",)), Literal(True))
 
 
-def test_number_with_more_digits_than_python_reads_is_refused():
+def test_a_number_with_more_digits_than_python_reads_is_rejected():
     with pytest.raises(ExpressionError, match="too many digits"):
         parse_expression("9" * 5000)
 

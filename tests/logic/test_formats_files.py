@@ -304,14 +304,14 @@ PIECES += ["? 1", "..", "define", "pattern", "CONTRACT", "INPUTS", "[SYS_TRANS]"
 def damage(text, draw):
     """Remove, insert or repeat characters at random, or cut the text."""
     for _ in range(draw.randint(1, 4)):
-        at, to = sorted((draw.randrange(len(text) + 1), draw.randrange(len(text) + 1)))
+        start, end = sorted((draw.randrange(len(text) + 1), draw.randrange(len(text) + 1)))
         piece = draw.choice(PIECES) * draw.choice([1, 1, 1, 300])
         text = draw.choice(
             [
-                text[:at] + text[at + draw.randint(1, 8) :],
-                text[:at] + piece + text[at:],
-                text[:at] + text[at : min(to, at + 200)] + text[at:],
-                text[:at],
+                text[:start] + text[start + draw.randint(1, 8) :],
+                text[:start] + piece + text[start:],
+                text[:start] + text[start : min(end, start + 200)] + text[start:],
+                text[:start],
             ]
         )
     return text

@@ -10,7 +10,7 @@ from itertools import product
 import pytest
 import spot
 from hypothesis import given, settings
-from test_formats_spot import any_contracts, games, meaning
+from test_formats_spot import any_contracts, games, translate
 
 from long_runs import examples
 from sysmlc.logic import formats
@@ -97,7 +97,7 @@ def test_the_text_means_the_same_as_the_contract(format_name, read, contracts):
     @settings(max_examples=examples(25), deadline=None)
     def judge(contract):
         text = formats.write(contract, format_name)
-        assert spot.are_equivalent(meaning(contract), read(text))
+        assert spot.are_equivalent(translate(contract), read(text))
 
     judge()
 

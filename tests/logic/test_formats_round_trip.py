@@ -6,8 +6,8 @@ import re
 import jsonschema
 import pytest
 import spot
-from contract_cases import canonical, contracts
 from hypothesis import given, settings
+from random_contracts import canonicalise, contracts
 
 from long_runs import examples
 from sysmlc.diagnostics import Sink
@@ -22,7 +22,7 @@ FORMATS = (*GAMES, "tlsf", "spot", "smv", "chase", "chasejson", "neutral", "cont
 @pytest.mark.parametrize("format_name", FORMATS)
 @given(contract=contracts)
 @settings(max_examples=examples(60), deadline=None)
-def test_the_lowered_contract_is_read_again(format_name, contract):
+def test_a_written_contract_is_read_as_the_lowered_contract(format_name, contract):
     try:
         text = formats.write(contract, format_name)
     except NotExpressibleError as error:
@@ -32,7 +32,7 @@ def test_the_lowered_contract_is_read_again(format_name, contract):
     sink = Sink()
     (again,) = formats.read(text, "Gate.txt", sink, format_name)
     assert [diagnostic.message for diagnostic in sink] == []
-    assert canonical(again) == canonical(formats.lower(contract, format_name))
+    assert canonicalise(again) == canonicalise(formats.lower(contract, format_name))
 
 
 @given(contract=contracts)

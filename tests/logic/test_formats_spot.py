@@ -2,9 +2,10 @@
 
 import pytest
 import spot
-from contract_cases import add_temporal_operators
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from random_contracts import apply_binary, apply_unary, connect
+from spot_formulas import conjoin, print_for_spot
 
 from long_runs import examples
 from sysmlc.diagnostics import Sink
@@ -12,7 +13,7 @@ from sysmlc.logic import formats
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import BooleanDomain, Class, Conjunct, Contract, Owner, Variable
 from sysmlc.logic.formats import NotExpressibleError
-from sysmlc.logic.formula import Apply, Const, Op, Var
+from sysmlc.logic.formula import Op, Var
 from sysmlc.logic.infix import parse_formula
 
 VARIABLES = tuple(
@@ -24,65 +25,23 @@ VARIABLES = tuple(
         ("d", Owner.SYSTEM),
     )
 )
-WORDS = {
-    Op.NOT: "!",
-    Op.AND: "&",
-    Op.OR: "|",
-    Op.IMPLIES: "->",
-    Op.IFF: "<->",
-    Op.NEXT: "X",
-    Op.ALWAYS: "G",
-    Op.EVENTUALLY: "F",
-    Op.UNTIL: "U",
-    Op.RELEASE: "R",
-    Op.WEAK_UNTIL: "W",
-}
 
 
-def print_for_spot(formula):
-    """Return the formula in Spot's words, with all parentheses."""
-    match formula:
-        case Const(value):
-            return "1" if value else "0"
-        case Var(name, primed):
-            return f"(X {name})" if primed else name
-        case Apply(op, (operand,)):
-            return f"({WORDS[op]} {print_for_spot(operand)})"
-        case Apply(op, args):
-            return f"({f' {WORDS[op]} '.join(map(print_for_spot, args))})"
-
-
-def meaning(contract):
-    assumptions = f.both(*map(add_temporal_operators, contract.assumptions))
-    guarantees = f.both(*map(add_temporal_operators, contract.guarantees))
-    return spot.formula(print_for_spot(Apply(Op.IMPLIES, (assumptions, guarantees))))
+def translate(contract):
+    """Return the contract as a formula of Spot: the assumptions imply the guarantees."""
+    assumptions, guarantees = conjoin(contract.assumptions), conjoin(contract.guarantees)
+    return spot.formula(f"{print_for_spot(assumptions)} -> {print_for_spot(guarantees)}")
 
 
 def formulas(primes):
-    leaves = st.builds(Var, st.sampled_from("abcd"), primes)
-    return st.recursive(
-        leaves,
-        lambda inner: st.one_of(
-            st.builds(f.negate, inner),
-            st.builds(f.both, inner, inner),
-            st.builds(f.either, inner, inner),
-            st.builds(f.implies, inner, inner),
-            st.builds(f.iff, inner, inner),
-        ),
-        max_leaves=4,
-    )
+    return st.recursive(st.builds(Var, st.sampled_from("abcd"), primes), connect, max_leaves=4)
 
 
 general = st.recursive(
     formulas(st.just(False)),
     lambda inner: st.one_of(
-        st.builds(lambda op, a: Apply(op, (a,)), st.sampled_from([Op.NEXT, Op.EVENTUALLY]), inner),
-        st.builds(
-            lambda op, a, b: Apply(op, (a, b)),
-            st.sampled_from([Op.UNTIL, Op.RELEASE, Op.WEAK_UNTIL]),
-            inner,
-            inner,
-        ),
+        apply_unary([Op.NEXT, Op.EVENTUALLY], inner),
+        apply_binary([Op.UNTIL, Op.RELEASE, Op.WEAK_UNTIL], inner, inner),
     ),
     max_leaves=3,
 )
@@ -133,17 +92,19 @@ def test_general_ltl_means_the_same_in_every_format(format_name, contract):
 
 def check_same_meaning(contract, format_name):
     text = formats.write(contract, format_name)
-    (again,) = formats.read(text, "C.txt", Sink(), format_name)
-    assert spot.are_equivalent(meaning(contract), meaning(again))
+    (read_contract,) = formats.read(text, "C.txt", Sink(), format_name)
+    assert spot.are_equivalent(translate(contract), translate(read_contract))
 
 
 @pytest.mark.parametrize("format_name", ["gr1c", "slugsin", "structured"])
 def test_a_reducible_formula_is_written_with_history_bits(format_name):
     response = parse_formula("G (a -> F c)", {name: BooleanDomain() for name in "abcd"})
     contract = Contract("C", "", VARIABLES, (), (Conjunct(response, Class.OTHER, ""),))
-    (again,) = formats.read(formats.write(contract, format_name), "C.txt", Sink(), format_name)
-    assert [variable.name for variable in again.variables] == [*"abcd", "since_1"]
-    classes = [conjunct.class_ for conjunct in again.guarantees]
+    (read_contract,) = formats.read(
+        formats.write(contract, format_name), "C.txt", Sink(), format_name
+    )
+    assert [variable.name for variable in read_contract.variables] == [*"abcd", "since_1"]
+    classes = [conjunct.class_ for conjunct in read_contract.guarantees]
     assert classes == [Class.INIT, Class.SAFETY, Class.LIVENESS]
 
 
@@ -152,7 +113,7 @@ def test_a_reducible_formula_is_written_with_history_bits(format_name):
 @settings(max_examples=examples(40), deadline=None)
 def test_spot_reads_the_written_formula(format_name, contract):
     first = formats.write(contract, format_name).splitlines()[0]
-    assert spot.are_equivalent(meaning(contract), spot.formula(first))
+    assert spot.are_equivalent(translate(contract), spot.formula(first))
 
 
 @pytest.mark.parametrize("format_name", ["gr1c", "slugsin", "structured"])

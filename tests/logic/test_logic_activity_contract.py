@@ -1,73 +1,56 @@
-"""Contracts of small activities: read as texts, and asked about their meaning with Spot."""
+"""Contracts of small activities, as texts, and their meaning according to Spot."""
 
 import pytest
-from activity_models import activity, tokens_of
+from random_activities import build_tokens, draw_activity
+from spot_formulas import conjoin, print_for_spot
 
 from activity_sketch import sketch
-from sysmlc.diagnostics import Sink
 from sysmlc.ir.text import parse_text
 from sysmlc.logic.activities.derivation import derive_contract
-from sysmlc.logic.activities.token_graph import TokenGraph
-from sysmlc.logic.contract import Class, Contract
+from sysmlc.logic.contract import Class, Conjunct, Contract
 from sysmlc.logic.evaluate import is_true
-from sysmlc.logic.formula import Apply, Const, Formula, Op, Var
-from sysmlc.passes.activities import Activities
+from sysmlc.logic.printing import print_formula
 
 spot = pytest.importorskip("spot")
 
 STRAIGHT = sketch("initial i\naction work\nfinal f\ni -> work\nwork -> f")
 
 
-def contract(text: str) -> Contract:
-    graph = parse_text(text)
-    Activities().run(graph, Sink())
-    (tokens,) = graph.derived(TokenGraph)
-    return derive_contract(tokens)
+def derive(text: str) -> Contract:
+    """Return the contract of the activity in a text of the IR."""
+    return derive_contract(build_tokens(parse_text(text)))
 
 
-# -- reading -----------------------------------------------------------------------------------
-
-
-def shown(formula: Formula) -> str:
-    match formula:
-        case Const(value):
-            return str(value).lower()
-        case Var(name, primed):
-            return f"X {name}" if primed else name
-        case Apply(Op.NOT, (inner,)):
-            return f"!({shown(inner)})"
-        case Apply(op, args):
-            return "(" + f" {op} ".join(map(shown, args)) + ")"
-
-
-def temporal(conjunct) -> str:
-    prefix = {Class.INIT: "", Class.SAFETY: "G", Class.LIVENESS: "G F"}[conjunct.class_]
-    return f"{prefix} {shown(conjunct.formula)}".strip()
+def print_conjunct(conjunct: Conjunct) -> str:
+    """Return the formula behind the temporal operators of its class; a prime means "next"."""
+    prefix = {Class.INIT: "", Class.SAFETY: "G ", Class.LIVENESS: "G F "}[conjunct.class_]
+    return f"{prefix}({print_formula(conjunct.formula)})"
 
 
 def test_the_contract_of_one_action():
-    found = contract(STRAIGHT)
-    assert [f"{v.owner} {v.name}" for v in found.variables] == [
+    contract = derive(STRAIGHT)
+    assert [f"{variable.owner} {variable.name}" for variable in contract.variables] == [
         "env done_work",
         "sys run_work",
         "sys at_start_to_work",
         "sys at_work_to_end",
     ]
-    assert [temporal(c) for c in found.assumptions] == ["G F (!(run_work) | done_work)"]
-    assert [temporal(c) for c in found.guarantees] == [
-        "at_start_to_work",
-        "!(at_work_to_end)",
-        "!(run_work)",
-        "G (X at_start_to_work <-> at_work_to_end)",
-        "G (X at_work_to_end <-> (run_work & done_work & !(at_work_to_end)))",
-        "G (X run_work <-> ((at_start_to_work | (run_work & !(done_work))) & !(at_work_to_end)))",
-        "G F at_work_to_end",
+    assert [*map(print_conjunct, contract.assumptions)] == ["G F (!run_work | done_work)"]
+    assert [*map(print_conjunct, contract.guarantees)] == [
+        "(at_start_to_work)",
+        "(!at_work_to_end)",
+        "(!run_work)",
+        "G (at_start_to_work' <-> at_work_to_end)",
+        "G (at_work_to_end' <-> run_work & done_work & !at_work_to_end)",
+        "G (run_work' <-> (at_start_to_work | run_work & !done_work) & !at_work_to_end)",
+        "G F (at_work_to_end)",
     ]
 
 
-def test_every_conjunct_says_in_words_where_it_comes_from():
-    found = contract(STRAIGHT)
-    assert [c.text for c in (*found.assumptions, *found.guarantees)] == [
+def test_every_conjunct_has_a_sentence_and_an_origin():
+    contract = derive(STRAIGHT)
+    conjuncts = [*contract.assumptions, *contract.guarantees]
+    assert [conjunct.text for conjunct in conjuncts] == [
         "Whenever action 'work' runs, the environment ends it sooner or later.",
         "The flow from initial node 1 to action 'work' starts with a token.",
         "The flow from action 'work' to activity final node 1 has no token at the start.",
@@ -80,26 +63,28 @@ def test_every_conjunct_says_in_words_where_it_comes_from():
         "Activity 'a' finishes again and again.",
     ]
     graph = parse_text(STRAIGHT)
-    assert all(c.origin in graph for c in (*found.assumptions, *found.guarantees))
+    assert all(conjunct.origin in graph for conjunct in conjuncts)
 
 
-def test_a_loop_that_the_environment_decides_has_one_traced_exit_assumption():
-    found = contract(
+def test_a_loop_with_an_exit_guard_has_one_exit_assumption_with_an_origin():
+    contract = derive(
         sketch(
             "initial i\nmerge m\naction work\ndecision d\nfinal f\ni -> m\nm -> work\n"
             "work -> d\nd -> m [else]\nd -> f [ok]"
         )
     )
-    (exit_,) = [c for c in found.assumptions if c.text.startswith("The loop")]
-    assert exit_.origin == "d"
-    assert exit_.text == (
+    (assumption,) = [
+        conjunct for conjunct in contract.assumptions if conjunct.text.startswith("The loop")
+    ]
+    assert assumption.origin == "d"
+    assert assumption.text == (
         "The loop through decision 1 is left sooner or later: whenever it goes on, ok holds there "
         "eventually."
     )
-    assert temporal(exit_).endswith("| (at_work_to_decision_1 & ok))")
+    assert print_conjunct(assumption).endswith("| at_work_to_decision_1 & ok)")
 
 
-# -- asking Spot -------------------------------------------------------------------------------
+# -- the meaning -------------------------------------------------------------------------------
 
 MODELS = {
     "one action": STRAIGHT,
@@ -156,77 +141,81 @@ Activity a "a"
 }
 
 
-def joined(parts) -> str:
-    return " & ".join(f"({temporal(part)})" for part in parts) or "1"
+def translate(*conjuncts: Conjunct) -> str:
+    """Return the conjunction as a formula for Spot."""
+    return print_for_spot(conjoin(conjuncts))
 
 
-def holds_somewhere(formula: str) -> bool:
+def is_satisfiable(formula: str) -> bool:
     return not spot.translate(formula, "small", "low").is_empty()
+
+
+def split_guarantees(contract: Contract) -> tuple[str, str]:
+    """Return the guarantees about steps, and that the activity finishes, both for Spot."""
+    steps = [part for part in contract.guarantees if part.class_ is not Class.LIVENESS]
+    (finish,) = [part for part in contract.guarantees if part.class_ is Class.LIVENESS]
+    return translate(*steps), translate(finish)
 
 
 @pytest.mark.parametrize("name", MODELS)
 def test_assumptions_and_guarantees_can_hold_together(name):
-    found = contract(MODELS[name])
-    assert holds_somewhere(f"{joined(found.assumptions)} & {joined(found.guarantees)}")
+    contract = derive(MODELS[name])
+    assert is_satisfiable(translate(*contract.assumptions, *contract.guarantees))
 
 
 @pytest.mark.parametrize("name", MODELS)
-def test_the_activity_finishes_because_the_environment_plays_along(name):
-    """The safety guarantees and the assumptions imply the liveness guarantee.
-
-    So no assumption is missing, and the tokens alone bring the activity to its end.
-    """
-    found = contract(MODELS[name])
-    moves = [c for c in found.guarantees if c.class_ is not Class.LIVENESS]
-    (finish,) = [c for c in found.guarantees if c.class_ is Class.LIVENESS]
-    assert not holds_somewhere(
-        f"{joined(found.assumptions)} & {joined(moves)} & !({temporal(finish)})"
-    )
+def test_the_assumptions_imply_that_the_activity_finishes(name):
+    """No assumption is missing: with the guarantees about steps, the tokens reach the end."""
+    contract = derive(MODELS[name])
+    steps, finish = split_guarantees(contract)
+    assert not is_satisfiable(f"{translate(*contract.assumptions)} & {steps} & !{finish}")
 
 
 @pytest.mark.parametrize("name", MODELS)
-def test_without_an_assumption_the_activity_may_hang(name):
-    """Except where another assumption says the same: the exit of a loop asks for the end of
-    the actions in it, and one of two actions is enough to end an interrupted region.
+def test_without_an_assumption_the_activity_may_never_finish(name):
+    """Except where another assumption implies the omitted one.
+
+    The exit of a loop requires that the actions in it end, and one of two actions is enough to
+    end an interrupted region.
     """
-    found = contract(MODELS[name])
-    moves = [c for c in found.guarantees if c.class_ is not Class.LIVENESS]
-    (finish,) = [c for c in found.guarantees if c.class_ is Class.LIVENESS]
-    for left_out in found.assumptions:
-        if left_out.text.startswith("Whenever a") and name in ("loop", "interrupted"):
+    contract = derive(MODELS[name])
+    steps, finish = split_guarantees(contract)
+    for omitted in contract.assumptions:
+        if omitted.text.startswith("Whenever a") and name in ("loop", "interrupted"):
             continue
-        others = [c for c in found.assumptions if c is not left_out]
-        assert holds_somewhere(f"{joined(others)} & {joined(moves)} & !({temporal(finish)})")
+        assumptions = [part for part in contract.assumptions if part is not omitted]
+        assert is_satisfiable(f"{translate(*assumptions)} & {steps} & !{finish}")
 
 
 def test_an_exit_guard_that_holds_again_and_again_is_not_enough_to_leave_a_loop():
     """It may hold only while the token is elsewhere (decision 11)."""
-    found = contract(MODELS["loop"])
-    moves = [c for c in found.guarantees if c.class_ is not Class.LIVENESS]
-    (finish,) = [c for c in found.guarantees if c.class_ is Class.LIVENESS]
-    ended = [c for c in found.assumptions if c.text.startswith("Whenever")]
-    plain = f"{joined(ended)} & (G F ok) & {joined(moves)}"
-    assert holds_somewhere(f"{plain} & !({temporal(finish)})")
+    contract = derive(MODELS["loop"])
+    steps, finish = split_guarantees(contract)
+    ends = [part for part in contract.assumptions if part.text.startswith("Whenever")]
+    assert is_satisfiable(f"{translate(*ends)} & (G F ok) & {steps} & !{finish}")
 
 
-def test_a_choice_that_the_diagram_leaves_open_stays_open():
-    found = derive_contract(tokens_of(activity(("choose", ("act",), ("act",)))))
-    first, second = (v.name for v in found.variables if v.name.startswith("run_"))
-    both = f"{joined(found.guarantees)} & (F {{}}) & G !{{}}"
-    assert holds_somewhere(both.format(first, second))
-    assert holds_somewhere(both.format(second, first))
+def test_both_branches_of_a_choice_with_overlapping_guards_stay_possible():
+    contract = derive_contract(build_tokens(draw_activity(("choose", ("act",), ("act",)))))
+    first, second = (
+        variable.name for variable in contract.variables if variable.name.startswith("run_")
+    )
+    guarantees = translate(*contract.guarantees)
+    assert is_satisfiable(f"{guarantees} & (F {first}) & G !{second}")
+    assert is_satisfiable(f"{guarantees} & (F {second}) & G !{first}")
 
 
 @pytest.mark.parametrize(
-    ("x", "y", "is_kept"), [(0, 0, False), (1, 0, True), (0, 1, True), (1, 1, False)]
+    ("x", "y", "is_allowed"), [(0, 0, False), (1, 0, True), (0, 1, True), (1, 1, False)]
 )
-def test_one_token_goes_to_one_of_several_open_branches(x, y, is_kept):
-    drawn = "initial i\ndecision d\naction x\naction y\ni -> d\nd -> x [ok]\nd -> y [fine]"
-    found = contract(sketch(drawn))
-    names = [one.name for one in found.variables]
-    (before,) = [one for one in names if one.startswith("at_start")]
-    to_x, to_y = (next(one for one in names if one.endswith(f"_to_{to}")) for to in "xy")
-    now = dict.fromkeys(names, False) | {before: True, "ok": True, "fine": True}
-    then = dict.fromkeys(names, False) | {to_x: bool(x), to_y: bool(y)}
-    safe = [one.formula for one in found.guarantees if one.class_ is Class.SAFETY]
-    assert all(is_true(one, now, then) for one in safe) is is_kept
+def test_one_token_goes_to_one_of_several_open_branches(x, y, is_allowed):
+    contract = derive(
+        sketch("initial i\ndecision d\naction x\naction y\ni -> d\nd -> x [ok]\nd -> y [fine]")
+    )
+    names = [variable.name for variable in contract.variables]
+    (start,) = [name for name in names if name.startswith("at_start")]
+    to_x, to_y = (next(name for name in names if name.endswith(f"_to_{end}")) for end in "xy")
+    before = dict.fromkeys(names, False) | {start: True, "ok": True, "fine": True}
+    after = dict.fromkeys(names, False) | {to_x: bool(x), to_y: bool(y)}
+    steps = [part.formula for part in contract.guarantees if part.class_ is Class.SAFETY]
+    assert all(is_true(formula, before, after) for formula in steps) is is_allowed

@@ -1,41 +1,39 @@
-"""The check for a second token: reductions keep its answer, and playing never contradicts it."""
+"""The check that no flow gets a second token: reductions preserve its result, and runs agree."""
 
 import random
 
-from activity_models import Canvas, activity, blocks
 from hypothesis import given, note, settings
 from hypothesis import strategies as st
+from random_activities import Canvas, blocks, build_tokens, draw_activity, play, play_trace
 
 from long_runs import examples
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Edge, Kind
 from sysmlc.ir.text import parse_text, print_text
 from sysmlc.logic import evaluate
-from sysmlc.logic.activities import interpreter as token_game
-from sysmlc.logic.activities import net_safety as token_net
+from sysmlc.logic.activities import net_safety
 from sysmlc.logic.activities.derivation import derive_contract
 from sysmlc.logic.activities.petri_net import reduce_net
 from sysmlc.logic.activities.token_graph import ACTIVITY_REGION, TokenGraph
-from sysmlc.passes.activities import Activities
-from sysmlc.passes.activities import construction as activity_tokens
-from sysmlc.passes.activities import drawing as activity_drawing
+from sysmlc.passes.activities import Activities, construction
+from sysmlc.passes.activities.drawing import read_drawing
 from sysmlc.passes.activities.exception_analysis import find_raising
 from sysmlc.passes.activities.inputs import Inputs, Scope
 
 KINDS = ("opaque", "fork", "join", "merge", "decision", "flow-final", "final", "value")
 
 
-def drawn(canvas: Canvas) -> TokenGraph:
-    """The token graph as drawn, safe or not."""
+def build_unchecked(canvas: Canvas) -> TokenGraph:
+    """Return the token graph, safe or not."""
     graph, sink = canvas.graph, Sink()
-    drawing = activity_drawing.read_drawing(graph, graph["a"], sink)
+    drawing = read_drawing(graph, graph["a"], sink)
     inputs = Inputs(graph, Scope(graph, graph["a"], sink), sink)
-    return activity_tokens.build(graph, drawing, inputs, find_raising(graph), sink)
+    return construction.build(graph, drawing, inputs, find_raising(graph), sink)
 
 
 @st.composite
-def scribbles(draw) -> TokenGraph:
-    """Any nodes with any flows between them."""
+def random_graphs(draw) -> TokenGraph:
+    """Draw a token graph of any nodes with any flows between them."""
     canvas = Canvas()
     nodes = [canvas.control("initial")]
     for kind in draw(st.lists(st.sampled_from(KINDS), min_size=2, max_size=6)):
@@ -48,19 +46,19 @@ def scribbles(draw) -> TokenGraph:
     canvas.flow(nodes[0], nodes[1])
     for source, target in draw(st.lists(ends, min_size=2, max_size=9)):
         canvas.flow(source, target)
-    return drawn(canvas)
+    return build_unchecked(canvas)
 
 
 @st.composite
-def lines(draw) -> TokenGraph:
-    """Steps, decisions and merges behind one start, each entered and left as often as it may be."""
+def single_token_graphs(draw) -> TokenGraph:
+    """Draw actions, decisions and merges behind one start, without forks and joins."""
     canvas = Canvas()
     start, first = canvas.control("initial"), canvas.control("merge")
     canvas.flow(start, first)
-    ways = [first]
+    open_ends = [first]
     merges = [first]
     for number in range(draw(st.integers(0, 8))):
-        source = ways.pop(draw(st.integers(0, len(ways) - 1))) if ways else None
+        source = open_ends.pop(draw(st.integers(0, len(open_ends) - 1))) if open_ends else None
         if source is None:
             break
         kind = draw(st.sampled_from(("opaque", "decision", "merge", "value", "final", "back")))
@@ -71,53 +69,50 @@ def lines(draw) -> TokenGraph:
         node = canvas.node(Kind.ACTION, kind, f"w{number}") if is_action else canvas.control(kind)
         canvas.flow(source, node)
         merges += [node] if kind == "merge" else []
-        ways += [node] * {"final": 0, "decision": 2}.get(kind, 1)
-    return drawn(canvas)
+        open_ends += [node] * {"final": 0, "decision": 2}.get(kind, 1)
+    return build_unchecked(canvas)
+
+
+def search_markings(tokens):
+    """Return the result of the search through all markings of the whole net."""
+    return net_safety.search_markings(net_safety.build_net(tokens, ACTIVITY_REGION), 100_000)
 
 
 @settings(max_examples=examples(300), deadline=None)
-@given(scribbles())
-def test_reductions_keep_the_answer(tokens):
-    """Only an end that forestalls the next firing may make the reduced net more careful."""
-    whole = token_net.search_markings(token_net.build_net(tokens, ACTIVITY_REGION), 100_000)
-    net = token_net.build_net(tokens, ACTIVITY_REGION)
+@given(random_graphs())
+def test_reductions_preserve_the_result_of_the_search(tokens):
+    """Only an end that prevents the next firing may make the reduced net more careful."""
+    whole = search_markings(tokens)
+    net = net_safety.build_net(tokens, ACTIVITY_REGION)
     reduce_net(net)
-    quick = token_net.search_markings(net, 100_000)
+    reduced = net_safety.search_markings(net, 100_000)
     ends = {edge.source for edge in tokens.ends(ACTIVITY_REGION)}
     if whole.unsafe or not ends:
-        assert bool(whole.unsafe) == bool(quick.unsafe)
-    if not whole.unsafe and not quick.unsafe:
-        assert whole.finishes == quick.finishes
-        assert quick.dead == whole.dead if not ends else quick.dead <= whole.dead
+        assert bool(whole.unsafe) == bool(reduced.unsafe)
+    if not whole.unsafe and not reduced.unsafe:
+        assert whole.finishes == reduced.finishes
+        assert reduced.dead == whole.dead if not ends else reduced.dead <= whole.dead
 
 
 @settings(max_examples=examples(300), deadline=None)
-@given(scribbles(), st.integers(0, 2**16))
-def test_no_run_of_a_safe_activity_brings_a_second_token(tokens, seed):
-    if token_net.check_safety(tokens, ACTIVITY_REGION, 100_000).unsafe:
-        return
-    dice = random.Random(seed)
-    state = token_game.initial_state(tokens)
-    for _ in range(60):
-        inputs = {v.name: dice.random() < 0.5 for v in tokens.inputs}
-        state = token_game.next_state(
-            tokens, state, inputs, evaluate.is_true, lambda _, open_: dice.choice(open_)
-        )
+@given(random_graphs(), st.integers(0, 2**16))
+def test_no_run_of_a_safe_activity_has_a_second_token_on_a_flow(tokens, seed):
+    """The interpreter raises an exception at a second token."""
+    if not net_safety.check_safety(tokens, ACTIVITY_REGION, 100_000).unsafe:
+        assert len(list(play(tokens, random.Random(seed), 61))) == 61
 
 
 @settings(max_examples=examples(300), deadline=None)
-@given(scribbles())
-def test_a_single_token_is_followed_as_all_markings_are_searched(tokens):
-    found = token_net.check_single_token(tokens, ACTIVITY_REGION)
-    whole = token_net.search_markings(token_net.build_net(tokens, ACTIVITY_REGION), 100_000)
-    assert found in (None, whole)
+@given(random_graphs())
+def test_following_a_single_token_gives_the_result_of_the_search_or_none(tokens):
+    result = net_safety.check_single_token(tokens, ACTIVITY_REGION)
+    assert result in (None, search_markings(tokens))
 
 
 @settings(max_examples=examples(100), deadline=None)
-@given(lines())
-def test_where_nothing_forks_or_joins_no_marking_is_built(tokens):
-    whole = token_net.search_markings(token_net.build_net(tokens, ACTIVITY_REGION), 100_000)
-    assert token_net.check_single_token(tokens, ACTIVITY_REGION) == whole
+@given(single_token_graphs())
+def test_without_forks_and_joins_no_marking_is_built(tokens):
+    assert net_safety.check_single_token(tokens, ACTIVITY_REGION) == search_markings(tokens)
 
 
 def test_two_tokens_that_meet_at_a_merge_before_a_sink_are_found():
@@ -126,19 +121,19 @@ def test_two_tokens_that_meet_at_a_merge_before_a_sink_are_found():
     work = canvas.node(Kind.ACTION, "opaque", "work")
     for source, target in ((start, work), (work, merge), (work, merge), (merge, sink)):
         canvas.flow(source, target)
-    assert token_net.check_safety(drawn(canvas), ACTIVITY_REGION, 1000).unsafe
+    assert net_safety.check_safety(build_unchecked(canvas), ACTIVITY_REGION, 1000).unsafe
 
 
 @settings(max_examples=examples(100), deadline=None)
 @given(blocks(12))
-def test_series_and_parallel_parts_leave_next_to_nothing_to_search(block):
+def test_series_and_parallel_reductions_reduce_blocks_to_three_places(block):
     canvas = Canvas()
-    canvas.graph = activity(block)
-    tokens = drawn(canvas)
-    net = token_net.build_net(tokens, ACTIVITY_REGION)
+    canvas.graph = draw_activity(block)
+    tokens = build_unchecked(canvas)
+    net = net_safety.build_net(tokens, ACTIVITY_REGION)
     reduce_net(net)
     assert len(net.places) <= 3
-    assert not token_net.search_markings(net, 10).unsafe
+    assert not net_safety.search_markings(net, 10).unsafe
 
 
 def test_many_parallel_branches_are_checked_without_building_their_markings():
@@ -150,37 +145,39 @@ def test_many_parallel_branches_are_checked_without_building_their_markings():
         canvas.flow(fork, first)
         canvas.flow(last, join)
     canvas.flow(join, canvas.control("final"))
-    safety = token_net.check_safety(drawn(canvas), ACTIVITY_REGION, 10)
+    safety = net_safety.check_safety(build_unchecked(canvas), ACTIVITY_REGION, 10)
     assert safety.is_complete
     assert not safety.unsafe
 
 
-STATEMENTS = ("ok", "else", "true", "not ok", "level >", "")
+GUARDS = ("ok", "else", "true", "not ok", "level >", "")
 
 
 @st.composite
-def doodles(draw) -> Canvas:
-    """Anything that a tool lets one draw: regions in regions, guards, pins, loose handlers."""
+def random_drawings(draw) -> Canvas:
+    """Draw what modelling tools allow: nested regions, any guards, handlers without owners."""
     canvas = Canvas()
     nodes = [canvas.control("initial")]
     for kind in draw(st.lists(st.sampled_from([*KINDS, *BOXES, *WORKS]), max_size=7)):
-        outer = canvas.owner
-        boxes = [outer, *(n for n in nodes if n.kind is Kind.STRUCTURED)]
+        outer_owner = canvas.owner
+        boxes = [outer_owner, *(n for n in nodes if n.kind is Kind.STRUCTURED)]
         canvas.owner = draw(st.sampled_from(boxes))
-        nodes.append(canvas.node(*BOXES.get(kind, (_kind(kind), kind)), name=f"w{len(nodes)}"))
-        canvas.owner = outer
-    ends = st.tuples(st.sampled_from(nodes), st.sampled_from(nodes), st.sampled_from(STATEMENTS))
+        nodes.append(canvas.node(*BOXES.get(kind, (kind_of(kind), kind)), name=f"w{len(nodes)}"))
+        canvas.owner = outer_owner
+    ends = st.tuples(st.sampled_from(nodes), st.sampled_from(nodes), st.sampled_from(GUARDS))
     for source, target, guard in draw(st.lists(ends, max_size=10)):
         flow = canvas.flow(source, target, guard)
         if draw(st.integers(0, 5)) == 0:
             regions = [n.id for n in nodes if n.subkind == "interruptible"]
             flow.attrs["interrupts"] = draw(st.sampled_from(["", "nobody", *regions]))
     for node in nodes:
-        inside = tuple(n.id for n in canvas.graph.owned(node) if n.id.startswith("n"))
+        ids_inside = tuple(
+            child.id for child in canvas.graph.owned(node) if child.id.startswith("n")
+        )
         if node.subkind == "loop":
-            node.attrs.update(test=inside[:1], body_part=inside[1:])
+            node.attrs.update(test=ids_inside[:1], body_part=ids_inside[1:])
         if node.subkind == "conditional":
-            node.attrs["clauses"] = ((inside[:1], inside[1:]),)
+            node.attrs["clauses"] = ((ids_inside[:1], ids_inside[1:]),)
         if node.kind in (Kind.STRUCTURED, Kind.ACTION) and draw(st.integers(0, 5)) == 0:
             body = draw(st.sampled_from([n.id for n in nodes] + ["nobody"]))
             node.attrs["handlers"] = (((body,), (), ()),)
@@ -199,37 +196,31 @@ BOXES = {
 WORKS = ("opaque", "value", "accept", "raise")
 
 
-def _kind(kind: str) -> Kind:
+def kind_of(kind: str) -> Kind:
     return Kind.ACTION if kind in WORKS else Kind.CONTROL
 
 
 @settings(max_examples=examples(250), deadline=None)
-@given(doodles(), st.integers(0, 2**16))
-def test_whatever_is_drawn_is_played_as_its_contract_says_or_has_a_rule(canvas, seed):
+@given(random_drawings(), st.integers(0, 2**16))
+def test_any_drawing_runs_as_its_contract_states_or_has_a_diagnostic(canvas, seed):
     sink = Sink()
     Activities(max_markings=3000).run(canvas.graph, sink)
-    made = canvas.graph.derived(TokenGraph)
-    assert made or len(sink)
+    graphs = canvas.graph.derived(TokenGraph)
+    assert graphs or len(sink)
     note(print_text(canvas.graph))
-    for tokens in made:
-        play_as_its_contract_says(tokens, seed)
+    for tokens in graphs:
+        check_run(tokens, seed)
 
 
-def play_as_its_contract_says(tokens, seed):
-    dice = random.Random(seed)
-    state, trace = token_game.initial_state(tokens), []
-    for _ in range(40):
-        inputs = {v.name: dice.random() < 0.5 for v in tokens.inputs}
-        trace.append({**inputs, **token_game.values_of(tokens, state)})
-        state = token_game.next_state(
-            tokens, state, inputs, evaluate.is_true, lambda _, o, dice=dice: dice.choice(o)
-        )
+def check_run(tokens, seed):
+    """Assert that a random run satisfies all guarantees."""
+    trace = play_trace(tokens, seed, 40)
     for conjunct in derive_contract(tokens).guarantees:
         assert evaluate.find_violation(conjunct, trace) is None, conjunct.text
 
 
-def test_body_of_a_handler_may_stand_outside_what_its_node_is_in():
-    """UML wants both to have one owner; tools do not see to it."""
+def test_the_body_of_a_handler_may_have_another_owner_than_the_protected_node():
+    """UML requires one owner for both, but modelling tools do not enforce it."""
     graph = parse_text("""\
 Activity a "a"
   Control start subkind="initial"
@@ -243,9 +234,8 @@ Activity a "a"
     -> flow-source work
     -> flow-target work
 """)
-    Activities().run(graph, Sink())
-    (tokens,) = graph.derived(TokenGraph)
+    tokens = build_tokens(graph)
     outcome = next(edge for edge in tokens.edges if edge.source == "body")
     assert outcome.region == ACTIVITY_REGION
     for seed in range(20):
-        play_as_its_contract_says(tokens, seed)
+        check_run(tokens, seed)

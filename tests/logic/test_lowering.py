@@ -3,8 +3,8 @@
 from itertools import product
 
 import pytest
-from contract_cases import VARIABLES, conditions, primed_or_not
 from hypothesis import given, settings
+from random_contracts import VARIABLES, conditions, primed_or_not
 
 from long_runs import examples
 from sysmlc.logic import domains

@@ -4,11 +4,9 @@ import pytest
 import spot
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from test_formats_spot import print_for_spot
-from test_reductions import bit_rules, ltl
+from spot_formulas import conjoin, conjoin_parts, print_for_spot
 
 from long_runs import examples
-from sysmlc.logic import formula as f
 from sysmlc.logic.contract import BooleanDomain, IntegerDomain
 from sysmlc.logic.formal_texts import read_sentence
 from sysmlc.logic.infix import parse_formula
@@ -75,15 +73,19 @@ CASES = [
 ]
 
 
+def reduce_sentence(text):
+    """Return the rules of the history bits and the reduced sentence, both for Spot."""
+    history = History(DOMAINS)
+    parts = reduce_formula(read_sentence(text, DOMAINS), history)
+    return print_for_spot(conjoin(history.conjuncts)), print_for_spot(conjoin_parts(parts))
+
+
 @pytest.mark.parametrize(("text", "scope", "published"), CASES)
 def test_a_sentence_means_the_published_formula(text, scope, published):
-    history = History(DOMAINS)
-    parts = reduce_formula(read_sentence(SCOPES[scope] + text, DOMAINS), history)
-    rules = print_for_spot(bit_rules(history))
-    claim = spot.formula(f"({rules}) & !(({published}) <-> ({print_for_spot(ltl(parts))}))")
+    rules, formula = reduce_sentence(SCOPES[scope] + text)
     assert not spot.translate(spot.formula(rules)).is_empty()
-    counterexample = spot.translate(claim).accepting_word()
-    assert counterexample is None
+    difference = spot.formula(f"({rules}) & !(({published}) <-> ({formula}))")
+    assert spot.translate(difference).accepting_word() is None
 
 
 @pytest.mark.parametrize(
@@ -100,14 +102,12 @@ def test_a_sentence_means_the_published_formula(text, scope, published):
     ],
 )
 def test_a_short_sentence_means_the_full_one(short, full):
-    assert spot.are_equivalent(_translate(short), _translate(full))
+    assert spot.are_equivalent(translate(short), translate(full))
 
 
-def _translate(text):
-    text = text.replace("n=3", "s")
-    history = History(DOMAINS)
-    parts = reduce_formula(read_sentence(text, DOMAINS), history)
-    return spot.formula(print_for_spot(f.both(bit_rules(history), ltl(parts))))
+def translate(text):
+    rules, formula = reduce_sentence(text.replace("n=3", "s"))
+    return spot.formula(f"({rules}) & ({formula})")
 
 
 SOON = "(p -> (s | r | X (s | r | X (s | r))))"
@@ -124,12 +124,9 @@ SOON = "(p -> (s | r | X (s | r | X (s | r))))"
     ],
 )
 def test_a_bounded_response_means_nested_nexts(scope, expected):
-    history = History(DOMAINS)
-    text = f"{scope}always if p then s holds within 2 steps"
-    parts = reduce_formula(read_sentence(text, DOMAINS), history)
-    rules = print_for_spot(bit_rules(history))
-    claim = spot.formula(f"({rules}) & !(({expected}) <-> ({print_for_spot(ltl(parts))}))")
-    assert spot.translate(claim).is_empty()
+    rules, formula = reduce_sentence(f"{scope}always if p then s holds within 2 steps")
+    difference = spot.formula(f"({rules}) & !(({expected}) <-> ({formula}))")
+    assert spot.translate(difference).is_empty()
 
 
 @pytest.mark.parametrize(

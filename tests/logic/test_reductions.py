@@ -4,13 +4,14 @@ import pytest
 import spot
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from test_formats_spot import print_for_spot
+from random_contracts import apply_binary, apply_unary
+from spot_formulas import conjoin, conjoin_parts, print_for_spot
 
 from long_runs import examples
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import BooleanDomain, Class, Conjunct, Contract, Owner, Variable
 from sysmlc.logic.formal_texts import read_temporal_logic
-from sysmlc.logic.formula import Apply, Op, Var
+from sysmlc.logic.formula import Op, Var
 from sysmlc.logic.infix import parse_formula
 from sysmlc.logic.printing import print_formula
 from sysmlc.logic.reduction.contract_reduction import reduce_contract
@@ -25,22 +26,9 @@ def parse(text):
     return parse_formula(text, DOMAINS)
 
 
-def ltl(parts):
-    """The conjunction of parts, with the operators that their classes imply."""
-    formulas = []
-    for class_, part in parts:
-        inner = f.eventually(part) if class_ is Class.LIVENESS else part
-        formulas.append(f.always(inner) if class_ in (Class.SAFETY, Class.LIVENESS) else inner)
-    return f.both(*formulas)
-
-
-def bit_rules(history):
-    return ltl([(conjunct.class_, conjunct.formula) for conjunct in history.conjuncts])
-
-
 def are_equivalent(formula, parts, history):
-    """Whether the parts mean the formula in all traces in which the bits follow their rules."""
-    claim = f.implies(bit_rules(history), f.iff(formula, ltl(parts)))
+    """Whether the parts equal the formula in all traces in which the bits follow their rules."""
+    claim = f.implies(conjoin(history.conjuncts), f.iff(formula, conjoin_parts(parts)))
     return spot.translate(spot.formula(print_for_spot(f.negate(claim)))).is_empty()
 
 
@@ -140,17 +128,8 @@ BODIES = st.recursive(
         st.builds(f.implies, STATES, inner),
         st.builds(f.both, inner, inner),
         st.builds(f.negate, inner),
-        st.builds(
-            lambda op, operand: Apply(op, (operand,)),
-            st.sampled_from([Op.NEXT, Op.ALWAYS, Op.EVENTUALLY]),
-            inner,
-        ),
-        st.builds(
-            lambda op, left, right: Apply(op, (left, right)),
-            st.sampled_from([Op.UNTIL, Op.WEAK_UNTIL, Op.RELEASE]),
-            STATES,
-            STATES,
-        ),
+        apply_unary([Op.NEXT, Op.ALWAYS, Op.EVENTUALLY], inner),
+        apply_binary([Op.UNTIL, Op.WEAK_UNTIL, Op.RELEASE], STATES, STATES),
     ),
     max_leaves=3,
 )

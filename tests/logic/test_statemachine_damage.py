@@ -1,8 +1,8 @@
-"""Damaged state machines: whatever is missing or misdirected, there is a finding or a contract."""
+"""A state machine with missing or wrong elements has a diagnostic or a contract."""
 
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from machines import machines
+from random_state_machines import machines
 
 from long_runs import examples
 from sysmlc.diagnostics import Sink
@@ -14,25 +14,26 @@ _EDGES = (Edge.FLOW_SOURCE, Edge.FLOW_TARGET, Edge.TRIGGER, Edge.TYPED_BY, Edge.
 _TEXTS = ("", "(", "x := ", "else", "nothing", "x", "x > 99", "1 / 0 == 0", "mode", "x.y.z")
 
 
-def _damage(draw, graph):
+def damage(draw, graph):
+    """Remove an element or its edges, or change a target, a text or a subkind."""
     elements = list(graph)
-    one = draw(st.sampled_from(elements))
-    match draw(st.sampled_from(["remove", "cut", "turn", "text", "subkind"])):
-        case "remove" if one.owner is not None:
-            graph.remove(one)
-        case "cut":
+    element = draw(st.sampled_from(elements))
+    match draw(st.sampled_from(["remove", "disconnect", "redirect", "text", "subkind"])):
+        case "remove" if element.owner is not None:
+            graph.remove(element)
+        case "disconnect":
             edge = draw(st.sampled_from(_EDGES))
-            for target in graph.targets(one, edge):
-                graph.disconnect(edge, one, target)
-        case "turn" if one.kind is Kind.TRANSITION:
+            for target in graph.targets(element, edge):
+                graph.disconnect(edge, element, target)
+        case "redirect" if element.kind is Kind.TRANSITION:
             edge = draw(st.sampled_from([Edge.FLOW_SOURCE, Edge.FLOW_TARGET]))
-            graph.replace_targets(edge, one, [draw(st.sampled_from(elements))])
+            graph.replace_targets(edge, element, [draw(st.sampled_from(elements))])
         case "text":
             key = draw(st.sampled_from(["guard", "body", "when", "condition", "default"]))
-            graph.set(one, **{key: draw(st.sampled_from(_TEXTS))})
+            graph.set(element, **{key: draw(st.sampled_from(_TEXTS))})
         case "subkind":
             graph.set(
-                one, subkind=draw(st.sampled_from(["initial", "choice", "join", "time", "any"]))
+                element, subkind=draw(st.sampled_from(["initial", "choice", "join", "time", "any"]))
             )
 
 
@@ -42,13 +43,13 @@ def _damage(draw, graph):
     deadline=None,
     suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large],
 )
-def test_damage_is_no_crash_and_is_not_silent(model, data):
+def test_a_damaged_state_machine_has_a_diagnostic_or_a_contract(model, data):
     graph, machine = model
     for _ in range(data.draw(st.integers(1, 3))):
-        _damage(data.draw, graph)
+        damage(data.draw, graph)
     sink = Sink()
     pipeline.load("contracts").run(graph, sink)
-    is_drawn = machine.id in graph and any(
-        one.kind is Kind.REGION for one in graph.owned(graph[machine.id])
+    has_region = machine.id in graph and any(
+        element.kind is Kind.REGION for element in graph.owned(graph[machine.id])
     )
-    assert graph.derived(Contract) or not is_drawn or len(sink)
+    assert graph.derived(Contract) or not has_region or len(sink)

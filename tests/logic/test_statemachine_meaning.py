@@ -1,9 +1,8 @@
-"""Derived contracts against the interpreter: the formulas allow exactly the steps it makes.
+"""The contract of a state machine allows exactly the steps of the reference interpreter.
 
-The interpreter (``machines.interpreter``) runs the drawing and reads no formula. Of its traces
-every conjunct must hold; and of every trace that differs from one of them in one variable of one
-step the formulas must say what the interpreter says: legal when the changed step is among
-those that may follow, else violated. No mutation is exempt.
+The interpreter (``machines.interpreter``) executes the state machine and reads no formula. Every
+guarantee must hold in its traces. When one variable of one step is changed, the guarantees must
+hold exactly if the changed step is among the steps that the interpreter can take.
 """
 
 from itertools import pairwise
@@ -11,21 +10,22 @@ from itertools import pairwise
 import pytest
 from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
-from machines import machines, rich_machines
+from random_state_machines import machines, rich_machines
 
 from long_runs import examples
 from sysmlc.diagnostics import Sink
 from sysmlc.logic import domains
 from sysmlc.logic.contract import Class
 from sysmlc.logic.evaluate import find_violation
-from sysmlc.logic.machines import interpreter as step
+from sysmlc.logic.machines import interpreter
 from sysmlc.logic.machines.derivation import derive_contract
 from sysmlc.logic.machines.reader import read_machine
 
 STEPS = 7
 
 
-def _derived(graph, element):
+def derive(graph, element):
+    """Return the state machine of an element and its contract."""
     sink = Sink()
     machine = read_machine(graph, element, sink)
     assume(machine is not None)
@@ -34,44 +34,52 @@ def _derived(graph, element):
     return machine, contract
 
 
-def _inputs(data, machine):
+def draw_inputs(data, machine):
     return {
-        v.name: data.draw(st.sampled_from(domains.values(v.domain)))
-        for v in step.list_inputs(machine)
+        variable.name: data.draw(st.sampled_from(domains.values(variable.domain)))
+        for variable in interpreter.list_inputs(machine)
     }
 
 
-def _trace(data, machine):
-    starts = step.initial_steps(machine, _inputs(data, machine))
-    assume(starts)
-    trace = [data.draw(st.sampled_from(starts))]
+def draw_trace(data, machine):
+    initial_steps = interpreter.initial_steps(machine, draw_inputs(data, machine))
+    assume(initial_steps)
+    trace = [data.draw(st.sampled_from(initial_steps))]
     while len(trace) < STEPS:
         trace.append(
-            data.draw(st.sampled_from(step.next_steps(machine, trace[-1], _inputs(data, machine))))
+            data.draw(
+                st.sampled_from(
+                    interpreter.next_steps(machine, trace[-1], draw_inputs(data, machine))
+                )
+            )
         )
     return trace
 
 
-def _breaks(contract, trace, *classes):
+def list_violated(contract, trace, *classes):
+    """Return the guarantees of some classes that a trace violates."""
     return [
-        c
-        for c in contract.guarantees
-        if c.class_ in classes and find_violation(c, trace) is not None
+        conjunct
+        for conjunct in contract.guarantees
+        if conjunct.class_ in classes and find_violation(conjunct, trace) is not None
     ]
 
 
-def _mutations(machine, valuation):
+def iter_mutations(machine, valuation):
+    """Yield the valuations that differ in one variable."""
     for variable in machine.variables:
         for value in domains.values(variable.domain):
             if value != valuation[variable.name]:
                 yield {**valuation, variable.name: value}
 
 
-def _inputs_in(machine, valuation):
-    return {v.name: valuation[v.name] for v in step.list_inputs(machine)}
+def select_inputs(machine, valuation):
+    return {
+        variable.name: valuation[variable.name] for variable in interpreter.list_inputs(machine)
+    }
 
 
-_quiet = settings(
+SETTINGS = settings(
     max_examples=examples(30),
     deadline=None,
     suppress_health_check=[
@@ -84,24 +92,28 @@ _quiet = settings(
 
 @pytest.mark.long
 @given(st.one_of(machines(), rich_machines()), st.data())
-@_quiet
-def test_formulas_allow_exactly_the_steps_of_the_interpreter(model, data):
-    machine, contract = _derived(*model)
-    trace = _trace(data, machine)
-    assert _breaks(contract, trace, Class.INIT, Class.SAFETY) == []
-    for now, following in pairwise(trace):
-        for mutant in _mutations(machine, following):
-            legal = mutant in step.next_steps(machine, now, _inputs_in(machine, mutant))
-            broken = _breaks(contract, [now, mutant], Class.SAFETY)
-            assert legal == (not broken), (now, mutant, broken)
+@SETTINGS
+def test_the_guarantees_allow_exactly_the_steps_of_the_interpreter(model, data):
+    machine, contract = derive(*model)
+    trace = draw_trace(data, machine)
+    assert list_violated(contract, trace, Class.INIT, Class.SAFETY) == []
+    for before, after in pairwise(trace):
+        for mutation in iter_mutations(machine, after):
+            is_possible = mutation in interpreter.next_steps(
+                machine, before, select_inputs(machine, mutation)
+            )
+            violated = list_violated(contract, [before, mutation], Class.SAFETY)
+            assert is_possible == (not violated), (before, mutation, violated)
 
 
 @given(st.one_of(machines(), rich_machines()), st.data())
-@_quiet
-def test_formulas_allow_exactly_the_first_steps_of_the_interpreter(model, data):
-    machine, contract = _derived(*model)
-    first = _trace(data, machine)[0]
-    for mutant in [first, *_mutations(machine, first)]:
-        legal = mutant in step.initial_steps(machine, _inputs_in(machine, mutant))
-        broken = _breaks(contract, [mutant], Class.INIT, Class.SAFETY)
-        assert legal == (not broken), (mutant, broken)
+@SETTINGS
+def test_the_guarantees_allow_exactly_the_initial_steps_of_the_interpreter(model, data):
+    machine, contract = derive(*model)
+    first = draw_trace(data, machine)[0]
+    for mutation in [first, *iter_mutations(machine, first)]:
+        is_possible = mutation in interpreter.initial_steps(
+            machine, select_inputs(machine, mutation)
+        )
+        violated = list_violated(contract, [mutation], Class.INIT, Class.SAFETY)
+        assert is_possible == (not violated), (mutation, violated)

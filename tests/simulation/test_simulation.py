@@ -1,4 +1,4 @@
-"""Scenarios on the reference interpreters: which ones pass, and how failures are reported."""
+"""Scenarios of activities on the reference interpreter: results, reports and faults."""
 
 from xml.etree import ElementTree
 
@@ -68,7 +68,7 @@ def simulate(text: str, model: str = GATE):
     return run_scenarios(graph, Source("s.yaml", text.encode()), sink), sink
 
 
-def test_a_scenario_that_the_diagram_shows_passes():
+def test_a_scenario_that_follows_the_diagram_passes():
     report, sink = simulate(PULLS)
     assert list(sink) == []
     assert report.passed
@@ -77,7 +77,7 @@ def test_a_scenario_that_the_diagram_shows_passes():
     )
 
 
-def test_properties_keep_their_value_and_ends_of_actions_last_one_step():
+def test_properties_keep_their_value_and_done_inputs_last_one_step():
     narrow = PULLS.replace("- expect: {run_read: false}", "- inputs: {angle: 30}", 1)
     report, _ = simulate(narrow.replace("angle: 90", "angle: 30, done_read: false"))
     assert str(report.results[0].difference) == "step 4: run_pull is false, expected true"
@@ -94,18 +94,18 @@ def test_the_first_difference_is_reported_with_its_line():
 
 
 def test_junit_has_a_case_for_each_scenario():
-    both = "scenarios:\n" + "".join(
+    two_scenarios = "scenarios:\n" + "".join(
         "  - " + "\n    ".join(text.strip().splitlines()) + "\n"
         for text in (PULLS, PULLS.replace("run_pull: true", "run_pull: false"))
     )
-    report, _ = simulate(both)
+    report, _ = simulate(two_scenarios)
     root = ElementTree.fromstring(report.as_junit())
     assert root.attrib == {"tests": "2", "failures": "1", "errors": "0"}
     good, bad = root.iter("testcase")
     assert (good.get("classname"), good.get("name")) == ("Gate.pass", "a wide gate pulls")
     assert good.find("failure") is None
     assert bad.find("failure").get("message") == "step 4: run_pull is true, expected false"
-    assert report.as_junit() == simulate(both)[0].as_junit()
+    assert report.as_junit() == simulate(two_scenarios)[0].as_junit()
 
 
 def test_the_failing_run_is_drawn_with_a_message_for_each_change():
@@ -142,18 +142,26 @@ def test_the_failing_run_is_drawn_with_a_message_for_each_change():
     )
 
 
-def test_steps_are_repeated_and_a_trace_is_expected():
-    report, _ = simulate(
-        "component: pass\nsteps:\n  - repeat: 4\ntrace:\n  - {run_read: false}\n"
-        "  - {run_read: true}\n  - {run_read: true}\n"
-    )
-    assert not report.results[0].is_valid
-    report, _ = simulate(
-        "component: Gate.pass\nsteps:\n  - repeat: 4\ntrace:\n  - {run_read: false}\n"
-        "  - {run_read: true}\n  - {run_read: true}\n"
-    )
+REPEATED = """
+component: Gate.pass
+steps:
+  - repeat: 4
+trace:
+  - {run_read: false}
+  - {run_read: true}
+  - {run_read: true}
+"""
+
+
+def test_the_run_of_a_repeated_step_is_compared_with_the_expected_trace():
+    report, _ = simulate(REPEATED)
     assert report.passed
     assert len(report.results[0].trace) == 4
+
+
+def test_a_component_is_named_with_its_class():
+    report, _ = simulate(REPEATED.replace("Gate.pass", "pass"))
+    assert not report.results[0].is_valid
 
 
 CHOICE = """

@@ -1,4 +1,4 @@
-"""Scenarios of state machines, and pictures of the runs."""
+"""Scenarios of state machines, and sequence diagrams of their runs."""
 
 import pytest
 

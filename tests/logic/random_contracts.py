@@ -1,6 +1,7 @@
-"""Random contracts over Booleans, ranges and enumerations."""
+"""Random formulas and contracts over Booleans, ranges and enumerations."""
 
 from hypothesis import strategies as st
+from spot_formulas import conjoin
 
 from sysmlc.logic import formula as f
 from sysmlc.logic.classification import classify
@@ -27,43 +28,47 @@ VARIABLES = (
 )
 
 
-def numbers(primes):
-    names = st.sampled_from(["n", "low", "m"])
-    variables = st.builds(Var, names, primes)
-    constants = st.integers(-3, 5).map(Const)
-    sums = st.builds(
-        lambda op, a, b: Apply(op, (a, b)), st.sampled_from([Op.ADD, Op.SUB]), variables, constants
+def apply_unary(operators, operand):
+    """Draw applications of one of the operators to an operand."""
+    return st.builds(lambda op, inner: Apply(op, (inner,)), st.sampled_from(operators), operand)
+
+
+def apply_binary(operators, left, right):
+    """Draw applications of one of the operators to two operands."""
+    return st.builds(lambda op, a, b: Apply(op, (a, b)), st.sampled_from(operators), left, right)
+
+
+def connect(operand):
+    """Draw negations, conjunctions, disjunctions, implications and equivalences."""
+    return st.one_of(
+        st.builds(f.negate, operand),
+        st.builds(f.both, operand, operand),
+        st.builds(f.either, operand, operand),
+        st.builds(f.implies, operand, operand),
+        st.builds(f.iff, operand, operand),
     )
-    products = st.builds(lambda a: Apply(Op.MUL, (a, Const(2))), variables)
+
+
+def numbers(primes):
+    variables = st.builds(Var, st.sampled_from(["n", "low", "m"]), primes)
+    constants = st.integers(-3, 5).map(Const)
+    sums = apply_binary([Op.ADD, Op.SUB], variables, constants)
+    products = apply_binary([Op.MUL], variables, st.just(Const(2)))
     return st.one_of(variables, constants, sums, products)
 
 
 def atoms(primes):
-    orders = st.sampled_from([Op.EQ, Op.NE, Op.LT, Op.LE, Op.GT, Op.GE])
+    orders = [Op.EQ, Op.NE, Op.LT, Op.LE, Op.GT, Op.GE]
+    modes = st.sampled_from(["idle", "busy", "stop"]).map(Const)
     return st.one_of(
         st.builds(Var, st.sampled_from(["go", "done"]), primes),
-        st.builds(lambda op, a, b: Apply(op, (a, b)), orders, numbers(primes), numbers(primes)),
-        st.builds(
-            lambda op, primed, value: Apply(op, (Var("mode", primed), Const(value))),
-            st.sampled_from([Op.EQ, Op.NE]),
-            primes,
-            st.sampled_from(["idle", "busy", "stop"]),
-        ),
+        apply_binary(orders, numbers(primes), numbers(primes)),
+        apply_binary([Op.EQ, Op.NE], st.builds(Var, st.just("mode"), primes), modes),
     )
 
 
 def conditions(primes):
-    return st.recursive(
-        atoms(primes),
-        lambda inner: st.one_of(
-            st.builds(f.negate, inner),
-            st.builds(f.both, inner, inner),
-            st.builds(f.either, inner, inner, inner),
-            st.builds(f.implies, inner, inner),
-            st.builds(f.iff, inner, inner),
-        ),
-        max_leaves=5,
-    )
+    return st.recursive(atoms(primes), connect, max_leaves=5)
 
 
 def conjuncts(class_, primes):
@@ -91,12 +96,11 @@ contracts = st.builds(
 )
 
 
-def canonical(contract):
+def canonicalise(contract):
     """Return variables and conjuncts, split and sorted by class, without origins and texts."""
 
     def split(conjuncts):
-        whole = f.both(*map(add_temporal_operators, conjuncts))
-        parts = {Conjunct(part, class_, ""): None for class_, part in classify(whole)}
+        parts = {Conjunct(part, class_, ""): None for class_, part in classify(conjoin(conjuncts))}
         return sort_by_class(part for part in parts if part.formula != f.TRUE)
 
     return (
@@ -104,11 +108,3 @@ def canonical(contract):
         split(contract.assumptions),
         split(contract.guarantees),
     )
-
-
-def add_temporal_operators(conjunct):
-    """Return the conjunct's formula in LTL, with the operators that its class implies."""
-    formula = conjunct.formula
-    if conjunct.class_ is Class.LIVENESS:
-        formula = f.eventually(formula)
-    return f.always(formula) if conjunct.class_ in (Class.SAFETY, Class.LIVENESS) else formula

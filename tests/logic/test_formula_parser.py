@@ -1,15 +1,66 @@
 """The parser of formulas accepts the same texts as grammars/ltl.lark, with the same result."""
 
+from functools import cache
+
 import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
+from lark import Lark, Tree
 from lark.exceptions import UnexpectedInput
-from ltl_judge import parse_with_grammar
 
 from long_runs import examples
+from sysmlc.logic import formula as f
 from sysmlc.logic.contract import BooleanDomain, IntegerDomain
+from sysmlc.logic.formula import Apply, Const, Op, Var
 from sysmlc.logic.infix import parse_formula
 from sysmlc.logic.syntax import FormulaError, line_and_column
+from sysmlc.support import resources
+
+TEMPORAL = {"G": Op.ALWAYS, "[]": Op.ALWAYS, "F": Op.EVENTUALLY, "<>": Op.EVENTUALLY, "X": Op.NEXT}
+UNTIL = {"U": Op.UNTIL, "R": Op.RELEASE, "V": Op.RELEASE, "W": Op.WEAK_UNTIL}
+CONNECTIVES = {
+    "negate": f.negate,
+    "both": f.both,
+    "either": f.either,
+    "implies": f.implies,
+    "iff": f.iff,
+}
+ATOMS = {
+    "name": Var,
+    "primed": lambda name: Var(name, primed=True),
+    "integer": lambda digits: Const(int(digits)),
+    "true": lambda _: f.TRUE,
+    "false": lambda _: f.FALSE,
+}
+
+
+@cache
+def create_parser():
+    return Lark(
+        resources.read_text("grammars", "ltl.lark"), parser="lalr", maybe_placeholders=False
+    )
+
+
+def parse_with_grammar(text):
+    """Return the formula that Lark parses; literals of enumerations are variables.
+
+    Raise lark's UnexpectedInput for a text that is not in the language.
+    """
+    (tree,) = (child for child in create_parser().parse(text).children if isinstance(child, Tree))
+    return build_formula(tree)
+
+
+def build_formula(tree):
+    words = [str(child) for child in tree.children if isinstance(child, str)]
+    if tree.data in ATOMS:
+        return ATOMS[tree.data](*words)
+    args = [build_formula(node) for node in tree.children if isinstance(node, Tree)]
+    if tree.data in CONNECTIVES:
+        return CONNECTIVES[tree.data](*args)
+    word = words[0]
+    op = TEMPORAL.get(word) or UNTIL.get(word) or Op("=" if word == "==" else word)
+    return Apply(op, tuple(args))
+
 
 BOOLEANS = ("p", "q", "r'", "true", "false")
 SIGNS = ("&", "&&", "|", "||", "->", "<->", "!", "(", ")", "G", "F", "X", "[]", "<>", "U", "W", "V")
