@@ -1,8 +1,9 @@
 """Random damage to XML documents, like that of hand edits, merges and faulty tools."""
 
 import copy
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from random import Random
+from typing import TypeVar
 
 from lxml import etree
 
@@ -48,6 +49,7 @@ _METACLASSES = (
     "Transition",
 )
 
+T = TypeVar("T")
 Change = Callable[[Element, Random], object]
 Damage = Callable[[bytes, Random], bytes]
 
@@ -131,6 +133,11 @@ def _move_element(root: Element, random: Random) -> None:
     element, owner = choose_element(root, random), choose_element(root, random)
     if element is not owner and element not in owner.iterancestors():
         owner.append(element)
+
+
+def pair_in_cycle(items: list[T]) -> Iterator[tuple[T, T]]:
+    """Yield each item with the next one; the last item is followed by the first."""
+    yield from zip(items, items[1:] + items[:1], strict=True)
 
 
 def find_references(root: Element) -> list[tuple[Element, str]]:

@@ -1,18 +1,18 @@
-"""One guarding process for all tests of this folder."""
+"""One fork server for all tests of this folder."""
 
 import pytest
 
-from fuzz.answers import GeneralizationQueries
-from fuzz.guard import Guard
+from fuzz.checker import Checker
+from fuzz.fork_server import ForkServer
 
 
 @pytest.fixture(scope="session")
-def guard():
-    with Guard() as made:
-        yield made
+def fork_server():
+    with ForkServer() as server:
+        yield server
 
 
 @pytest.fixture
-def asked(guard, tmp_path):
-    """An empty folder and the process that answers."""
-    return GeneralizationQueries(guard, tmp_path)
+def checker(fork_server, tmp_path):
+    """Return a checker that works in an empty folder."""
+    return Checker(fork_server, tmp_path)

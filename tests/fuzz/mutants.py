@@ -1,6 +1,6 @@
-"""Spoilt models of every kind that sysmlc reads: XMI, AutomationML, SysML v2 and KerML.
+"""Mutated models of every kind that sysmlc reads: XMI, AutomationML, SysML v2 and KerML.
 
-A mutant is the number that seeds it: among the same models the same number makes it again.
+A mutant is determined by its seed and the list of models that it is chosen from.
 """
 
 from collections.abc import Sequence
@@ -14,28 +14,28 @@ from lxml import etree
 from dialects.magicdraw import write_mdzip, write_xml
 from dialects.mutations import damage, mutate
 from fuzz.aml_changes import AML_CHANGES
-from fuzz.changes import CHANGES
-from fuzz.damages import DAMAGES, TEXT_DAMAGES, mutate_archive
-from fuzz.exchange_changes import EXCHANGE_CHANGES
+from fuzz.byte_damages import DAMAGES, TEXT_DAMAGES, mutate_archive
+from fuzz.interchange_changes import INTERCHANGE_CHANGES
 from fuzz.text_changes import mutate_text
+from fuzz.xmi_changes import XMI_CHANGES
 
 _EXAMPLES = Path(__file__).parents[2] / "examples"
 _AML = (".aml", ".amlx")
 _TEXTS = (".sysml", ".kerml", ".xt")
-_EXCHANGED = (".sysmlx", ".kermlx")
+_INTERCHANGE = (".sysmlx", ".kermlx")
 SUFFIXES = {
     "xmi": (".uml", ".xml", ".mdxml", ".mdzip", ".xmi"),
     "aml": _AML,
-    "v2": (*_TEXTS, *_EXCHANGED, ".kpar"),
+    "v2": (*_TEXTS, *_INTERCHANGE, ".kpar"),
 }
-"""What the files of each kind of models are named."""
+"""Suffixes of the files of each kind of model."""
 PROJECTS = ("ice-lab", "showcase/*")
-"""Folders of text that are one model."""
+"""Folders of the corpus whose texts form one model."""
 _RECIPES = sorted(_EXAMPLES.glob("*/*.sysml"))
-_WHOLE = 0.1
+_PROJECT_SHARE = 0.1
 """Share of projects and recipes among the mutants of SysML v2."""
-_BYTES = 0.12
-"""Share of texts that are damaged as bytes too."""
+_DAMAGED_SHARE = 0.12
+"""Share of texts whose bytes are damaged too."""
 _LEVELS = b"""[recipe.levels]
 recipe = "RecipePrimitives::Recipe"
 task = "RecipePrimitives::Task"
@@ -47,120 +47,133 @@ opc-ua-call = "OpcUaBinding::OpcUaMethod"
 
 @dataclass(frozen=True, slots=True)
 class Mutant:
-    """A spoilt model: what is compiled, what was done to which model, its files."""
+    """A mutated model: the name to compile, a description of the changes, and its files."""
 
     seed: int
     name: str
-    done: str
+    description: str
     files: tuple[tuple[str, bytes], ...]
 
 
-def models(corpus: Path | None, largest: int, kinds: Sequence[str] = ("xmi", "aml")) -> list[Path]:
-    """The examples, and the models of the corpus up to a size in bytes; a project is a folder."""
-    wanted = {suffix for kind in kinds for suffix in SUFFIXES[kind]}
-    inside = corpus.rglob("*") if corpus else ()
-    real = [p for p in inside if p.suffix in wanted and p.stat().st_size <= largest]
+def list_models(
+    corpus: Path | None, largest: int, kinds: Sequence[str] = ("xmi", "aml")
+) -> list[Path]:
+    """Return the examples and the models of *corpus* up to *largest* bytes, projects as folders."""
+    suffixes = {suffix for kind in kinds for suffix in SUFFIXES[kind]}
+    paths = corpus.rglob("*") if corpus else ()
+    corpus_models = [
+        path for path in paths if path.suffix in suffixes and path.stat().st_size <= largest
+    ]
     if corpus and "v2" in kinds:
-        real += [path for project in PROJECTS for path in corpus.glob(project)]
-    own = {".uml": "xmi", ".sysml": "v2", ".aml": "aml"}
-    examples = [p for p in sorted(_EXAMPLES.glob("*/*")) if own.get(p.suffix) in kinds]
-    return [*examples, *sorted(real)]
+        corpus_models += [path for project in PROJECTS for path in corpus.glob(project)]
+    kinds_of_examples = {".uml": "xmi", ".sysml": "v2", ".aml": "aml"}
+    examples = [
+        path
+        for path in sorted(_EXAMPLES.glob("*/*"))
+        if kinds_of_examples.get(path.suffix) in kinds
+    ]
+    return [*examples, *sorted(corpus_models)]
 
 
-def mutant(seed: int, among: Sequence[Path]) -> Mutant:
-    """The mutant of a number. Small models are chosen more often than large ones."""
+def make_mutant(seed: int, models: Sequence[Path]) -> Mutant:
+    """Return the mutant of a seed. Small models are chosen more often than large ones."""
     random = Random(seed)
-    path = _chosen(among, random)
+    path = _choose_model(models, random)
     if path.is_dir():
-        return _of_project(seed, path, random)
-    name, done, data = _of_file(path, random, among)
+        return _mutate_project(seed, path, random)
+    name, description, data = _mutate_file(path, random, models)
     name = f"m{seed}.{name}"
-    return Mutant(seed, name, f"{path.name}: {done}", ((name, data),))
+    return Mutant(seed, name, f"{path.name}: {description}", ((name, data),))
 
 
-def unspoilt(number: int, path: Path) -> Mutant:
-    """A model as it is, in the place of a mutant."""
+def make_unchanged(number: int, path: Path) -> Mutant:
+    """Return an unchanged model in the form of a mutant."""
     if path.is_dir():
-        known = sorted(one for one in path.rglob("*") if one.suffix in _TEXTS)
-        found = [(f"m{number}/{p.relative_to(path).as_posix()}", p.read_bytes()) for p in known]
-        return Mutant(number, f"m{number}", path.name, (("sysmlc.toml", _LEVELS), *found))
+        texts = sorted(text for text in path.rglob("*") if text.suffix in _TEXTS)
+        files = [
+            (f"m{number}/{text.relative_to(path).as_posix()}", text.read_bytes()) for text in texts
+        ]
+        return Mutant(number, f"m{number}", path.name, (("sysmlc.toml", _LEVELS), *files))
     suffix = path.suffix if path.suffix != ".xt" else Path(path.stem).suffix
     name = f"m{number}{suffix}"
     return Mutant(number, name, path.name, ((name, path.read_bytes()),))
 
 
-def _chosen(among: Sequence[Path], random: Random) -> Path:
-    """One of the models. Projects, of which files say more together, and recipes are not rare."""
-    whole = [path for path in among if path.is_dir() or path in _RECIPES]
-    if whole and random.random() < _WHOLE:
-        return random.choice(whole)
-    weights = [1 / (20_000 + _size(path)) for path in among]
-    return random.choices(among, weights)[0]
+def _choose_model(models: Sequence[Path], random: Random) -> Path:
+    """Choose a model; projects, whose files depend on one another, and recipes more often."""
+    units = [path for path in models if path.is_dir() or path in _RECIPES]
+    if units and random.random() < _PROJECT_SHARE:
+        return random.choice(units)
+    weights = [1 / (20_000 + _read_size(path)) for path in models]
+    return random.choices(models, weights)[0]
 
 
 @cache
-def _size(path: Path) -> int:
+def _read_size(path: Path) -> int:
     return path.stat().st_size
 
 
-def _of_file(path: Path, random: Random, among: Sequence[Path]) -> tuple[str, str, bytes]:
-    """Suffix, what was done, content."""
+def _mutate_file(path: Path, random: Random, models: Sequence[Path]) -> tuple[str, str, bytes]:
+    """Return the suffix, the description of the changes, and the content."""
     if path.suffix in _TEXTS:
         language = "kerml" if ".kerml" in path.name else "sysml"
-        return language, *_spoilt_text(path, random, among)
+        return language, *_mutate_text_file(path, random, models)
     if path.suffix == ".kpar":
-        spoil = lambda data, dice: _spoilt(data.decode("utf-8", "replace"), dice)  # noqa: E731
-        return "kpar", *mutate_archive(_document(path, ""), random, spoil)
-    return _of_xml(path, random)
+        spoil = lambda data, dice: _mutate_text(data.decode("utf-8", "replace"), dice)  # noqa: E731
+        return "kpar", *mutate_archive(_read_document(path, ""), random, spoil)
+    return _mutate_xml(path, random)
 
 
-def _of_xml(path: Path, random: Random) -> tuple[str, str, bytes]:
+def _mutate_xml(path: Path, random: Random) -> tuple[str, str, bytes]:
     is_example = _EXAMPLES in path.parents and path.suffix == ".uml"
     dialect = random.choice(["uml", "uml", "xml", "mdzip"]) if is_example else path.suffix[1:]
-    whole = _document(path, dialect if is_example else "")
-    changes = EXCHANGE_CHANGES if path.suffix in _EXCHANGED else None
+    document = _read_document(path, dialect if is_example else "")
+    changes = INTERCHANGE_CHANGES if path.suffix in _INTERCHANGE else None
     changes = AML_CHANGES if path.suffix in _AML else changes
     if dialect in ("mdzip", "amlx"):
-        spoil = lambda data, dice: mutate(data, dice, CHANGES, DAMAGES, changes)  # noqa: E731
-        return dialect, *mutate_archive(whole, random, spoil)
+        spoil = lambda data, dice: mutate(data, dice, XMI_CHANGES, DAMAGES, changes)  # noqa: E731
+        return dialect, *mutate_archive(document, random, spoil)
     if _is_well_formed(path):
-        return dialect, *mutate(whole, random, CHANGES, DAMAGES, changes)
-    return dialect, *damage(whole, random, DAMAGES)
+        return dialect, *mutate(document, random, XMI_CHANGES, DAMAGES, changes)
+    return dialect, *damage(document, random, DAMAGES)
 
 
-def _spoilt_text(path: Path, random: Random, among: Sequence[Path]) -> tuple[str, bytes]:
-    donors = [one for one in among if one.suffix == path.suffix]
-    return _spoilt(_text(path), random, _text(random.choice(donors or [path])))
+def _mutate_text_file(path: Path, random: Random, models: Sequence[Path]) -> tuple[str, bytes]:
+    donors = [model for model in models if model.suffix == path.suffix]
+    return _mutate_text(_read_text(path), random, _read_text(random.choice(donors or [path])))
 
 
-def _spoilt(text: str, random: Random, donor: str = "") -> tuple[str, bytes]:
-    done, spoilt = mutate_text(text, random, donor)
-    data = spoilt.encode("utf-8", "replace")
-    if not data or random.random() >= _BYTES:
-        return done, data
-    more, data = damage(data, random, TEXT_DAMAGES)
-    return f"{done} {more}", data
+def _mutate_text(text: str, random: Random, donor: str = "") -> tuple[str, bytes]:
+    description, mutated = mutate_text(text, random, donor)
+    data = mutated.encode("utf-8", "replace")
+    if not data or random.random() >= _DAMAGED_SHARE:
+        return description, data
+    damages, data = damage(data, random, TEXT_DAMAGES)
+    return f"{description} {damages}", data
 
 
-def _of_project(seed: int, folder: Path, random: Random) -> Mutant:
-    """One or two files of a project are spoilt, or one is gone."""
-    known = sorted(path for path in folder.rglob("*") if path.suffix in _TEXTS)
-    contents = {path: path.read_bytes() for path in known}
-    done = []
-    for path in random.sample(known, min(len(known), random.choice((1, 1, 2)))):
+def _mutate_project(seed: int, folder: Path, random: Random) -> Mutant:
+    """Mutate or remove one or two files of a project."""
+    texts = sorted(path for path in folder.rglob("*") if path.suffix in _TEXTS)
+    contents = {path: path.read_bytes() for path in texts}
+    descriptions = []
+    for path in random.sample(texts, min(len(texts), random.choice((1, 1, 2)))):
         if random.random() < 0.05:
-            done.append(f"{path.name}: gone")
+            descriptions.append(f"{path.name}: gone")
             del contents[path]
             continue
-        what, contents[path] = _spoilt_text(path, random, known)
-        done.append(f"{path.name}: {what}")
+        description, contents[path] = _mutate_text_file(path, random, texts)
+        descriptions.append(f"{path.name}: {description}")
     root = f"m{seed}"
-    files = [(f"{root}/{p.relative_to(folder).as_posix()}", d) for p, d in contents.items()]
-    return Mutant(seed, root, "; ".join(done), (("sysmlc.toml", _LEVELS), *files))
+    files = [
+        (f"{root}/{path.relative_to(folder).as_posix()}", content)
+        for path, content in contents.items()
+    ]
+    return Mutant(seed, root, "; ".join(descriptions), (("sysmlc.toml", _LEVELS), *files))
 
 
 @cache
-def _text(path: Path) -> str:
+def _read_text(path: Path) -> str:
     return path.read_bytes().decode("utf-8-sig", "replace")
 
 
@@ -174,6 +187,6 @@ def _is_well_formed(path: Path) -> bool:
 
 
 @cache
-def _document(path: Path, dialect: str) -> bytes:
+def _read_document(path: Path, dialect: str) -> bytes:
     writer = {"xml": write_xml, "mdzip": write_mdzip}.get(dialect, bytes)
     return writer(path.read_bytes())

@@ -1,7 +1,7 @@
-"""Hostile repositories: a spoilt model with configuration, overlay, scenarios, templates and links.
+"""Hostile repositories: a mutated model with configuration, overlay, scenarios, templates, links.
 
-A repository is the number that seeds it, as a mutant is. ``run`` compiles it and compares the
-whole file tree before and after: nothing but the output folder may change.
+A repository is determined by its seed, as a mutant is. ``run_command`` runs its command and
+compares the whole file tree before and after: nothing but the output folder may change.
 """
 
 import hashlib
@@ -13,14 +13,14 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from random import Random
 
-from fuzz.damages import TEXT_DAMAGES
-from fuzz.guard import MEGABYTE, Bounds, Ended, Guard
-from fuzz.hunt import write
-from fuzz.mutants import Mutant, mutant
+from fuzz.byte_damages import TEXT_DAMAGES
+from fuzz.fork_server import MEGABYTE, CommandResult, ForkServer, Limits
+from fuzz.hunt import write_files
+from fuzz.mutants import make_mutant
 
 ROOT = Path(__file__).parents[2]
 FIRST_SEED = 10_000_000
-BOUNDS = Bounds(seconds=11, waiting=150, memory=1200 * MEGABYTE)
+LIMITS = Limits(seconds=11, elapsed=150, memory=1200 * MEGABYTE)
 SECONDS = 10
 PROJECT = "project"
 OUTPUT = "out"
@@ -87,7 +87,7 @@ _WRONG_CONFIGURATION = (
     "a = {nested}",
 )
 _NUMBERS = ("0", "-1", "1e400", "nan", "9" * 400, "0x7f", "1970-01-01", "true", '"1"', "[]")
-_ATOMS = (
+_VALUES = (
     "null",
     "~",
     "[]",
@@ -142,7 +142,7 @@ class Repository:
     files: Mapping[str, bytes]
     links: Mapping[str, str]
     args: tuple[str, ...]
-    done: str
+    description: str
 
     @property
     def names_output(self) -> bool:
@@ -150,15 +150,15 @@ class Repository:
         return "-o" in self.args or self.args[0] != "build"
 
 
-def repository(seed: int, among: Sequence[Path]) -> Repository:
+def make_repository(seed: int, models: Sequence[Path]) -> Repository:
     """Return the hostile repository of a number; *among* are the models that it may hold."""
     random = Random(seed)
-    kind = random.choice((_of_overlay, _of_scenario, _of_templates, _of_model, _of_model))
-    found = kind(seed, random, among)
-    files, done = dict(found.files), found.done
-    if random.random() < (0.1 if kind is _of_templates else 0.5):
+    make = random.choice((_make_overlay, _make_scenario, _make_templates, _make_model, _make_model))
+    base = make(seed, random, models)
+    files, description = dict(base.files), base.description
+    if random.random() < (0.1 if make is _make_templates else 0.5):
         files["sysmlc.toml"] = _make_configuration(random)
-        done += "; configuration"
+        description += "; configuration"
     if random.random() < 0.1 and "sysmlc.toml" not in files:
         table = b"[tool.sysmlc]\n" + _make_configuration(random)
         files["pyproject.toml"] = table
@@ -166,35 +166,35 @@ def repository(seed: int, among: Sequence[Path]) -> Repository:
     if random.random() < 0.4:
         # A folder that the command line names may be a link; one that a file names may not.
         names = ("link", "out/contracts", "out/manifest.json", "t", "m.sysml")
-        name = random.choice(names if found.names_output else ("out", *names))
+        name = random.choice(names if base.names_output else ("out", *names))
         if name not in files:
             links[name] = random.choice(("../sentinel", "../sentinel/secret.sysml", "link", ".git"))
     if random.random() < 0.3 and not any(name.startswith("out") for name in links):
         files["out/manifest.json"] = _make_manifest(random)
         files["out/notes.txt"] = b"mine"
-    return replace(found, files=files, links=links, done=done)
+    return replace(base, files=files, links=links, description=description)
 
 
-def _of_model(seed: int, random: Random, among: Sequence[Path]) -> Repository:
-    spoilt = mutant(seed, among)
-    emitted = "+graph,+ir,+reqtable,+sysml,+uml,+aml"
+def _make_model(seed: int, random: Random, models: Sequence[Path]) -> Repository:
+    mutant = make_mutant(seed, models)
+    backends = "+graph,+ir,+reqtable,+sysml,+uml,+aml"
     args = random.choice(
         (
-            ("build", spoilt.name, "-o", OUTPUT, "--emit", emitted),
-            ("build", spoilt.name),
+            ("build", mutant.name, "-o", OUTPUT, "--emit", backends),
+            ("build", mutant.name),
             ("build", "."),
             ("check", ".", "--format", random.choice(("text", "json", "sarif", "github"))),
-            ("contracts", "check", spoilt.name, "--question-limit", "0.2"),
-            ("show", spoilt.name),
-            ("coverage", spoilt.name, "--format", "json"),
+            ("contracts", "check", mutant.name, "--question-limit", "0.2"),
+            ("show", mutant.name),
+            ("coverage", mutant.name, "--format", "json"),
         )
     )
-    return Repository(seed, dict(spoilt.files), {}, args, f"model: {spoilt.done}")
+    return Repository(seed, dict(mutant.files), {}, args, f"model: {mutant.description}")
 
 
-def _of_overlay(seed: int, random: Random, _among: Sequence[Path]) -> Repository:
+def _make_overlay(seed: int, random: Random, _models: Sequence[Path]) -> Repository:
     base = ROOT / "examples" / random.choice(_OVERLAYS)
-    done, overlay = _spoil_text(base.with_suffix(".overlay.yaml").read_text(), random)
+    description, overlay = _mutate_yaml(base.with_suffix(".overlay.yaml").read_text(), random)
     name = base.name
     files = {
         f"{name}.aml": base.with_suffix(".aml").read_bytes(),
@@ -202,35 +202,35 @@ def _of_overlay(seed: int, random: Random, _among: Sequence[Path]) -> Repository
         **{path.name: path.read_bytes() for path in base.parent.glob("*.uml")},
     }
     command = random.choice((("build", f"{name}.aml", "-o", OUTPUT), ("check", f"{name}.aml")))
-    return Repository(seed, files, {}, command, f"overlay: {done}")
+    return Repository(seed, files, {}, command, f"overlay: {description}")
 
 
-def _of_scenario(seed: int, random: Random, _among: Sequence[Path]) -> Repository:
-    done, scenario = _spoil_text(random.choice(_SCENARIOS).read_text(), random)
+def _make_scenario(seed: int, random: Random, _models: Sequence[Path]) -> Repository:
+    description, scenario = _mutate_yaml(random.choice(_SCENARIOS).read_text(), random)
     files = {
         "m.uml": (ROOT / "examples" / _SCENARIO_MODEL).read_bytes(),
         "s.yaml": scenario,
     }
     args = ("simulate", "m.uml", "--scenario", "s.yaml", "--junit", "out/report.xml", "-o", OUTPUT)
-    return Repository(seed, files, {}, args, f"scenario: {done}")
+    return Repository(seed, files, {}, args, f"scenario: {description}")
 
 
-def _of_templates(seed: int, random: Random, _among: Sequence[Path]) -> Repository:
+def _make_templates(seed: int, random: Random, _models: Sequence[Path]) -> Repository:
     files = {"m.uml": (ROOT / "examples/baygate/gate.uml").read_bytes()}
-    done = []
+    descriptions = []
     for path in random.sample(_TEMPLATES, 2):
         text = path.read_text()
-        at = random.randrange(len(text))
+        index = random.randrange(len(text))
         expression = random.choice(_EXPRESSIONS)
-        data = f"{text[:at]}{expression}{text[at:]}".encode()
+        data = f"{text[:index]}{expression}{text[index:]}".encode()
         if random.random() < 0.2:
             data = random.choice(TEXT_DAMAGES)(data, random)
         files[f"t/{path.relative_to(ROOT / 'templates').as_posix()}"] = data
         files[f"t/{path.name}"] = data
-        done.append(f"{path.name} {expression[:40]}")
+        descriptions.append(f"{path.name} {expression[:40]}")
     files["sysmlc.toml"] = b'templates = "t"\n'
     args = ("build", "m.uml", "-o", OUTPUT, "--emit", "+reqtable", "--time-limit", "8")
-    return Repository(seed, files, {}, args, f"templates: {'; '.join(done)}")
+    return Repository(seed, files, {}, args, f"templates: {'; '.join(descriptions)}")
 
 
 def _make_configuration(random: Random) -> bytes:
@@ -257,51 +257,53 @@ def _make_manifest(random: Random) -> bytes:
     return text.encode("latin-1", "replace")
 
 
-def _spoil_text(text: str, random: Random) -> tuple[str, bytes]:
+def _mutate_yaml(text: str, random: Random) -> tuple[str, bytes]:
     """Replace values and lines of a YAML document by hostile ones."""
     lines = text.splitlines()
-    done = []
+    descriptions = []
     for _ in range(random.randint(1, 4)):
-        at = random.randrange(len(lines))
-        head, colon, _ = lines[at].partition(":")
-        atom = random.choice(_ATOMS)
-        line, indent = lines[at], " " * random.randint(1, 9)
+        index = random.randrange(len(lines))
+        head, colon, _ = lines[index].partition(":")
+        value = random.choice(_VALUES)
+        line, indent = lines[index], " " * random.randint(1, 9)
         replacements = (
-            [f"{head}{colon} {atom}"],
-            [atom],
+            [f"{head}{colon} {value}"],
+            [value],
             [],
             [line, line],
             [f"{line} {random.choice(lines).strip()}"],
             [indent + line.strip()],
         )
         new = random.choice(replacements)
-        done.append(f"{at + 1}: {new[0].strip()[:30] if new else 'gone'}")
-        lines[at : at + 1] = new
+        descriptions.append(f"{index + 1}: {new[0].strip()[:30] if new else 'gone'}")
+        lines[index : index + 1] = new
         lines = lines or [""]
     data = "\n".join(lines).encode("utf-8", "replace")
     if random.random() < 0.15:
         data = random.choice(TEXT_DAMAGES)(data, random)
-    return ", ".join(done), data
+    return ", ".join(descriptions), data
 
 
 # -- running -----------------------------------------------------------------------------------
 
 
-def run(hostile: Repository, guard: Guard, folder: Path) -> tuple[Ended, list[str]]:
+def run_command(
+    repository: Repository, server: ForkServer, folder: Path
+) -> tuple[CommandResult, list[str]]:
     """Compile a repository in *folder*. Return how the command ended and what is wrong with it."""
     shutil.rmtree(folder, ignore_errors=True)
     project = folder / PROJECT
-    write(Mutant(0, "", "", tuple(SENTINELS.items())), folder)
-    write(Mutant(0, "", "", ((".git/HEAD", b"ref: x"), (".git/hooks/x", b"#!"))), project)
-    write(Mutant(0, "", "", tuple(hostile.files.items())), project)
-    for name, target in hostile.links.items():
+    write_files(SENTINELS.items(), folder)
+    write_files(((".git/HEAD", b"ref: x"), (".git/hooks/x", b"#!")), project)
+    write_files(repository.files.items(), project)
+    for name, target in repository.links.items():
         link = project / name
         link.parent.mkdir(parents=True, exist_ok=True)
         if not link.exists() and not link.is_symlink():
             link.symlink_to(target)
     before = take_snapshot(folder)
-    ended = guard.run(project, *hostile.args, bounds=BOUNDS)
-    return ended, [*_find_faults(ended), *_find_changes(before, folder, hostile)]
+    result = server.run(project, *repository.args, limits=LIMITS)
+    return result, [*_find_faults(result), *_find_changes(before, folder, repository)]
 
 
 def take_snapshot(folder: Path) -> dict[str, str]:
@@ -320,16 +322,16 @@ def take_snapshot(folder: Path) -> dict[str, str]:
     return states
 
 
-def _find_faults(ended: Ended) -> Iterator[str]:
-    if ended.is_fault:
-        yield ended.told
-    elif ended.seconds > SECONDS:
-        yield f"{ended.seconds:.1f} s of processor time"
-    elif ended.code and not ended.err + ended.out:
-        yield f"exit {ended.code} without a word"
+def _find_faults(result: CommandResult) -> Iterator[str]:
+    if result.is_fault:
+        yield result.summary
+    elif result.seconds > SECONDS:
+        yield f"{result.seconds:.1f} s of processor time"
+    elif result.code and not result.err + result.out:
+        yield f"exit {result.code} without output"
 
 
-def _find_changes(before: Mapping[str, str], folder: Path, hostile: Repository) -> Iterator[str]:
+def _find_changes(before: Mapping[str, str], folder: Path, repository: Repository) -> Iterator[str]:
     """Yield what changed outside the output folder.
 
     Where the configuration may choose the folder, new files may be anywhere in the project. What a
@@ -337,10 +339,10 @@ def _find_changes(before: Mapping[str, str], folder: Path, hostile: Repository) 
     """
     after = take_snapshot(folder)
     output = f"{PROJECT}/{OUTPUT}"
-    inside = output if hostile.names_output else PROJECT
+    writable = output if repository.names_output else PROJECT
     for path in sorted(before.keys() | after.keys()):
         old, new = before.get(path), after.get(path)
-        if old is None and not f"{path}/".startswith(f"{inside}/"):
-            yield f"{path} was written outside {inside}"
+        if old is None and not f"{path}/".startswith(f"{writable}/"):
+            yield f"{path} was written outside {writable}"
         elif old is not None and old != new and not path.startswith(f"{output}/"):
             yield f"{path} changed"

@@ -1,9 +1,11 @@
-"""Changes of SysML v2 and KerML text: tokens, members, names, relations, circles, strangers."""
+"""Random changes of SysML v2 and KerML texts: tokens, members, names, relations, cycles."""
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from random import Random
+from typing import TypeVar
 
+from dialects.mutations import pair_in_cycle
 from fuzz.text_pieces import (
     KERML_KINDS,
     KEYWORDS,
@@ -11,136 +13,140 @@ from fuzz.text_pieces import (
     PREFIXES,
     RELATIONS,
     Pieces,
-    bodies,
-    declared,
+    find_bodies,
+    find_declared_names,
+    find_members,
+    find_names,
+    find_tokens,
     is_name,
-    members,
-    names,
-    pieces,
-    tokens,
+    split_pieces,
 )
-from fuzz.text_strangers import EXPRESSIONS, JUNK, KERML_MEMBERS, MEMBERS, MULTIPLICITIES
+from fuzz.text_templates import EXPRESSIONS, JUNK, KERML_MEMBERS, MEMBERS, MULTIPLICITIES
 
+T = TypeVar("T")
 TextChange = Callable[[Pieces, Random], Pieces]
-_PLACE = re.compile(r"\$([abc])")
+_PLACEHOLDER = re.compile(r"\$([abc])")
 _LARGE = 3000
-"""Pieces of a member that is not put in many times."""
+"""Number of pieces from which a member is too large to be inserted many times."""
 
 
 def mutate_text(text: str, random: Random, donor: str = "") -> tuple[str, str]:
-    """One to four changes of a text; what was done, and the result.
+    """Apply one to four random changes; return their names and the result.
 
-    ``donor`` is another text, of which a member may be taken.
+    *donor* is another text, from which a member may be copied.
     """
-    parts, done = pieces(text), []
+    parts, descriptions = split_pieces(text), []
     for _ in range(random.choice((1, 1, 2, 2, 3, 4))):
         if donor and random.random() < 0.05:
-            done.append("graft")
-            parts = _graft(parts, pieces(donor), random)
+            descriptions.append("graft")
+            parts = _insert_foreign_member(parts, split_pieces(donor), random)
         else:
             change = random.choice(TEXT_CHANGES)
-            done.append(change.__name__.strip("_"))
+            descriptions.append(change.__name__.strip("_"))
             parts = change(parts, random)
-    return " ".join(done), "".join(parts)
+    return " ".join(descriptions), "".join(parts)
 
 
-def _any(found: list, random: Random, otherwise: object) -> object:
-    return random.choice(found) if found else otherwise
+def _choose_or(candidates: Sequence[T], random: Random, default: T) -> T:
+    """Return a random candidate, or *default* if there are none."""
+    return random.choice(candidates) if candidates else default
 
 
-def _token(parts: Pieces, random: Random) -> int:
-    return _any(tokens(parts), random, 0)
+def _choose_token(parts: Pieces, random: Random) -> int:
+    return _choose_or(find_tokens(parts), random, 0)
 
 
-def _member(parts: Pieces, random: Random) -> tuple[int, int]:
-    return _any(members(parts), random, (0, 0))
+def _choose_member(parts: Pieces, random: Random) -> tuple[int, int]:
+    return _choose_or(find_members(parts), random, (0, 0))
 
 
-def _name(parts: Pieces, random: Random) -> str:
-    """A name of the text, most often one that it declares."""
-    at = _any(declared(parts) if random.random() < 0.7 else names(parts), random, -1)
-    return parts[at] if at >= 0 else "none"
+def _choose_name(parts: Pieces, random: Random) -> str:
+    """Return a name of the text, in most cases one that the text declares."""
+    index = _choose_or(
+        find_declared_names(parts) if random.random() < 0.7 else find_names(parts), random, -1
+    )
+    return parts[index] if index >= 0 else "none"
 
 
-def _path(parts: Pieces, random: Random) -> str:
-    """A name, a qualified name or a chain, of which the links may have nothing to do together."""
-    one, other = _name(parts, random), _name(parts, random)
-    both = (f"{one}::{other}", f"{one}.{other}", f"{one}::{one}")
-    return random.choice((one, one, one, *both, "none", f"$::{one}"))
+def _make_path(parts: Pieces, random: Random) -> str:
+    """Return a name, a qualified name or a feature chain; its names may be unrelated."""
+    first, second = _choose_name(parts, random), _choose_name(parts, random)
+    compounds = (f"{first}::{second}", f"{first}.{second}", f"{first}::{first}")
+    return random.choice((first, first, first, *compounds, "none", f"$::{first}"))
 
 
-def _filled(pattern: str, parts: Pieces, random: Random) -> str:
-    known = {letter: _name(parts, random) for letter in "abc"}
-    return _PLACE.sub(lambda found: known[found[1]], pattern)
+def _fill_in(pattern: str, parts: Pieces, random: Random) -> str:
+    names_by_letter = {letter: _choose_name(parts, random) for letter in "abc"}
+    return _PLACEHOLDER.sub(lambda match: names_by_letter[match[1]], pattern)
 
 
 def _is_kerml(parts: Pieces) -> bool:
-    """Whether the text seems to be KerML."""
+    """Whether the text is probably KerML."""
     return sum(p in KERML_KINDS for p in parts) > sum(p in KINDS for p in parts)
 
 
-def _stranger(parts: Pieces, random: Random) -> str:
+def _make_member(parts: Pieces, random: Random) -> str:
     is_other = random.random() < 0.1
-    known = KERML_MEMBERS if _is_kerml(parts) != is_other else MEMBERS
-    return _filled(random.choice(known), parts, random)
+    patterns = KERML_MEMBERS if _is_kerml(parts) != is_other else MEMBERS
+    return _fill_in(random.choice(patterns), parts, random)
 
 
-def _with(parts: Pieces, at: int, *new: str) -> Pieces:
-    return [*parts[:at], *new, *parts[at:]]
+def _insert(parts: Pieces, index: int, *new: str) -> Pieces:
+    return [*parts[:index], *new, *parts[index:]]
 
 
-def _into_a_body(parts: Pieces, random: Random, new: str) -> Pieces:
-    """A member more, at any place between the members of a body."""
-    places = [at + 1 for at, part in enumerate(parts) if part in (";", "{", "}")]
-    return _with(parts, _any(places, random, len(parts)), "\n", new, "\n")
+def _insert_member(parts: Pieces, random: Random, new: str) -> Pieces:
+    """Insert a member at a random place between other members."""
+    indices = [index + 1 for index, part in enumerate(parts) if part in (";", "{", "}")]
+    return _insert(parts, _choose_or(indices, random, len(parts)), "\n", new, "\n")
 
 
 # -- tokens and lines ----------------------------------------------------------------------------
 
 
 def _drop_token(parts: Pieces, random: Random) -> Pieces:
-    at = _token(parts, random)
-    return parts[:at] + parts[at + 1 :]
+    index = _choose_token(parts, random)
+    return parts[:index] + parts[index + 1 :]
 
 
-def _double_token(parts: Pieces, random: Random) -> Pieces:
-    at = _token(parts, random)
-    return _with(parts, at, *parts[at : at + 1], " ")
+def _duplicate_token(parts: Pieces, random: Random) -> Pieces:
+    index = _choose_token(parts, random)
+    return _insert(parts, index, *parts[index : index + 1], " ")
 
 
 def _swap_tokens(parts: Pieces, random: Random) -> Pieces:
-    one, other = _token(parts, random), _token(parts, random)
-    made = list(parts)
+    first, second = _choose_token(parts, random), _choose_token(parts, random)
+    swapped = list(parts)
     if parts:
-        made[one], made[other] = parts[other], parts[one]
-    return made
+        swapped[first], swapped[second] = parts[second], parts[first]
+    return swapped
 
 
-def _other_token(parts: Pieces, random: Random) -> Pieces:
-    one, other = _token(parts, random), _token(parts, random)
-    return [*parts[:one], *parts[other : other + 1], *parts[one + 1 :]]
+def _replace_token(parts: Pieces, random: Random) -> Pieces:
+    index, donor = _choose_token(parts, random), _choose_token(parts, random)
+    return [*parts[:index], *parts[donor : donor + 1], *parts[index + 1 :]]
 
 
-def _junk(parts: Pieces, random: Random) -> Pieces:
-    return _with(parts, random.randrange(len(parts) + 1), random.choice(JUNK))
+def _insert_junk(parts: Pieces, random: Random) -> Pieces:
+    return _insert(parts, random.randrange(len(parts) + 1), random.choice(JUNK))
 
 
-def _lines(parts: Pieces, random: Random) -> Pieces:
-    """A line is dropped, doubled or put elsewhere."""
+def _change_line(parts: Pieces, random: Random) -> Pieces:
+    """Drop, duplicate or move a line."""
     lines = "".join(parts).split("\n")
-    one, other = random.randrange(len(lines)), random.randrange(len(lines))
-    line = lines.pop(one)
-    lines[other:other] = random.choice(([], [line], [line, line]))
-    return pieces("\n".join(lines))
+    index, target = random.randrange(len(lines)), random.randrange(len(lines))
+    line = lines.pop(index)
+    lines[target:target] = random.choice(([], [line], [line, line]))
+    return split_pieces("\n".join(lines))
 
 
-def _unbalance(parts: Pieces, random: Random) -> Pieces:
-    braces = [at for at, part in enumerate(parts) if part in ("{", "}", "(", ")", "[", "]")]
-    at = _any(braces, random, 0)
-    return [*parts[:at], *random.choice(([], ["{"], ["}"], ["}", "}"])), *parts[at + 1 :]]
+def _unbalance_brackets(parts: Pieces, random: Random) -> Pieces:
+    braces = [index for index, part in enumerate(parts) if part in ("{", "}", "(", ")", "[", "]")]
+    index = _choose_or(braces, random, 0)
+    return [*parts[:index], *random.choice(([], ["{"], ["}"], ["}", "}"])), *parts[index + 1 :]]
 
 
-def _truncate(parts: Pieces, random: Random) -> Pieces:
+def _truncate_text(parts: Pieces, random: Random) -> Pieces:
     return parts[: random.randrange(len(parts) + 1)]
 
 
@@ -148,54 +154,54 @@ def _truncate(parts: Pieces, random: Random) -> Pieces:
 
 
 def _drop_member(parts: Pieces, random: Random) -> Pieces:
-    start, end = _member(parts, random)
+    start, end = _choose_member(parts, random)
     return parts[:start] + parts[end:]
 
 
 def _drop_many(parts: Pieces, random: Random) -> Pieces:
-    """Every member that begins with one word is gone, or most of them."""
-    found = members(parts)
-    start, _ = _any(found, random, (0, 0))
-    made = list(parts)
-    for one, end in found:
-        if parts[one] == parts[start] and random.random() < 0.7:
-            made[one:end] = [""] * (end - one)
-    return made
+    """Drop most of the members that begin with the same word."""
+    ranges = find_members(parts)
+    start, _ = _choose_or(ranges, random, (0, 0))
+    result = list(parts)
+    for begin, end in ranges:
+        if parts[begin] == parts[start] and random.random() < 0.7:
+            result[begin:end] = [""] * (end - begin)
+    return result
 
 
-def _double_member(parts: Pieces, random: Random) -> Pieces:
-    start, end = _member(parts, random)
-    return _with(parts, end, "\n", *parts[start:end])
+def _duplicate_member(parts: Pieces, random: Random) -> Pieces:
+    start, end = _choose_member(parts, random)
+    return _insert(parts, end, "\n", *parts[start:end])
 
 
 def _move_member(parts: Pieces, random: Random) -> Pieces:
-    start, end = _member(parts, random)
-    return _into_a_body(parts[:start] + parts[end:], random, "".join(parts[start:end]))
+    start, end = _choose_member(parts, random)
+    return _insert_member(parts[:start] + parts[end:], random, "".join(parts[start:end]))
 
 
 def _swap_members(parts: Pieces, random: Random) -> Pieces:
-    (a, b), (c, d) = sorted((_member(parts, random), _member(parts, random)))
+    (a, b), (c, d) = sorted((_choose_member(parts, random), _choose_member(parts, random)))
     if b > c:
         return parts
     return [*parts[:a], *parts[c:d], *parts[b:c], *parts[a:b], *parts[d:]]
 
 
 def _copy_member(parts: Pieces, random: Random) -> Pieces:
-    """A member also where it does not belong: in another body, in itself."""
-    start, end = _member(parts, random)
-    return _into_a_body(parts, random, "".join(parts[start:end]))
+    """Copy a member to a random place, perhaps into itself."""
+    start, end = _choose_member(parts, random)
+    return _insert_member(parts, random, "".join(parts[start:end]))
 
 
-def _into_itself(parts: Pieces, random: Random) -> Pieces:
-    start, end = _member(parts, random)
-    inner = [at + 1 for at in range(start, end) if parts[at] == "{"]
-    if end - start > _LARGE or not inner:
+def _copy_into_itself(parts: Pieces, random: Random) -> Pieces:
+    start, end = _choose_member(parts, random)
+    indices = [index + 1 for index in range(start, end) if parts[index] == "{"]
+    if end - start > _LARGE or not indices:
         return parts
-    return _with(parts, random.choice(inner), *parts[start:end])
+    return _insert(parts, random.choice(indices), *parts[start:end])
 
 
-def _empty_a_body(parts: Pieces, random: Random) -> Pieces:
-    start, end = _any(bodies(parts), random, (0, 0))
+def _empty_body(parts: Pieces, random: Random) -> Pieces:
+    start, end = _choose_or(find_bodies(parts), random, (0, 0))
     return (
         [*parts[: start + 1], *parts[end:]]
         if random.random() < 0.5
@@ -207,210 +213,227 @@ def _empty_a_body(parts: Pieces, random: Random) -> Pieces:
     )
 
 
-def _crowd(parts: Pieces, random: Random) -> Pieces:
-    """Many copies of one member, with one name or with names of their own."""
-    start, end = _member(parts, random)
+def _add_many_copies(parts: Pieces, random: Random) -> Pieces:
+    """Add many copies of one member, with the same name or with different names."""
+    start, end = _choose_member(parts, random)
     if not 0 < end - start <= _LARGE // 10:
         return parts
-    name = next((at for at in range(start, end) if is_name(parts[at])), start)
+    name_index = next((index for index in range(start, end) if is_name(parts[index])), start)
     copies: Pieces = []
-    renamed = random.random() < 0.5
+    is_renamed = random.random() < 0.5
     for number in range(random.choice((5, 60))):
         copy = parts[start:end]
-        if renamed and is_name(parts[name]):
-            copy[name - start] = f"'{parts[name].strip(chr(39))} {number}'"
+        if is_renamed and is_name(parts[name_index]):
+            copy[name_index - start] = f"'{parts[name_index].strip(chr(39))} {number}'"
         copies += ["\n", *copy]
-    return _with(parts, end, *copies)
+    return _insert(parts, end, *copies)
 
 
-def _dig(parts: Pieces, random: Random) -> Pieces:
-    """A member so deep within others that recursion would end: under or over the limit."""
-    start, end = _member(parts, random)
+def _nest_deeply(parts: Pieces, random: Random) -> Pieces:
+    """Nest a member deeply: below or above the limit on depth."""
+    start, end = _choose_member(parts, random)
     depth = random.choice((20, 90, 300, 700))
     word = random.choice(("part", "action", "state", "package", "class", "if", "loop"))
-    name = _name(parts, random)
-    opening = [f"{word} {random.choice((name, f'd{at}'))} {{" for at in range(depth)]
+    name = _choose_name(parts, random)
+    opening = [f"{word} {random.choice((name, f'd{level}'))} {{" for level in range(depth)]
     return [*parts[:start], *opening, *parts[start:end], "}" * depth, *parts[end:]]
 
 
-def _graft(parts: Pieces, donor: Pieces, random: Random) -> Pieces:
-    """A member of another text."""
-    start, end = _member(donor, random)
-    return _into_a_body(parts, random, "".join(donor[start:end]))
+def _insert_foreign_member(parts: Pieces, donor: Pieces, random: Random) -> Pieces:
+    """Insert a member of another text."""
+    start, end = _choose_member(donor, random)
+    return _insert_member(parts, random, "".join(donor[start:end]))
 
 
-def _strangers(parts: Pieces, random: Random) -> Pieces:
+def _insert_template_members(parts: Pieces, random: Random) -> Pieces:
     for _ in range(random.choice((1, 1, 2, 4))):
-        parts = _into_a_body(parts, random, _stranger(parts, random))
+        parts = _insert_member(parts, random, _make_member(parts, random))
     return parts
 
 
 # -- names ---------------------------------------------------------------------------------------
 
 
-def _retarget(parts: Pieces, random: Random) -> Pieces:
-    made = list(parts)
-    found = names(parts)
-    for at in random.sample(found, min(len(found), random.choice((1, 1, 2, 5)))):
-        made[at] = _path(parts, random)
-    return made
+def _misdirect_names(parts: Pieces, random: Random) -> Pieces:
+    result = list(parts)
+    indices = find_names(parts)
+    for index in random.sample(indices, min(len(indices), random.choice((1, 1, 2, 5)))):
+        result[index] = _make_path(parts, random)
+    return result
 
 
 def _rename_all(parts: Pieces, random: Random) -> Pieces:
-    """All uses of one name get another: two things become one, or none."""
-    old = _name(parts, random)
-    odd = ("none", "''", "'a b'", "'::'", "start", "done", "self", "that", "'", "é", "Parts", "SI")
-    new = _name(parts, random) if random.random() < 0.6 else random.choice(odd)
+    """Replace all uses of one name by another name, which may be in use or odd."""
+    old = _choose_name(parts, random)
+    odd_names = (
+        "none",
+        "''",
+        "'a b'",
+        "'::'",
+        "start",
+        "done",
+        "self",
+        "that",
+        "'",
+        "é",
+        "Parts",
+        "SI",
+    )
+    new = _choose_name(parts, random) if random.random() < 0.6 else random.choice(odd_names)
     return [new if part == old else part for part in parts]
 
 
-def _no_names(parts: Pieces, random: Random) -> Pieces:
-    """Declarations without a name: one, or most of them."""
-    found = declared(parts)
-    made = list(parts)
+def _drop_names(parts: Pieces, random: Random) -> Pieces:
+    """Remove the name of one declaration, of some, or of most."""
+    indices = find_declared_names(parts)
+    result = list(parts)
     share = random.choice((0.0, 0.1, 0.8))
-    for at in found:
+    for index in indices:
         if random.random() < share:
-            made[at] = ""
-    if found:
-        made[random.choice(found)] = ""
-    return made
+            result[index] = ""
+    if indices:
+        result[random.choice(indices)] = ""
+    return result
 
 
-def _same_names(parts: Pieces, random: Random) -> Pieces:
-    """Declarations of one name in many places."""
-    found = declared(parts)
-    made, name = list(parts), _name(parts, random)
-    for at in random.sample(found, min(len(found), random.choice((1, 2, 6)))):
-        made[at] = name
-    return made
+def _duplicate_names(parts: Pieces, random: Random) -> Pieces:
+    """Give several declarations the same name."""
+    indices = find_declared_names(parts)
+    result, name = list(parts), _choose_name(parts, random)
+    for index in random.sample(indices, min(len(indices), random.choice((1, 2, 6)))):
+        result[index] = name
+    return result
 
 
-def _circle(parts: Pieces, random: Random) -> Pieces:
-    """What is declared specialises, is typed by, redefines or equals one another."""
-    found = declared(parts)
-    chosen = random.sample(found, min(len(found), random.randint(1, 4)))
+def _make_cycle(parts: Pieces, random: Random) -> Pieces:
+    """Make declarations specialise, redefine, type or equal one another in a cycle."""
+    indices = find_declared_names(parts)
+    chosen = random.sample(indices, min(len(indices), random.randint(1, 4)))
     sign = random.choice((":>", ":>", ":", ":>>", "::>", "=", "=>", ": ~", "chains", "conjugates"))
-    made = list(parts)
-    for one, other in zip(chosen, chosen[1:] + chosen[:1], strict=True):
-        made[one] = f"{parts[one]} {sign} {parts[other]}"
-    return made
+    result = list(parts)
+    for index, target in pair_in_cycle(chosen):
+        result[index] = f"{parts[index]} {sign} {parts[target]}"
+    return result
 
 
 # -- words and relations -------------------------------------------------------------------------
 
 
-def _other_word(parts: Pieces, random: Random) -> Pieces:
-    """A keyword becomes another, here or everywhere."""
-    words = [at for at in tokens(parts) if parts[at] in KEYWORDS]
-    at = _any(words, random, -1)
-    if at < 0:
+def _change_keyword(parts: Pieces, random: Random) -> Pieces:
+    """Replace a keyword by another one, once or everywhere."""
+    indices = [index for index in find_tokens(parts) if parts[index] in KEYWORDS]
+    index = _choose_or(indices, random, -1)
+    if index < 0:
         return parts
-    same = KERML_KINDS if _is_kerml(parts) else KINDS
-    new = random.choice(same if random.random() < 0.8 else sorted(KEYWORDS))
+    kinds = KERML_KINDS if _is_kerml(parts) else KINDS
+    new = random.choice(kinds if random.random() < 0.8 else sorted(KEYWORDS))
     if random.random() < 0.2:
-        return [new if part == parts[at] else part for part in parts]
-    return [*parts[:at], new, *parts[at + 1 :]]
+        return [new if part == parts[index] else part for part in parts]
+    return [*parts[:index], new, *parts[index + 1 :]]
 
 
-def _definition_or_usage(parts: Pieces, random: Random) -> Pieces:
-    """A usage becomes a definition, or a definition a usage; one, or most of them."""
-    made = list(parts)
-    found = [at for at in tokens(parts) if parts[at] in (*KINDS, "def")]
+def _swap_definition_and_usage(parts: Pieces, random: Random) -> Pieces:
+    """Turn usages into definitions and definitions into usages, one or half of them."""
+    result = list(parts)
+    indices = [index for index in find_tokens(parts) if parts[index] in (*KINDS, "def")]
     share = random.choice((0.0, 0.5))
-    chosen = [at for at in found if random.random() < share]
-    for at in chosen or random.sample(found, min(1, len(found))):
-        made[at] = "" if parts[at] == "def" else f"{parts[at]} def"
-    return made
+    chosen = [index for index in indices if random.random() < share]
+    for index in chosen or random.sample(indices, min(1, len(indices))):
+        result[index] = "" if parts[index] == "def" else f"{parts[index]} def"
+    return result
 
 
-def _prefix(parts: Pieces, random: Random) -> Pieces:
-    """A word before a member that it may not have, or has not."""
-    start, _ = _member(parts, random)
-    before = random.choice((*PREFIXES, *PREFIXES, f"#{_name(parts, random)}", "~", "then", "#"))
-    return _with(parts, start, before, " ")
+def _insert_prefix(parts: Pieces, random: Random) -> Pieces:
+    """Insert a prefix before a member, whether it may have one or not."""
+    start, _ = _choose_member(parts, random)
+    before = random.choice(
+        (*PREFIXES, *PREFIXES, f"#{_choose_name(parts, random)}", "~", "then", "#")
+    )
+    return _insert(parts, start, before, " ")
 
 
-def _other_relation(parts: Pieces, random: Random) -> Pieces:
-    found = [at for at, part in enumerate(parts) if part in RELATIONS]
-    at = _any(found, random, -1)
-    if at < 0:
+def _change_relation(parts: Pieces, random: Random) -> Pieces:
+    indices = [index for index, part in enumerate(parts) if part in RELATIONS]
+    index = _choose_or(indices, random, -1)
+    if index < 0:
         return parts
-    return [*parts[:at], random.choice(RELATIONS), *parts[at + 1 :]]
+    return [*parts[:index], random.choice(RELATIONS), *parts[index + 1 :]]
 
 
-def _more_relations(parts: Pieces, random: Random) -> Pieces:
-    """Types, specialisations and values behind declared names."""
-    found = declared(parts)
-    made = list(parts)
-    for at in random.sample(found, min(len(found), random.choice((1, 1, 3)))):
+def _add_relations(parts: Pieces, random: Random) -> Pieces:
+    """Add types, specialisations and values after declared names."""
+    indices = find_declared_names(parts)
+    result = list(parts)
+    for index in random.sample(indices, min(len(indices), random.choice((1, 1, 3)))):
         sign = random.choice((":", ":>", ":>>", "::>", "=>", ": ~", "references", "subsets"))
-        made[at] = f"{parts[at]} {sign} {_path(parts, random)}"
-    return made
+        result[index] = f"{parts[index]} {sign} {_make_path(parts, random)}"
+    return result
 
 
-def _odd_value(parts: Pieces, random: Random) -> Pieces:
-    """A value that is an odd expression, behind a declared name or in place of another."""
-    odd = _filled(random.choice(EXPRESSIONS), parts, random)
-    signs = [at for at, part in enumerate(parts) if part in ("=", ":=", "default", "if", "==", "(")]
+def _set_odd_value(parts: Pieces, random: Random) -> Pieces:
+    """Insert an odd expression as a value, or in place of another expression."""
+    expression = _fill_in(random.choice(EXPRESSIONS), parts, random)
+    signs = [
+        index for index, part in enumerate(parts) if part in ("=", ":=", "default", "if", "==", "(")
+    ]
     if signs and random.random() < 0.6:
-        at = random.choice(signs)
+        index = random.choice(signs)
         ends = (")", ";", "{", "}", "then", "do", ",")
-        end = next((e for e in range(at + 1, len(parts)) if parts[e] in ends), at + 1)
-        return [*parts[: at + 1], " ", odd, " ", *parts[end:]]
-    at = _any(declared(parts), random, -1)
+        end = next((e for e in range(index + 1, len(parts)) if parts[e] in ends), index + 1)
+        return [*parts[: index + 1], " ", expression, " ", *parts[end:]]
+    index = _choose_or(find_declared_names(parts), random, -1)
     sign = random.choice((" = ", " := ", " default ", " default = "))
-    return _with(parts, at + 1, sign, odd) if at >= 0 else parts
+    return _insert(parts, index + 1, sign, expression) if index >= 0 else parts
 
 
-def _odd_multiplicity(parts: Pieces, random: Random) -> Pieces:
-    found = declared(parts)
-    made = list(parts)
-    for at in random.sample(found, min(len(found), 2)):
-        made[at] = parts[at] + _filled(random.choice(MULTIPLICITIES), parts, random)
-    return made
+def _add_odd_multiplicity(parts: Pieces, random: Random) -> Pieces:
+    indices = find_declared_names(parts)
+    result = list(parts)
+    for index in random.sample(indices, min(len(indices), 2)):
+        result[index] = parts[index] + _fill_in(random.choice(MULTIPLICITIES), parts, random)
+    return result
 
 
 TEXT_CHANGES: tuple[TextChange, ...] = (
     _drop_token,
-    _double_token,
+    _duplicate_token,
     _swap_tokens,
-    _other_token,
-    _junk,
-    _lines,
-    _unbalance,
-    _truncate,
+    _replace_token,
+    _insert_junk,
+    _change_line,
+    _unbalance_brackets,
+    _truncate_text,
     _drop_member,
     _drop_member,
     _drop_many,
-    _double_member,
+    _duplicate_member,
     _move_member,
     _move_member,
     _swap_members,
     _copy_member,
-    _into_itself,
-    _empty_a_body,
-    _crowd,
-    _dig,
-    _strangers,
-    _strangers,
-    _strangers,
-    _retarget,
-    _retarget,
-    _retarget,
+    _copy_into_itself,
+    _empty_body,
+    _add_many_copies,
+    _nest_deeply,
+    _insert_template_members,
+    _insert_template_members,
+    _insert_template_members,
+    _misdirect_names,
+    _misdirect_names,
+    _misdirect_names,
     _rename_all,
-    _no_names,
-    _same_names,
-    _circle,
-    _circle,
-    _other_word,
-    _other_word,
-    _definition_or_usage,
-    _prefix,
-    _other_relation,
-    _more_relations,
-    _odd_value,
-    _odd_value,
-    _odd_multiplicity,
+    _drop_names,
+    _duplicate_names,
+    _make_cycle,
+    _make_cycle,
+    _change_keyword,
+    _change_keyword,
+    _swap_definition_and_usage,
+    _insert_prefix,
+    _change_relation,
+    _add_relations,
+    _set_odd_value,
+    _set_odd_value,
+    _add_odd_multiplicity,
 )
-"""What is done to texts."""
+"""All changes of texts; frequent ones are listed several times."""

@@ -1,6 +1,6 @@
-"""A text of SysML v2 or KerML as pieces: tokens and what is between them; its members, its names.
+"""Texts of SysML v2 or KerML as lists of pieces: tokens, comments and white space between them.
 
-It knows nothing of the compiler that it is to spoil texts for.
+The module is independent of the compiler, whose parser the mutated texts shall test.
 """
 
 import re
@@ -14,29 +14,29 @@ _PIECE = re.compile(
 )
 
 
-def _words(text: str) -> tuple[str, ...]:
+def _split_words(text: str) -> tuple[str, ...]:
     return tuple(text.split())
 
 
-KINDS = _words("""
+KINDS = _split_words("""
     part item attribute port action state requirement constraint calc connection interface flow
     allocation occurrence enum metadata view viewpoint rendering concern case analysis verification
     package use individual snapshot timeslice event message exhibit perform include satisfy assert
     verify frame actor subject stakeholder objective ref succession bind transition
 """)
-"""Words of SysML v2 that usages and definitions begin with."""
-KERML_KINDS = _words("""
+"""Keywords of usages and definitions in SysML v2."""
+KERML_KINDS = _split_words("""
     class struct datatype assoc behavior function predicate interaction metaclass classifier type
     feature step expr bool inv connector binding succession flow package namespace multiplicity
     subtype specialization conjugation disjoining redefinition subset inverse featuring
 """)
-"""The same of KerML."""
+"""Keywords of types and features in KerML."""
 RELATIONS = (":", ":>", ":>>", "::>", "=>", "=", ":=", "::", ".", ",", "..", "~", "->", "==", "<")
-PREFIXES = _words("""
+PREFIXES = _split_words("""
     abstract ref in out inout end derived variation individual snapshot timeslice readonly constant
     private protected public variant composite portion var ordered nonunique default parallel
 """)
-_OTHERS = _words("""
+_OTHER_KEYWORDS = _split_words("""
     about accept after alias all allocate and as assign assume at bind by chains comment connect
     conjugates crosses decide def defined dependency differences disjoint do doc done else entry
     exit expose false featured filter first for fork from hastype if implies import intersects
@@ -44,19 +44,19 @@ _OTHERS = _words("""
     references rep render require return send specializes standard start subsets terminate then
     to true typed unions until via when while xor
 """)
-KEYWORDS = frozenset((*KINDS, *KERML_KINDS, *PREFIXES, *_OTHERS))
+KEYWORDS = frozenset((*KINDS, *KERML_KINDS, *PREFIXES, *_OTHER_KEYWORDS))
 
 Pieces = list[str]
 
 
-def pieces(text: str) -> Pieces:
-    """The text cut up; joined, the pieces are the text."""
+def split_pieces(text: str) -> Pieces:
+    """Split a text into pieces; the joined pieces are the text."""
     return _PIECE.findall(text)
 
 
-def tokens(parts: Pieces) -> list[int]:
-    """Where tokens are: no blanks, no comments."""
-    return [at for at, part in enumerate(parts) if part.strip() and not is_comment(part)]
+def find_tokens(parts: Pieces) -> list[int]:
+    """Return the indices of tokens, without white space and comments."""
+    return [index for index, part in enumerate(parts) if part.strip() and not is_comment(part)]
 
 
 def is_comment(part: str) -> bool:
@@ -70,49 +70,49 @@ def is_name(part: str) -> bool:
     return is_word and part not in KEYWORDS
 
 
-def names(parts: Pieces) -> list[int]:
-    """Where names are."""
-    return [at for at, part in enumerate(parts) if is_name(part)]
+def find_names(parts: Pieces) -> list[int]:
+    """Return the indices of names."""
+    return [index for index, part in enumerate(parts) if is_name(part)]
 
 
-def declared(parts: Pieces) -> list[int]:
-    """Where names stand behind a word that declares something."""
-    found = []
-    before = ""
-    for at in tokens(parts):
-        if is_name(parts[at]) and before in KEYWORDS:
-            found.append(at)
-        before = parts[at]
-    return found
+def find_declared_names(parts: Pieces) -> list[int]:
+    """Return the indices of names after a keyword, which mostly declare elements."""
+    indices = []
+    previous = ""
+    for index in find_tokens(parts):
+        if is_name(parts[index]) and previous in KEYWORDS:
+            indices.append(index)
+        previous = parts[index]
+    return indices
 
 
-def bodies(parts: Pieces) -> list[tuple[int, int]]:
-    """Where braces open and close."""
-    found, opened = [], []
-    for at, part in enumerate(parts):
+def find_bodies(parts: Pieces) -> list[tuple[int, int]]:
+    """Return the indices of matching braces."""
+    pairs, open_braces = [], []
+    for index, part in enumerate(parts):
         if part == "{":
-            opened.append(at)
-        elif part == "}" and opened:
-            found.append((opened.pop(), at))
-    return sorted(found)
+            open_braces.append(index)
+        elif part == "}" and open_braces:
+            pairs.append((open_braces.pop(), index))
+    return sorted(pairs)
 
 
-def members(parts: Pieces) -> list[tuple[int, int]]:
-    """Where members begin and end (behind the semicolon or the brace), those within others too."""
-    return sorted(_members(parts))
+def find_members(parts: Pieces) -> list[tuple[int, int]]:
+    """Return the start and end of all members; the end is after the semicolon or the brace."""
+    return sorted(_iter_members(parts))
 
 
-def _members(parts: Pieces) -> Iterator[tuple[int, int]]:
-    began: list[int | None] = [None]
-    for at in tokens(parts):
-        part = parts[at]
+def _iter_members(parts: Pieces) -> Iterator[tuple[int, int]]:
+    starts: list[int | None] = [None]
+    for index in find_tokens(parts):
+        part = parts[index]
         if part == "}":
-            began = began[:-1] or [None]
-        elif began[-1] is None:
-            began[-1] = at
+            starts = starts[:-1] or [None]
+        elif starts[-1] is None:
+            starts[-1] = index
         if part == "{":
-            began.append(None)
+            starts.append(None)
         elif part in (";", "}"):
-            start, began[-1] = began[-1], None
+            start, starts[-1] = starts[-1], None
             if start is not None:
-                yield start, at + 1
+                yield start, index + 1

@@ -1,6 +1,6 @@
-"""Members, expressions and multiplicities that a fuzzer puts into texts of SysML v2 and KerML.
+"""Members, expressions and multiplicities to insert into texts of SysML v2 and KerML.
 
-``$a``, ``$b`` and ``$c`` stand for names of the text, whatever they name.
+``$a``, ``$b`` and ``$c`` are replaced by names of the text, whatever they name.
 """
 
 MEMBERS = tuple(
@@ -149,7 +149,7 @@ MEMBERS = tuple(
     part $a :> RecipeLevels::Machine { perform $b; }
     """.strip().splitlines()
 )
-"""Of SysML v2."""
+"""Members of SysML v2."""
 
 KERML_MEMBERS = tuple(
     line.strip()
@@ -213,7 +213,7 @@ KERML_MEMBERS = tuple(
     filter $a istype $b;
     """.strip().splitlines()
 )
-"""Of KerML."""
+"""Members of KerML."""
 
 EXPRESSIONS = (
     "$a",

@@ -1,8 +1,8 @@
-"""Runs command lines of sysmlc in processes of their own, within limits, and measures them.
+"""Fork server: runs commands of sysmlc in processes of their own, within limits, and measures them.
 
-One lean process imports sysmlc once and forks for each command: what is measured is the work of
-the command alone (processor time of the child, its largest resident size), not the start of
-Python. ``python -m fuzz.guard`` is that process; it reads commands as lines of JSON.
+The server imports sysmlc once and forks for each command. It therefore measures the processor time
+and the largest resident size of the command alone, without the start of Python. ``python -m
+fuzz.fork_server`` is the server; it reads commands as lines of JSON.
 """
 
 import json
@@ -24,17 +24,17 @@ _TESTS = Path(__file__).parents[1]
 
 
 @dataclass(frozen=True, slots=True)
-class Bounds:
-    """After how much a command is ended: processor time, waiting (seconds), memory (bytes)."""
+class Limits:
+    """Limits that end a command: processor time and elapsed time in seconds, memory in bytes."""
 
     seconds: int = 10
-    waiting: int = 60
+    elapsed: int = 60
     memory: int = 1 << 30
 
 
 @dataclass(frozen=True, slots=True)
-class Ended:
-    """How a command ended: ``code`` is minus the signal when it was killed."""
+class CommandResult:
+    """The result of a command; the exit code of a killed command is minus the signal."""
 
     code: int
     seconds: float
@@ -43,25 +43,25 @@ class Ended:
     err: str
 
     @property
-    def told(self) -> str:
-        """How it ended, in a few lines."""
+    def summary(self) -> str:
+        """The exit code, the costs and the first output."""
         start = (self.out + self.err)[:500]
         return f"exit {self.code}, {self.seconds} s, {self.megabytes} MB: {start}"
 
     @property
     def is_fault(self) -> bool:
-        """Whether it ended otherwise than with findings: killed, a traceback, a fault of ours."""
+        """Whether the command crashed: killed, a traceback, or an internal error of sysmlc."""
         signs = ("Traceback (most recent", "fault of sysmlc", "SM900", "SM901", "SM905")
-        said = self.out + self.err
-        return self.code not in (0, 1, 2) or any(sign in said for sign in signs)
+        output = self.out + self.err
+        return self.code not in (0, 1, 2) or any(sign in output for sign in signs)
 
 
-class Guard:
-    """The other process. ``hash_seed`` is its PYTHONHASHSEED."""
+class ForkServer:
+    """A client of a fork server whose PYTHONHASHSEED is *hash_seed*."""
 
     def __init__(self, hash_seed: int = 0) -> None:
         self._process = subprocess.Popen(
-            [sys.executable, "-m", "fuzz.guard"],
+            [sys.executable, "-m", "fuzz.fork_server"],
             cwd=_TESTS,
             env={**os.environ, "PYTHONHASHSEED": str(hash_seed), "SYSMLC_CACHE": "off"},
             stdin=subprocess.PIPE,
@@ -69,17 +69,17 @@ class Guard:
             text=True,
         )
 
-    def run(self, folder: Path, *args: str, bounds: Bounds | None = None) -> Ended:
-        """Run ``sysmlc ARGS`` in the folder."""
-        asked = {"folder": str(folder), "args": args, "bounds": asdict(bounds or Bounds())}
+    def run(self, folder: Path, *args: str, limits: Limits | None = None) -> CommandResult:
+        """Run ``sysmlc ARGS`` in *folder* and return its result."""
+        request = {"folder": str(folder), "args": args, "bounds": asdict(limits or Limits())}
         assert self._process.stdin
         assert self._process.stdout
-        self._process.stdin.write(json.dumps(asked) + "\n")
+        self._process.stdin.write(json.dumps(request) + "\n")
         self._process.stdin.flush()
-        return Ended(**json.loads(self._process.stdout.readline()))
+        return CommandResult(**json.loads(self._process.stdout.readline()))
 
     def close(self) -> None:
-        """End the process."""
+        """End the server."""
         self._process.communicate()
 
     def __enter__(self) -> Self:
@@ -89,65 +89,65 @@ class Guard:
         self.close()
 
 
-def _serve() -> None:
-    _warm_up()
+def _serve_commands() -> None:
+    _import_commands()
     for line in sys.stdin:
-        asked = json.loads(line)
-        ended = _run(asked["folder"], asked["args"], Bounds(**asked["bounds"]))
-        print(json.dumps(asdict(ended)), flush=True)
+        request = json.loads(line)
+        result = _run_command(request["folder"], request["args"], Limits(**request["bounds"]))
+        print(json.dumps(asdict(result)), flush=True)
 
 
-def _run(folder: str, args: Sequence[str], bounds: Bounds) -> Ended:
+def _run_command(folder: str, args: Sequence[str], limits: Limits) -> CommandResult:
     with tempfile.TemporaryFile() as out, tempfile.TemporaryFile() as err:
         child = os.fork()
         if child == 0:
-            _become(folder, args, bounds, out.fileno(), err.fileno())
-        _, status, used = os.wait4(child, 0)
-        return Ended(
+            _run_child(folder, args, limits, out.fileno(), err.fileno())
+        _, status, usage = os.wait4(child, 0)
+        return CommandResult(
             os.waitstatus_to_exitcode(status),
-            round(used.ru_utime + used.ru_stime, 3),
-            round(used.ru_maxrss / 1024, 1),
-            _text(out),
-            _text(err),
+            round(usage.ru_utime + usage.ru_stime, 3),
+            round(usage.ru_maxrss / 1024, 1),
+            _read_output(out),
+            _read_output(err),
         )
 
 
-def _text(stream: object) -> str:
+def _read_output(stream: object) -> str:
     stream.seek(0)
     return stream.read(_SHOWN).decode("utf-8", "replace")
 
 
-def _become(folder: str, args: Sequence[str], bounds: Bounds, out: int, err: int) -> None:
-    """Be the command: nothing of it comes back."""
+def _run_child(folder: str, args: Sequence[str], limits: Limits, out: int, err: int) -> None:
+    """Run the command in the child process; never returns."""
     code = 70
     try:
         os.dup2(out, 1)
         os.dup2(err, 2)
         os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
         os.chdir(folder)
-        resource.setrlimit(resource.RLIMIT_CPU, (bounds.seconds, bounds.seconds))
-        resource.setrlimit(resource.RLIMIT_AS, (bounds.memory, bounds.memory))
+        resource.setrlimit(resource.RLIMIT_CPU, (limits.seconds, limits.seconds))
+        resource.setrlimit(resource.RLIMIT_AS, (limits.memory, limits.memory))
         resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-        signal.alarm(bounds.waiting)
-        code = _command(list(args))
+        signal.alarm(limits.elapsed)
+        code = _invoke(list(args))
     finally:
         sys.stdout.flush()
         sys.stderr.flush()
         os._exit(code)
 
 
-def _command(args: list[str]) -> int:
+def _invoke(args: list[str]) -> int:
     from sysmlc.cli import group
 
     try:
         group.run_guarded(group.sysmlc, args, prog_name="sysmlc")
-    except SystemExit as ended:
-        return int(ended.code or 0)
+    except SystemExit as exit_:
+        return int(exit_.code or 0)
     return 0
 
 
-def _warm_up() -> None:
-    """Import what a command imports, so that no child does it anew."""
+def _import_commands() -> None:
+    """Import the modules that commands need, so that no child imports them again."""
     import gc
     from importlib import import_module
 
@@ -165,21 +165,21 @@ def _warm_up() -> None:
     with tempfile.TemporaryDirectory() as folder:
         model = Path(folder, "m.uml")
         model.write_text(_MODEL)
-        made = compile_model(
+        compilation = compile_model(
             Request(
                 (model, model.with_name("no")), backends=tuple(load_backends(list_backend_names()))
             )
         )
-        render(make_report(made.diagnostics, made.sources, str), "text", color=False)
+        render(make_report(compilation.diagnostics, compilation.sources, str), "text", color=False)
     for name in group.COMMANDS:
         import_module(f"sysmlc.cli.{name}")
-    _keep_library()
+    _cache_library()
     gc.collect()
     gc.freeze()
 
 
-def _keep_library() -> None:
-    """Parse what is the same for all models of SysML v2: parse tables, the library's files."""
+def _cache_library() -> None:
+    """Load what all models of SysML v2 share: parse tables and the files of the library."""
     from sysmlc.driver import Request, compile_model
     from sysmlc.language import library
 
@@ -199,4 +199,4 @@ _MODEL = """<?xml version="1.0" encoding="UTF-8"?>
 
 
 if __name__ == "__main__":
-    _serve()
+    _serve_commands()
