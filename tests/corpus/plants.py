@@ -1,38 +1,38 @@
-"""The AutomationML of the corpus as compile units, refined as far as structure goes."""
+"""The AutomationML of the corpus as compile units, and their graphs after structural passes."""
 
-from sysmlc.diagnostics import Coverage, Sink
+from reading_corpus import BAYGATE_FILES, lower
+
 from sysmlc.frontends.caex import FRONTEND
-from sysmlc.ir import Graph
-from sysmlc.passes import pipeline
 from sysmlc.sources import load
 
 PASSES = ("resolve", "kept", "inherit", "classify", "ports")
 
 
-def refined(sources, frontend=FRONTEND):
-    """The graph of sources that a front end reads."""
-    graph, sink = Graph(), Sink()
-    frontend.read(sources, graph, sink, Coverage())
-    pipeline.build_pipeline(PASSES).run(graph, sink)
-    return graph
+def refine(sources, frontend=FRONTEND):
+    """Return the refined graph of sources."""
+    return lower(sources, PASSES, frontend)[0]
 
 
-def units(corpus):
-    """Files by the name of the unit: every entry of ``dev``, and BayGate in four forms."""
-    return baygate(corpus) | {path.name: [path] for path in sorted((corpus / "aml/dev").iterdir())}
+def list_units(corpus):
+    """Map each unit to its files: every entry of ``dev``, and the four forms of BayGate."""
+    return list_baygate(corpus) | {
+        path.name: [path] for path in sorted((corpus / "aml/dev").iterdir())
+    }
 
 
-def baygate(corpus):
-    """The four forms of BayGate; that with libraries has three files."""
+def list_baygate(corpus):
+    """Map the four forms of BayGate to their files; the form with libraries has three."""
     folder = corpus / "aml" / "baygate"
-    names = ("BayGate.aml", "BayGate.amlx", "BayGate_caex215.aml", "BayGate_extlibs.aml")
-    found = {name: [folder / name] for name in names}
-    found["BayGate_extlibs.aml"] += sorted((folder / "libs").iterdir())
-    return found
+    files = {name: [folder / name] for name in BAYGATE_FILES}
+    files["BayGate_extlibs.aml"] += sorted((folder / "libs").iterdir())
+    return files
 
 
-def sources(corpus, paths):
-    """The files with names relative to BayGate's folder, or alone."""
-    top = corpus / "aml" / "baygate"
-    names = [str(p.relative_to(top)) if p.is_relative_to(top) else p.name for p in paths]
-    return [one for p, name in zip(paths, names, strict=True) for one in load(p, name)]
+def load_unit(corpus, paths):
+    """Load files under names relative to BayGate's folder, other files under their own names."""
+    folder = corpus / "aml" / "baygate"
+    names = [
+        str(path.relative_to(folder)) if path.is_relative_to(folder) else path.name
+        for path in paths
+    ]
+    return [source for path, name in zip(paths, names, strict=True) for source in load(path, name)]

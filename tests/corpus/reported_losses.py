@@ -1,4 +1,4 @@
-"""Matches differences between a model and its text read back with the losses of the back end."""
+"""Match of differences between a model and its text with the losses that the back end reports."""
 
 from sysmlc.ir import Edge, Kind
 
@@ -6,7 +6,7 @@ _DETAILS = (Kind.COMMENT, Kind.CONSTRAINT, Kind.IMPORT, Kind.TRIGGER, Kind.SLOT,
 
 
 def find_unreported(graph, losses, changes):
-    """Return the changes near which no element has a loss; *losses* are by id of the element."""
+    """Return the changes that are near no element with a loss; *losses* maps element ids."""
     by_name = {}
     for element in graph:
         by_name.setdefault(graph.qualified_name(element), []).append(element)

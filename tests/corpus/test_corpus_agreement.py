@@ -1,7 +1,7 @@
-"""One model that several tools or settings saved is one graph; what differs has a reason here.
+"""A model has the same graph whichever tool saved it; every difference has a reason.
 
-The tables are checked exactly: a difference that no reason explains fails, and so does a reason
-that explains another number of differences than it says.
+The tables are exact: a difference without a reason fails, and so does a reason that explains
+another number of differences than it states.
 """
 
 from collections import Counter
@@ -9,65 +9,67 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import pytest
-from agreement import Agreement, Difference
+from graph_agreement import Agreement, Difference
+from reading_corpus import load_files, lower
 
-from sysmlc.diagnostics import Coverage, Sink
-from sysmlc.frontends.xmi import FRONTEND
 from sysmlc.frontends.xmi.snapshots.libraries import split_file_parts
-from sysmlc.ir import Graph
-from sysmlc.passes import pipeline
-from sysmlc.sources import load
 
 pytestmark = pytest.mark.corpus
 
-Test = Callable[[Difference], bool]
+Predicate = Callable[[Difference], bool]
 
 
 @dataclass(frozen=True)
 class Reason:
-    """Why files differ, how often, and how such a difference is told."""
+    """Why files differ, how often, and a predicate for these differences."""
 
     why: str
     count: int
-    fits: Test
+    fits: Predicate
 
 
 @dataclass(frozen=True)
-class Set:
-    """Two files with one model, and in what they differ for which reasons."""
+class FilePair:
+    """Two files with one model, and the reasons for their differences."""
 
     left: str
     right: str
-    at_least: int
-    """Pairs; those that later readers add are welcome."""
+    min_pairs: int
+    """Number of pairs; readers may add more."""
     reasons: tuple[Reason, ...] = ()
     only_left: dict[str, int] = field(default_factory=dict)
     only_right: dict[str, int] = field(default_factory=dict)
     has_snapshots: bool = True
-    """Whether to read the snapshots of profiles and libraries that a file has inside: only
-    files that both have them say the same of what the profiles mean."""
+    """Whether to read the snapshots of profiles and libraries in a file.
+
+    Only files that both have snapshots agree about the meaning of profiles.
+    """
 
 
-def of(name: str, *aspects: str) -> Test:
+def differs_in(name: str, *aspects: str) -> Predicate:
     return lambda d: d.left.name == name and d.aspect in aspects
 
 
-def tag(*names: str) -> Test:
+def differs_in_tag(*names: str) -> Predicate:
     return lambda d: d.aspect.removeprefix("tag.") in names
 
 
-SETS = {
-    "fUML tests: MagicDraw, and its Eclipse export": Set(
+FILE_PAIRS = {
+    "fUML tests: MagicDraw, and its Eclipse export": FilePair(
         "magicdraw/fUML-Tests.mdxml",
         "papyrus/fUML-Tests.uml",
-        at_least=1389,
+        min_pairs=1389,
         reasons=(
-            Reason("MagicDraw calls the root Data, Eclipse Model", 1, of("Data", "name")),
-            Reason("the mdxml is later: a pin has a new name", 1, of("Value(888).result", "name")),
+            Reason("MagicDraw calls the root Data, Eclipse Model", 1, differs_in("Data", "name")),
+            Reason(
+                "the mdxml is later: a pin has a new name",
+                1,
+                differs_in("Value(888).result", "name"),
+            ),
             Reason(
                 "the mdxml is later: an end belongs to a class now",
                 1,
-                of("TestAssociation", "-> end"),
+                differs_in("TestAssociation", "-> end"),
             ),
             Reason(
                 "the mdxml is later: a flow leaves another action",
@@ -94,24 +96,24 @@ SETS = {
         # The end of the association, as it was; and an import of the library of primitive types.
         only_right={"Import": 1, "Property": 1},
     ),
-    "Tank control: project, and plain XML of a near revision": Set(
+    "Tank control: project, and plain XML of a near revision": FilePair(
         "magicdraw/Tank_control_2.mdzip",
         "magicdraw/Tank_control_2.xml",
-        at_least=1993,
+        min_pairs=1993,
         reasons=(
             Reason(
                 "the project has a sequence diagram that the XML does not have yet",
                 1,
-                of("TankControl-LocalCloud_DesignDescription", "-> classifier-behavior"),
+                differs_in("TankControl-LocalCloud_DesignDescription", "-> classifier-behavior"),
             ),
         ),
         only_left={"Interaction": 1},
     ),
-    "Ballot definition: with and without MagicDraw's extensions": Set(
+    "Ballot definition: with and without MagicDraw's extensions": FilePair(
         "magicdraw/BallotDefinition.xml",
         "magicdraw/BallotDefinition-noext.xml",
         has_snapshots=False,
-        at_least=1034,
+        min_pairs=1034,
         reasons=(
             Reason(
                 "only the extension says that the id in MagicDraw's own library is Real's",
@@ -122,19 +124,21 @@ SETS = {
             ),
         ),
     ),
-    "Ballot definition: MagicDraw, and its Eclipse export": Set(
+    "Ballot definition: MagicDraw, and its Eclipse export": FilePair(
         "magicdraw/BallotDefinition.xml",
         "md-eclipse-export/BallotDefinition.uml",
         has_snapshots=False,
-        at_least=1028,
+        min_pairs=1028,
         reasons=(
             Reason(
-                "Eclipse applies the profiles of all used projects", 1, of("Data", "-> applies")
+                "Eclipse applies the profiles of all used projects",
+                1,
+                differs_in("Data", "-> applies"),
             ),
             Reason(
                 "Eclipse drops the blank in the name of a tag, MagicDraw writes an underscore",
                 18,
-                tag(
+                differs_in_tag(
                     *("Table_Name", "Segment_Name", "Datatype_Name", "Message_Name"),
                     *("TableName", "SegmentName", "DatatypeName", "MessageName"),
                     *("Default_Value", "DefaultValue"),
@@ -143,7 +147,9 @@ SETS = {
             Reason(
                 "Eclipse leaves out tags that have their default",
                 7,
-                lambda d: tag("Repeatable", "Required", "Mappable")(d) and d.before == "false",
+                lambda d: (
+                    differs_in_tag("Repeatable", "Required", "Mappable")(d) and d.before == "false"
+                ),
             ),
         ),
         # Applications of stereotypes whose names or profiles the export changes: XML Schema has
@@ -154,33 +160,29 @@ SETS = {
 }
 
 
-def graph(corpus, name, has_snapshots=True):
-    path = corpus / "xmi" / name
-    sources = load(path, path.name)
-    made, sink = Graph(), Sink()
-    FRONTEND.read(
-        sources if has_snapshots else split_file_parts(sources)[0], made, sink, Coverage()
-    )
-    pipeline.build_pipeline(("resolve", "classify")).run(made, sink)
-    return made
+def read_graph(corpus, name, has_snapshots=True):
+    sources = load_files(corpus / "xmi" / name)
+    if not has_snapshots:
+        sources = split_file_parts(sources)[0]
+    return lower(sources, ("resolve", "classify"))[0]
 
 
-@pytest.mark.parametrize("one", SETS.values(), ids=SETS)
-def test_two_files_of_one_model_agree(corpus, one):
-    names = (one.left, one.right)
-    agreement = Agreement(*(graph(corpus, name, one.has_snapshots) for name in names))
-    counts, unexplained = agreement.explained(
-        (reason.why, lambda _, d, fits=reason.fits: fits(d)) for reason in one.reasons
+@pytest.mark.parametrize("files", FILE_PAIRS.values(), ids=FILE_PAIRS)
+def test_differences_of_two_files_with_one_model_have_reasons(corpus, files):
+    names = (files.left, files.right)
+    agreement = Agreement(*(read_graph(corpus, name, files.has_snapshots) for name in names))
+    counts, unexplained = agreement.explain(
+        (reason.why, lambda _, d, fits=reason.fits: fits(d)) for reason in files.reasons
     )
     assert unexplained == []
-    assert counts == {reason.why: reason.count for reason in one.reasons}
-    assert agreement.shared() >= one.at_least
-    assert agreement.equal() >= 0.99
-    assert agreement.only_left() == Counter(one.only_left)
-    assert agreement.only_right() == Counter(one.only_right)
+    assert counts == {reason.why: reason.count for reason in files.reasons}
+    assert agreement.count_pairs() >= files.min_pairs
+    assert agreement.measure_agreement() >= 0.99
+    assert agreement.count_only_left() == Counter(files.only_left)
+    assert agreement.count_only_right() == Counter(files.only_right)
 
 
-SYSML = {
+SYSML_DIFFERENCES = {
     # 1.7 renames FlowDirection and FeatureDirection, and types texts by its own String.
     "Property -> typed-by": 11,
     "Property default_instance": 2,
@@ -200,18 +202,20 @@ SYSML = {
     "Parameter -> typed-by": 4,
     # The primitive value types specialise the primitive types of UML.
     "DataType -> specializes": 4,
-    # Where the profile is kept and what it applies.
+    # The location of the profile and the profiles that it applies.
     "Profile -> applies": 1,
     "Profile uri": 1,
 }
-"""Differences of SysML 1.5, as MagicDraw exports it to Eclipse, and OMG's 1.7: the standard's."""
+"""Differences between SysML 1.5, as MagicDraw exports it to Eclipse, and OMG's SysML 1.7."""
 
 
-def test_the_profile_of_sysml_as_magicdraw_exports_it_and_as_omg_publishes_it(corpus):
-    """They share no ids and are two versions apart: compared by qualified name, without texts."""
+def test_magicdraws_and_omgs_profile_of_sysml_differ_as_the_standard_changed(corpus):
+    """They share no ids and are two versions apart: elements are paired by name, without texts."""
     names = ("md-eclipse-export/SysML.profile.uml", "omg/SysML-1.7-ptc-24-01-02.xmi")
-    agreement = Agreement(*(graph(corpus, name) for name in names))
+    agreement = Agreement(*(read_graph(corpus, name) for name in names))
     pairs = [agreement.left[left] for left in agreement.right_of]
     assert Counter(e.kind for e in pairs)["Stereotype"] >= 45
-    told = (d for d in agreement.differences if d.left.kind not in ("Comment", "Application"))
-    assert Counter(f"{d.left.kind} {d.aspect}" for d in told) == Counter(SYSML)
+    differences = (
+        d for d in agreement.differences if d.left.kind not in ("Comment", "Application")
+    )
+    assert Counter(f"{d.left.kind} {d.aspect}" for d in differences) == Counter(SYSML_DIFFERENCES)

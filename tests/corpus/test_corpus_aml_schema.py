@@ -1,4 +1,4 @@
-"""Real plants against the published schemas: as ``measured.json``, which lxml alone made."""
+"""Real plants violate the published schemas as in ``measured.json``, which lxml alone produced."""
 
 import json
 
@@ -13,30 +13,32 @@ pytestmark = pytest.mark.corpus
 
 
 @pytest.fixture(scope="module")
-def measured(corpus):
+def expected_validity(corpus):
     rows = json.loads((corpus / "aml" / "measured.json").read_text())
     return {row["file"]: row["valid"] for row in rows if "valid" in row}
 
 
-def test_the_files_that_violate_their_schema_are_those_that_were_measured(corpus, measured):
+def test_the_files_that_violate_their_schema_are_those_in_the_measurement(
+    corpus, expected_validity
+):
     schemas = load_schemas(corpus / "aml" / "schema")
-    seen = {True: 0, False: 0}
-    for name, is_valid in sorted(measured.items()):
+    counts = {True: 0, False: 0}
+    for name, is_valid in sorted(expected_validity.items()):
         path = corpus / "aml" / name
         if path.suffix != ".aml":
             continue
         (source,) = load(path, path.name)
-        schema, found = schemas.find_violations(source)
+        schema, violations = schemas.find_violations(source)
         assert schema is not None, name
-        assert (found == []) == is_valid, (name, found[:2])
-        places = [Place(source.name, ordinal=one.ordinal) for one in found]
+        assert (violations == []) == is_valid, (name, violations[:2])
+        places = [Place(source.name, ordinal=violation.ordinal) for violation in violations]
         located = locate([source], places) if places else {}
         assert all(located[place].line > 0 for place in places), name
-        assert all(one.element and one.problem for one in found), name
-        assert not any("{http" in one.problem for one in found), name
-        seen[is_valid] += 1
-    assert seen[True] > 25
-    assert seen[False] >= 5
+        assert all(violation.element and violation.problem for violation in violations), name
+        assert not any("{http" in violation.problem for violation in violations), name
+        counts[is_valid] += 1
+    assert counts[True] > 25
+    assert counts[False] >= 5
 
 
 @pytest.mark.parametrize(
@@ -55,7 +57,7 @@ def test_the_files_that_violate_their_schema_are_those_that_were_measured(corpus
         ("dev/mirror_30.aml", "PPRExampleInstanceHierarchy", "'InstanceHierarchy' stands where"),
     ],
 )
-def test_a_violation_is_told_in_the_words_of_the_file(name, element, problem, corpus):
+def test_a_violation_names_elements_as_the_file_does(name, element, problem, corpus):
     path = corpus / "aml" / name
     (source,) = load(path, path.name)
     _, (first, *_) = load_schemas(corpus / "aml" / "schema").find_violations(source)

@@ -1,11 +1,9 @@
-"""Diagrams of authors in real MagicDraw models, counted once more by lxml."""
+"""Diagrams of authors in real MagicDraw models are drawn as lxml counts them."""
 
-import re
-import zipfile
 from collections import Counter
 
 import pytest
-from lxml import etree
+from reading_corpus import parse_models
 
 from sysmlc.backends.plantuml import BACKEND
 from sysmlc.driver import Request, compile_model
@@ -25,146 +23,152 @@ MODELS = (
     "Wired_Camera_Example.mdzip",
     "fUML-Tests.mdxml",
 )
-_ENTRY = re.compile(r"com\.nomagic\.magicdraw\.uml_model(?!____).*model$")
 
 
-def documents(path):
-    """Trees of the model files, without a word of ours."""
-    parser = etree.XMLParser(huge_tree=True, resolve_entities=False)
-    if path.suffix != ".mdzip":
-        return [etree.parse(path, parser).getroot()]
-    with zipfile.ZipFile(path) as packed:
-        names = [name for name in packed.namelist() if _ENTRY.match(name)]
-        return [etree.fromstring(packed.read(name), parser) for name in names]
-
-
-def counted(path):
-    """Name and type of every diagram, and what each shows."""
-    found = {}
-    for tree in documents(path):
+def read_diagrams(path):
+    """Return the name and type of every diagram, and the ids of the elements that it shows."""
+    diagrams = {}
+    for tree in parse_models(path):
         for diagram in tree.iter("ownedDiagram"):
-            (made,) = diagram.iter("{*}DiagramRepresentationObject")
+            (drawing,) = diagram.iter("{*}DiagramRepresentationObject")
             id = next(value for key, value in diagram.attrib.items() if key.endswith("}id"))
             used = {e.text for e in diagram.iter("usedElements")} - {id}
-            found[id] = (diagram.get("name", ""), made.get("type"), used)
-    return found
+            diagrams[id] = (diagram.get("name", ""), drawing.get("type"), used)
+    return diagrams
 
 
 @pytest.fixture(scope="module")
-def compiled(corpus):
-    made = {}
+def compile_once(corpus):
+    compilations = {}
 
-    def compile_once(name, diagrams="author"):
-        if (name, diagrams) not in made:
+    def compile_cached(name, diagrams="author"):
+        if (name, diagrams) not in compilations:
             path = corpus / "xmi" / "magicdraw" / name
             request = Request(inputs=(path,), diagrams=diagrams, backends=(BACKEND,))
-            made[name, diagrams] = compile_model(request)
-        return made[name, diagrams]
+            compilations[name, diagrams] = compile_model(request)
+        return compilations[name, diagrams]
 
-    return compile_once
+    return compile_cached
 
 
-def views(made):
-    return [one for one in made.graph.of_kind(Kind.VIEW) if one.subkind == "diagram"]
+def list_views(made):
+    return [view for view in made.graph.of_kind(Kind.VIEW) if view.subkind == "diagram"]
 
 
 @pytest.mark.parametrize("name", MODELS)
-def test_every_diagram_has_its_name_and_type(name, corpus, compiled):
-    expected = counted(corpus / "xmi" / "magicdraw" / name)
-    found = {one.id: (one.name, one.attrs["diagram_type"]) for one in views(compiled(name))}
-    assert found == {id: (title, type_) for id, (title, type_, _) in expected.items()}
+def test_every_diagram_has_its_name_and_type(name, corpus, compile_once):
+    expected = read_diagrams(corpus / "xmi" / "magicdraw" / name)
+    views = {
+        view.id: (view.name, view.attrs["diagram_type"]) for view in list_views(compile_once(name))
+    }
+    assert views == {id: (title, type_) for id, (title, type_, _) in expected.items()}
 
 
-def test_tank_control_has_its_fifteen_drawings(compiled):
-    words = Counter(one.attrs["diagram"] for one in views(compiled("Tank_control_2.mdzip")))
+def test_tank_control_has_its_fifteen_drawings(compile_once):
+    words = Counter(
+        view.attrs["diagram"] for view in list_views(compile_once("Tank_control_2.mdzip"))
+    )
     assert words == {
         "bdd": 6, "ibd": 3, "sd": 2, "uc": 1, "par": 1, "req": 1, "table": 5, "matrix": 2
     }  # fmt: skip
-    with_shapes = [one for one in views(compiled("Tank_control_2.mdzip")) if drawn(one)]
+    with_shapes = [
+        view for view in list_views(compile_once("Tank_control_2.mdzip")) if is_drawn(view)
+    ]
     assert len(with_shapes) == 14
 
 
-def drawn(view):
+def is_drawn(view):
     return view.attrs["diagram"] not in ("table", "matrix")
 
 
-def test_archive_and_one_file_agree(corpus, compiled):
-    """The archive is a later revision: diagrams that are the same in both show the same."""
+def test_the_archive_and_the_single_file_agree(corpus, compile_once):
+    """Diagrams that are equal in both files show the same; the archive is a later revision."""
     names = ("Tank_control_2.mdzip", "Tank_control_2.xml")
-    files = [counted(corpus / "xmi" / "magicdraw" / name) for name in names]
-    same = [id for id in files[1] if files[0].get(id) == files[1][id]]
-    assert (len(files[0]), len(files[1]), len(same)) == (21, 20, 19)
-    one, other = map(compiled, names)
-    for id in same:
-        assert one.graph[id].attrs["diagram"] == other.graph[id].attrs["diagram"]
-        assert one.graph[id].attrs["relations"] == other.graph[id].attrs["relations"]
-        shown = {e.id for e in other.graph.targets(other.graph[id], Edge.REFERENCES) if e.source}
-        assert shown <= {e.id for e in one.graph.targets(one.graph[id], Edge.REFERENCES)}
+    files = [read_diagrams(corpus / "xmi" / "magicdraw" / name) for name in names]
+    equal_ids = [id for id in files[1] if files[0].get(id) == files[1][id]]
+    assert (len(files[0]), len(files[1]), len(equal_ids)) == (21, 20, 19)
+    archive, file = map(compile_once, names)
+    for id in equal_ids:
+        assert archive.graph[id].attrs["diagram"] == file.graph[id].attrs["diagram"]
+        assert archive.graph[id].attrs["relations"] == file.graph[id].attrs["relations"]
+        shown_in_file = {
+            e.id for e in file.graph.targets(file.graph[id], Edge.REFERENCES) if e.source
+        }
+        assert shown_in_file <= {
+            e.id for e in archive.graph.targets(archive.graph[id], Edge.REFERENCES)
+        }
 
 
 @pytest.mark.parametrize("name", MODELS)
-def test_everything_that_is_shown_is_in_the_graph_or_reported(name, corpus, compiled):
-    made = compiled(name)
-    expected = counted(corpus / "xmi" / "magicdraw" / name)
-    lines = {id for tree in documents(corpus / "xmi" / "magicdraw" / name) for id in folded(tree)}
-    told = Counter()
-    for found in made.diagnostics:
-        if found.rule.code == "SM162":
-            told[found.subject.id] += int(found.message.split()[0])
+def test_every_shown_element_is_in_the_graph_or_reported(name, corpus, compile_once):
+    compilation = compile_once(name)
+    expected = read_diagrams(corpus / "xmi" / "magicdraw" / name)
+    relation_ids = {
+        id
+        for tree in parse_models(corpus / "xmi" / "magicdraw" / name)
+        for id in iter_relation_ids(tree)
+    }
+    reported = Counter()
+    for diagnostic in compilation.diagnostics:
+        if diagnostic.rule.code == "SM162":
+            reported[diagnostic.subject.id] += int(diagnostic.message.split()[0])
     for id, (title, _, used) in expected.items():
-        shown = {e.id.rpartition("#")[2] for e in made.graph.targets(made.graph[id], "references")}
+        shown = {
+            e.id.rpartition("#")[2]
+            for e in compilation.graph.targets(compilation.graph[id], "references")
+        }
         shown |= {
             str(e.attrs.get("href", "")).rpartition("#")[2]
-            for e in made.graph.targets(made.graph[id], "references")
+            for e in compilation.graph.targets(compilation.graph[id], "references")
         }
-        assert len(used - shown - lines) <= told[id], title
+        assert len(used - shown - relation_ids) <= reported[id], title
 
 
-def folded(tree):
+def iter_relation_ids(tree):
     for feature in ("generalization", "packageImport", "include", "elementImport"):
         for element in tree.iter(feature):
             yield from (value for key, value in element.attrib.items() if key.endswith("}id"))
 
 
 @pytest.mark.parametrize("name", MODELS)
-def test_what_was_chosen_is_drawn(name, compiled):
-    """A dependency without an end that is drawn is the only thing left out."""
-    left = [d.message for d in compiled(name).diagnostics if d.rule.code == "SM703"]
+def test_every_chosen_element_is_drawn(name, compile_once):
+    """The only omission is a dependency without drawn ends."""
+    omissions = [d.message for d in compile_once(name).diagnostics if d.rule.code == "SM703"]
     expected = {
         "TMT-Models-and-Analysis-Profile.mdzip": [
             "1 of the 4 elements that diagram 'Model Profile' shows are not drawn: Dependency"
         ]
     }
-    assert left == expected.get(name, [])
+    assert omissions == expected.get(name, [])
 
 
 @pytest.mark.parametrize("name", MODELS)
-def test_what_was_not_chosen_is_not_drawn(name, compiled):
-    made = compiled(name)
-    graph = made.graph
-    for artefact in made.artefacts:
+def test_no_other_element_is_drawn(name, compile_once):
+    compilation = compile_once(name)
+    graph = compilation.graph
+    for artefact in compilation.artefacts:
         view, *shown = artefact.trace
         if graph[view].attrs["diagram"] == "sd":
             continue
         chosen = {e.id for e in graph.targets(graph[view], Edge.REFERENCES)}
-        around = {e.id for id in chosen for e in graph.subtree(graph[id])}
-        around |= {e.id for id in chosen for e in graph.targets(graph[id], Edge.END)}
-        around |= {e.id for id in chosen for e in graph.sources(graph[id], Edge.REALIZING)}
-        extra = [graph[id] for id in shown if id not in around]
-        assert [e for e in extra if e.kind is not Kind.PARTITION] == [], artefact.path
+        allowed = {e.id for id in chosen for e in graph.subtree(graph[id])}
+        allowed |= {e.id for id in chosen for e in graph.targets(graph[id], Edge.END)}
+        allowed |= {e.id for id in chosen for e in graph.sources(graph[id], Edge.REALIZING)}
+        unexpected = [graph[id] for id in shown if id not in allowed]
+        assert [e for e in unexpected if e.kind is not Kind.PARTITION] == [], artefact.path
 
 
 @pytest.mark.plantuml
 @pytest.mark.parametrize("name", ["Tank_control_2.mdzip", "Wired_Camera_Example.mdzip"])
-def test_real_plantuml_renders_them(name, compiled, plantuml):
-    made = {artefact.path: artefact.text for artefact in compiled(name).artefacts}
-    assert made
-    assert set(plantuml.render(made)) == set(made)
+def test_plantuml_renders_the_drawings(name, compile_once, plantuml):
+    drawings = {artefact.path: artefact.text for artefact in compile_once(name).artefacts}
+    assert drawings
+    assert set(plantuml.render(drawings)) == set(drawings)
 
 
-def test_two_runs_write_the_same_bytes(corpus, compiled):
+def test_two_runs_write_the_same_bytes(corpus, compile_once):
     name = "Wired_Camera_Example.mdzip"
-    first = {a.path: a.text for a in compiled(name).artefacts}
+    first = {artefact.path: artefact.text for artefact in compile_once(name).artefacts}
     path = corpus / "xmi" / "magicdraw" / name
-    again = compile_model(Request(inputs=(path,), diagrams="author", backends=(BACKEND,)))
-    assert {a.path: a.text for a in again.artefacts} == first
+    second = compile_model(Request(inputs=(path,), diagrams="author", backends=(BACKEND,)))
+    assert {artefact.path: artefact.text for artefact in second.artefacts} == first

@@ -1,6 +1,6 @@
-"""Every entry of the corpus gives outputs or located findings; how many of which, is in a golden.
+"""Every entry of the corpus yields outputs or located diagnostics, as counted in a golden file.
 
-Errors on real models are worth a look each: ``JUSTIFIED`` says why those that are there are right.
+``JUSTIFIED`` states why each error in a real model is right.
 """
 
 import json
@@ -20,53 +20,55 @@ NOT_MODELS = {
     "metamodel/uml.ecore": "a metamodel, not a model",
     "profile/papyrus-SysML-1.6.profile.ecore": "a metamodel, not a model",
 }
-ELSEWHERE = {"huds/TMT_mtip.zip": "94 MB: read by tests/frontends/huds, to the resolved graph"}
+READ_ELSEWHERE = {"huds/TMT_mtip.zip": "94 MB: read by tests/frontends/huds, to the resolved graph"}
 JUSTIFIED = {
     ("papyrus/Arrowhead-5.0.uml", "SM421"): "both initial pseudostates of the region lead nowhere",
     ("papyrus/RoboCab.uml", "SM421"): "four transitions leave the region's initial pseudostate",
 }
-"""Errors that real models are right to get, by entry and rule."""
+"""Justified errors in real models, by entry and rule."""
 
 
-def entries(corpus):
+def list_entries(corpus):
     folder = corpus / "xmi"
     listed = re.findall(r"^\| ([\w-]+/[^|]+?) \|", (folder / "README.md").read_text(), re.M)
-    found = sorted(path.relative_to(folder).as_posix() for path in folder.glob("*/*"))
-    assert sorted(listed) == found
-    return found
+    paths = sorted(path.relative_to(folder).as_posix() for path in folder.glob("*/*"))
+    assert sorted(listed) == paths
+    return paths
 
 
 @pytest.fixture(scope="module")
 def outcomes(corpus, tmp_path_factory):
-    names = [name for name in entries(corpus) if name not in ELSEWHERE]
+    names = [name for name in list_entries(corpus) if name not in READ_ELSEWHERE]
     return {name: build(corpus, name, tmp_path_factory.mktemp("out")) for name in names}
 
 
 def build(corpus, name, output):
-    """Exit code, findings, and the number of outputs beside the bookkeeping."""
+    """Build a model; return the exit code, the diagnostics and the number of outputs."""
     model = str(corpus / "xmi" / name)
-    done = CliRunner().invoke(
+    result = CliRunner().invoke(
         sysmlc, ["build", model, "-o", str(output), "--format", "json", "--no-cache"]
     )
-    assert done.exception is None or isinstance(done.exception, SystemExit), name
-    made = [path for folder in output.iterdir() if folder.is_dir() for path in folder.rglob("*.*")]
-    return done.exit_code, json.loads(done.stdout)["diagnostics"], len(made)
+    assert result.exception is None or isinstance(result.exception, SystemExit), name
+    outputs = [
+        path for folder in output.iterdir() if folder.is_dir() for path in folder.rglob("*.*")
+    ]
+    return result.exit_code, json.loads(result.stdout)["diagnostics"], len(outputs)
 
 
 @pytest.mark.long
-def test_exit_codes_and_findings_of_every_entry(outcomes, golden):
-    lines = [line(name, *outcome) for name, outcome in outcomes.items()]
-    assert len(lines) + len(ELSEWHERE) == ENTRIES
+def test_every_entry_has_the_exit_code_and_diagnostics_of_the_golden_file(outcomes, golden):
+    lines = [format_line(name, *outcome) for name, outcome in outcomes.items()]
+    assert len(lines) + len(READ_ELSEWHERE) == ENTRIES
     golden.check("corpus", {"entries.txt": "".join(lines)})
 
 
-def line(name, exit_code, findings, outputs):
+def format_line(name, exit_code, findings, outputs):
     counts = Counter(finding["code"] for finding in findings)
-    told = "".join(f" {code}:{number}" for code, number in sorted(counts.items()))
-    return f"{name} exit={exit_code} outputs={outputs}{told}\n"
+    numbers = "".join(f" {code}:{number}" for code, number in sorted(counts.items()))
+    return f"{name} exit={exit_code} outputs={outputs}{numbers}\n"
 
 
-def test_what_is_not_read_is_an_error_at_a_place(outcomes):
+def test_a_file_that_is_not_a_model_is_a_located_error(outcomes):
     for name in NOT_MODELS:
         exit_code, findings, _ = outcomes[name]
         assert exit_code == 1, name
@@ -84,11 +86,11 @@ def test_every_error_on_a_real_model_is_justified(outcomes):
     assert errors == set(JUSTIFIED)
 
 
-def test_every_finding_has_a_place(outcomes):
-    placeless = [
+def test_every_diagnostic_has_a_location(outcomes):
+    unlocated = [
         (name, finding["code"])
         for name, (_, findings, _) in outcomes.items()
         for finding in findings
         if not finding["file"]
     ]
-    assert placeless == []
+    assert unlocated == []

@@ -1,20 +1,18 @@
-"""Nothing of UML is left out: metaclasses, interactions, templates; counted without our reader."""
+"""All of UML is read: metaclasses, interactions and templates, as counted by lxml."""
 
 from collections import Counter
 
 import pytest
 from lxml import etree
+from reading_corpus import XMI_FOLDERS, find_typed, load_files, lower, parse_data, xmi_id
 
-from sysmlc.diagnostics import Coverage, Sink
-from sysmlc.frontends.xmi import FRONTEND, lowering, metaclasses
-from sysmlc.ir import Edge, Graph, Kind
+from sysmlc.frontends.xmi import lowering, metaclasses
+from sysmlc.ir import Edge, Kind
 from sysmlc.ir.query import interactions, templates
 from sysmlc.passes import pipeline
-from sysmlc.sources import load
 
 pytestmark = pytest.mark.corpus
 
-FOLDERS = ("papyrus", "magicdraw", "md-eclipse-export", "omg", "profile", "ea")
 WITHIN_OTHERS = {
     "Clause": "clauses of conditionals are an attribute",
     "ExceptionHandler": "handlers are an attribute of the protected node",
@@ -23,63 +21,52 @@ WITHIN_OTHERS = {
     "LinkEndDestructionData": "as LinkEndData",
     "QualifierValue": "inside LinkEndData",
 }
-"""Metaclasses that only stand in features which have readers of their own."""
+"""Metaclasses that occur only in features with readers of their own."""
 
 _XSI_TYPE = "{http://www.w3.org/2001/XMLSchema-instance}type"
 
 
-def compiled(path):
-    graph, sink = Graph(), Sink()
-    FRONTEND.read(load(path, path.name), graph, sink, Coverage())
+def read_with_interactions(path):
+    """Return the graph after the passes up to ``interactions``, and the diagnostics."""
+    graph, sink = lower(load_files(path))
     pipeline.run(graph, sink, until="interactions")
     return graph, sink
 
 
-def trees(path):
-    parser = etree.XMLParser(huge_tree=True, resolve_entities=False, no_network=True)
-    return [etree.fromstring(source.data, parser) for source in load(path, path.name)]
-
-
-def typed(path, name):
-    """Elements whose ``xmi:type`` is ``uml:<name>`` and that are not references."""
-    return [
-        element
-        for tree in trees(path)
-        for element in tree.iter("*")
-        if "href" not in element.attrib
-        and any(k.endswith("}type") and v == f"uml:{name}" for k, v in element.attrib.items())
-    ]
+def parse_file(path):
+    return [parse_data(source.data) for source in load_files(path)]
 
 
 def test_every_metaclass_of_uml_is_read(corpus):
     root = etree.parse(corpus / "xmi" / "metamodel" / "uml.ecore").getroot()
     concrete = {
-        found.get("name")
-        for found in root.iter("eClassifiers")
-        if found.get(_XSI_TYPE) == "ecore:EClass"
-        and "true" not in (found.get("abstract"), found.get("interface"))
+        classifier.get("name")
+        for classifier in root.iter("eClassifiers")
+        if classifier.get(_XSI_TYPE) == "ecore:EClass"
+        and "true" not in (classifier.get("abstract"), classifier.get("interface"))
     }
     assert len(concrete) > 150
-    known = {*lowering._TYPES, *metaclasses.VALUE_TYPES, *WITHIN_OTHERS}
-    assert {name for name in concrete - known if metaclasses.kind_of(name) is None} == set()
+    readable = {*lowering._TYPES, *metaclasses.VALUE_TYPES, *WITHIN_OTHERS}
+    assert {name for name in concrete - readable if metaclasses.kind_of(name) is None} == set()
     assert {"clause", "handler", "endData"} <= lowering._FEATURES.keys()
 
 
-@pytest.mark.parametrize("folder", FOLDERS)
-def test_only_stereotypes_of_nothing_are_unsupported(folder, corpus):
+@pytest.mark.parametrize("folder", XMI_FOLDERS)
+def test_no_element_is_reported_as_unsupported(folder, corpus):
     for path in sorted((corpus / "xmi" / folder).iterdir()):
         if path.suffix == ".ecore":
             continue
-        sink = Sink()
-        FRONTEND.read(load(path, path.name), Graph(), sink, Coverage())
-        assert [f.message for f in sink if f.rule.code == "SM111"] == [], path.name
+        _, sink = lower(load_files(path))
+        assert [
+            diagnostic.message for diagnostic in sink if diagnostic.rule.code == "SM111"
+        ] == [], path.name
 
 
-def test_interactions_have_all_their_parts(corpus):
+def test_interactions_have_all_parts_of_the_file(corpus):
     total = Counter()
     for name in ("papyrus/Arrowhead-5.0.uml", "papyrus/CraneModel.uml", "papyrus/RoboCab.uml"):
         path = corpus / "xmi" / name
-        graph, _ = compiled(path)
+        graph, _ = read_with_interactions(path)
         for metaclass, kind in (
             ("Interaction", Kind.INTERACTION),
             ("Lifeline", Kind.LIFELINE),
@@ -88,25 +75,25 @@ def test_interactions_have_all_their_parts(corpus):
             ("BehaviorExecutionSpecification", Kind.EXECUTION),
             ("CollaborationUse", Kind.COLLABORATION_USE),
         ):
-            found = typed(path, metaclass)
-            assert len(graph.of_kind(kind)) == len(found), (name, metaclass)
-            total[metaclass] += len(found)
+            elements = find_typed(parse_file(path), metaclass)
+            assert len(graph.of_kind(kind)) == len(elements), (name, metaclass)
+            total[metaclass] += len(elements)
     assert min(total.values()) >= 1
 
 
 @pytest.mark.parametrize("name", ["Arrowhead-5.0.uml", "CraneModel.uml", "AllDiagrams.uml"])
-def test_messages_lead_between_lifelines_in_the_order_of_the_file(name, corpus):
+def test_messages_connect_lifelines_in_the_order_of_the_file(name, corpus):
     path = corpus / "xmi" / "papyrus" / name
-    graph, _ = compiled(path)
+    graph, _ = read_with_interactions(path)
     for interaction in graph.of_kind(Kind.INTERACTION):
-        happening = [e.id for e in interactions.interaction_fragments(graph, interaction)]
-        written = [
-            _id(element)
-            for tree in trees(path)
+        fragments = [e.id for e in interactions.interaction_fragments(graph, interaction)]
+        fragments_in_file = [
+            xmi_id(element)
+            for tree in parse_file(path)
             for element in tree.iter("fragment")
-            if _id(element.getparent()) == interaction.id
+            if xmi_id(element.getparent()) == interaction.id
         ]
-        assert happening == written
+        assert fragments == fragments_in_file
         for message in interactions.messages(graph, interaction):
             for event, end in (
                 (Edge.SEND_EVENT, Edge.FLOW_SOURCE),
@@ -118,31 +105,33 @@ def test_messages_lead_between_lifelines_in_the_order_of_the_file(name, corpus):
                 ]
 
 
-def _id(element):
-    return next((v for k, v in element.attrib.items() if k.endswith("}id")), None)
-
-
-def test_the_combined_fragment_of_tank_control(corpus):
-    graph, _ = compiled(corpus / "xmi" / "magicdraw" / "Tank_control_2.mdzip")
+def test_a_message_in_a_combined_fragment_has_both_ends(corpus):
+    graph, _ = read_with_interactions(corpus / "xmi" / "magicdraw" / "Tank_control_2.mdzip")
     (fragment,) = graph.of_kind(Kind.FRAGMENT)
     assert fragment.subkind == "neg"
     (operand,) = interactions.operands(graph, fragment)
-    sent, received = interactions.interaction_fragments(graph, operand)
-    assert interactions.sent_message(graph, sent) is interactions.received_message(graph, received)
+    sending, receiving = interactions.interaction_fragments(graph, operand)
+    assert interactions.sent_message(graph, sending) is interactions.received_message(
+        graph, receiving
+    )
     assert len(interactions.covered_lifelines(graph, fragment)) == 1
 
 
 @pytest.mark.long
-def test_every_binding_of_the_alf_library_leads_to_its_template(corpus):
+def test_every_binding_of_the_alf_library_names_its_template(corpus):
     path = corpus / "xmi" / "papyrus" / "Alf.library.uml"
-    graph, sink = compiled(path)
+    graph, sink = read_with_interactions(path)
     assert not sink.has_errors()
-    bound = [graph.owner(item) for item in graph.of_kind(Kind.TEMPLATE_BINDING)]
-    found = [one for element in bound for one in templates.bindings(graph, element)]
-    written = [e for tree in trees(path) for e in tree.iter("templateBinding")]
-    assert len(found) == len(written) > 70
-    for binding in found:
+    bound_elements = [graph.owner(item) for item in graph.of_kind(Kind.TEMPLATE_BINDING)]
+    bindings = [
+        binding for element in bound_elements for binding in templates.bindings(graph, element)
+    ]
+    elements = [e for tree in parse_file(path) for e in tree.iter("templateBinding")]
+    assert len(bindings) == len(elements) > 70
+    for binding in bindings:
         formal = templates.parameters(graph, binding.template)
         assert formal
-        assert [one.formal for one in binding.substitutions] == formal[: len(binding.substitutions)]
-        assert all(one.actual is not None for one in binding.substitutions)
+        assert [binding.formal for binding in binding.substitutions] == formal[
+            : len(binding.substitutions)
+        ]
+        assert all(binding.actual is not None for binding in binding.substitutions)

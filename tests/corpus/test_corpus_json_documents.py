@@ -1,4 +1,4 @@
-"""Every JSON document of the corpus follows its schema, and every member of a schema is written."""
+"""Every JSON document of the corpus follows its schema; all documents contain every member."""
 
 from collections.abc import Iterator
 from pathlib import Path
@@ -89,8 +89,8 @@ def _is_graph(text: str) -> bool:
         return False
 
 
-def test_documents_follow_their_schemas_and_write_every_member(corpus, tmp_path):
-    """One test for both: the documents take some minutes."""
+def test_documents_follow_their_schemas_and_contain_every_member(corpus, tmp_path):
+    """Both properties share one test because the documents take some minutes."""
     violations: list[str] = []
     written: set[str] = set()
     for document in find_documents(corpus, tmp_path):

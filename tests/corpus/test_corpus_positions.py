@@ -1,10 +1,10 @@
-"""Every finding about an XML file says where: file, line, column, XPath and a name."""
+"""Every diagnostic about an XML file has a location: file, line, column, XPath and a name."""
 
-import os
 from pathlib import Path
 from random import Random
 
 import pytest
+from reading_corpus import XMI_SUFFIXES, list_models
 
 from dialects.mutations import mutate
 from fuzz.aml_changes import AML_CHANGES
@@ -15,64 +15,63 @@ from sysmlc.driver import Request, compile_model, select_backends
 
 pytestmark = pytest.mark.corpus
 
-SUFFIXES = {".uml", ".xmi", ".xml", ".mdxml", ".mdzip", ".aml", ".amlx"}
+
 ARCHIVES = (".mdzip", ".amlx")
-OF_FILES = {"SM100", "SM110", "SM141", "SM142", "SM148", "SM158", "SM171", "SM172", "SM178"}
-"""Rules about a file as a whole, which is no element."""
+FILE_RULES = {"SM100", "SM110", "SM141", "SM142", "SM148", "SM158", "SM171", "SM172", "SM178"}
+"""Rules about a file as a whole, not about an element."""
 LARGE = 700_000
 MUTANTS = 3
 
 
-def models() -> list[Path]:
-    corpus = Path(os.environ.get("SYSMLC_CORPUS", "nowhere"))
-    folders = (corpus / "xmi", corpus / "aml")
-    found = sorted(p for folder in folders for p in folder.rglob("*") if p.suffix in SUFFIXES)
-    return [path for path in found if path.stat().st_size < LARGE]
+def list_small_models() -> list[Path]:
+    return list_models("xmi", "aml", suffixes=(*XMI_SUFFIXES, ".aml", ".amlx"), largest=LARGE)
 
 
-def incomplete(path: Path, **asked) -> list[str]:
-    """Findings that lack a part of their place or, about XML, a name."""
-    made = compile_model(Request(inputs=(path,), **asked))
-    xml = {source.name for source in made.sources if is_xml(source.data)}
+def find_incomplete(path: Path, **options) -> list[str]:
+    """Return the diagnostics without a complete location or, about XML, without a name."""
+    compilation = compile_model(Request(inputs=(path,), **options))
+    xml_files = {source.name for source in compilation.sources if is_xml(source.data)}
     return [
         f"{finding.where} {finding.xpath} {finding.diagnostic.subject} {finding.diagnostic.message}"
-        for finding in make_report(made.diagnostics, made.sources).findings
-        if not _is_whole(finding, xml)
+        for finding in make_report(compilation.diagnostics, compilation.sources).findings
+        if not _is_complete(finding, xml_files)
     ]
 
 
-def _is_whole(finding, xml) -> bool:
+def _is_complete(finding, xml_files) -> bool:
     subject = finding.diagnostic.subject
     if subject.place is None:
         return False
-    if subject.place.file not in xml:
+    if subject.place.file not in xml_files:
         return True
-    if finding.diagnostic.rule.code in OF_FILES:
+    if finding.diagnostic.rule.code in FILE_RULES:
         return bool(finding.line and finding.column)
     is_named = subject.name not in ("", subject.place.file, Path(subject.place.file).name)
     return bool(is_named and finding.line and finding.column and finding.xpath)
 
 
-@pytest.mark.parametrize("path", quick_first(models(), 30), ids=lambda path: path.name)
-def test_findings_of_models_have_a_whole_place(path):
+@pytest.mark.parametrize("path", quick_first(list_small_models(), 30), ids=lambda path: path.name)
+def test_diagnostics_of_models_have_a_complete_location(path):
     backends = tuple(select_backends(()))
-    assert incomplete(path, backends=backends, diagrams="both") == []
+    assert find_incomplete(path, backends=backends, diagrams="both") == []
 
 
 @pytest.mark.parametrize(
     "path",
-    [p for p in models() if p.suffix not in ARCHIVES and "notwellformed" not in p.name][::2],
+    [p for p in list_small_models() if p.suffix not in ARCHIVES and "notwellformed" not in p.name][
+        ::2
+    ],
     ids=lambda p: p.name,
 )
-def test_findings_of_spoilt_models_have_a_whole_place(path, tmp_path):
+def test_diagnostics_of_mutated_models_have_a_complete_location(path, tmp_path):
     random = Random(path.name)
     for number in range(MUTANTS):
         changes = AML_CHANGES if path.suffix == ".aml" else None
-        done, spoilt = mutate(path.read_bytes(), random, changes=changes)
+        description, mutated = mutate(path.read_bytes(), random, changes=changes)
         target = tmp_path / f"{number}{path.suffix}"
-        target.write_bytes(spoilt)
-        assert incomplete(target) == [], done
+        target.write_bytes(mutated)
+        assert find_incomplete(target) == [], description
 
 
-def test_the_models_are_there(corpus):
-    assert len(models()) > 75
+def test_the_corpus_has_models(corpus):
+    assert len(list_small_models()) > 75

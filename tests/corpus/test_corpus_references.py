@@ -1,31 +1,27 @@
-"""No reference of a real file is lost: each is an edge or attribute of the graph, or has a reason.
+"""Every reference in a real file is an edge or attribute of the graph, or its loss has a reason.
 
-The notes on XMI counted 25,181 local references with 7 that dangle; this count has all references
-of the metamodel, those too that say again what their opposite says (incoming, association, ...).
+The count contains all references of the metamodel, also those that repeat their opposite
+(incoming, association, ...).
 """
 
 from collections import Counter
 from collections.abc import Iterator
 
 import pytest
-from references_of import Written, reference_features, written
+from reading_corpus import list_models, load_files, lower
+from xmi_references import Reference, iter_references, list_reference_features
 
-from sysmlc.diagnostics import Coverage, Sink
-from sysmlc.frontends.xmi import FRONTEND
 from sysmlc.ir import AttrValue, Edge, Graph
-from sysmlc.passes import pipeline
-from sysmlc.sources import load
 
 pytestmark = pytest.mark.corpus
 
-SUFFIXES = {".uml", ".xmi", ".xml", ".mdxml", ".mdzip"}
-WRITTEN = 43_889
+REFERENCE_COUNT = 43_889
 DANGLING = {("BallotDefinition-noext.xml", "DiagramInfo", "base_Diagram"): 7}
-"""MagicDraw's notes on diagrams, in a file that was saved without diagrams."""
+"""MagicDraw's data about diagrams, in a file that was saved without diagrams."""
 
 _EXTENSION = ("Extension", "ExtensionEnd")
 _EVENTS = ("SignalEvent", "CallEvent", "TimeEvent", "ChangeEvent")
-_TOOL = {
+_TOOL_STEREOTYPES = {
     *("additionalElementImport", "additionalPackageImport", "auxiliaryResource"),
     *("CustomImageHolder", "deprecated", "derivedPropertiesSuite", "DiagramTable"),
     *("ElementReferenceInText", "HyperlinkOwner", "InvisibleStereotype", "MatrixFilter"),
@@ -41,7 +37,7 @@ REASONS = {
         10,
         lambda w: w.feature == "redefinedProperty" and w.source != "ExtensionEnd",
     ),
-    "how MagicDraw shows and stores the model": (563, lambda w: w.source in _TOOL),
+    "how MagicDraw shows and stores the model": (563, lambda w: w.source in _TOOL_STEREOTYPES),
     "a diagram of MagicDraw is no element": (161, lambda w: w.target_type == "Diagram"),
     "events are part of the triggers that name them": (
         33,
@@ -70,81 +66,97 @@ REASONS = {
 
 @pytest.fixture(scope="module")
 def features(corpus):
-    return reference_features(corpus / "xmi" / "metamodel" / "uml.ecore")
+    return list_reference_features(corpus / "xmi" / "metamodel" / "uml.ecore")
 
 
 @pytest.fixture(scope="module")
-def documents(corpus, features):
-    """Graph and references of every file, by name."""
-    paths = sorted(path for path in (corpus / "xmi").rglob("*") if path.suffix in SUFFIXES)
-    return {path.name: (graph(path), find_references(path, features)) for path in paths}
+def files(corpus, features):
+    """Map the name of every file to its graph and references."""
+    return {
+        path.name: (read_graph(path), find_references(path, features))
+        for path in list_models("xmi")
+    }
 
 
-def graph(path):
-    made, sink = Graph(), Sink()
-    FRONTEND.read(load(path, path.name), made, sink, Coverage())
-    pipeline.build_pipeline(("resolve", "classify")).run(made, sink)
-    assert [f.message for f in sink if f.rule.code in ("SM150", "SM151")] == []
-    return made
+def read_graph(path):
+    graph, sink = lower(load_files(path), ("resolve", "classify"))
+    assert [d.message for d in sink if d.rule.code in ("SM150", "SM151")] == []
+    return graph
 
 
 def find_references(path, features):
-    models = (source for source in load(path, path.name) if "snapshot" not in source.name)
-    return [one for source in models for one in written(source.data, features)]
+    models = (source for source in load_files(path) if "snapshot" not in source.name)
+    return [reference for source in models for reference in iter_references(source.data, features)]
 
 
 @pytest.mark.long
-def test_seven_references_dangle_of_all_that_are_written(documents):
+def test_seven_references_of_all_files_dangle(files):
     dangling = Counter(
-        (name, one.source, one.feature)
-        for name, (_, found) in documents.items()
-        for one in found
-        if not one.target_type
+        (name, reference.source, reference.feature)
+        for name, (_, references) in files.items()
+        for reference in references
+        if not reference.target_type
     )
     assert dangling == DANGLING
-    assert sum(len(found) for _, found in documents.values()) == WRITTEN
+    assert sum(len(references) for _, references in files.values()) == REFERENCE_COUNT
 
 
-def test_every_reference_is_in_the_graph_or_has_a_reason(documents):
-    lost = [one for graph, found in documents.values() for one in _lost(graph, found)]
-    explained = Counter(_reason(one) for one in lost)
-    assert [one for one in lost if not _reason(one)] == []
-    assert explained == {why: count for why, (count, _) in REASONS.items()}
+def test_every_reference_is_in_the_graph_or_has_a_reason(files):
+    lost = [
+        reference
+        for read_graph, references in files.values()
+        for reference in _iter_lost(read_graph, references)
+    ]
+    explained = Counter(_find_reason(reference) for reference in lost)
+    assert [reference for reference in lost if not _find_reason(reference)] == []
+    assert explained == {reason: count for reason, (count, _) in REASONS.items()}
 
 
-def _reason(one: Written) -> str:
-    return next((why for why, (_, fits) in REASONS.items() if fits(one)), "")
+def _find_reason(reference: Reference) -> str:
+    return next((reason for reason, (_, fits) in REASONS.items() if fits(reference)), "")
 
 
-def _lost(graph: Graph, found: list[Written]) -> Iterator[Written]:
-    tied = _ties(graph)
-    for one in found:
-        holder = next((id for id in one.holders if id in graph), "")
+def _iter_lost(read_graph: Graph, references: list[Reference]) -> Iterator[Reference]:
+    connected = _connect_ids(read_graph)
+    for reference in references:
+        holder = next((id for id in reference.holders if id in read_graph), "")
         # Enterprise Architect writes Profile__Some_name for Some name of another profile.
-        whole = one.source.rpartition("__")[2].replace("_", " ")
-        is_applied = not tied.isdisjoint({(one.source, one.target), (whole, one.target)})
-        if one.target_type and not is_applied and not _same(holder, one.target, tied):
-            yield one
+        stereotype_name = reference.source.rpartition("__")[2].replace("_", " ")
+        is_application = not connected.isdisjoint(
+            {(reference.source, reference.target), (stereotype_name, reference.target)}
+        )
+        if (
+            reference.target_type
+            and not is_application
+            and not _is_connected(holder, reference.target, connected)
+        ):
+            yield reference
 
 
-def _same(holder: str, target: str, tied: set[tuple[str, str]]) -> bool:
-    return holder == target or (holder, target) in tied
+def _is_connected(holder: str, target: str, connected: set[tuple[str, str]]) -> bool:
+    return holder == target or (holder, target) in connected
 
 
-def _ties(graph: Graph) -> set[tuple[str, str]]:
-    """Pairs of ids that an edge or attribute ties, both ways; applications by name too."""
-    ties = {pair for _, one, other in graph.edges() for pair in ((one, other), (other, one))}
-    ties |= {(graph[one].name, other) for _, one, other in graph.edges(Edge.SUBJECT)}
-    for element in graph:
-        for id in _texts(tuple(element.attrs.values())):
-            if id in graph:
-                ties |= {(element.id, id), (id, element.id)}
-    return ties
+def _connect_ids(read_graph: Graph) -> set[tuple[str, str]]:
+    """Return the pairs of ids that an edge or attribute connects, and stereotypes by name."""
+    connected = {
+        pair
+        for _, source, target in read_graph.edges()
+        for pair in ((source, target), (target, source))
+    }
+    connected |= {
+        (read_graph[source].name, target) for _, source, target in read_graph.edges(Edge.SUBJECT)
+    }
+    for element in read_graph:
+        for id in _iter_texts(tuple(element.attrs.values())):
+            if id in read_graph:
+                connected |= {(element.id, id), (id, element.id)}
+    return connected
 
 
-def _texts(value: AttrValue) -> Iterator[str]:
+def _iter_texts(value: AttrValue) -> Iterator[str]:
     if isinstance(value, tuple):
         for item in value:
-            yield from _texts(item)
+            yield from _iter_texts(item)
     elif isinstance(value, str):
         yield value

@@ -1,17 +1,13 @@
-"""Conjugation, nested ends, requirements in real models, against a script with lxml alone."""
+"""Conjugation, nested ends and requirements in real models are those that lxml finds."""
 
-import zipfile
 from pathlib import Path
 
 import pytest
 from lxml import etree
+from reading_corpus import load_files, lower, parse_models, xmi_id
 
-from sysmlc.diagnostics import Coverage, Sink
-from sysmlc.frontends.xmi import FRONTEND
 from sysmlc.ir import Edge, Graph, Kind
 from sysmlc.ir.query import flow_properties, opposite, type_of
-from sysmlc.passes import pipeline
-from sysmlc.sources.files import load
 
 pytestmark = pytest.mark.corpus
 
@@ -29,55 +25,49 @@ FILES = {
     "magicdraw/TestProject2.mdzip": (0, 24, {1: 18}),
     "magicdraw/Wired_Camera_Example.mdzip": (0, 32, {1: 6, 2: 2}),
 }
-"""Every file with connectors or conjugated ports: how many conjugated ports, ends, and property
-paths by length the file has."""
+"""Files with connectors or conjugated ports: the number of conjugated ports, the number of
+connector ends, and the number of property paths by length."""
 
 
 # -- the independent script --------------------------------------------------------------------
 
 
-def roots(path: Path) -> list[etree._Element]:
-    if path.suffix != ".mdzip":
-        return [etree.parse(str(path)).getroot()]
-    with zipfile.ZipFile(path) as archive:
-        names = [name for name in archive.namelist() if name.endswith("model")]
-        return [etree.fromstring(archive.read(name)) for name in names]
-
-
-def written(element: etree._Element, feature: str) -> list[str]:
-    """Ids that a feature refers to, as attribute or as children, without their files."""
-    found = (element.get(feature) or "").split()
+def read_references(element: etree._Element, feature: str) -> list[str]:
+    """Return the ids in a feature, in its attribute and its children, without their files."""
+    references = (element.get(feature) or "").split()
     for child in element.findall(feature):
-        values = [v for k, v in child.attrib.items() if k.endswith("}idref") or k == "href"]
-        found += values
-    return [one.rpartition("#")[2] for one in found]
+        values = [
+            value for key, value in child.attrib.items() if key.endswith("}idref") or key == "href"
+        ]
+        references += values
+    return [reference.rpartition("#")[2] for reference in references]
 
 
-def id_of(element: etree._Element) -> str:
-    return next(v for k, v in element.attrib.items() if k.endswith("}id"))
-
-
-def conjugated(path: Path) -> set[str]:
-    found = (one for root in roots(path) for one in root.iter("{*}ownedAttribute"))
-    return {id_of(one) for one in found if one.get("isConjugated") == "true"}
-
-
-def nested(path: Path) -> dict[str, list[str]]:
-    """Property path by connector end."""
+def find_conjugated(path: Path) -> set[str]:
+    attributes = (
+        attribute for root in parse_models(path) for attribute in root.iter("{*}ownedAttribute")
+    )
     return {
-        base: steps
-        for root in roots(path)
-        for one in root.iter("{*}NestedConnectorEnd")
-        for base in written(one, "base_ConnectorEnd")
-        if (steps := written(one, "propertyPath"))
+        xmi_id(attribute) for attribute in attributes if attribute.get("isConjugated") == "true"
     }
 
 
-def connector_ends(path: Path) -> dict[str, etree._Element]:
-    """Ends by id; what MagicDraw draws in its diagrams has no type."""
+def find_paths(path: Path) -> dict[str, list[str]]:
+    """Map connector ends to their property paths."""
     return {
-        id_of(end): end
-        for root in roots(path)
+        base: steps
+        for root in parse_models(path)
+        for application in root.iter("{*}NestedConnectorEnd")
+        for base in read_references(application, "base_ConnectorEnd")
+        if (steps := read_references(application, "propertyPath"))
+    }
+
+
+def find_connector_ends(path: Path) -> dict[str, etree._Element]:
+    """Map ids to connector ends; ends in MagicDraw's diagrams have no type."""
+    return {
+        xmi_id(end): end
+        for root in parse_models(path)
         for connector in root.iter("{*}ownedConnector")
         for end in connector.findall("{*}end")
         if "uml:ConnectorEnd" in end.attrib.values()
@@ -88,109 +78,126 @@ def connector_ends(path: Path) -> dict[str, etree._Element]:
 
 
 @pytest.fixture(scope="module")
-def compiled(corpus):
-    known: dict[str, Graph] = {}
+def refine_model(corpus):
+    graphs: dict[str, Graph] = {}
 
-    def compile_(name: str) -> Graph:
-        if name not in known:
-            graph, sink = Graph(), Sink()
-            path = corpus / "xmi" / name
-            FRONTEND.read(load(path, path.name), graph, sink, Coverage())
-            pipeline.build_pipeline(("resolve", "inherit", "classify", "ports", "flows")).run(
-                graph, sink
-            )
-            known[name] = graph
-        return known[name]
+    def refine_once(name: str) -> Graph:
+        if name not in graphs:
+            passes = ("resolve", "inherit", "classify", "ports", "flows")
+            graphs[name], _ = lower(load_files(corpus / "xmi" / name), passes)
+        return graphs[name]
 
-    return compile_
+    return refine_once
 
 
-def plain(id: str) -> str:
+def strip_file(id: str) -> str:
     return id.rpartition("#")[2]
 
 
-def own(graph: Graph, kind: Kind) -> list:
-    return [one for one in graph.of_kind(kind) if not one.attrs.get("external")]
+def list_internal(graph: Graph, kind: Kind) -> list:
+    return [element for element in graph.of_kind(kind) if not element.attrs.get("external")]
 
 
-# -- what must hold ----------------------------------------------------------------------------
+# -- tests -------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("name", FILES)
-def test_the_files_are_what_the_numbers_say(corpus, name):
+def test_the_files_have_the_numbers_of_the_table(corpus, name):
     path = corpus / "xmi" / name
     lengths: dict[int, int] = {}
-    for steps in nested(path).values():
+    for steps in find_paths(path).values():
         lengths[len(steps)] = lengths.get(len(steps), 0) + 1
-    assert (len(conjugated(path)), len(connector_ends(path)), lengths) == FILES[name]
+    assert (len(find_conjugated(path)), len(find_connector_ends(path)), lengths) == FILES[name]
 
 
 @pytest.mark.parametrize("name", FILES)
-def test_every_conjugated_port_is_conjugated_and_no_other(corpus, compiled, name):
-    graph = compiled(name)
-    found = {plain(one.id) for one in own(graph, Kind.PORT) if one.attrs.get("conjugated")}
-    assert found == conjugated(corpus / "xmi" / name)
+def test_exactly_the_conjugated_ports_are_conjugated(corpus, refine_model, name):
+    graph = refine_model(name)
+    ports = {
+        strip_file(port.id)
+        for port in list_internal(graph, Kind.PORT)
+        if port.attrs.get("conjugated")
+    }
+    assert ports == find_conjugated(corpus / "xmi" / name)
 
 
 @pytest.mark.parametrize("name", FILES)
-def test_every_connector_end_has_the_path_that_is_written(corpus, compiled, name):
+def test_every_connector_end_has_the_path_in_the_file(corpus, refine_model, name):
     path = corpus / "xmi" / name
-    graph, deep, ends = compiled(name), nested(path), connector_ends(path)
-    found = {plain(one.id): one for one in own(graph, Kind.CONNECTOR_END)}
-    assert found.keys() == ends.keys()
+    graph, paths, ends = refine_model(name), find_paths(path), find_connector_ends(path)
+    elements = {
+        strip_file(element.id): element for element in list_internal(graph, Kind.CONNECTOR_END)
+    }
+    assert elements.keys() == ends.keys()
     for id, end in ends.items():
-        steps = deep.get(id, [])
-        expected = steps + [one for one in written(end, "partWithPort") if one not in steps]
-        shown = [_reference(one) for one in graph.targets(found[id], Edge.PATH)]
-        assert shown == expected, id
-        roles = [_reference(one) for one in graph.targets(found[id], Edge.ROLE)]
-        assert roles == written(end, "role"), id
+        steps = paths.get(id, [])
+        expected = steps + [
+            element for element in read_references(end, "partWithPort") if element not in steps
+        ]
+        steps_of_graph = [
+            _reference_id(element) for element in graph.targets(elements[id], Edge.PATH)
+        ]
+        assert steps_of_graph == expected, id
+        roles = [_reference_id(element) for element in graph.targets(elements[id], Edge.ROLE)]
+        assert roles == read_references(end, "role"), id
 
 
-def _reference(element) -> str:
-    return plain(str(element.attrs.get("href") or element.id))
+def _reference_id(element) -> str:
+    return strip_file(str(element.attrs.get("href") or element.id))
 
 
 @pytest.mark.parametrize("name", FILES)
-def test_conjugation_turns_round_what_the_type_says(compiled, name):
-    graph = compiled(name)
-    for port in own(graph, Kind.PORT):
+def test_conjugation_reverses_the_direction_of_the_type(refine_model, name):
+    graph = refine_model(name)
+    for port in list_internal(graph, Kind.PORT):
         type_ = type_of(graph, port)
-        given = {str(p.attrs["direction"]) for p in flow_properties(graph, type_)} if type_ else ()
-        if len(given) == 1 and port.role != "flow port":
-            (direction,) = given
+        directions = (
+            {
+                str(flow_property.attrs["direction"])
+                for flow_property in flow_properties(graph, type_)
+            }
+            if type_
+            else ()
+        )
+        if len(directions) == 1 and port.role != "flow port":
+            (direction,) = directions
             expected = opposite(direction) if port.attrs.get("conjugated") else direction
             assert port.attrs["direction"] == expected, port
 
 
-def test_requirements_have_the_id_and_text_of_the_file(corpus, compiled):
+def test_requirements_have_the_id_and_text_of_the_file(corpus, refine_model):
     path = corpus / "xmi/magicdraw/SUV_Example.mdzip"
-    graph = compiled("magicdraw/SUV_Example.mdzip")
+    graph = refine_model("magicdraw/SUV_Example.mdzip")
     expected = {
-        one.get("base_Class"): (one.get("Id"), one.get("Text") or one.findtext("Text") or "")
-        for root in roots(path)
-        for one in root.iter("{http://www.omg.org/spec/SysML/20120401/SysML}Requirement")
+        element.get("base_Class"): (
+            element.get("Id"),
+            element.get("Text") or element.findtext("Text") or "",
+        )
+        for root in parse_models(path)
+        for element in root.iter("{http://www.omg.org/spec/SysML/20120401/SysML}Requirement")
     }
     assert len(expected) == 12
-    shown = {
-        plain(one.id): (one.attrs.get("req_id"), one.attrs.get("text", ""))
-        for one in graph
-        if one.role == "requirement"
+    requirements = {
+        strip_file(element.id): (element.attrs.get("req_id"), element.attrs.get("text", ""))
+        for element in graph
+        if element.role == "requirement"
     }
-    assert shown == expected
+    assert requirements == expected
 
 
-def test_connectors_of_old_papyrus_stand_where_their_paths_lead(compiled):
+def test_connectors_of_old_papyrus_belong_to_the_block_of_their_paths(refine_model):
     from sysmlc.backends.plantuml.parametric import find_bindings
 
-    graph = compiled("papyrus/INCOSE.uml")
+    graph = refine_model("papyrus/INCOSE.uml")
     (block,) = find_bindings(graph)
     assert graph[block].name == "Straight Line Vehicle Dynamics"
-    shown = {
-        graph[one.shows[0]].name: [".".join(graph[id].name for id in end.ids()) for end in one.ends]
-        for one in find_bindings(graph)[block]
+    ends_by_name = {
+        graph[binding.shows[0]].name: [
+            ".".join(graph[id].name for id in end.ids()) for end in binding.ends
+        ]
+        for binding in find_bindings(graph)[block]
     }
-    assert shown["c5"] == ["e1.bf", "v.b.r.braking force"]
-    assert shown["c6"] == ["v.b.duty cycle", "e1.tl"]
-    assert shown["c7"] == ["e1.f", "e2.f"]
-    assert shown["c3"] == ["v.position", "e4.x"]
+    assert ends_by_name["c5"] == ["e1.bf", "v.b.r.braking force"]
+    assert ends_by_name["c6"] == ["v.b.duty cycle", "e1.tl"]
+    assert ends_by_name["c7"] == ["e1.f", "e2.f"]
+    assert ends_by_name["c3"] == ["v.position", "e4.x"]

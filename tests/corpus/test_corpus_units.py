@@ -1,4 +1,4 @@
-"""Real models of several files: one unit, whatever the order, the dialect and the archive."""
+"""Several real files form one unit, whatever their order, dialect and archive."""
 
 import re
 from collections import Counter
@@ -28,50 +28,58 @@ ARCHIVES = (
 )
 
 
-def unit(corpus, *names):
+def compile_unit(corpus, *names):
     return compile_model(Request(tuple(corpus / "xmi" / name for name in names)))
 
 
-def missing(compilation):
-    return [f.message.split("'")[1] for f in compilation.diagnostics if f.rule.code == "SM152"]
+def list_missing_files(compilation):
+    return [
+        diagnostic.message.split("'")[1]
+        for diagnostic in compilation.diagnostics
+        if diagnostic.rule.code == "SM152"
+    ]
 
 
-def test_a_use_case_finds_its_library_and_profile(corpus):
-    """Hrefs into the other two files, counted by lxml: all lead to elements with a place."""
-    made = unit(corpus, *ARROWHEAD)
-    assert not [file for file in missing(made) if "Arrowhead-5.0" in file or "Profile_v5" in file]
+def test_a_model_finds_its_library_and_profile(corpus):
+    """All hrefs into the other two files, as counted by lxml, name elements of these files."""
+    compilation = compile_unit(corpus, *ARROWHEAD)
+    assert not [
+        file
+        for file in list_missing_files(compilation)
+        if "Arrowhead-5.0" in file or "Profile_v5" in file
+    ]
     tree = etree.parse(corpus / "xmi" / ARROWHEAD[2])
     hrefs = [e.get("href") for e in tree.iter(etree.Element) if e.get("href")]
     ids = {h.rpartition("#")[2] for h in hrefs if "Arrowhead-5.0.uml#" in h}
     assert len(ids) == 24
-    assert {made.graph[id].source for id in ids} == {"Arrowhead-5.0.uml"}
-    applied = [e for e in made.graph.of_kind(Kind.APPLICATION) if e.name == "SysD"]
-    assert len(applied) > 20
-    assert {e.attrs["lineage"] for e in applied} == {("SysD", "Block")}
+    assert {compilation.graph[id].source for id in ids} == {"Arrowhead-5.0.uml"}
+    applications = [e for e in compilation.graph.of_kind(Kind.APPLICATION) if e.name == "SysD"]
+    assert len(applications) > 20
+    assert {e.attrs["lineage"] for e in applications} == {("SysD", "Block")}
 
 
-def test_two_dialects_are_one_unit(corpus):
-    """MagicDraw's tests of fUML call behaviours of OMG's library, as an independent count says."""
-    made = unit(corpus, "magicdraw/fUML-Tests.mdxml", "omg/fUML_Library.xmi")
-    assert missing(made) == []
-    assert "SM150" not in {found.rule.code for found in made.diagnostics}
+def test_files_in_two_dialects_form_one_unit(corpus):
+    """MagicDraw's tests of fUML call behaviours of OMG's library as often as lxml counts."""
+    compilation = compile_unit(corpus, "magicdraw/fUML-Tests.mdxml", "omg/fUML_Library.xmi")
+    assert list_missing_files(compilation) == []
+    assert "SM150" not in {diagnostic.rule.code for diagnostic in compilation.diagnostics}
     calls = Counter(
         target
-        for _, source, target in made.graph.edges(Edge.CALLS)
-        if made.graph[source].source == "magicdraw/fUML-Tests.mdxml"
-        and made.graph[target].source == "omg/fUML_Library.xmi"
+        for _, source, target in compilation.graph.edges(Edge.CALLS)
+        if compilation.graph[source].source == "magicdraw/fUML-Tests.mdxml"
+        and compilation.graph[target].source == "omg/fUML_Library.xmi"
     )
     tree = etree.parse(corpus / "xmi/magicdraw/fUML-Tests.mdxml")
-    written = Counter(
+    calls_in_file = Counter(
         e.get("href").rpartition("#")[2]
         for e in tree.iter("behavior")
         if "fUML_Library.xmi#" in (e.get("href") or "")
     )
-    assert calls == written
+    assert calls == calls_in_file
     assert calls.total() > 50
 
 
-def test_archives_that_share_libraries_are_one_unit_in_any_order(corpus):
+def test_archives_that_share_libraries_form_one_unit_in_any_order(corpus):
     texts = set()
     for names in (ARCHIVES, ARCHIVES[::-1]):
         sources = [s for name in names for s in load(corpus / "xmi" / name, name)]
@@ -82,18 +90,18 @@ def test_archives_that_share_libraries_are_one_unit_in_any_order(corpus):
     assert len(texts) == 1
 
 
-def test_nearly_all_references_to_standard_libraries_have_a_stand_in(corpus):
-    """Independent of any reader: every href in the text of every XML file."""
+def test_nearly_all_references_to_standard_libraries_have_an_external_stub(corpus):
+    """The hrefs are found in the text of every XML file, independently of any reader."""
     counts = Counter()
     for path in sorted((corpus / "xmi").glob("*/*")):
         if path.suffix in (".uml", ".xmi", ".xml", ".mdxml"):
             for href in re.findall(rb'\shref\s*=\s*["\']([^"\'#]+#[^"\']+)', path.read_bytes()):
-                counts[verdict(href.decode("utf-8", "replace"))] += 1
+                counts[classify_href(href.decode("utf-8", "replace"))] += 1
     assert counts["known"] > 5_000
     assert counts["new"] <= 120
 
 
-def verdict(href):
+def classify_href(href):
     file, _, fragment = href.partition("#")
     if load_libraries().find(file, fragment, "", ()) or find_primitive(href, "", Kind.DATA_TYPE):
         return "known"
@@ -108,9 +116,9 @@ def verdict(href):
         "omg/SysML-1.7-ptc-24-01-02.xmi",
     ],
 )
-def test_stand_ins_say_of_sysml_what_its_profiles_say(corpus, name):
-    """Stereotypes of three dialects: found by their own ids, with the generals that they have."""
-    graph = unit(corpus, name).graph
+def test_external_stubs_of_sysml_have_the_generals_of_the_profiles(corpus, name):
+    """Stereotypes of three dialects are found by their own ids, with their general stereotypes."""
+    graph = compile_unit(corpus, name).graph
     stereotypes = [
         e
         for e in graph.of_kind(Kind.STEREOTYPE)
@@ -118,13 +126,14 @@ def test_stand_ins_say_of_sysml_what_its_profiles_say(corpus, name):
     ]
     assert len(stereotypes) > 50
     for stereotype in stereotypes:
-        found = load_libraries().find(
+        stub = load_libraries().find(
             "pathmap://SysML16_PROFILES/SysML.profile.uml", stereotype.id, "", ()
         )
-        assert found is not None, stereotype.id
-        assert found.kind is Kind.STEREOTYPE
-        told = {up.name for up in graph.targets(stereotype, Edge.SPECIALIZES)}
-        known = {up.rpartition("::")[2] for up in found.generals}
-        assert known >= told - {"MagicDrawProfile_InvisibleStereotype", "InvisibleStereotype"}, (
-            stereotype.name
-        )
+        assert stub is not None, stereotype.id
+        assert stub.kind is Kind.STEREOTYPE
+        generals = {general.name for general in graph.targets(stereotype, Edge.SPECIALIZES)}
+        stub_generals = {general.rpartition("::")[2] for general in stub.generals}
+        assert stub_generals >= generals - {
+            "MagicDrawProfile_InvisibleStereotype",
+            "InvisibleStereotype",
+        }, stereotype.name

@@ -119,8 +119,8 @@ def _mutate_file(path: Path, random: Random, models: Sequence[Path]) -> tuple[st
         language = "kerml" if ".kerml" in path.name else "sysml"
         return language, *_mutate_text_file(path, random, models)
     if path.suffix == ".kpar":
-        spoil = lambda data, dice: _mutate_text(data.decode("utf-8", "replace"), dice)  # noqa: E731
-        return "kpar", *mutate_archive(_read_document(path, ""), random, spoil)
+        change = lambda data, dice: _mutate_text(data.decode("utf-8", "replace"), dice)  # noqa: E731
+        return "kpar", *mutate_archive(_read_document(path, ""), random, change)
     return _mutate_xml(path, random)
 
 
@@ -131,8 +131,8 @@ def _mutate_xml(path: Path, random: Random) -> tuple[str, str, bytes]:
     changes = INTERCHANGE_CHANGES if path.suffix in _INTERCHANGE else None
     changes = AML_CHANGES if path.suffix in _AML else changes
     if dialect in ("mdzip", "amlx"):
-        spoil = lambda data, dice: mutate(data, dice, XMI_CHANGES, DAMAGES, changes)  # noqa: E731
-        return dialect, *mutate_archive(document, random, spoil)
+        change = lambda data, dice: mutate(data, dice, XMI_CHANGES, DAMAGES, changes)  # noqa: E731
+        return dialect, *mutate_archive(document, random, change)
     if _is_well_formed(path):
         return dialect, *mutate(document, random, XMI_CHANGES, DAMAGES, changes)
     return dialect, *damage(document, random, DAMAGES)

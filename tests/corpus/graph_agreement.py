@@ -1,8 +1,8 @@
-"""Compares two graphs of one model that different tools or settings saved.
+"""Comparison of two graphs of one model that different tools or settings saved.
 
-Elements are matched by id, else, below a matched owner, by kind, name and position among their
-equals. Of each pair everything is compared: kind, name, owner, all attributes (role, multiplicity,
-direction, guard, ...) and where the edges of each kind lead.
+Elements are matched by id, otherwise by kind, name and position among equal elements below a
+matched owner. The comparison of a pair covers kind, name, owner, all attributes (role,
+multiplicity, direction, guard, ...) and the targets of the edges of each kind.
 """
 
 from collections import Counter
@@ -11,13 +11,13 @@ from dataclasses import dataclass
 
 from sysmlc.ir import Edge, Element, Graph
 
-_OF_THE_FILE = frozenset({"href", "origin", "namespace"})
-"""Attributes that say where something is kept, not what it is."""
+_LOCATION_ATTRIBUTES = frozenset({"href", "origin", "namespace"})
+"""Attributes that hold the location of an element in its file."""
 
 
 @dataclass(frozen=True, slots=True)
 class Difference:
-    """One aspect in which the two elements of a pair differ; None where one has it not."""
+    """One aspect in which the elements of a pair differ; a missing value is None."""
 
     left: Element
     right: Element
@@ -30,38 +30,38 @@ class Difference:
 
 
 Reason = tuple[str, Callable[["Agreement", Difference], bool]]
-"""Why two files differ in a place, and the differences that it explains."""
+"""A reason for differences, and a predicate for the differences that it explains."""
 
 
 class Agreement:
-    """What two graphs share, and in what it differs."""
+    """The pairs of equal elements in two graphs, and their differences."""
 
     def __init__(self, left: Graph, right: Graph) -> None:
         self.left = left
         self.right = right
-        self.right_of = _pairs(left, right)
+        self.right_of = _find_pairs(left, right)
         self.left_of = {right: left for left, right in self.right_of.items()}
         self.differences = [d for pair in self.right_of.items() for d in self._compare(*pair)]
 
-    def shared(self) -> int:
-        """Number of pairs."""
+    def count_pairs(self) -> int:
+        """Return the number of pairs."""
         return len(self.right_of)
 
-    def equal(self) -> float:
-        """Share of the pairs that agree in what the model says: all but values of tags."""
+    def measure_agreement(self) -> float:
+        """Return the share of pairs without differences; values of tags do not count."""
         unequal = {d.left.id for d in self.differences if not d.aspect.startswith("tag.")}
         return 1 - len(unequal) / len(self.right_of)
 
-    def only_left(self) -> Counter[str]:
-        """Kinds of what only the left graph has, without what lies below such elements."""
-        return _uppermost(self.left, self.right_of)
+    def count_only_left(self) -> Counter[str]:
+        """Count the kinds of elements that only the left graph has, without their members."""
+        return _count_uppermost(self.left, self.right_of)
 
-    def only_right(self) -> Counter[str]:
-        """Kinds of what only the right graph has, without what lies below such elements."""
-        return _uppermost(self.right, self.left_of)
+    def count_only_right(self) -> Counter[str]:
+        """Count the kinds of elements that only the right graph has, without their members."""
+        return _count_uppermost(self.right, self.left_of)
 
-    def explained(self, reasons: Iterable[Reason]) -> tuple[Counter[str], list[str]]:
-        """How many differences each reason explains, the first that fits; and what none does."""
+    def explain(self, reasons: Iterable[Reason]) -> tuple[Counter[str], list[str]]:
+        """Count the differences by the first reason that fits, and list the unexplained ones."""
         table = tuple(reasons)
         counts: Counter[str] = Counter()
         unexplained: list[str] = []
@@ -74,32 +74,37 @@ class Agreement:
         return counts, unexplained
 
     def _compare(self, left: str, right: str) -> Iterator[Difference]:
-        one, other = self.left[left], self.right[right]
-        before, after = self._facts(one), self._facts(other, is_right=True)
+        left_element, right_element = self.left[left], self.right[right]
+        before, after = (
+            self._collect_facts(left_element),
+            self._collect_facts(right_element, is_right=True),
+        )
         for aspect in sorted(before.keys() | after.keys()):
             if before.get(aspect) != after.get(aspect):
-                yield Difference(one, other, aspect, before.get(aspect), after.get(aspect))
+                yield Difference(
+                    left_element, right_element, aspect, before.get(aspect), after.get(aspect)
+                )
 
-    def _facts(self, element: Element, is_right: bool = False) -> dict[str, object]:
+    def _collect_facts(self, element: Element, is_right: bool = False) -> dict[str, object]:
         graph = self.right if is_right else self.left
         facts: dict[str, object] = {"kind": str(element.kind), "name": element.name}
-        facts["owner"] = self._target(element.owner, is_right)
+        facts["owner"] = self._map_id(element.owner, is_right)
         for name, value in element.attrs.items():
-            if name not in _OF_THE_FILE:
-                facts[name] = self._value(value, is_right)
+            if name not in _LOCATION_ATTRIBUTES:
+                facts[name] = self._map_value(value, is_right)
         for edge in Edge:
             targets = graph.targets(element, edge) if edge is not Edge.OWNS else []
             if targets:
-                facts[f"-> {edge}"] = sorted(str(self._target(t.id, is_right)) for t in targets)
+                facts[f"-> {edge}"] = sorted(str(self._map_id(t.id, is_right)) for t in targets)
         return facts
 
-    def _value(self, value: object, is_right: bool) -> object:
+    def _map_value(self, value: object, is_right: bool) -> object:
         if isinstance(value, tuple):
-            return tuple(self._value(item, is_right) for item in value)
-        return self._target(value, is_right) if isinstance(value, str) else value
+            return tuple(self._map_value(member, is_right) for member in value)
+        return self._map_id(value, is_right) if isinstance(value, str) else value
 
-    def _target(self, id: str | None, is_right: bool) -> str | None:
-        """The id of the left element; for a stand-in the id that the other file gives it."""
+    def _map_id(self, id: str | None, is_right: bool) -> str | None:
+        """Return the id of the left element; for an external stub its id in the other file."""
         graph = self.right if is_right else self.left
         if id is None or id not in graph:
             return id
@@ -109,7 +114,7 @@ class Agreement:
         return self.left_of.get(id, id) if is_right else id
 
 
-def _uppermost(graph: Graph, matched: dict[str, str]) -> Counter[str]:
+def _count_uppermost(graph: Graph, matched: dict[str, str]) -> Counter[str]:
     return Counter(
         str(element.kind)
         for element in graph
@@ -118,10 +123,10 @@ def _uppermost(graph: Graph, matched: dict[str, str]) -> Counter[str]:
     )
 
 
-def _pairs(left: Graph, right: Graph) -> dict[str, str]:
+def _find_pairs(left: Graph, right: Graph) -> dict[str, str]:
     pairs = {e.id: e.id for e in left if e.source and e.id in right and right[e.id].source}
     taken = set(pairs.values())
-    _pair_equals(_roots(left), _roots(right), pairs, taken)
+    _pair_equals(_list_roots(left), _list_roots(right), pairs, taken)
     for element in left:
         if element.id in pairs:
             children = left.owned(element), right.owned(right[pairs[element.id]])
@@ -129,7 +134,7 @@ def _pairs(left: Graph, right: Graph) -> dict[str, str]:
     return pairs
 
 
-def _roots(graph: Graph) -> list[Element]:
+def _list_roots(graph: Graph) -> list[Element]:
     return [element for element in graph.roots() if "external" not in element.attrs]
 
 
@@ -143,6 +148,6 @@ def _pair_equals(
     for element in left:
         equals = free.get((element.kind, element.name))
         if element.id not in pairs and equals:
-            found = equals.pop(0)
-            pairs[element.id] = found.id
-            taken.add(found.id)
+            partner = equals.pop(0)
+            pairs[element.id] = partner.id
+            taken.add(partner.id)

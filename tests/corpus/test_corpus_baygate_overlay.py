@@ -1,6 +1,6 @@
-"""BayGate refined: section 10 of baygate/expected.md, from each of its four files.
+"""BayGate refined by an overlay: section 10 of baygate/expected.md, for each of its four files.
 
-The overlay and the activity are ours, from sections 3.4.1 and 3.4.2 of the thesis.
+The overlay and the activity follow sections 3.4.1 and 3.4.2 of the thesis.
 """
 
 import re
@@ -8,6 +8,7 @@ import shutil
 from collections import Counter
 
 import pytest
+from reading_corpus import BAYGATE_FILES
 
 from sysmlc.driver import Request, compile_model, select_backends
 from sysmlc.ir import Edge, Kind
@@ -16,7 +17,6 @@ from sysmlc.logic.contract import Contract
 pytestmark = pytest.mark.corpus
 spot = pytest.importorskip("spot")
 
-FILES = ["BayGate.aml", "BayGate_caex215.aml", "BayGate_extlibs.aml", "BayGate.amlx"]
 ITEMS = """\
 overlay: 1
 items:
@@ -98,7 +98,7 @@ FLOWS = [
 ]
 
 
-def activity():
+def print_activity():
     lines = [
         f"    ControlFlow f{n}{f' guard={chr(34)}{guard}{chr(34)}' if guard else ''}\n"
         f"      -> flow-source {source}\n      -> flow-target {target}\n"
@@ -108,57 +108,53 @@ def activity():
 
 
 @pytest.fixture(scope="module")
-def refined(corpus, tmp_path_factory):
-    """Each of the four files, compiled as the user would: the overlay lies beside it."""
-    chosen = tuple(select_backends(()))
-    made = {}
-    for name in FILES:
+def compilations(corpus, tmp_path_factory):
+    """Compile each of the four files as a user does, with the overlay beside it."""
+    backends = tuple(select_backends(()))
+    compilations = {}
+    for name in BAYGATE_FILES:
         folder = tmp_path_factory.mktemp("baygate") / "plant"
         shutil.copytree(corpus / "aml" / "baygate", folder)
-        (folder / "gate.ir").write_text(activity())
+        (folder / "gate.ir").write_text(print_activity())
         stem = name.partition(".")[0]
         (folder / f"{stem}.overlay.yaml").write_text(ITEMS + CONNECTORS + BLOCKS)
-        made[name] = compile_model(Request((folder / name,), backends=chosen))
-    return made
+        compilations[name] = compile_model(Request((folder / name,), backends=backends))
+    return compilations
 
 
 def is_added(element):
     return element.source.endswith(".overlay.yaml")
 
 
-def full(graph, element):
-    return graph.qualified_name(element)
-
-
-@pytest.mark.parametrize("name", FILES)
-def test_refined_baygate_has_the_totals_of_its_description(name, refined):
-    graph = refined[name].graph
-    blocks = [one for one in graph.of_kind(Kind.CLASS) if is_added(one)]
-    assert {one.name: one.attrs["domain"] for one in blocks} == {
+@pytest.mark.parametrize("name", BAYGATE_FILES)
+def test_refined_baygate_has_the_totals_of_its_description(name, compilations):
+    graph = compilations[name].graph
+    blocks = [element for element in graph.of_kind(Kind.CLASS) if is_added(element)]
+    assert {element.name: element.attrs["domain"] for element in blocks} == {
         "MiniPallet": "physical",
         "RFID_Tag": "information",
     }
-    counts = Counter(one.kind for one in graph if one.source != "gate.ir")
+    counts = Counter(element.kind for element in graph if element.source != "gate.ir")
     assert counts[Kind.ITEM_FLOW] == 5
     assert counts[Kind.CONNECTOR] == 5
     assert counts[Kind.PORT] == 10
-    assert sum(one.role == "part" for one in graph.of_kind(Kind.PROPERTY)) == 3
+    assert sum(element.role == "part" for element in graph.of_kind(Kind.PROPERTY)) == 3
 
 
-@pytest.mark.parametrize("name", FILES)
-def test_each_item_flows_where_the_thesis_says(name, refined):
-    graph = refined[name].graph
-    shown = {}
+@pytest.mark.parametrize("name", BAYGATE_FILES)
+def test_each_item_flows_between_the_ports_of_the_thesis(name, compilations):
+    graph = compilations[name].graph
+    flows = {}
     for flow in graph.of_kind(Kind.ITEM_FLOW):
         (connector,) = graph.targets(flow, Edge.REALIZING)
         (item,) = graph.targets(flow, Edge.CONVEYS)
         sides = [
-            [one.name for one in graph.targets(flow, edge)]
+            [end.name for end in graph.targets(flow, edge)]
             for edge in (Edge.FLOW_SOURCE, Edge.FLOW_TARGET)
         ]
-        shown[connector.name] = (item.name, *sides, connector.attrs["domain"])
+        flows[connector.name] = (item.name, *sides, connector.attrs["domain"])
     both = ["p_swCb", "p_bgCb"]
-    assert shown == {
+    assert flows == {
         "l_bgIn_sIn": ("MiniPallet", ["p_bgIn"], ["p_sIn"], "physical"),
         "l_stRf_rfIn": ("RFID_Tag", ["p_stRf"], ["p_rfIn"], "information"),
         "l_sOut_swIn": ("MiniPallet", ["p_sOut"], ["p_swIn"], "physical"),
@@ -167,22 +163,25 @@ def test_each_item_flows_where_the_thesis_says(name, refined):
     }
 
 
-@pytest.mark.parametrize("name", FILES)
-def test_the_flows_direct_the_ports(name, refined):
-    graph = refined[name].graph
-    found = {one.name: one.attrs.get("direction") for one in graph.of_kind(Kind.PORT)}
+@pytest.mark.parametrize("name", BAYGATE_FILES)
+def test_flows_give_ports_their_direction(name, compilations):
+    graph = compilations[name].graph
+    directions = {port.name: port.attrs.get("direction") for port in graph.of_kind(Kind.PORT)}
     both = dict.fromkeys(["p_swCb", "p_bgCb"], "inout")
     inward = dict.fromkeys(["p_bgIn", "p_sIn", "p_swIn", "p_rfIn"], "in")
-    assert found == inward | dict.fromkeys(["p_bgOut", "p_swOut", "p_sOut", "p_stRf"], "out") | both
+    assert (
+        directions
+        == inward | dict.fromkeys(["p_bgOut", "p_swOut", "p_sOut", "p_stRf"], "out") | both
+    )
 
 
-@pytest.mark.parametrize("name", FILES)
-def test_all_calls_of_the_gate_are_resolved(name, refined):
-    graph = refined[name].graph
+@pytest.mark.parametrize("name", BAYGATE_FILES)
+def test_all_calls_of_the_gate_are_resolved(name, compilations):
+    graph = compilations[name].graph
     calls = {
-        one.name: [full(graph, called) for called in graph.targets(one, Edge.CALLS)]
-        for one in graph.of_kind(Kind.ACTION)
-        if one.subkind == "call-operation"
+        element.name: [graph.qualified_name(call) for call in graph.targets(element, Edge.CALLS)]
+        for element in graph.of_kind(Kind.ACTION)
+        if element.subkind == "call-operation"
     }
     assert calls == {
         "readId": ["BayGate Breakdown::RFID_Reader::readId"],
@@ -190,20 +189,26 @@ def test_all_calls_of_the_gate_are_resolved(name, refined):
         "release": ["BayGate Breakdown::Stopper::release"],
         "getInPallet": ["BayGate Breakdown::Switch::getInPallet"],
     }
-    assert sum("unresolved" in one.attrs for one in graph) == 0
+    assert sum("unresolved" in element.attrs for element in graph) == 0
 
 
-@pytest.mark.parametrize("name", FILES)
-def test_nothing_is_wrong_with_the_refined_gate(name, refined):
-    assert [(one.rule.code, one.message) for one in refined[name].diagnostics] == []
+@pytest.mark.parametrize("name", BAYGATE_FILES)
+def test_the_refined_gate_has_no_diagnostics(name, compilations):
+    assert [
+        (diagnostic.rule.code, diagnostic.message) for diagnostic in compilations[name].diagnostics
+    ] == []
 
 
-@pytest.mark.parametrize("name", FILES)
-def test_the_contract_of_the_gate_is_derived_and_spot_reads_it(name, refined):
-    made = refined[name]
-    contracts = {one.component: one for one in made.graph.derived(Contract)}
+@pytest.mark.parametrize("name", BAYGATE_FILES)
+def test_the_contract_of_the_gate_is_derived_and_spot_reads_it(name, compilations):
+    compilation = compilations[name]
+    contracts = {item.component: item for item in compilation.graph.derived(Contract)}
     assert list(contracts) == ["BayGate Breakdown::BayGate"]
-    texts = {one.path: one.text for one in made.list_published() if one.path.endswith(".spin.ltl")}
+    texts = {
+        item.path: item.text
+        for item in compilation.list_published()
+        if item.path.endswith(".spin.ltl")
+    }
     (text,) = texts.values()
     formula = "\n".join(line for line in text.splitlines() if not line.startswith("//"))
     parsed = spot.parse_infix_psl(formula, spot.default_environment.instance(), False, True)
@@ -213,12 +218,15 @@ def test_the_contract_of_the_gate_is_derived_and_spot_reads_it(name, refined):
         assert any(re.search(rf"run_{action}\b", atom) for atom in atoms), atoms
 
 
-@pytest.mark.parametrize("name", FILES[1:])
-def test_what_the_overlay_adds_is_the_same_for_the_four_files(name, refined):
-    """Ids too: what refers to a flow still does after an export in another version."""
-    assert added(refined[name].graph) == added(refined[FILES[0]].graph)
+@pytest.mark.parametrize("name", BAYGATE_FILES[1:])
+def test_the_overlay_adds_the_same_elements_to_each_file(name, compilations):
+    """Ids are equal too, so that references to a flow survive an export in another version."""
+    assert list_added(compilations[name].graph) == list_added(compilations[BAYGATE_FILES[0]].graph)
 
 
-def added(graph):
-    ours = [one for one in graph if is_added(one)]
-    return sorted((one.id, one.kind, one.name, one.owner, str(one.attrs)) for one in ours)
+def list_added(graph):
+    elements = [element for element in graph if is_added(element)]
+    return sorted(
+        (element.id, element.kind, element.name, element.owner, str(element.attrs))
+        for element in elements
+    )

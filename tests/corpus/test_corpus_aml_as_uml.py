@@ -1,9 +1,9 @@
-"""Real plants that are saved as UML and read back: the differences and their reasons."""
+"""Real plants are saved as UML and read back; every difference has a reason."""
 
 from collections import Counter
 
 import pytest
-from plants import baygate, refined, sources, units
+from plants import list_baygate, list_units, load_unit, refine
 
 from graph_differences import diff
 from sysmlc.backends.uml.backend import write_document
@@ -24,16 +24,16 @@ def save(graph):
 
 
 def read_back(text):
-    graph = refined([Source("model.uml", text.encode())], FRONTEND)
+    graph = refine([Source("model.uml", text.encode())], FRONTEND)
     assert verify(graph) == []
     return graph
 
 
 @pytest.mark.long
-def test_every_difference_has_a_reason(corpus, golden):
+def test_every_difference_after_reading_back_has_a_reason(corpus, golden):
     lines = []
-    for name, paths in sorted(units(corpus).items()):
-        graph = refined(sources(corpus, paths))
+    for name, paths in sorted(list_units(corpus).items()):
+        graph = refine(load_unit(corpus, paths))
         text, codes = save(graph)
         assert set(codes) <= {"SM723", "SM724", "SM726", "SM747"}, name
         changes = diff(graph, read_back(text), IGNORED)
@@ -57,13 +57,13 @@ def find_reason(graph, change):
 
 @pytest.mark.parametrize("name", ["BayGate.aml", "BayGate.amlx", "BayGate_extlibs.aml"])
 def test_baygate_is_read_back_without_differences(name, corpus):
-    graph = refined(sources(corpus, baygate(corpus)[name]))
+    graph = refine(load_unit(corpus, list_baygate(corpus)[name]))
     assert diff(graph, read_back(save(graph)[0]), IGNORED) == []
 
 
 @pytest.mark.parametrize("old", [' name="length"', "xs:double", "system-unit-class-lib"])
-def test_the_comparison_sees_a_difference(old, corpus):
-    graph = refined(sources(corpus, baygate(corpus)["BayGate.aml"]))
+def test_the_comparison_detects_a_difference(old, corpus):
+    graph = refine(load_unit(corpus, list_baygate(corpus)["BayGate.aml"]))
     text, _ = save(graph)
     assert old in text
     changed = text.replace(old, old.replace("t", "d").replace("d", "x"), 1)
