@@ -12,6 +12,7 @@ from pathlib import PurePosixPath
 import pytest
 from aml_classes import iter_unresolved
 from lxml import etree
+from reading_corpus import load_files, local_name, parse_data
 
 from graph_differences import diff
 from sysmlc.diagnostics import Coverage, Place, Severity, Sink
@@ -20,7 +21,7 @@ from sysmlc.driver import Request, compile_model
 from sysmlc.frontends.caex import FRONTEND
 from sysmlc.ir import Edge, Graph, Kind
 from sysmlc.ir.verify import verify
-from sysmlc.sources import Source, load
+from sysmlc.sources import Source
 
 pytestmark = pytest.mark.corpus
 
@@ -29,7 +30,7 @@ DEV, BAD = 30, 13
 
 class Reading:
     def __init__(self, *paths):
-        self.sources = [source for path in paths for source in load(path, path.name)]
+        self.sources = load_files(*paths)
         self.graph, self.sink, self.coverage = Graph(), Sink(), Coverage()
         FRONTEND.read(self.sources, self.graph, self.sink, self.coverage)
         assert verify(self.graph) == []
@@ -47,10 +48,10 @@ def aml(corpus):
 def read_entries(aml):
     readings = {}
 
-    def read(*list_entries):
-        if list_entries not in readings:
-            readings[list_entries] = Reading(*(aml / name for name in list_entries))
-        return readings[list_entries]
+    def read(*names):
+        if names not in readings:
+            readings[names] = Reading(*(aml / name for name in names))
+        return readings[names]
 
     return read
 
@@ -60,12 +61,11 @@ def list_entries(aml, folder):
 
 
 def find_local(node, *tags):
-    return [element for element in node.iter("{*}*") if etree.QName(element).localname in tags]
+    return [element for element in node.iter("{*}*") if local_name(element) in tags]
 
 
 def parse_source(source):
-    parser = etree.XMLParser(huge_tree=True, resolve_entities=False)
-    return etree.fromstring(source.data, parser)
+    return parse_data(source.data)
 
 
 # -- verdicts of elements ----------------------------------------------------------------------
@@ -76,9 +76,9 @@ def test_every_element_of_every_file_is_mapped_or_approximated(aml, read_entries
     entries = list_entries(aml, "dev")
     assert len(entries) == DEV
     for name in entries:
-        read = read_entries(name)
-        for source in read.sources:
-            coverage = read.coverage.file(source.name)
+        reading = read_entries(name)
+        for source in reading.sources:
+            coverage = reading.coverage.file(source.name)
             assert coverage.elements == sum(1 for _ in parse_source(source).iter(etree.Element)), (
                 name
             )
@@ -94,10 +94,10 @@ def test_every_element_of_every_file_is_mapped_or_approximated(aml, read_entries
 def test_verdicts_sum_to_the_number_of_elements_of_every_readable_file(folder, aml, read_entries):
     readable = 0
     for path in sorted((aml / folder).glob("*.aml")):
-        read = read_entries(f"{folder}/{path.name}")
-        counts = {coverage.file: coverage.elements for coverage in read.coverage.files()}
-        if "SM142" not in read.count_codes():
-            expected = sum(1 for _ in parse_source(read.sources[0]).iter(etree.Element))
+        reading = read_entries(f"{folder}/{path.name}")
+        counts = {coverage.file: coverage.elements for coverage in reading.coverage.files()}
+        if "SM142" not in reading.count_codes():
+            expected = sum(1 for _ in parse_source(reading.sources[0]).iter(etree.Element))
             assert counts == {path.name: expected}
             readable += 1
     assert readable == {"bad": 5, "baygate": 3}[folder]
@@ -128,7 +128,7 @@ def count_link_sides(root):
 
 def is_interface(side, by_id):
     if side in by_id:
-        return etree.QName(by_id[side]).localname == "ExternalInterface"
+        return local_name(by_id[side]) == "ExternalInterface"
     for colon in re.finditer(":", side):
         owner = by_id.get(side[: colon.start()])
         if owner is not None:
@@ -139,15 +139,20 @@ def is_interface(side, by_id):
 
 def count_class_references(root):
     """Count the resolved references of internal elements to classes of the file, and all."""
-    paths_of_classes, all_ids = (
-        set(),
-        {node.get("ID") for node in find_local(root, "InternalElement")},
-    )
-    for library in find_local(root, "SystemUnitClassLib"):
-        paths_of_classes |= set(iter_class_paths(library, library.get("Name")))
-    paths = [node.get("RefBaseSystemUnitPath", "") for node in find_local(root, "InternalElement")]
-    paths = [path for path in paths if path and path not in all_ids]
-    return sum(path in paths_of_classes for path in paths), len(paths)
+    class_paths = find_class_paths(root)
+    elements = find_local(root, "InternalElement")
+    ids = {element.get("ID") for element in elements}
+    paths = [element.get("RefBaseSystemUnitPath", "") for element in elements]
+    paths = [path for path in paths if path and path not in ids]
+    return sum(path in class_paths for path in paths), len(paths)
+
+
+def find_class_paths(root):
+    return {
+        path
+        for library in find_local(root, "SystemUnitClassLib")
+        for path in iter_class_paths(library, library.get("Name"))
+    }
 
 
 def iter_class_paths(node, path):
@@ -167,12 +172,14 @@ def iter_class_paths(node, path):
     ],
 )
 def test_every_side_of_a_link_at_an_interface_is_an_end_of_a_relation(name, expected, read_entries):
-    read = read_entries(name)
-    resolved, total = count_link_sides(parse_source(read.sources[0]))
+    reading = read_entries(name)
+    resolved, total = count_link_sides(parse_source(reading.sources[0]))
     assert expected in (None, (resolved, total))
-    ends = read.graph.of_kind(Kind.CONNECTOR_END)
-    related = [d for d in read.graph.of_kind(Kind.DEPENDENCY) if d.subkind in ("ppr", "succession")]
-    assert (len(ends) + 2 * len(related), read.count_codes()["SM135"]) == (
+    ends = reading.graph.of_kind(Kind.CONNECTOR_END)
+    relations = [
+        d for d in reading.graph.of_kind(Kind.DEPENDENCY) if d.subkind in ("ppr", "succession")
+    ]
+    assert (len(ends) + 2 * len(relations), reading.count_codes()["SM135"]) == (
         resolved,
         total - resolved,
     )
@@ -183,12 +190,12 @@ def test_every_side_of_a_link_at_an_interface_is_an_end_of_a_relation(name, expe
     [("dev/mtp_wago_ecockpit.aml", (55, 55)), ("dev/mtp_tud_minimal.aml", (27, 28))],
 )
 def test_every_class_of_an_internal_element_is_resolved_or_reported(name, expected, read_entries):
-    read = read_entries(name)
-    assert count_class_references(parse_source(read.sources[0])) == expected
+    reading = read_entries(name)
+    assert count_class_references(parse_source(reading.sources[0])) == expected
     resolved, total = expected
     reported = [
         diagnostic
-        for diagnostic in read.sink
+        for diagnostic in reading.sink
         if diagnostic.rule.code == "SM130" and "SUCLib" in diagnostic.message
     ]
     assert len(reported) == total - resolved
@@ -196,14 +203,10 @@ def test_every_class_of_an_internal_element_is_resolved_or_reported(name, expect
 
 @pytest.mark.parametrize("name", ["mtp_wago_ecockpit", "mtp_tud_minimal", "vera_plant"])
 def test_a_class_that_lxml_finds_is_the_type_of_the_part_or_instance(name, read_entries):
-    read = read_entries(f"dev/{name}.aml")
-    graph, count = read.graph, 0
-    root = parse_source(read.sources[0])
-    class_paths = {
-        path
-        for library in find_local(root, "SystemUnitClassLib")
-        for path in iter_class_paths(library, library.get("Name"))
-    }
+    reading = read_entries(f"dev/{name}.aml")
+    graph, count = reading.graph, 0
+    root = parse_source(reading.sources[0])
+    class_paths = find_class_paths(root)
     for node in find_local(root, "InternalElement"):
         path = node.get("RefBaseSystemUnitPath")
         element = graph.get(node.get("ID"))
@@ -243,8 +246,8 @@ def test_aml_engine_resolves_no_side_and_no_class_that_sysmlc_does_not(aml, read
     differing = set()
     for name, row in rows:
         folder = "dev" if (aml / "dev" / name).exists() else "bad"
-        read = read_entries(f"{folder}/{name}")
-        root = parse_source(read.sources[0])
+        reading = read_entries(f"{folder}/{name}")
+        root = parse_source(reading.sources[0])
         sides, _ = count_link_sides(root)
         classes, _ = count_class_references(root)
         if (sides, classes) != (row["sides_ok"], row["resolved"]):
@@ -263,12 +266,12 @@ def read_oracle(aml):
 
 def test_every_unresolved_reference_is_reported_with_its_line(aml, read_entries):
     for name in list_entries(aml, "dev"):
-        read = read_entries(name)
-        places = [diagnostic.subject.place for diagnostic in read.sink]
-        located = locate(read.sources, places)
+        reading = read_entries(name)
+        places = [diagnostic.subject.place for diagnostic in reading.sink]
+        located = locate(reading.sources, places)
         assert all(located[place].line > 0 for place in places), name
         missing = [
-            diagnostic for diagnostic in read.sink if diagnostic.rule.code in ("SM131", "SM132")
+            diagnostic for diagnostic in reading.sink if diagnostic.rule.code in ("SM131", "SM132")
         ]
         for diagnostic in missing:
             assert diagnostic.notes, name
@@ -285,27 +288,27 @@ def test_the_reported_lines_are_those_of_the_references_that_lxml_cannot_resolve
         f"bad/i40_{name}.aml" for name in ("alias_undeclared", "link_freetext", "wrong_order")
     ]
     for name in files:
-        read = read_entries(name)
-        (source,) = read.sources
+        reading = read_entries(name)
+        (source,) = reading.sources
         places = [Place(source.name, n) for n in iter_unresolved(parse_source(source))]
         expected = {location.line for location in locate([source], places).values()}
-        assert list_reported_lines(read, source) == expected, name
+        assert list_reported_lines(reading, source) == expected, name
 
 
-def list_reported_lines(read, source):
+def list_reported_lines(reading, source):
     """Return the lines of all references that are reported as unresolved."""
     single = [
         diagnostic.subject.place
-        for diagnostic in read.sink
+        for diagnostic in reading.sink
         if diagnostic.rule.code in RULES_AT_REFERENCES
     ]
     held_back = [
-        diagnostic.subject.place for diagnostic in read.sink if diagnostic.rule.code == "SM149"
+        diagnostic.subject.place for diagnostic in reading.sink if diagnostic.rule.code == "SM149"
     ]
     lines = {location.line for location in locate([source], [*single, *held_back]).values()}
     notes = (
         note
-        for diagnostic in read.sink
+        for diagnostic in reading.sink
         if diagnostic.rule.code in RULES_WITH_NOTES
         for note in diagnostic.notes
     )
@@ -327,16 +330,16 @@ def list_reported_lines(read, source):
     ],
 )
 def test_a_bad_file_has_the_diagnostics_of_its_row_in_the_readme(name, codes, read_entries):
-    read = read_entries(name)
-    counts = read.count_codes()
+    reading = read_entries(name)
+    counts = reading.count_codes()
     assert {code: counts[code] for code in codes} == codes
 
 
 def test_unresolved_sides_are_as_many_as_lxml_counts(aml, read_entries):
     for name in ("freetext", "dangling", "no_iface"):
-        read = read_entries(f"bad/i40_link_{name}.aml")
-        resolved, total = count_link_sides(parse_source(read.sources[0]))
-        assert read.count_codes()["SM135"] == total - resolved
+        reading = read_entries(f"bad/i40_link_{name}.aml")
+        resolved, total = count_link_sides(parse_source(reading.sources[0]))
+        assert reading.count_codes()["SM135"] == total - resolved
 
 
 CONTAINERS = {

@@ -20,16 +20,14 @@ def laboratory(corpus):
     return compile_model(Request((corpus / "sysml2" / "ice-lab",))).graph
 
 
-def find_subjects(graph):
+def make_locator(graph):
     return lambda id: graph.subject(graph[id])
 
 
 @pytest.mark.long
 def test_every_contract_of_the_ice_laboratory_is_realizable_without_warnings(laboratory):
     contracts, sink = laboratory.derived(Contract), Sink()
-    results = list(
-        check_contracts(contracts, contracts, find_subjects(laboratory), sink, Options())
-    )
+    results = list(check_contracts(contracts, contracts, make_locator(laboratory), sink, Options()))
     verdicts = {result.verdict.component: result.verdict.is_realizable for result in results}
     assert len(verdicts) == 50
     assert [name for name, is_realizable in verdicts.items() if not is_realizable] == []
@@ -42,7 +40,7 @@ def test_machines_of_the_ice_laboratory_exchange_no_variables_of_their_contracts
     compositions = list(compose_blocks(laboratory, laboratory.derived(Contract), sink))
     results = [
         result.text()
-        for result in check_compositions(compositions, find_subjects(laboratory), sink, Options())
+        for result in check_compositions(compositions, make_locator(laboratory), sink, Options())
     ]
     assert results == [
         "PlantTopology::Cell1_FunctionalTesting: its 2 parts are not connected",
@@ -54,13 +52,15 @@ def test_machines_of_the_ice_laboratory_exchange_no_variables_of_their_contracts
         "PlantTopology::ICEProductionLine: its 39 parts are not connected",
         "PlantTopology::MobileLogistics: its 2 parts are not connected",
     ]
-    assert {result.rule.code for result in sink} == {"SM508"}
-    steps = [re.findall("'([^']*)'", result.message)[1] for result in sink]
+    assert {diagnostic.rule.code for diagnostic in sink} == {"SM508"}
+    steps = [re.findall("'([^']*)'", diagnostic.message)[1] for diagnostic in sink]
     assert sorted(steps) == ["check"] * 4 + ["waitDone"] * 8
     (plant,) = (
-        result for result in compositions if result.component == "PlantTopology::ICEProductionLine"
+        composition
+        for composition in compositions
+        if composition.component == "PlantTopology::ICEProductionLine"
     )
-    parts = {result.name: result for result in plant.parts}
+    parts = {part.name: part for part in plant.parts}
     assert "cell2" in parts
     assert "cell7.waitAckBay" in parts
     names = [v.name for part in plant.parts for v in part.contract.variables]

@@ -11,7 +11,6 @@ from sysmlc.driver.coverage import measure_coverage
 
 pytestmark = pytest.mark.corpus
 
-
 _COLUMNS = ("elements", *(verdict.value for verdict in Verdict))
 
 

@@ -21,7 +21,6 @@ from sysmlc.sources import Source
 
 pytestmark = pytest.mark.corpus
 
-
 LARGE = 700_000
 KINDS_IN_ALL = 300
 

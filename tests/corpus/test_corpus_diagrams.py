@@ -51,8 +51,8 @@ def compile_once(corpus):
     return compile_cached
 
 
-def list_views(made):
-    return [view for view in made.graph.of_kind(Kind.VIEW) if view.subkind == "diagram"]
+def list_views(compilation):
+    return [view for view in compilation.graph.of_kind(Kind.VIEW) if view.subkind == "diagram"]
 
 
 @pytest.mark.parametrize("name", MODELS)
@@ -113,14 +113,9 @@ def test_every_shown_element_is_in_the_graph_or_reported(name, corpus, compile_o
         if diagnostic.rule.code == "SM162":
             reported[diagnostic.subject.id] += int(diagnostic.message.split()[0])
     for id, (title, _, used) in expected.items():
-        shown = {
-            e.id.rpartition("#")[2]
-            for e in compilation.graph.targets(compilation.graph[id], "references")
-        }
-        shown |= {
-            str(e.attrs.get("href", "")).rpartition("#")[2]
-            for e in compilation.graph.targets(compilation.graph[id], "references")
-        }
+        targets = compilation.graph.targets(compilation.graph[id], "references")
+        shown = {element.id.rpartition("#")[2] for element in targets}
+        shown |= {str(element.attrs.get("href", "")).rpartition("#")[2] for element in targets}
         assert len(used - shown - relation_ids) <= reported[id], title
 
 

@@ -15,7 +15,6 @@ from sysmlc.driver import Request, compile_model, select_backends
 
 pytestmark = pytest.mark.corpus
 
-
 ARCHIVES = (".mdzip", ".amlx")
 FILE_RULES = {"SM100", "SM110", "SM141", "SM142", "SM148", "SM158", "SM171", "SM172", "SM178"}
 """Rules about a file as a whole, not about an element."""

@@ -104,8 +104,8 @@ def test_seven_references_of_all_files_dangle(files):
 def test_every_reference_is_in_the_graph_or_has_a_reason(files):
     lost = [
         reference
-        for read_graph, references in files.values()
-        for reference in _iter_lost(read_graph, references)
+        for graph, references in files.values()
+        for reference in _iter_lost(graph, references)
     ]
     explained = Counter(_find_reason(reference) for reference in lost)
     assert [reference for reference in lost if not _find_reason(reference)] == []
@@ -116,10 +116,10 @@ def _find_reason(reference: Reference) -> str:
     return next((reason for reason, (_, fits) in REASONS.items() if fits(reference)), "")
 
 
-def _iter_lost(read_graph: Graph, references: list[Reference]) -> Iterator[Reference]:
-    connected = _connect_ids(read_graph)
+def _iter_lost(graph: Graph, references: list[Reference]) -> Iterator[Reference]:
+    connected = _connect_ids(graph)
     for reference in references:
-        holder = next((id for id in reference.holders if id in read_graph), "")
+        holder = next((id for id in reference.holders if id in graph), "")
         # Enterprise Architect writes Profile__Some_name for Some name of another profile.
         stereotype_name = reference.source.rpartition("__")[2].replace("_", " ")
         is_application = not connected.isdisjoint(
@@ -137,19 +137,15 @@ def _is_connected(holder: str, target: str, connected: set[tuple[str, str]]) -> 
     return holder == target or (holder, target) in connected
 
 
-def _connect_ids(read_graph: Graph) -> set[tuple[str, str]]:
+def _connect_ids(graph: Graph) -> set[tuple[str, str]]:
     """Return the pairs of ids that an edge or attribute connects, and stereotypes by name."""
     connected = {
-        pair
-        for _, source, target in read_graph.edges()
-        for pair in ((source, target), (target, source))
+        pair for _, source, target in graph.edges() for pair in ((source, target), (target, source))
     }
-    connected |= {
-        (read_graph[source].name, target) for _, source, target in read_graph.edges(Edge.SUBJECT)
-    }
-    for element in read_graph:
+    connected |= {(graph[source].name, target) for _, source, target in graph.edges(Edge.SUBJECT)}
+    for element in graph:
         for id in _iter_texts(tuple(element.attrs.values())):
-            if id in read_graph:
+            if id in graph:
                 connected |= {(element.id, id), (id, element.id)}
     return connected
 

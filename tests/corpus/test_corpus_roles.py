@@ -65,13 +65,13 @@ def map_generals(profile: etree._Element) -> dict[str, set[str]]:
     }
 
     def collect_names(element: etree._Element) -> set[str]:
-        general = {element.get("name")}
+        names = {element.get("name")}
         for generalization in element.findall("generalization"):
             if generalization.get("general"):
-                general |= collect_names(stereotypes[generalization.get("general")])
+                names |= collect_names(stereotypes[generalization.get("general")])
             for href in generalization.xpath("general/@href"):
-                general.add(href.rpartition("_packagedElement_")[2])
-        return general
+                names.add(href.rpartition("_packagedElement_")[2])
+        return names
 
     for element in stereotypes.values():
         table[element.get("name")] = collect_names(element)

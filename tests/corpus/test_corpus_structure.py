@@ -151,14 +151,8 @@ def test_conjugation_reverses_the_direction_of_the_type(refine_model, name):
     graph = refine_model(name)
     for port in list_internal(graph, Kind.PORT):
         type_ = type_of(graph, port)
-        directions = (
-            {
-                str(flow_property.attrs["direction"])
-                for flow_property in flow_properties(graph, type_)
-            }
-            if type_
-            else ()
-        )
+        properties = flow_properties(graph, type_) if type_ else ()
+        directions = {str(flow_property.attrs["direction"]) for flow_property in properties}
         if len(directions) == 1 and port.role != "flow port":
             (direction,) = directions
             expected = opposite(direction) if port.attrs.get("conjugated") else direction

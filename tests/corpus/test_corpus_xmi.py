@@ -17,8 +17,8 @@ from sysmlc.sources import load
 pytestmark = pytest.mark.corpus
 
 
-def read_files(corpus, *list_files):
-    sources = [s for name in list_files for s in load(corpus / "xmi" / name, name)]
+def read_files(corpus, *names):
+    sources = [s for name in names for s in load(corpus / "xmi" / name, name)]
     graph, sink, coverage = Graph(), Sink(), Coverage()
     assert all(FRONTEND.detect(source) == 1.0 for source in sources)
     FRONTEND.read(sources, graph, sink, coverage)
