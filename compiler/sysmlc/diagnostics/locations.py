@@ -188,7 +188,7 @@ class _SourceText:
         self._line_starts = find_line_starts(self._text)
 
     def locate(self, offset: int, xpath: str) -> Location:
-        """Return the location of a byte."""
+        """Return the location of the byte at *offset*."""
         return self._make_location(*self._find_position(offset), xpath)
 
     def locate_line(self, place: Place) -> Location:

@@ -183,7 +183,7 @@ def _sort_by_name(value: Value, key: str) -> list[tuple[Term, Value]]:
 
 
 def _sort_by_key(value: Value, key: str) -> list[tuple[Key, Value]]:
-    """Return the same entries with names that are keys of elements."""
+    """Return the entries of the mapping below *key* whose names are ids or paths of elements."""
     return [
         (Key(name.text, _read_text(entry, "path"), name.spot), entry)
         for name, entry in _sort_by_name(value, key)

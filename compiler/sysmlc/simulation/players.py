@@ -158,7 +158,7 @@ class _BranchPlan:
         return options[self._planned[position] if position < len(self._planned) else 0]
 
     def list_alternatives(self) -> Iterator[list[int]]:
-        """Yield the plans for the other branches of each choice that was not planned."""
+        """Yield a plan for each other branch of the choices that were not planned."""
         branches = [*self._planned, *[0] * (len(self._counts) - len(self._planned))]
         for position in range(len(self._planned), len(self._counts)):
             for branch in range(1, self._counts[position]):

@@ -63,7 +63,7 @@ def find_obstacle(folder: Path, path: str) -> Path | None:
 
 
 def _read_mode(path: Path) -> int | None:
-    """Return the mode of *path*, of a link its own; None if nothing exists there."""
+    """Return the mode of *path* without following a link; None if nothing exists there."""
     try:
         return path.lstat().st_mode
     except FileNotFoundError:

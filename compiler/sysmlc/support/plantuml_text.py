@@ -156,9 +156,9 @@ def _fill_rows(words: list[str], width: int) -> list[str]:
 
 
 def _break_word(row: str, width: int) -> list[str]:
-    """Break a row that is one long word: between its parts (camelCase, ``_``, ``::``), or anywhere.
+    """Break a row that is one long word between its parts (camelCase, ``_``, ``::``).
 
-    It is broken within a part only if the part is longer than *width*.
+    A part that is longer than *width* is broken anywhere.
     """
     if len(row) <= width:
         return [row]
