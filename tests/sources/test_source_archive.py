@@ -1,4 +1,4 @@
-"""Archives: what is read, and the tricks that are refused."""
+"""Archives: which entries are read, and which archives are refused."""
 
 import io
 import zipfile
@@ -8,33 +8,34 @@ import pytest
 from sysmlc.sources import Fault, Limits, Source, SourceError, is_model_entry, read_entries
 
 
-def archive(*files, method=zipfile.ZIP_DEFLATED):
+def pack_archive(*files, method=zipfile.ZIP_DEFLATED):
     buffer = io.BytesIO()
-    with zipfile.ZipFile(buffer, "w", method) as opened:
+    with zipfile.ZipFile(buffer, "w", method) as archive:
         for name, data in files:
-            opened.writestr(name, data)
+            archive.writestr(name, data)
     return Source("plant.mdzip", buffer.getvalue())
 
 
-def everything(_name):
+def accept_all(_name):
     return True
 
 
-def refusal(source, limits=None):
+def read_refused(source, limits=None):
+    """Read an archive that is refused; return the error."""
     with pytest.raises(SourceError) as raised:
-        read_entries(source, everything, limits or Limits())
+        read_entries(source, accept_all, limits or Limits())
     return raised.value
 
 
-def test_entries_come_sorted_and_are_named_after_their_archive():
-    entries = read_entries(archive(("b", b"2"), ("a", b"1")), everything)
+def test_entries_are_sorted_and_named_after_their_archive():
+    entries = read_entries(pack_archive(("b", b"2"), ("a", b"1")), accept_all)
     assert [(entry.name, entry.data) for entry in entries] == [
         ("plant.mdzip!a", b"1"),
         ("plant.mdzip!b", b"2"),
     ]
 
 
-def test_only_the_model_entries_of_magicdraw_are_wanted():
+def test_only_some_entries_of_magicdraw_are_models():
     project = "com.nomagic.magicdraw.uml_model"
     assert is_model_entry(f"{project}.model")
     assert is_model_entry(f"{project}.shared_model")
@@ -44,10 +45,10 @@ def test_only_the_model_entries_of_magicdraw_are_wanted():
 
 
 @pytest.mark.parametrize("name", ["/etc/passwd", "a/../../b", "C:/x", "..\\x", "\\x"])
-def test_names_that_lead_out_are_refused(name):
+def test_entries_with_paths_out_of_the_archive_are_refused(name):
     info = zipfile.ZipInfo("x")
     info.filename = name
-    error = refusal(archive((info, b"")))
+    error = read_refused(pack_archive((info, b"")))
     assert error.fault is Fault.REFUSED
     assert "leads out of the archive" in error.message
     assert error.exit_code == 1
@@ -55,51 +56,53 @@ def test_names_that_lead_out_are_refused(name):
 
 @pytest.mark.filterwarnings("ignore:Duplicate name")
 def test_two_entries_with_one_name_are_refused():
-    assert "two entries are named 'a'" in refusal(archive(("a", b"1"), ("a", b"2"))).message
+    assert (
+        "two entries are named 'a'" in read_refused(pack_archive(("a", b"1"), ("a", b"2"))).message
+    )
 
 
-def test_other_methods_are_refused():
-    error = refusal(archive(("a", b"x" * 100), method=zipfile.ZIP_LZMA))
+def test_other_compression_methods_are_refused():
+    error = read_refused(pack_archive(("a", b"x" * 100), method=zipfile.ZIP_LZMA))
     assert "neither stored nor deflated" in error.message
 
 
-def test_a_bomb_is_stopped_while_it_unpacks():
-    error = refusal(archive(("bomb", bytes(30 << 20))))
+def test_a_zip_bomb_is_stopped_while_it_is_unpacked():
+    error = read_refused(pack_archive(("bomb", bytes(30 << 20))))
     assert error.fault is Fault.LIMIT
     assert error.exit_code == 2
     assert error.file == "plant.mdzip!bomb"
 
 
-def test_a_bomb_that_lies_about_its_size_is_stopped_too():
-    source = archive(("bomb", bytes(30 << 20)))
+def test_a_zip_bomb_with_a_forged_size_is_stopped_too():
+    source = pack_archive(("bomb", bytes(30 << 20)))
     size = (30 << 20).to_bytes(4, "little")
-    lying = Source(source.name, source.data.replace(size, (1000).to_bytes(4, "little")))
-    assert lying.data != source.data
-    assert refusal(lying).fault in (Fault.LIMIT, Fault.MALFORMED)
+    forged = Source(source.name, source.data.replace(size, (1000).to_bytes(4, "little")))
+    assert forged.data != source.data
+    assert read_refused(forged).fault in (Fault.LIMIT, Fault.MALFORMED)
 
 
-def test_all_entries_together_are_limited():
-    two = archive(("a", b"x" * 3000), ("b", b"y" * 3000))
-    assert refusal(two, Limits(total_size=4000)).fault is Fault.LIMIT
-    assert len(read_entries(two, everything, Limits(total_size=6000))) == 2
+def test_the_total_size_of_entries_is_limited():
+    archive = pack_archive(("a", b"x" * 3000), ("b", b"y" * 3000))
+    assert read_refused(archive, Limits(total_size=4000)).fault is Fault.LIMIT
+    assert len(read_entries(archive, accept_all, Limits(total_size=6000))) == 2
 
 
-def test_too_many_entries_are_refused():
-    many = archive(*((str(number), b"") for number in range(11)))
-    assert refusal(many, Limits(entries=10)).fault is Fault.LIMIT
-    assert len(read_entries(many, everything, Limits(entries=11))) == 11
+def test_the_number_of_entries_is_limited():
+    archive = pack_archive(*((str(number), b"") for number in range(11)))
+    assert read_refused(archive, Limits(entries=10)).fault is Fault.LIMIT
+    assert len(read_entries(archive, accept_all, Limits(entries=11))) == 11
 
 
-def test_damage_is_an_error_and_not_an_exception_of_zipfile():
-    whole = archive(("a", bytes(range(256)) * 64))
-    assert refusal(Source("a.zip", whole.data[:-40])).fault is Fault.MALFORMED
-    middle = 60
-    broken = bytearray(whole.data)
-    broken[middle : middle + 20] = bytes(20)
-    assert refusal(Source("a.zip", bytes(broken))).fault is Fault.MALFORMED
+def test_damage_is_reported_instead_of_an_exception_of_zipfile():
+    intact = pack_archive(("a", bytes(range(256)) * 64))
+    assert read_refused(Source("a.zip", intact.data[:-40])).fault is Fault.MALFORMED
+    start = 60
+    damaged = bytearray(intact.data)
+    damaged[start : start + 20] = bytes(20)
+    assert read_refused(Source("a.zip", bytes(damaged))).fault is Fault.MALFORMED
 
 
 def test_an_encrypted_entry_is_refused():
-    data = bytearray(archive(("a", b"1")).data)
+    data = bytearray(pack_archive(("a", b"1")).data)
     data[data.index(b"PK\x01\x02") + 8] |= 1
-    assert "encrypted" in refusal(Source("a.zip", bytes(data))).message
+    assert "encrypted" in read_refused(Source("a.zip", bytes(data))).message

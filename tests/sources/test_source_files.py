@@ -1,10 +1,11 @@
-"""Files and roots: what is opened, what a reference may reach."""
+"""Files: how they are read completely, and which files references can reach."""
 
+import os
 import zipfile
 
 import pytest
 
-from sysmlc.sources import Fault, Limits, Roots, SourceError, load
+from sysmlc.sources import Fault, Limits, Roots, SourceError, files, load
 
 
 def test_a_plain_file_is_one_source(tmp_path):
@@ -16,22 +17,22 @@ def test_a_plain_file_is_one_source(tmp_path):
 
 def test_an_archive_is_recognised_by_its_content(tmp_path):
     path = tmp_path / "plant.uml"
-    with zipfile.ZipFile(path, "w") as opened:
-        opened.writestr("com.nomagic.magicdraw.uml_model.model", "<a/>")
-        opened.writestr("BINARY-1", "drawing")
+    with zipfile.ZipFile(path, "w") as archive:
+        archive.writestr("com.nomagic.magicdraw.uml_model.model", "<a/>")
+        archive.writestr("BINARY-1", "drawing")
     (source,) = load(path, "plant.uml")
     assert source.name == "plant.uml!com.nomagic.magicdraw.uml_model.model"
 
 
 def test_an_archive_without_a_model_is_an_error(tmp_path):
     path = tmp_path / "plant.mdzip"
-    with zipfile.ZipFile(path, "w") as opened:
-        opened.writestr("readme", "nothing")
+    with zipfile.ZipFile(path, "w") as archive:
+        archive.writestr("readme", "nothing")
     with pytest.raises(SourceError, match="holds no model"):
         load(path, "plant.mdzip")
 
 
-def test_a_missing_file_and_a_too_large_file_are_not_the_models_fault(tmp_path):
+def test_a_missing_file_and_a_file_over_the_limit_are_exit_code_2(tmp_path):
     with pytest.raises(SourceError) as missing:
         load(tmp_path / "no.uml", "no.uml")
     assert (missing.value.fault, missing.value.exit_code) == (Fault.MISSING, 2)
@@ -41,7 +42,7 @@ def test_a_missing_file_and_a_too_large_file_are_not_the_models_fault(tmp_path):
     assert (large.value.fault, large.value.exit_code) == (Fault.LIMIT, 2)
 
 
-def test_references_stay_inside_the_roots(tmp_path):
+def test_references_are_resolved_inside_the_roots_only(tmp_path):
     inside = tmp_path / "unit"
     (inside / "sub").mkdir(parents=True)
     for path in (inside / "a b.uml", inside / "sub" / "c.uml", tmp_path / "secret.uml"):
@@ -56,3 +57,59 @@ def test_references_stay_inside_the_roots(tmp_path):
     assert roots.resolve(base, "http://localhost/a.uml") is None
     assert roots.resolve(base, "file:///etc/passwd") is None
     assert roots.resolve(base, "#local") is None
+
+
+# -- files that change while they are read --------------------------------------------------------
+
+
+def set_states(monkeypatch, *pairs):
+    """Set the size and time that a file seems to have before and after each attempt to read it."""
+    states = list(pairs)
+    monkeypatch.setattr(files, "_make_state", lambda _: states.pop(0))
+    monkeypatch.setattr(files, "_PAUSE", 0)
+
+
+def test_a_file_that_changes_once_while_it_is_read_is_read_again(tmp_path, monkeypatch):
+    path = tmp_path / "plant.uml"
+    path.write_bytes(b"<a/>")
+    set_states(monkeypatch, (4, 1), (4, 2), (4, 2), (4, 2))
+    assert files.read_whole(path, "plant.uml", Limits()) == b"<a/>"
+
+
+def test_a_file_that_keeps_changing_is_reported_and_not_used(tmp_path, monkeypatch):
+    path = tmp_path / "plant.uml"
+    path.write_bytes(b"<a/>")
+    set_states(monkeypatch, (4, 1), (4, 2), (4, 3), (4, 4))
+    with pytest.raises(SourceError, match="changes while it is read") as raised:
+        files.read_whole(path, "plant.uml", Limits())
+    assert (raised.value.fault, raised.value.exit_code) == (Fault.CHANGING, 2)
+
+
+def test_a_file_with_more_bytes_than_its_size_is_read_again(tmp_path, monkeypatch):
+    path = tmp_path / "plant.uml"
+    path.write_bytes(b"<a/>")
+    set_states(monkeypatch, (2, 1), (2, 1), (4, 1), (4, 1))
+    assert files.read_whole(path, "plant.uml", Limits()) == b"<a/>"
+
+
+def test_a_file_that_is_replaced_while_open_has_its_old_content(tmp_path, monkeypatch):
+    path = tmp_path / "plant.uml"
+    path.write_bytes(b"<old/>")
+
+    def replace_after_opening(name, flags):
+        handle = os.open(name, flags)
+        (tmp_path / "new").write_bytes(b"<newer/>")
+        (tmp_path / "new").replace(path)
+        return handle
+
+    monkeypatch.setattr(files, "_open_nonblocking", replace_after_opening)
+    assert files.read_whole(path, "plant.uml", Limits()) == b"<old/>"
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="this platform has no named pipes")
+def test_a_pipe_is_refused_without_waiting_for_it(tmp_path):
+    path = tmp_path / "plant.uml"
+    os.mkfifo(path)
+    with pytest.raises(SourceError, match="is not a regular file") as raised:
+        files.read_whole(path, "plant.uml", Limits())
+    assert raised.value.exit_code == 2

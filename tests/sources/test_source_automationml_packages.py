@@ -1,4 +1,4 @@
-"""Packages of AutomationML (.amlx): parts and relationships must fit before one part is read."""
+"""Packages of AutomationML (.amlx): parts are read only if all relationships are consistent."""
 
 import io
 import zipfile
@@ -7,22 +7,25 @@ import pytest
 
 from sysmlc.sources import Fault, SourceError, load
 
-KINDS = "http://schemas.automationml.org/container/relationship/"
-ROOT = KINDS + "RootDocument"
+KIND_PREFIX = "http://schemas.automationml.org/container/relationship/"
+ROOT = KIND_PREFIX + "RootDocument"
 HEAD = '<Relationships xmlns="http://schemas.openxmlformats.org/package/2006/relationships">'
 
 
-def relationships(*targets, root="/plant.aml", mode=""):
-    rows = [(ROOT, root), *((KINDS + "AnyContent", target) for target in targets)]
+def format_relationships(*targets, root="/plant.aml", mode=""):
+    targets_by_kind = [
+        (ROOT, root),
+        *((KIND_PREFIX + "AnyContent", target) for target in targets),
+    ]
     elements = "".join(
         f'<Relationship Type="{kind}" Target="{target}" Id="R{n}"{mode if n else ""}/>'
-        for n, (kind, target) in enumerate(rows)
+        for n, (kind, target) in enumerate(targets_by_kind)
     )
     return f"{HEAD}{elements}</Relationships>"
 
 
-def packed(tmp_path, name="plant.amlx", **parts):
-    entries = {"_rels/.rels": relationships(), "plant.aml": "<CAEXFile/>", **parts}
+def write_package(tmp_path, name="plant.amlx", **parts):
+    entries = {"_rels/.rels": format_relationships(), "plant.aml": "<CAEXFile/>", **parts}
     buffer = io.BytesIO()
     with zipfile.ZipFile(buffer, "w") as archive:
         archive.writestr("[Content_Types].xml", "<Types/>")
@@ -34,43 +37,46 @@ def packed(tmp_path, name="plant.amlx", **parts):
     return path
 
 
-def names(path):
+def read_names(path):
     return [source.name for source in load(path, path.name)]
 
 
-def problem(path):
-    with pytest.raises(SourceError) as caught:
+def read_problem(path):
+    with pytest.raises(SourceError) as raised:
         load(path, path.name)
-    assert caught.value.fault is Fault.MALFORMED
-    return caught.value.file, caught.value.message
+    assert raised.value.fault is Fault.MALFORMED
+    return raised.value.file, raised.value.message
 
 
 def test_the_documents_of_a_package_are_read(tmp_path):
     parts = {
-        "_rels/.rels": relationships("/docs/a%20b.pdf"),
+        "_rels/.rels": format_relationships("/docs/a%20b.pdf"),
         "docs/a b.pdf": "%PDF",
-        "_rels/plant.aml.rels": f'{HEAD}<Relationship Type="{KINDS}Library" Target="libs/r.aml" '
+        "_rels/plant.aml.rels": f'{HEAD}<Relationship Type="{KIND_PREFIX}Library" Target="libs/r.aml" '
         'Id="1"/></Relationships>',
         "libs/r.aml": "<CAEXFile/>",
     }
-    assert names(packed(tmp_path, **parts)) == ["plant.amlx!libs/r.aml", "plant.amlx!plant.aml"]
+    assert read_names(write_package(tmp_path, **parts)) == [
+        "plant.amlx!libs/r.aml",
+        "plant.amlx!plant.aml",
+    ]
 
 
-def test_what_a_package_leaves_outside_is_no_part(tmp_path):
-    rels = relationships("https://a.b/c.pdf", mode=' TargetMode="External"')
-    assert names(packed(tmp_path, **{"_rels/.rels": rels})) == ["plant.amlx!plant.aml"]
+def test_an_external_target_is_not_a_part(tmp_path):
+    rels = format_relationships("https://a.b/c.pdf", mode=' TargetMode="External"')
+    assert read_names(write_package(tmp_path, **{"_rels/.rels": rels})) == ["plant.amlx!plant.aml"]
 
 
 @pytest.mark.parametrize(
-    ("parts", "place", "message"),
+    ("parts", "location", "message"),
     [
         (
-            {"_rels/.rels": relationships(root="/gone.aml")},
+            {"_rels/.rels": format_relationships(root="/gone.aml")},
             "plant.amlx!_rels/.rels",
             "it has no part 'gone.aml'",
         ),
         (
-            {"_rels/.rels": relationships("/docs/gone.pdf")},
+            {"_rels/.rels": format_relationships("/docs/gone.pdf")},
             "plant.amlx!_rels/.rels",
             "it has no part 'docs/gone.pdf'",
         ),
@@ -91,7 +97,7 @@ def test_what_a_package_leaves_outside_is_no_part(tmp_path):
         ),
         (
             {
-                "_rels/.rels": relationships().replace(
+                "_rels/.rels": format_relationships().replace(
                     "</R", f'<Relationship Type="{ROOT}" Target="/b.aml" Id="2"/></R'
                 ),
                 "b.aml": "<CAEXFile/>",
@@ -106,10 +112,10 @@ def test_what_a_package_leaves_outside_is_no_part(tmp_path):
         ),
     ],
 )
-def test_a_package_that_does_not_fit_together_is_one_located_error(parts, place, message, tmp_path):
-    assert problem(packed(tmp_path, **parts)) == (place, message)
+def test_an_inconsistent_package_is_one_located_error(parts, location, message, tmp_path):
+    assert read_problem(write_package(tmp_path, **parts)) == (location, message)
 
 
-def test_an_archive_without_relationships_is_no_package(tmp_path):
-    path = packed(tmp_path, name="plant.zip", **{"_rels/.rels": None})
-    assert names(path) == ["plant.zip!plant.aml"]
+def test_an_archive_without_relationships_is_not_a_package(tmp_path):
+    path = write_package(tmp_path, name="plant.zip", **{"_rels/.rels": None})
+    assert read_names(path) == ["plant.zip!plant.aml"]

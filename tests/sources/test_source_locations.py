@@ -1,4 +1,4 @@
-"""Places become lines and columns, in characters, only when they are shown."""
+"""Places of elements are converted to lines and columns, counted in characters."""
 
 import pytest
 
@@ -8,7 +8,7 @@ from sysmlc.sources import Source
 from sysmlc.sources.xml import make_parser, parse
 
 
-def where(text, *places, encoding="utf-8"):
+def find_locations(text, *places, encoding="utf-8"):
     source = Source("f", text.encode(encoding))
     locations = locate([source], places)
     return [locations.get(place) for place in places]
@@ -16,43 +16,43 @@ def where(text, *places, encoding="utf-8"):
 
 @pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16", "windows-1252"])
 def test_columns_count_characters_in_every_encoding(encoding):
-    declared = "utf-8" if encoding.startswith("utf-8") else encoding
-    text = f'<?xml version="1.0" encoding="{declared}"?>\r\n<a>\n  <é/><b ä="ü"/> <c/>\n</a>'
+    declaration = "utf-8" if encoding.startswith("utf-8") else encoding
+    text = f'<?xml version="1.0" encoding="{declaration}"?>\r\n<a>\n  <é/><b ä="ü"/> <c/>\n</a>'
     line = '  <é/><b ä="ü"/> <c/>'
-    assert where(text, Place("f", 3), Place("f", 0), encoding=encoding) == [
+    assert find_locations(text, Place("f", 3), Place("f", 0), encoding=encoding) == [
         Location(3, 18, line),
         Location(2, 1, "<a>"),
     ]
 
 
-def test_lines_are_right_past_65535():
+def test_lines_after_65535_are_correct():
     text = "<a>" + "\n" * 70_000 + "  <b/></a>"
-    assert where(text, Place("f", 1)) == [Location(70_001, 3, "  <b/></a>")]
+    assert find_locations(text, Place("f", 1)) == [Location(70_001, 3, "  <b/></a>")]
 
 
-def test_columns_are_right_in_files_of_one_line():
+def test_columns_in_files_of_one_line_are_correct():
     text = "<a>" + "<b/>" * 50_000 + "<c/></a>"
-    (location,) = where(text, Place("f", 50_001))
+    (location,) = find_locations(text, Place("f", 50_001))
     assert (location.line, location.column) == (1, 4 + 4 * 50_000)
 
 
-def test_text_places_are_offsets_in_bytes():
-    assert where("part é;\r\nport p", Place("f", offset=15)) == [Location(2, 6, "port p")]
+def test_places_in_text_are_byte_offsets():
+    assert find_locations("part é;\r\nport p", Place("f", offset=15)) == [Location(2, 6, "port p")]
 
 
-def test_places_that_are_located_already_get_their_line():
-    assert where("one\ntwo", Place("f", line=2, column=3)) == [Location(2, 3, "two")]
+def test_places_with_line_and_column_get_the_text_of_the_line():
+    assert find_locations("one\ntwo", Place("f", line=2, column=3)) == [Location(2, 3, "two")]
 
 
 def test_unknown_ordinals_and_files_have_no_location():
-    assert where("<a/>", Place("f", 7), Place("g", 0), Place("f")) == [None, None, None]
+    assert find_locations("<a/>", Place("f", 7), Place("g", 0), Place("f")) == [None, None, None]
 
 
-def test_elements_before_damage_are_still_found():
-    assert where("<a>\n<b></a>", Place("f", 1)) == [Location(2, 1, "<b></a>")]
+def test_elements_before_a_syntax_error_are_located():
+    assert find_locations("<a>\n<b></a>", Place("f", 1)) == [Location(2, 1, "<b></a>")]
 
 
-HIDDEN = [
+TEXTS_WITH_HIDDEN_TAGS = [
     "<a><b x='/>'/>\n<c>t</c><d\n/></a>",
     "<?xml version='1.0'?><!-- <b/> --><a><b/></a>",
     "<a><![CDATA[<b/>]]><b/></a>",
@@ -63,8 +63,8 @@ HIDDEN = [
 ]
 
 
-@pytest.mark.parametrize("text", HIDDEN)
-def test_start_tags_are_where_a_parser_sees_them(text):
+@pytest.mark.parametrize("text", TEXTS_WITH_HIDDEN_TAGS)
+def test_start_tags_are_found_where_a_parser_finds_them(text):
     encoding = "windows-1252" if "1252" in text else "utf-8"
     source = Source("f", text.encode(encoding))
     offsets, parser = [], make_parser()
@@ -72,13 +72,13 @@ def test_start_tags_are_where_a_parser_sees_them(text):
     parse(source, parser)
     assert find_start_tags(source.data) in (offsets, None)
     places = [Place("f", ordinal) for ordinal in range(len(offsets))]
-    located = locate([source], places)
-    assert {p.ordinal: (located[p].line, located[p].column) for p in places} == (
-        find_positions([source], {"f": range(len(offsets))})["f"]
-    )
+    locations = locate([source], places)
+    assert {
+        place.ordinal: (locations[place].line, locations[place].column) for place in places
+    } == (find_positions([source], {"f": range(len(offsets))})["f"])
 
 
-def test_only_plain_text_is_searched_for_tags():
+def test_the_fast_search_for_tags_needs_plain_utf_8():
     assert find_start_tags(b"<a><b/></a>") == [0, 3]
     assert find_start_tags("<?xml version='1.0' encoding='utf-16'?><a/>".encode("utf-16")) is None
     assert find_start_tags(b"<a><!-- <b/> --></a>") is None
@@ -91,15 +91,15 @@ def test_unknown_ordinals_and_files_have_no_position():
 
 
 def test_the_excerpt_of_a_long_line_is_the_part_around_the_column():
-    """A file of one line with thousands of findings held that line thousands of times."""
+    """Otherwise a file of one line with thousands of diagnostics would be copied as often."""
     text = "<a>" + "<b/>" * 50_000 + "</a>"
-    first, far = where(text, Place("f", 1), Place("f", 25_000))
+    first, distant = find_locations(text, Place("f", 1), Place("f", 25_000))
     assert (first.shift, first.text) == (0, text[:400])
-    index = far.column - 1 - far.shift
-    assert (len(far.text), far.text[index : index + 4]) == (400, "<b/>")
+    index = distant.column - 1 - distant.shift
+    assert (len(distant.text), distant.text[index : index + 4]) == (400, "<b/>")
 
 
 @pytest.mark.parametrize("name", ["base64", "idna", "rot13", "klingon", "unicode_escape"])
-def test_an_encoding_that_is_none_of_texts_does_not_stop_us(name):
+def test_an_unknown_encoding_does_not_prevent_locations(name):
     text = f'<?xml version="1.0" encoding="{name}"?>\n<a/>'
-    assert where(text, Place("f", offset=len(text) - 4)) == [Location(2, 1, "<a/>")]
+    assert find_locations(text, Place("f", offset=len(text) - 4)) == [Location(2, 1, "<a/>")]
