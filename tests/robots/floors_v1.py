@@ -1,6 +1,6 @@
 """Write the library of floors for SysML v1: ``python tests/robots/floors_v1.py``.
 
-It is metamodels/Floors.sysml in the other notation; only the example in its text is another one.
+It is compiled from metamodels/Floors.sysml; only the example in its text differs.
 """
 
 import re
@@ -11,7 +11,7 @@ from sysmlc.driver import Request, compile_model, select_backends
 
 FOLDER = Path(__file__).parents[2] / "metamodels"
 _EXAMPLE = re.compile(r"columns are counted from 0 in the upper left corner\.\n.*?\n {5}\*\n", re.S)
-_WORDS = """columns are counted from 0 in the upper left corner.
+_EXPLANATION = """columns are counted from 0 in the upper left corner.
      *
      * A floor is a block that specialises 'Floor', with parts for its robots and obstacles, and one
      * for its mission, which has targets. Who has a cell is a block of its own that specialises
@@ -24,7 +24,7 @@ _WORDS = """columns are counted from 0 in the upper left corner.
 def convert_library() -> bytes:
     """Compile the library of floors for SysML v2 and return it as XMI."""
     text = (FOLDER / "Floors.sysml").read_text(encoding="utf-8")
-    text, count = _EXAMPLE.subn(_WORDS, text)
+    text, count = _EXAMPLE.subn(_EXPLANATION, text)
     assert count == 1
     # Under its own name the text would be the library that comes with the compiler.
     text = text.replace("library package Floors", "package Library")

@@ -10,7 +10,7 @@ from sysmlc.synthesis.controllers.forms import Machine, Move
 
 
 def greedy_machine(study):
-    """State 1 is for a robot that was not in its target in the step before."""
+    """Return the machine. In state 1 the robot was not in its target in the previous step."""
     contract = controller_contract(study)
     sides = [
         tuple(variable for variable in contract.variables if variable.owner is owner)

@@ -1,4 +1,4 @@
-"""Floors for the tests: squares of cells with robots; contracts by their names in the corpus."""
+"""Small floors with robots, and contracts by their names in the corpus."""
 
 import os
 import re
@@ -29,7 +29,7 @@ _WORDS = {
 }
 
 
-def floor(side, *starts, targets=(), orders=(), blocked=(), rows=None, **more):
+def floor(side, *starts, targets=(), orders=(), blocked=(), rows=None, **options):
     """Return a floor with robots r0, r1 ... (None: any start) and targets t0, t1 ... in cells."""
     return Study(
         "Hall",
@@ -45,11 +45,11 @@ def floor(side, *starts, targets=(), orders=(), blocked=(), rows=None, **more):
         ),
         tuple(Order(*order) for order in orders),
         obstacles=tuple(f"O{cell}" for cell in blocked),
-        **more,
+        **options,
     )
 
 
-def contract_like(name):
+def build_contract(name):
     """Return our contract for the floor of a file of corpus/gr1/robots."""
     kind, *rest = name.split("_")
     if kind == "robot":
@@ -65,7 +65,7 @@ def contract_like(name):
 
 def list_conjuncts(contract):
     """Return all conjuncts as text, with side and class."""
-    sides = (("assumed", contract.assumptions), ("promised", contract.guarantees))
+    sides = (("assumption", contract.assumptions), ("guarantee", contract.guarantees))
     return {
         (side, conjunct.class_, print_formula(conjunct.formula))
         for side, conjuncts in sides

@@ -43,7 +43,7 @@ def make_proof(study):
 
 
 @pytest.mark.parametrize("name", FLOORS)
-def test_proofs_agree_with_listed_states(name):
+def test_proofs_agree_with_enumerated_states(name):
     study = FLOORS[name]
     proof, listed = make_proof(study), ListedFloor(study)
     assert (proof.find_safety_failure() is None) == listed.is_safe()
@@ -52,7 +52,7 @@ def test_proofs_agree_with_listed_states(name):
 
 
 @pytest.mark.parametrize("name", FLOORS)
-def test_a_run_that_fails_is_one_of_the_listed_states(name):
+def test_a_failing_run_is_possible_in_the_enumerated_states(name):
     study = FLOORS[name]
     failure, listed = make_proof(study).find_offer_failure(), ListedFloor(study)
     if failure is not None:
@@ -82,8 +82,8 @@ def read_listed_state(study, values):
 
 
 def test_floors_have_proofs_and_failures():
-    answers = {make_proof(study).find_offer_failure() is None for study in FLOORS.values()}
-    assert answers == {True, False}
+    have_proof = {make_proof(study).find_offer_failure() is None for study in FLOORS.values()}
+    assert have_proof == {True, False}
     assert {make_proof(study).find_endless_travel() is None for study in FLOORS.values()} == {
         True,
         False,
@@ -91,7 +91,7 @@ def test_floors_have_proofs_and_failures():
 
 
 @pytest.mark.parametrize(("side", "robots"), [(3, 2), (4, 2), (5, 2), (4, 4), (5, 5)])
-def test_floors_of_the_thesis_are_decided_one_robot_or_two_at_a_time(side, robots):
+def test_floors_of_the_thesis_are_decided(side, robots):
     study = floor(side, *(None,) * robots)
     proof = make_proof(study)
     assert proof.find_safety_failure() is None
@@ -116,12 +116,12 @@ def test_a_robot_without_its_guarantee_about_free_ways_violates_assumptions():
     proof._step_conjuncts = {
         (conjunct.class_, conjunct.formula) for conjunct in proof.contracts.steps()
     }
-    broken = [
+    unproven = [
         conjunct
         for conjunct in proof.contracts.environment.assumptions
         if not proof._is_proven(conjunct)
     ]
-    assert [conjunct.text for conjunct in broken] == [
+    assert [conjunct.text for conjunct in unproven] == [
         f"'r0' goes {way} only when the way is free." for way in WAYS
     ]
 
@@ -133,8 +133,8 @@ def test_no_contract_bounds_the_time_to_a_target():
     assert make_proof(floor(1, None, within=4)).find_safety_failure() is None
 
 
-def test_targets_of_a_mission_stay_and_can_be_reached():
-    """What joins the contracts keeps what C_R and C_S assume of targets, on any floor."""
+def test_missions_satisfy_the_assumptions_about_targets():
+    """The joint contracts imply what C_R and C_S assume about targets, on every floor."""
     for study in FLOORS.values():
         proof = make_proof(study)
         goals = {terms.target(robot) for robot in study.robots}
@@ -166,10 +166,10 @@ def test_robots_outside_the_proof_rest_without_violations():
 
 def test_a_run_of_few_robots_cannot_be_extended_on_a_full_floor():
     study = floor(2, None, None, None, None)
-    few = replace(study, robots=study.robots[:1])
-    run = make_proof(few).find_offer_failure().run
+    two_robots = replace(study, robots=study.robots[:1])
+    run = make_proof(two_robots).find_offer_failure().run
     contract = environment_contract(study)
-    for extended_run in extend_to_all_robots(study, few.robots, run):
+    for extended_run in extend_to_all_robots(study, two_robots.robots, run):
         assert list(violated_conjuncts(extended_run, contract.guarantees)) != []
 
 
@@ -179,13 +179,13 @@ def test_a_claim_beyond_the_time_limit_stays_undecided():
     claims = {
         claim.claim: claim for claim in decide_claims(study, shortest_travel_times(study), options)
     }
-    whole = claims["C_R, C_E and C_M together refine C_S"]
-    assert whole.holds is None
-    assert "limit" in whole.reason
+    refinement = claims["C_R, C_E and C_M together refine C_S"]
+    assert refinement.holds is None
+    assert "limit" in refinement.reason
 
 
-def test_the_mission_as_it_is_written_keeps_what_every_mission_does():
-    """C_M of a study promises, of goals, what the study of all missions relies on."""
+def test_a_mission_contract_has_the_guarantees_of_every_mission():
+    """The joint proof for all missions relies on these guarantees of C_M about targets."""
     study = floor(3, None, None, targets=(0, 4, 8), orders=((0, 1, True),))
     texts = {
         conjunct.text

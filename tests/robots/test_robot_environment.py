@@ -1,6 +1,6 @@
-"""The compiled environment and the robots keep their contracts: each conjunct, in whole runs.
+"""The simulated environment and the robots satisfy every conjunct of their contracts.
 
-A run ends in a loop in which all rest; so that what is to hold again and again is looked at, too.
+A run ends in a loop in which all robots rest, so that liveness is checked as well.
 """
 
 from itertools import permutations
@@ -53,7 +53,7 @@ class RecordingWorld(World):
 
 
 def record_run(study, allocation, answers, start, world=RecordingWorld):
-    """What the variables are in each step, and the step to which the last one returns."""
+    """Return the variables in each step, and the index of the step where the loop starts."""
     cells = range(study.grid.size)
     start_planes = tuple(tuple(int(cell == position) for cell in cells) for position in start)
     recorder = world(study, allocation, answers, RunSpace(1, 0, start_planes, difference))
@@ -63,73 +63,77 @@ def record_run(study, allocation, answers, start, world=RecordingWorld):
     return recorder.trace[:-1], len(recorder.trace) - 1 - period
 
 
-def list_violations(contract, trace, loop, is_promise=True):
-    """The conjuncts that do not hold in a run."""
-    conjuncts = contract.guarantees if is_promise else contract.assumptions
+def list_violated_texts(contract, trace, loop, is_guarantee=True):
+    """Return the texts of the conjuncts that a run violates."""
+    conjuncts = contract.guarantees if is_guarantee else contract.assumptions
     return [
         conjunct.text for conjunct in conjuncts if find_violation(conjunct, trace, loop) is not None
     ]
 
 
 def list_starts(study, count=7):
-    """Some of the starts, far from one another."""
+    """Return some of the starts, at equal distances in the list of all."""
     starts = list(permutations(study.grid.cells, len(study.robots)))
     return starts[:: max(1, len(starts) // count)]
 
 
 @pytest.mark.parametrize("seed", range(1, 10))
-def test_all_contracts_are_kept_in_whole_runs(seed):
+def test_complete_runs_satisfy_all_contracts(seed):
     study, allocation = random_floor(seed)
     answers = greedy_answers(study)
     for start in list_starts(study):
         trace, loop = record_run(study, allocation, answers, start)
         environment = environment_contract(study)
-        assert list_violations(environment, trace, loop) == []
-        assert list_violations(environment, trace, loop, is_promise=False) == []
-        assert list_violations(system_contract(study), trace, loop) == []
+        assert list_violated_texts(environment, trace, loop) == []
+        assert list_violated_texts(environment, trace, loop, is_guarantee=False) == []
+        assert list_violated_texts(system_contract(study), trace, loop) == []
         for robot in study.robots:
             shared = robot_contract(study, robot, is_alone=False)
-            assert list_violations(shared, trace, loop, is_promise=False) == []
-            assert list_violations(shared, trace, loop) == []
+            assert list_violated_texts(shared, trace, loop, is_guarantee=False) == []
+            assert list_violated_texts(shared, trace, loop) == []
 
 
-def test_the_synthesised_machine_keeps_them_as_well():
+def test_runs_of_the_synthesised_machine_satisfy_the_contracts():
     study = floor(3, None, None, targets=(0, 8, 4))
     controller = synthesise_robot(study, lambda origin: Subject(), Sink(), Options())
     trace, loop = record_run(study, ((0, 2), (1,)), build_answers(study, controller), (4, 5))
-    assert list_violations(environment_contract(study), trace, loop) == []
+    assert list_violated_texts(environment_contract(study), trace, loop) == []
     assert (
-        list_violations(robot_contract(study, study.robots[0], is_alone=False), trace, loop) == []
+        list_violated_texts(robot_contract(study, study.robots[0], is_alone=False), trace, loop)
+        == []
     )
 
 
-class Silent(RecordingWorld):
+class SilentWorld(RecordingWorld):
     """An environment that offers nothing to robots at rest."""
 
     def _offer_in_turn(self, number, memory, runs):
         return runs
 
 
-def test_without_a_turn_for_robots_at_rest_the_environment_breaks_its_promise():
+def test_an_environment_without_offers_at_rest_violates_its_contract():
     study = floor(3, None, None, targets=(0, 8))
-    run = record_run(study, ((0,), (1,)), greedy_answers(study), (4, 5), Silent)
-    assert list_violations(environment_contract(study), *run) == [
+    run = record_run(study, ((0,), (1,)), greedy_answers(study), (4, 5), SilentWorld)
+    assert list_violated_texts(environment_contract(study), *run) == [
         "Again and again a way is offered to 'r0', if one is free.",
         "Again and again a way is offered to 'r1', if one is free.",
     ]
 
 
-def test_two_robots_with_one_cell_between_them_have_it_in_turn():
+def test_two_robots_get_the_cell_between_them_in_turn():
     study = floor(3, None, None, rows=1, targets=(0, 2))
     trace, loop = record_run(study, ((0,), (1,)), greedy_answers(study), (0, 2))
-    assert list_violations(environment_contract(study), trace, loop) == []
-    rights = [step["r0_sensor_right"] for step in trace[loop:]]
-    lefts = [step["r1_sensor_left"] for step in trace[loop:]]
-    assert sorted(zip(rights, lefts, strict=True)) == [(False, True), (True, False)]
+    assert list_violated_texts(environment_contract(study), trace, loop) == []
+    offers_to_first = [step["r0_sensor_right"] for step in trace[loop:]]
+    offers_to_second = [step["r1_sensor_left"] for step in trace[loop:]]
+    assert sorted(zip(offers_to_first, offers_to_second, strict=True)) == [
+        (False, True),
+        (True, False),
+    ]
 
 
 @pytest.mark.parametrize("start", [(1, 5), (4, 5), (2, 6), (8, 0), (5, 3)])
-def test_ways_are_too_long_exactly_where_a_timer_of_the_system_says_so(start):
+def test_a_path_is_too_long_exactly_if_the_timer_exceeds_the_bound(start):
     study = floor(3, None, None, targets=(0, 8))
     answers = greedy_answers(study)
     trace, _ = record_run(study, ((0,), (1,)), answers, start)
@@ -143,7 +147,7 @@ def test_ways_are_too_long_exactly_where_a_timer_of_the_system_says_so(start):
 
 
 def iter_timers(study, trace):
-    """How long robots have had their targets, in each step."""
+    """Yield in each step for how long a robot has had its target."""
     for robot in study.robots:
         timer = 0
         for step in trace:

@@ -1,4 +1,4 @@
-"""The library of floors for SysML v1 gives the studies and contracts of that for SysML v2."""
+"""The libraries of floors for SysML v1 and v2 give the same studies and contracts."""
 
 from xml.etree import ElementTree
 
@@ -46,7 +46,7 @@ def read_ids():
 IDS = read_ids()
 
 
-def build_block(name, general, inside="", **values):
+def build_block(name, general, content="", **values):
     """Return a block that specialises *general* of the library and sets attributes."""
     owners = {"columns": "Floor", "counted": "Floor", "deadline": "Mission"}
     feature_ids = {feature: IDS[f"{owners.get(feature, 'Placed')}.{feature}"] for feature in values}
@@ -60,7 +60,7 @@ def build_block(name, general, inside="", **values):
     return (
         f'<packagedElement xmi:type="uml:Class" xmi:id="{name}" name="{name}">'
         f'<generalization xmi:id="{name}.g"><general href="Floors.uml#{IDS[general]}"/>'
-        f"</generalization>{features}{inside}</packagedElement>"
+        f"</generalization>{features}{content}</packagedElement>"
     )
 
 
@@ -82,7 +82,7 @@ def build_connector(association, *targets):
 
 
 def build_model():
-    """Return the same hall in XMI; its blocks refer to those of the library."""
+    """Return the hall of TEXT in XMI; its blocks refer to those of the library."""
     robots = (
         build_part("r1", "R1")
         + build_part("spare", "")
@@ -125,26 +125,30 @@ def compile_study(*files):
     ]
 
 
-def test_both_give_equal_studies_and_contracts(tmp_path):
+def test_both_libraries_give_equal_studies_and_contracts(tmp_path):
     first, second = tmp_path / "hall.uml", tmp_path / "hall.sysml"
     first.write_text(build_model(), encoding="utf-8")
     second.write_text(TEXT, encoding="utf-8")
-    ours, contracts = compile_study(first, LIBRARY)
-    theirs, expected = compile_study(second)
+    v1_study, contracts = compile_study(first, LIBRARY)
+    v2_study, expected = compile_study(second)
     assert contracts == expected
-    assert (ours.grid, ours.deadline, ours.counter_size) == (theirs.grid, theirs.deadline, 5)
-    assert [robot.start for robot in ours.robots] == [6, None]
-    for study in (ours, theirs):
+    assert (v1_study.grid, v1_study.deadline, v1_study.counter_size) == (
+        v2_study.grid,
+        v2_study.deadline,
+        5,
+    )
+    assert [robot.start for robot in v1_study.robots] == [6, None]
+    for study in (v1_study, v2_study):
         pairs = [(order.earlier, order.later, order.is_carried) for order in study.orders]
         assert pairs == [(0, 1, True), (1, 2, False)]
 
 
-def test_the_library_is_the_one_for_sysml_v2_in_the_other_notation():
-    """When Floors.sysml changes, ``python tests/robots/floors_v1.py`` writes it anew."""
+def test_the_library_is_compiled_from_the_one_for_sysml_v2():
+    """After a change of Floors.sysml, run ``python tests/robots/floors_v1.py``."""
     assert LIBRARY.read_bytes() == convert_library()
 
 
-def test_the_library_alone_is_clean_and_is_no_floor():
+def test_the_library_has_no_diagnostics_and_no_floor():
     result = compile_model(Request((LIBRARY,)))
     assert [diagnostic.message for diagnostic in result.diagnostics] == []
     assert result.graph.derived(Study) == ()

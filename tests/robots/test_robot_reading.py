@@ -1,10 +1,11 @@
-"""Floors of models: a block that specialises the library is a study; its faults are reported."""
+"""Floors in models: a block that specialises ``Floor`` is read as a study, or reported."""
 
 import pytest
 
 from sysmlc.diagnostics import Sink
 from sysmlc.driver import Request, compile_model
 from sysmlc.logic.contract import Contract
+from sysmlc.passes.robots import Robots
 from sysmlc.robots.study import Order, Study
 
 HALL = """
@@ -54,7 +55,7 @@ def test_a_floor_with_robots_obstacles_and_a_mission_is_a_study(tmp_path):
     assert study.deadline == 30
 
 
-def test_its_contracts_are_among_those_of_the_model(tmp_path):
+def test_the_contracts_of_a_floor_are_contracts_of_the_model(tmp_path):
     result = compile_text(tmp_path, HALL)
     assert [contract.component for contract in result.graph.derived(Contract)] == [
         "Plant::Hall",
@@ -69,16 +70,14 @@ def test_its_contracts_are_among_those_of_the_model(tmp_path):
     ]
 
 
-def test_the_pass_run_again_changes_nothing(tmp_path):
-    from sysmlc.passes.robots import Robots
-
+def test_a_second_run_of_the_pass_changes_nothing(tmp_path):
     graph = compile_text(tmp_path, HALL).graph
     before = graph.derived(Contract)
     Robots().run(graph, Sink())
     assert graph.derived(Contract) == before
 
 
-WRONG = {
+FAULTS = {
     "SM564": ("row = 1; :>> column = 2", "row = 1; :>> column = 4", "r1"),
     "SM565": ("row = 1; :>> column = 2", "row = 0; :>> column = 1", "r1"),
     "SM566": (":>> row = 0; :>> column = 1;", ":>> row = 0;", "pillar"),
@@ -90,16 +89,16 @@ WRONG = {
 }
 
 
-@pytest.mark.parametrize("code", WRONG)
+@pytest.mark.parametrize("code", FAULTS)
 def test_a_fault_is_reported_at_its_element(code, tmp_path):
-    old, new, name = WRONG[code]
+    old, new, name = FAULTS[code]
     result = compile_text(tmp_path, HALL.replace(old, new))
     (diagnostic,) = result.diagnostics
     assert (diagnostic.rule.code, diagnostic.subject.name.rpartition("::")[2]) == (code, name)
     assert result.graph.derived(Study) == ()
 
 
-def test_a_negative_row_and_a_text_are_no_numbers(tmp_path):
+def test_a_row_must_be_a_whole_number(tmp_path):
     for value, problem in (("-1", "is negative"), ("1.5", "is not a whole number")):
         result = compile_text(tmp_path, HALL.replace(":>> row = 1", f":>> row = {value}"))
         (diagnostic,) = (
@@ -108,7 +107,7 @@ def test_a_negative_row_and_a_text_are_no_numbers(tmp_path):
         assert problem in diagnostic.message
 
 
-def test_a_target_behind_obstacles_is_out_of_reach(tmp_path):
+def test_a_target_behind_obstacles_is_reported(tmp_path):
     wall = " ".join(
         f"part o{row} : Obstacle {{ :>> row = {row}; :>> column = 1; }}" for row in range(1, 3)
     )
@@ -118,8 +117,8 @@ def test_a_target_behind_obstacles_is_out_of_reach(tmp_path):
     assert (diagnostic.rule.code, diagnostic.subject.name) == ("SM569", "Plant::Hall::work::dock")
 
 
-def test_a_second_floor_of_one_name_is_reported_and_not_studied(tmp_path):
-    """A mutant of a model wrote the contracts of both into one file."""
+def test_a_second_floor_of_the_same_name_is_reported_and_skipped(tmp_path):
+    """Otherwise the contracts of both floors would be written to one file."""
     result = compile_text(tmp_path, HALL + HALL)
     duplicates = [
         diagnostic for diagnostic in result.diagnostics if diagnostic.rule.code == "SM577"
@@ -127,14 +126,14 @@ def test_a_second_floor_of_one_name_is_reported_and_not_studied(tmp_path):
     assert [diagnostic.subject.name for diagnostic in duplicates] == ["Plant::Hall"]
     assert "SM900" not in {diagnostic.rule.code for diagnostic in result.diagnostics}
     assert len(result.graph.derived(Study)) == 1
-    other = compile_text(tmp_path, HALL + HALL.replace("package Plant", "package Store"))
-    assert "SM577" not in {diagnostic.rule.code for diagnostic in other.diagnostics}
-    assert len(other.graph.derived(Study)) == 2
+    renamed = compile_text(tmp_path, HALL + HALL.replace("package Plant", "package Store"))
+    assert "SM577" not in {diagnostic.rule.code for diagnostic in renamed.diagnostics}
+    assert len(renamed.graph.derived(Study)) == 2
 
 
 @pytest.mark.parametrize("count", ["200", "99999999999999999999"])
-def test_more_robots_than_contracts_can_list_are_refused(count, tmp_path):
-    """A mutant of a model with the second number had no end."""
+def test_too_many_robots_are_refused(count, tmp_path):
+    """With the second number, an earlier version did not terminate."""
     result = compile_text(tmp_path, HALL.replace("spare : Robot[2]", f"spare : Robot[{count}]"))
     (diagnostic,) = result.diagnostics
     assert diagnostic.rule.code == "SM566"

@@ -9,7 +9,7 @@ from msgspec.structs import replace
 from plain_world import PlainWorld
 from small_floors import floor
 
-from sysmlc.robots import validation as validating
+from sysmlc.robots import validation as validation_module
 from sysmlc.robots.merging import StateSet
 from sysmlc.robots.run_sets import digit_patterns, starts_without_collision
 from sysmlc.robots.validation import (
@@ -25,35 +25,37 @@ STEPS = 60
 
 
 def random_floor(seed):
-    """A floor with two or three robots and some targets, dealt out to them in turn."""
-    rnd = random.Random(seed)
-    side, rows, robots = rnd.choice([(3, 3, 2), (3, 2, 2), (3, 3, 3), (4, 2, 3)])
+    """Return a floor with two or three robots, and an allocation of its targets in turn."""
+    generator = random.Random(seed)
+    side, rows, robots = generator.choice([(3, 3, 2), (3, 2, 2), (3, 3, 3), (4, 2, 3)])
     cells = list(range(side * rows))
-    blocked = (4,) if rnd.random() < 0.3 and rows == 3 else ()
-    targets = rnd.sample([target for target in cells if target not in blocked], rnd.randint(2, 4))
-    orders = [(0, 1)] if rnd.random() < 0.5 else []
+    blocked = (4,) if generator.random() < 0.3 and rows == 3 else ()
+    targets = generator.sample(
+        [target for target in cells if target not in blocked], generator.randint(2, 4)
+    )
+    orders = [(0, 1)] if generator.random() < 0.5 else []
     study = floor(
         side, *(None,) * robots, targets=targets, orders=orders, blocked=blocked, rows=rows
     )
     numbers = range(len(targets))
     return study, tuple(
-        tuple(target for target in numbers if target % robots == r) for r in range(robots)
+        tuple(target for target in numbers if target % robots == robot) for robot in range(robots)
     )
 
 
 @pytest.mark.parametrize("seed", range(12))
-def test_every_run_is_the_plain_one(seed):
+def test_every_run_equals_the_plain_simulation(seed):
     study, allocation = random_floor(seed)
     answers = greedy_answers(study)
     (runs,) = iter_start_chunks(study)
     world = World(study, allocation, answers, runs)
     starts = list(permutations(study.grid.cells, len(study.robots)))
-    plain = {start: PlainWorld(study, allocation, start) for start in starts}
+    plain_worlds = {start: PlainWorld(study, allocation, start) for start in starts}
     bits = {start: _bit(runs, start) for start in starts}
     assert runs.all.bit_count() == len(starts)
     for _ in range(STEPS):
         world.step()
-        for start, plain_world in plain.items():
+        for start, plain_world in plain_worlds.items():
             plain_world.step()
             assert plain_world.read_state() == _read_state(world, bits[start])
     assert world.wrong == 0
@@ -76,7 +78,7 @@ def _read_state(world, bit):
 
 
 @pytest.mark.parametrize("seed", range(6))
-def test_decision_diagrams_come_to_the_same(seed):
+def test_decision_diagrams_give_the_same_validation(seed):
     study, allocation = random_floor(seed)
     answers = greedy_answers(study)
     assert validate_symbolically(study, allocation, answers) == validate_allocation(
@@ -94,46 +96,46 @@ def test_starts_are_all_placements_of_robots_in_different_cells():
     assert runs.starts[1][3] == runs.none
 
 
-def test_given_starts_are_no_choice():
+def test_only_robots_without_a_start_have_several():
     (runs,) = iter_start_chunks(floor(3, 0, None))
     assert runs.all.bit_count() == 8
     (runs,) = iter_start_chunks(floor(3, 0, 1))
     assert runs.all.bit_count() == 1
 
 
-def test_more_starts_than_one_operation_takes_are_simulated_in_parts(monkeypatch):
+def test_simulation_in_chunks_gives_the_same_validation(monkeypatch):
     study, allocation = random_floor(3)
-    whole = validate_allocation(study, allocation, greedy_answers(study))
-    monkeypatch.setattr(validating, "MAX_CHUNK_RUNS", 16)
-    assert validate_allocation(study, allocation, greedy_answers(study)) == whole
+    unmerged = validate_allocation(study, allocation, greedy_answers(study))
+    monkeypatch.setattr(validation_module, "MAX_CHUNK_RUNS", 16)
+    assert validate_allocation(study, allocation, greedy_answers(study)) == unmerged
 
 
-def merge_early(monkeypatch, steps, most=1 << 17):
+def merge_early(monkeypatch, steps, max_runs=1 << 17):
     """Merge equal states from step *steps* on, with at most *most* runs at once."""
-    monkeypatch.setattr(validating, "FIRST_MERGE_STEP", steps)
-    monkeypatch.setattr(validating, "MIN_MERGED_STARTS", 0)
-    monkeypatch.setattr(validating, "MAX_CHUNK_RUNS", most)
+    monkeypatch.setattr(validation_module, "FIRST_MERGE_STEP", steps)
+    monkeypatch.setattr(validation_module, "MIN_MERGED_STARTS", 0)
+    monkeypatch.setattr(validation_module, "MAX_CHUNK_RUNS", max_runs)
 
 
 @pytest.mark.parametrize("seed", range(12))
 def test_merging_equal_states_does_not_change_the_result(seed, monkeypatch):
     study, allocation = random_floor(seed)
     answers = greedy_answers(study)
-    whole = validate_allocation(study, allocation, answers)
-    for steps, most in ((1, 1 << 17), (3, 1 << 17), (2, 40), (5, 16)):
-        merge_early(monkeypatch, steps, most)
+    unmerged = validate_allocation(study, allocation, answers)
+    for steps, max_runs in ((1, 1 << 17), (3, 1 << 17), (2, 40), (5, 16)):
+        merge_early(monkeypatch, steps, max_runs)
         validation = validate_allocation(study, allocation, answers)
-        if whole.is_good:
-            assert validation == whole
+        if unmerged.is_good:
+            assert validation == unmerged
         else:
             assert (validation.is_good, validation.steps, validation.late) == (
                 False,
-                whole.steps,
-                whole.late,
+                unmerged.steps,
+                unmerged.late,
             )
 
 
-def test_states_are_fewer_than_runs():
+def test_many_runs_have_the_same_state():
     study, allocation = random_floor(3)
     (runs,) = iter_start_chunks(study)
     world = World(study, allocation, greedy_answers(study), runs)
@@ -142,9 +144,9 @@ def test_states_are_fewer_than_runs():
     states.add(world, range(runs.all.bit_length()))
     assert 1 < len(states) < runs.all.bit_count() / 2
     (batch,) = states.batches(1 << 17, world)
-    again = World(study, allocation, greedy_answers(study), batch.runs, batch.state, 6)
+    restored = World(study, allocation, greedy_answers(study), batch.runs, batch.state, 6)
     for bit, origin in enumerate(batch.origins):
-        assert _read_state(again, 1 << bit) == _read_state(world, 1 << origin)
+        assert _read_state(restored, 1 << bit) == _read_state(world, 1 << origin)
 
 
 @pytest.mark.parametrize("deadline", [7, 9, 11, 13])

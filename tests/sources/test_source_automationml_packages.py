@@ -52,8 +52,8 @@ def test_the_documents_of_a_package_are_read(tmp_path):
     parts = {
         "_rels/.rels": format_relationships("/docs/a%20b.pdf"),
         "docs/a b.pdf": "%PDF",
-        "_rels/plant.aml.rels": f'{HEAD}<Relationship Type="{KIND_PREFIX}Library" Target="libs/r.aml" '
-        'Id="1"/></Relationships>',
+        "_rels/plant.aml.rels": f'{HEAD}<Relationship Type="{KIND_PREFIX}Library" '
+        'Target="libs/r.aml" Id="1"/></Relationships>',
         "libs/r.aml": "<CAEXFile/>",
     }
     assert read_names(write_package(tmp_path, **parts)) == [
