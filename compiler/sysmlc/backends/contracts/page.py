@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator
-from functools import cache
 
 from msgspec import Struct
 
@@ -16,6 +15,7 @@ from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.logic.contract import Class, Conjunct, Contract, Variable
 from sysmlc.logic.domains import describe
 from sysmlc.logic.printing import print_formula
+from sysmlc.support.camel_case import separate_words
 from sysmlc.support.escapes import escape_code, escape_markdown
 
 _SHIPPED = Templates("contracts", None)
@@ -203,19 +203,13 @@ def _list_documented_elements(graph: Graph, origin: Element) -> list[Element]:
 
 def _describe_element(graph: Graph, element: Element) -> str:
     """Return ``transition 'Idle' to 'Busy'`` or ``property 'bay' of 'Gate'``, for example."""
-    kind = _split_words(element.kind)
+    kind = separate_words(element.kind)
     if element.kind is Kind.TRANSITION or (element.kind in _FLOWS and not element.name):
         ends = (graph.target(element, edge) for edge in (Edge.FLOW_SOURCE, Edge.FLOW_TARGET))
         return f"{kind} {' to '.join(_name_end(graph, end) for end in ends if end is not None)}"
     owner = next((ancestor for ancestor in graph.ancestors(element) if ancestor.name), None)
     suffix = "" if owner is None or owner.kind is Kind.PACKAGE else f" of '{owner.name}'"
     return f"{kind} '{element.name}'{suffix}" if element.name else f"{kind}{suffix}"
-
-
-@cache
-def _split_words(kind: str) -> str:
-    """Return a kind in lower case: ``FinalState`` -> ``final state``."""
-    return re.sub(r"(?<!^)(?=[A-Z])", " ", kind).lower()
 
 
 def _name_end(graph: Graph, end: Element) -> str:

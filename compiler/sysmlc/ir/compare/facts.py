@@ -18,6 +18,7 @@ from sysmlc.ir.compare.titles import (
 )
 from sysmlc.ir.element import AttrValue, Element
 from sysmlc.ir.kinds import Edge, Kind
+from sysmlc.support.camel_case import separate_words
 
 
 class What(StrEnum):
@@ -197,15 +198,11 @@ def _application_facts(side: Side, application: Element) -> Iterator[Fact]:
 
 def _general_facts(side: Side, detail: Element) -> Iterator[Fact]:
     key = detail.name if detail.kind is Kind.METADATA else ""
-    label = key or _separate_words(detail.kind)
+    label = key or separate_words(detail.kind)
     if detail.name and not key:
         yield Fact((detail.kind, "name"), detail.name, f"{label} name")
     content = _content(side, detail)
     yield Fact((detail.kind, key), content, label, format=format_detail, about=detail)
-
-
-def _separate_words(kind: Kind) -> str:
-    return "".join(f" {c.lower()}" if c.isupper() else c for c in kind).strip()
 
 
 def _content(side: Side, detail: Element) -> Value:

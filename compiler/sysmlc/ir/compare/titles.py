@@ -1,13 +1,11 @@
 """Titles of elements and texts of values in a comparison, also for elements without a name."""
 
-import re
-
 from sysmlc.ir.compare.content import ENDS, NOT_CONTENT
 from sysmlc.ir.compare.side import Side
 from sysmlc.ir.element import Element
 from sysmlc.ir.kinds import Edge, Kind
+from sysmlc.support.camel_case import separate_words
 
-_WORD_BOUNDARY = re.compile(r"(?<=[a-z0-9])(?=[A-Z])")
 _TEXTS = ("guard", "body", "value", "when", "condition")
 _LONGEST_TITLE = 60
 _NOTHING = "(nothing)"
@@ -29,17 +27,13 @@ def kind_title(side: Side, element: Element) -> str:
     details = side.details.get(element.id, ())
     stereotypes = (d.attrs.get("stereotype") for d in details if d.kind is Kind.APPLICATION)
     stereotype = str(next(stereotypes, "") or "")
-    return element.role or _separate_words(stereotype) or _name_kind(element)
+    return element.role or separate_words(stereotype) or _name_kind(element)
 
 
 def _name_kind(element: Element) -> str:
-    kind = _separate_words(element.kind)
+    kind = separate_words(element.kind)
     has_subkind = element.kind in (Kind.CONTROL, Kind.PSEUDOSTATE, Kind.ACTION, Kind.FRAGMENT)
     return f"{element.subkind} {kind}" if has_subkind and element.subkind else kind
-
-
-def _separate_words(name: str) -> str:
-    return name if name.isupper() else _WORD_BOUNDARY.sub(" ", name).lower()
 
 
 def title(side: Side, element: Element) -> str:
