@@ -25,7 +25,7 @@ Locate = Callable[[Iterable[Place]], Mapping[Place, Place]]
 
 
 def _locate_nothing(places: Iterable[Place]) -> Mapping[Place, Place]:
-    """Return the places as they are; the default where no source files are at hand."""
+    """Return each place unchanged; the default if the source files are not available."""
     return {place: place for place in places}
 
 
@@ -35,7 +35,7 @@ DERIVED, AUTHOR, BOTH = DIAGRAMS
 
 
 class EmitOptions(Struct, frozen=True):
-    """The user's options for back ends, and services of the driver that back ends may call."""
+    """Options of the user for back ends, and functions of the driver that back ends may call."""
 
     templates: Path | None = None
     """Folder of templates that replace shipped ones."""

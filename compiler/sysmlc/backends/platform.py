@@ -61,7 +61,7 @@ def _iter_places(graph: Graph, platform: Platform) -> Iterator[Place]:
 
 
 class _PlantElement(Protocol):
-    """A used or unused element of the plant."""
+    """The attributes that used and unused elements of the plant have in common."""
 
     @property
     def id(self) -> str: ...
@@ -103,7 +103,7 @@ class _Writer(Struct, frozen=True):
         }
 
     def _describe_used(self, used: Used) -> Json:
-        """Describe an element with the machines that it is and the services that it offers."""
+        """Describe an element with the recipes' machines that it is and services that it offers."""
         return self._describe_plant_element(used) | {
             "machines": [
                 {
@@ -136,7 +136,7 @@ class _Writer(Struct, frozen=True):
         }
 
     def _describe_machine(self, name: str, recipes: tuple[str, ...], element: str) -> Json:
-        """Describe a machine of the recipes with its element of the plant, the first if several."""
+        """Describe a machine of the recipes with the first element of the plant that it is."""
         plant_elements = [b.plant for b in self.platform.bindings if b.machine == name]
         return {
             "machine": name,

@@ -48,7 +48,7 @@ _LIBRARY = "sysml.library.xmi"
 
 
 class SysmlxBackend(Struct, frozen=True):
-    """Writes SysML v2 models as they were read, other models as SysML v2 text expresses them."""
+    """Writes SysML v2 models as they were read, other models with what SysML v2 text expresses."""
 
     name: str = "sysmlx"
     summary: str = "the model as SysML v2 interchange (XMI), sysmlx/*.sysmlx"
@@ -137,7 +137,7 @@ def _locate(document: Document, byte_offset: int) -> tuple[int, str]:
 
 
 def _find_deepest(graph: Graph) -> Element:
-    """Return the first of the elements with the most owners."""
+    """Return the first of the elements that are nested deepest."""
     level = graph.roots()
     while children := [child for owner in level for child in graph.owned(owner)]:
         level = children
@@ -145,7 +145,7 @@ def _find_deepest(graph: Graph) -> Element:
 
 
 def _find_library(path: str) -> Library:
-    """Return the library at *path*, else the installed one; the small one if it is missing."""
+    """Return the library at *path*, or the installed one; the bundled core if there is none."""
     try:
         return find_library(path or None)
     except SourceError:

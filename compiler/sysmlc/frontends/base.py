@@ -21,7 +21,7 @@ class Frontend(Protocol):
     name: str
 
     def detect(self, source: Source) -> float:
-        """Return how certain it is, from 0 to 1 and by content, that the front end can read it."""
+        """Return how certainly the content is one that the front end can read, from 0 to 1."""
 
     def links(self, source: Source) -> Sequence[str]:
         """Return the references to other files, as the source writes them, each once, in order.
@@ -30,7 +30,10 @@ class Frontend(Protocol):
         """
 
     def read(self, sources: Sequence[Source], graph: Graph, sink: Sink, coverage: Coverage) -> None:
-        """Read the files into the graph and count the verdict of every element."""
+        """Read the files into the graph.
+
+        *coverage* counts the elements of each file by their verdict: mapped, unsupported, ...
+        """
 
 
 class FileNames(Struct, frozen=True):
@@ -57,9 +60,9 @@ class UnitFrontend(Protocol):
     """Whether all files of a folder form one model, without references to one another."""
 
     def read_names(self, source: Source) -> FileNames:
-        """Return the names by which the source takes part in compile units.
+        """Return the names that decide with which other files the source forms a compile unit.
 
-        Faults of the source are not reported here, but when it is read.
+        A faulty source raises nothing and is not reported: ``read`` reports its faults.
         """
 
 
@@ -68,7 +71,7 @@ class LibraryFrontend(Protocol):
     """A front end whose models refer to a library of models."""
 
     def with_library(self, path: str) -> Frontend:
-        """Return the same front end with the library in a folder or an archive."""
+        """Return this front end, but with the library at *path*, a folder or an archive."""
 
 
 @runtime_checkable
@@ -81,10 +84,10 @@ class AttachmentFrontend(Protocol):
 
 @runtime_checkable
 class DiagramReader(Protocol):
-    """A front end that can also read the diagrams of authors."""
+    """A front end that can also read the diagrams that the authors of a model have drawn."""
 
     def list_companions(self, name: str) -> Sequence[str]:
-        """Return the files beside the source *name* that may hold the diagrams of its authors.
+        """Return the files in the folder of the source *name* that may contain its diagrams.
 
         They are names of files, or ``archive!pattern`` for entries of an archive (``BINARY-*``).
         """

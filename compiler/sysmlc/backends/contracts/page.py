@@ -41,6 +41,7 @@ _PREFIXES = {
 _UNSET = re.compile(r"!\w+$")
 """The formula of a Boolean that is false."""
 _MANY_UNSET = 3
+"""From this number on, Booleans that are initially false are one item with a list."""
 _FLOWS = (Kind.CONTROL_FLOW, Kind.OBJECT_FLOW)
 _MARKUP = re.compile(r"[<>`|\[\]]")
 """Characters of a comment that Markdown would not show as they are written."""
@@ -110,7 +111,7 @@ class _PageBuilder:
         )
 
     def _label_element(self, id: str) -> tuple[str, str]:
-        """Return an element in words, and the file that contains it."""
+        """Return the description of an element, and the file that contains it, as Markdown."""
         if id not in self._labels:
             element = self._graph.get(id)
             source = element.source if element is not None else ""
@@ -162,7 +163,7 @@ def _build_section(class_: Class, rows: list[Row]) -> Section:
 
 
 def _explain_prefixes(contract: Contract) -> Iterator[str]:
-    """Yield the meanings of variables that stand for a part of a diagram, not for a feature."""
+    """Yield the meaning of each prefix of variable names that the contract contains."""
     prefixes = {v.name[: v.name.find("_") + 1] for v in contract.variables}
     for prefix, meaning in _PREFIXES.items():
         if prefix in prefixes:
@@ -213,7 +214,7 @@ def _describe_element(graph: Graph, element: Element) -> str:
 
 
 def _name_end(graph: Graph, end: Element) -> str:
-    """Return the name of the end of a flow; a pin is named by its action."""
+    """Return the name of an end of a flow; a pin has the name of its action."""
     owner = graph.owner(end) if end.kind is Kind.PIN else None
     vertex = owner or end
     return f"'{vertex.name}'" if vertex.name else vertex.subkind or "its end"

@@ -228,7 +228,7 @@ def _describe_provider(provider: Provider) -> Json:
 
 
 def _describe_opcua(call: OpcUa | None) -> Json | None:
-    """Return an OPC UA call; None if it lacks a member that an executor needs."""
+    """Describe an OPC UA call; None if it is none or not complete (SM612)."""
     if call is None or not is_complete(call):
         return None
     return _drop_absent(

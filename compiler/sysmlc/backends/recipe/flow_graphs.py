@@ -28,7 +28,7 @@ Json = dict[str, object]
 
 
 def describe_trace(element: str) -> Json:
-    """Return the member ``trace`` for an element, no member without an element."""
+    """Return the member ``trace`` for the id of an element, no member for an empty id."""
     return {"trace": {"element": element}} if element else {}
 
 
@@ -134,7 +134,7 @@ def _describe_loop(node: Node, graph: FlowGraph) -> Json:
 
 
 def _describe_data(node: Node) -> Json:
-    """Return the arguments and results of a node, without empty members."""
+    """Return the members ``bind`` and ``assign`` of a node; empty ones are omitted."""
     members: Mapping[str, Json] = {
         "bind": {name: describe_expression(value) for name, value in node.bind},
         "assign": dict(node.assign),

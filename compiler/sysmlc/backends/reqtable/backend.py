@@ -83,7 +83,7 @@ def format_csv(table: Table) -> str:
 
 
 def _format_csv_cell(cell: Cell) -> str:
-    """Return the values on lines of their own; a quote keeps a spreadsheet from evaluating."""
+    """Return the values on separate lines, quoted if a spreadsheet would evaluate the cell."""
     text = "\n".join("\n".join(value.splitlines()) for value in cell.values)
     return f"'{text}" if text.startswith(_FORMULA) or text.lstrip().startswith(_FORMULA) else text
 
@@ -92,7 +92,7 @@ def _format_csv_cell(cell: Cell) -> str:
 
 
 def _make_page(table: Table) -> dict[str, object]:
-    """Return the values of the template."""
+    """Return the values that the template prints."""
     # An empty column only makes a page wide; a CSV file keeps its columns.
     columns = [
         (index, name)
@@ -109,6 +109,6 @@ def _make_page(table: Table) -> dict[str, object]:
 
 
 def format_markdown_cell(cell: Cell) -> str:
-    """Return the values on lines of their own, with all markup escaped."""
+    """Return the values on separate lines, with all markup escaped."""
     lines = (line for value in cell.values for line in value.splitlines())
     return "<br>".join(escape_markdown(line) for line in lines if line.strip())

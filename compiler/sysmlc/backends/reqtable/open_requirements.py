@@ -33,7 +33,7 @@ def report_open_requirements(graph: Graph, requirements: list[Element], sink: Si
 
 
 def find_closed(graph: Graph, requirements: Iterable[Element], edge: Edge) -> frozenset[str]:
-    """Return the ids of the requirements with a relation, directly or through others.
+    """Return the ids of the requirements with a relation *edge*, directly or by implication.
 
     A compound requirement is satisfied if all requirements in it are (SysML 1.6 clause 16.3.1), and
     a requirement is satisfied if one derived from it is.
@@ -55,7 +55,7 @@ def _has_relation(graph: Graph, requirement: Element, edge: Edge) -> bool:
 
 
 def _iter_implied(graph: Graph, requirement: Element, closed: set[str]) -> Iterator[Element]:
-    """Yield the requirements that are closed because *requirement* is."""
+    """Yield the requirements that have the relation because *requirement* has it."""
     yield from graph.targets(requirement, Edge.DERIVES)
     owner = graph.owner(requirement)
     if owner is not None and is_listed(owner):

@@ -130,7 +130,7 @@ def _make_cell(*values: str) -> Cell:
 
 
 def _iter_kinds(graph: Graph, requirement: Element) -> Iterator[str]:
-    """Yield the stereotypes that say more than ``Requirement``.
+    """Yield the stereotypes that are more special than ``Requirement``.
 
     A custom stereotype is followed by those of SysML that it specialises:
     ``SafetyRequirement (performanceRequirement)``.

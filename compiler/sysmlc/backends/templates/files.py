@@ -44,15 +44,15 @@ def read_shipped(backend: str) -> dict[str, TemplateText]:
 
 
 def read_custom(folder: Path, backend: str) -> dict[str, TemplateText]:
-    """Return the files ``*.j2`` of *folder* and of its folder for the back end, which win.
+    """Return the templates of a user by name: files ``*.j2`` of *folder* and *folder*/*backend*.
 
-    Only regular files are read, and no link is followed out of *folder*.
-    Raises UnusableFolderError.
+    A file of the latter replaces one of the same name in the former. Only regular files are read,
+    and no link is followed out of *folder*. Raises UnusableFolderError.
     """
     roots = Roots((folder,))
     templates: dict[str, TemplateText] = {}
-    for place, prefix in ((folder, ""), (folder / backend, f"{backend}/")):
-        paths = sorted(place.glob("*.j2")) if place.is_dir() else []
+    for directory, prefix in ((folder, ""), (folder / backend, f"{backend}/")):
+        paths = sorted(directory.glob("*.j2")) if directory.is_dir() else []
         if len(paths) > MAX_FILES:
             raise UnusableFolderError(f"{prefix or '.'}: more than {MAX_FILES} templates")
         for path in paths:

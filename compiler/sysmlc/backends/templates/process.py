@@ -54,7 +54,7 @@ class RenderingProcess:
         return answer["text"]
 
     def _exchange(self, request: str) -> dict[str, str] | None:
-        """Send a request and return the answer; None if the process ended."""
+        """Send a request and return the answer; None if the process has ended."""
         requests, answers = self._process.stdin, self._process.stdout
         assert requests is not None
         assert answers is not None
@@ -71,6 +71,7 @@ class RenderingProcess:
         return None
 
     def _explain_end(self) -> str:
+        """Return why the process has ended, for a message."""
         # faulthandler ends the worker with exit code 1 when the time is over.
         if self._process.wait() == 1:
             return f"takes more than {MAX_SECONDS} s"

@@ -45,13 +45,14 @@ REPEATED = rule(
     "the id '{id}' is used by two elements of '{file}'",
     help="export the model again",
 )
-
-
 _LOSS_RULES = (UNSUPPORTED, OWNERLESS, REPEATED, LOOSE_END)
 
 
 def lower_files(sources: Sequence[Source], graph: Graph, sink: Sink, coverage: Coverage) -> None:
-    """Read and lower the files, and count every record. Raises SourceError for a limit."""
+    """Read and lower the files, and count the verdicts of their records.
+
+    A damaged file is reported and skipped. Raises SourceError if a file exceeds the limits.
+    """
     for source in sorted(sources, key=lambda source: source.name):
         try:
             records = read_records(source)
@@ -70,7 +71,7 @@ def lower_files(sources: Sequence[Source], graph: Graph, sink: Sink, coverage: C
 
 
 class FileLowering:
-    """The lowering of one file."""
+    """Lowers the records of one file, and stores a verdict for each of them."""
 
     def __init__(self, file: str, records: list[Record], graph: Graph) -> None:
         self.file, self.records, self.graph = file, records, graph
@@ -89,7 +90,7 @@ class FileLowering:
     def lower(self) -> None:
         """Add all elements, then the relations and stereotypes of each record."""
         for record in self._iter_owners_first():
-            self._add(record)
+            self._add_element(record)
         for record in self.records:
             if self.by_id.get(record.id) is record:
                 element = self.graph.get(self.graph_id(record.id))
@@ -100,11 +101,19 @@ class FileLowering:
     # -- ids and owners ----------------------------------------------------------------------------
 
     def graph_id(self, id: str) -> str:
-        """Return the id in the graph of an element of the file."""
+        """Return the id in the graph for an id of the file.
+
+        It is the same id, or ``<file>#<id>`` if an element of another file has it, too, or if it is
+        the id of no record.
+        """
         return id if id in self.by_id and not self._is_in_other_file(id) else f"{self.file}#{id}"
 
     def target_id(self, id: str) -> str:
-        """Return the graph id of the target of a relation; MTIP omits elements of some types."""
+        """Return the id in the graph of the target of a relation.
+
+        MTIP does not export elements of some types: a target that is not in the graph gets an id
+        that says so, for which an external stub is created.
+        """
         graph_id = self.graph_id(id)
         return graph_id if graph_id in self.graph else f"MTIP:not-exported#{id}"
 
@@ -115,14 +124,15 @@ class FileLowering:
     def _find_owner(self, record: Record) -> Record | None:
         """Return the record of the owner.
 
-        MTIP does not write the owner of a transition, which is the region of its source.
+        MTIP does not write the owner of a transition; it is the owner of the source state.
         """
         mapped = v.KINDS.get(record.local_type)
         if mapped is not None and mapped[0] is Kind.TRANSITION:
-            record = self.by_id.get(record.first("supplier"), record)
-        return self.by_id.get(record.first("hasParent"))
+            record = self.by_id.get(record.find_target("supplier"), record)
+        return self.by_id.get(record.find_target("hasParent"))
 
     def _iter_owners_first(self) -> Iterator[Record]:
+        """Yield each record after its owner; a cycle of owners is cut."""
         visited: set[str] = {""}
         for record in self.records:
             chain: list[Record] = []
@@ -135,8 +145,8 @@ class FileLowering:
 
     # -- elements ----------------------------------------------------------------------------------
 
-    def _add(self, record: Record) -> None:
-        """Add the element of a record, or set the verdict of a record that is no element."""
+    def _add_element(self, record: Record) -> None:
+        """Add the element of a record; if none is added, store the reason as the verdict."""
         mapped = v.KINDS.get(record.local_type)
         if mapped is None:
             self._mark_omitted(record)
@@ -145,7 +155,7 @@ class FileLowering:
         owner = self._find_owner_id(record, kind)
         if record.ordinal in self.verdicts:
             return
-        if owner is None and record.first("hasParent"):
+        if owner is None and record.find_target("hasParent"):
             self._mark_ownerless(record)
             return
         id = self.graph_id(record.id)
@@ -161,7 +171,7 @@ class FileLowering:
                 store(element, text)
 
     def _find_owner_id(self, record: Record, kind: Kind) -> str | None:
-        """Return the id of the owner if it is in the graph and may own the kind."""
+        """Return the id of the owner; None if it is not in the graph or may not own the kind."""
         owner_record = self._find_owner(record)
         owner = self.graph.get(self.graph_id(owner_record.id)) if owner_record else None
         if owner is None or (kind in v.OWNERS and owner.kind not in v.OWNERS[kind]):
@@ -177,6 +187,7 @@ class FileLowering:
     # -- losses ------------------------------------------------------------------------------------
 
     def _mark_omitted(self, record: Record) -> None:
+        """Store the verdict of a record whose type has no kind in the graph."""
         if v.is_notation(record.local_type):
             self.verdicts[record.ordinal] = Verdict.IGNORED_NOTATION
         elif record.local_type in v.FOLDED:
@@ -185,8 +196,8 @@ class FileLowering:
             self._mark_unsupported(record, UNSUPPORTED, record.local_type)
 
     def _mark_ownerless(self, record: Record) -> None:
-        """Mark a record whose owner is not read; the content of tool settings is no loss."""
-        owner = self.by_id.get(record.first("hasParent"))
+        """Store the verdict of a record whose owner is not read; in a diagram it is no loss."""
+        owner = self.by_id.get(record.find_target("hasParent"))
         if owner and self.verdicts.get(owner.ordinal) is Verdict.IGNORED_NOTATION:
             self.verdicts[record.ordinal] = Verdict.IGNORED_NOTATION
         else:
@@ -197,7 +208,7 @@ class FileLowering:
         self._losses.setdefault((rule.code, subject), []).append(record)
 
     def mark_loose_end(self, record: Record, flow: Element, edge: Edge) -> None:
-        """Mark a flow that leads from or to a node that is not read."""
+        """Store that an end of *flow* is not read: *edge*, which leads to it, is not added."""
         edges = list_items(flow.attrs.get("unresolved"))
         flow.attrs["unresolved"] = (*edges, edge.value)
         self.verdicts[record.ordinal] = Verdict.APPROXIMATED
@@ -205,7 +216,7 @@ class FileLowering:
         self._losses.setdefault(key, []).append(record)
 
     def report_losses(self, sink: Sink) -> None:
-        """Report records that are not read, once for each type or id."""
+        """Report the records that are not wholly read, once for each rule and type or id."""
         loss_rules = {rule.code: rule for rule in _LOSS_RULES}
         for (code, name), records in self._losses.items():
             sink.report(

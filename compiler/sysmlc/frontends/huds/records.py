@@ -47,15 +47,15 @@ class Record(NamedTuple):
         return next(iter(self.values(key)), "")
 
     def targets(self, name: str) -> list[str]:
-        """Return the ids that a relation leads to, in order."""
+        """Return the ids to which a relation leads, in order."""
         return [id for relation, id in self.relations if relation == name]
 
-    def first(self, name: str) -> str:
-        """Return the first id that a relation leads to, or the empty string."""
+    def find_target(self, name: str) -> str:
+        """Return the first id to which a relation leads, or the empty string."""
         return next((id for relation, id in self.relations if relation == name), "")
 
     def list_stereotypes(self) -> list[tuple[str, str]]:
-        """Return name and profile of each stereotype that is applied, each once."""
+        """Return name and profile of the stereotypes that are applied, sorted."""
         applied = (dict(parts) for key, parts in self.attributes if key == "stereotype")
         return sorted(
             {(parts.get("stereotypeName", ""), parts.get("profileName", "")) for parts in applied}

@@ -1,4 +1,4 @@
-"""Relations between records as references of the graph."""
+"""Lowers relations between records to references, which the pass ``resolve`` makes edges."""
 
 from collections.abc import Callable, Iterable
 from typing import Protocol
@@ -9,7 +9,7 @@ from sysmlc.ir import Edge, Element, Graph, Kind, Reference
 from sysmlc.ir.element import derived_id
 
 
-class _File(Protocol):
+class _FileLowering(Protocol):
     """The part of ``lowering.FileLowering`` that this module uses."""
 
     graph: Graph
@@ -20,7 +20,7 @@ class _File(Protocol):
     def mark_loose_end(self, record: Record, flow: Element, edge: Edge) -> None: ...
 
 
-def add_relations(file: _File, record: Record, element: Element | None) -> None:
+def add_relations(file: _FileLowering, record: Record, element: Element | None) -> None:
     """Add the references of a record; *element* is the record's own element, if it has one."""
     if element is None:
         if record.local_type in _EDGES:
@@ -36,12 +36,12 @@ def add_relations(file: _File, record: Record, element: Element | None) -> None:
         _COMPLETIONS[element.kind](file, record, element)
 
 
-def _refer(file: _File, edge: Edge, source: str, ids: Iterable[str]) -> None:
+def _refer(file: _FileLowering, edge: Edge, source: str, ids: Iterable[str]) -> None:
     for id in ids:
         file.graph.pending.append(Reference(edge, source, file.target_id(id)))
 
 
-def _add_ends(file: _File, record: Record, element: Element) -> None:
+def _add_ends(file: _FileLowering, record: Record, element: Element) -> None:
     for edge, relation in zip(v.ENDS[element.kind], ("supplier", "client"), strict=True):
         for id in record.targets(relation)[:1]:
             if element.kind in _FLOWS and file.target_id(id) not in file.graph:
@@ -50,9 +50,9 @@ def _add_ends(file: _File, record: Record, element: Element) -> None:
                 _refer(file, edge, element.id, [id])
 
 
-def _add_edge(file: _File, record: Record, edge: Edge) -> None:
-    """Add the edge of a record that is no element, from its supplier to its client."""
-    source, target = record.first("supplier"), record.first("client")
+def _add_edge(file: _FileLowering, record: Record, edge: Edge) -> None:
+    """Add the edge of a record without an element, from its supplier to its client."""
+    source, target = record.find_target("supplier"), record.find_target("client")
     if file.graph.get(file.target_id(source)) is not None and target:
         _refer(file, edge, file.target_id(source), [target])
 
@@ -60,7 +60,7 @@ def _add_edge(file: _File, record: Record, edge: Edge) -> None:
 # -- completions of single kinds -------------------------------------------------------------------
 
 
-def _complete_connector(file: _File, record: Record, connector: Element) -> None:
+def _complete_connector(file: _FileLowering, record: Record, connector: Element) -> None:
     for number, side in enumerate(("supplier", "client")):
         end = Element(
             derived_id(connector.id, f"end[{number}]"),
@@ -76,8 +76,8 @@ def _complete_connector(file: _File, record: Record, connector: Element) -> None
         _refer(file, Edge.PATH, end.id, record.targets(f"{side}PartWithPort"))
 
 
-def _complete_property(file: _File, record: Record, property_: Element) -> None:
-    """Make a property that names an association an end of it, as in UML."""
+def _complete_property(file: _FileLowering, record: Record, property_: Element) -> None:
+    """Make a property an end of the association that it names; set its aggregation."""
     owner = file.graph.get(property_.owner or "")
     for id in record.targets("association"):
         association = file.graph.get(file.target_id(id))
@@ -90,14 +90,14 @@ def _complete_property(file: _File, record: Record, property_: Element) -> None:
         property_.attrs["aggregation"] = "composite"
 
 
-def _complete_trigger(file: _File, record: Record, trigger: Element) -> None:
-    """Connect a trigger with its owner, and give it the content of its event."""
+def _complete_trigger(file: _FileLowering, record: Record, trigger: Element) -> None:
+    """Connect a trigger with its owner, and add the content of its event to it."""
     owner = file.graph.get(trigger.owner or "")
     if owner is not None and owner.kind in (Kind.TRANSITION, Kind.ACTION):
         file.graph.connect(Edge.TRIGGER, owner, trigger)
     elif owner is not None:
         trigger.attrs["deferred"] = True
-    event = file.by_id.get(record.first("event"))
+    event = file.by_id.get(record.find_target("event"))
     if event is None:
         return
     trigger.attrs["subkind"] = event.local_type.removesuffix("Event").lower()
@@ -109,7 +109,7 @@ def _complete_trigger(file: _File, record: Record, trigger: Element) -> None:
         trigger.attrs["relative"] = True
 
 
-def _complete_constraint(file: _File, record: Record, constraint: Element) -> None:
+def _complete_constraint(file: _FileLowering, record: Record, constraint: Element) -> None:
     """Make a constraint of a transition its guard."""
     owner = file.graph.get(constraint.owner or "")
     if owner is not None and owner.kind is Kind.TRANSITION and constraint.attrs.get("body"):
@@ -117,19 +117,19 @@ def _complete_constraint(file: _File, record: Record, constraint: Element) -> No
         file.graph.connect(Edge.GUARD, owner, constraint)
 
 
-def _complete_slot(file: _File, record: Record, slot: Element) -> None:
+def _complete_slot(file: _FileLowering, record: Record, slot: Element) -> None:
     values = record.values("value")
     if values:
         slot.attrs["value"] = values[0] if len(values) == 1 else tuple(values)
 
 
-def _complete_pin(file: _File, record: Record, pin: Element) -> None:
+def _complete_pin(file: _FileLowering, record: Record, pin: Element) -> None:
     pin.attrs["direction"] = "out" if record.type.endswith("OutputPin") else "in"
 
 
 _FLOWS = frozenset({Kind.CONTROL_FLOW, Kind.OBJECT_FLOW, Kind.TRANSITION})
 """Kinds that lead from node to node: an external stub for a node that is not read is no node."""
-_COMPLETIONS: dict[Kind, Callable[[_File, Record, Element], None]] = {
+_COMPLETIONS: dict[Kind, Callable[[_FileLowering, Record, Element], None]] = {
     Kind.CONNECTOR: _complete_connector,
     Kind.PROPERTY: _complete_property,
     Kind.TRIGGER: _complete_trigger,

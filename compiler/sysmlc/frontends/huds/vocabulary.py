@@ -147,5 +147,5 @@ SYSML_PROFILES = frozenset({"SysML", "additional_stereotypes", "SysML Profile"})
 
 
 def is_notation(type_name: str) -> bool:
-    """Whether elements of the type are diagrams, tables or settings of the tool."""
+    """Whether elements of the type are diagrams, tables or settings of Cameo."""
     return type_name.endswith(("Diagram", "Table", "Matrix", "Map")) or type_name == "Customization"
