@@ -1,7 +1,7 @@
 """Pass ``classify``: stereotypes of all dialects, look-alikes, levels."""
 
 import pytest
-from passing import codes, refined
+from pass_runs import list_codes, run_until
 
 from sysmlc.ir import Edge
 
@@ -55,16 +55,16 @@ def applied(line: str, stereotype: str, namespace: str, id: str = "x") -> str:
     ],
 )
 def test_role_by_stereotype_in_each_dialect(line, stereotype, namespace, role):
-    graph, sink = refined(applied(line, stereotype, namespace), "classify")
+    graph, sink = run_until(applied(line, stereotype, namespace), "classify")
     assert graph["x"].role == role
-    assert "SM210" not in codes(sink)
+    assert "SM210" not in list_codes(sink)
 
 
 def test_stereotype_name_that_xml_cannot_write_is_found():
     profile = 'Profile p "Arrowhead"\n  Stereotype p.s "SD-DD"\n    -> specializes i\n'
     text = applied('Class x "X"', "SD_DD", "http://www.magicdraw.com/schemas/Arrowhead.xmi")
     stub = 'Stereotype i "InterfaceBlock" external=true href="SysML Profile.mdzip#_1"\n'
-    graph, _ = refined(text + profile + stub, "classify")
+    graph, _ = run_until(text + profile + stub, "classify")
     assert graph["x"].role == "interface block"
     assert graph["ax"].attrs["lineage"] == ("SD-DD", "InterfaceBlock", "Block")
     assert graph.target(graph["ax"], Edge.INSTANCE_OF).id == "p.s"
@@ -77,7 +77,7 @@ def test_of_two_profiles_with_a_stereotype_of_the_name_the_namespace_decides():
         f'Stereotype b "Block" external=true href="{OMG}.xmi#Block"\n'
     )
     for namespace, role in (("http://a", ""), ("http://b", "block"), ("http://c", "")):
-        graph, _ = refined(applied('Class x "X"', "Gate", namespace) + profiles, "classify")
+        graph, _ = run_until(applied('Class x "X"', "Gate", namespace) + profiles, "classify")
         assert graph["x"].role == role
 
 
@@ -86,7 +86,7 @@ def test_stereotype_that_specialises_itself_does_not_hang():
         'Profile p "p" uri="http://a"\n  Stereotype s "S"\n    -> specializes t\n'
         '  Stereotype t "T"\n    -> specializes s\n'
     )
-    graph, _ = refined(applied('Class x "X"', "S", "http://a") + profile, "classify")
+    graph, _ = run_until(applied('Class x "X"', "S", "http://a") + profile, "classify")
     assert graph["ax"].attrs["lineage"] == ("S", "T")
 
 
@@ -97,18 +97,18 @@ def test_class_of_an_unknown_stereotype_with_sysml_ports_is_a_block():
         + f'    Application ax stereotype="ProxyPort" namespace="{OMG}"\n      -> subject x\n'
         + 'Class t "Track"\n'
     )
-    graph, _ = refined(text, "classify")
+    graph, _ = run_until(text, "classify")
     assert (graph["g"].role, graph["t"].role) == ("block", "interface block")
 
 
 def test_plain_uml_class_with_plain_ports_is_no_block():
-    graph, _ = refined('Class g "Gate"\n  Port p "in"\n', "classify")
+    graph, _ = run_until('Class g "Gate"\n  Port p "in"\n', "classify")
     assert graph["g"].role == ""
 
 
 def test_levels_come_from_the_shipped_profile_only():
     for namespace, level in ((SHIPPED, "task"), ("http://a", None)):
-        graph, _ = refined(applied('Activity x "X"', "Task", namespace), "classify")
+        graph, _ = run_until(applied('Activity x "X"', "Task", namespace), "classify")
         assert graph["x"].attrs.get("level") == level
 
 
@@ -117,7 +117,7 @@ def test_own_stereotype_that_specialises_a_shipped_one_gives_its_level():
         'Profile p "plant" uri="http://a"\n  Stereotype s "Screwing"\n    -> specializes t\n'
         'Stereotype t "Task" external=true href="pathmap://SYSMLC_PROFILES/sysmlc.profile.uml#Task"\n'
     )
-    graph, _ = refined(applied('Activity x "X"', "Screwing", "http://a") + profile, "classify")
+    graph, _ = run_until(applied('Activity x "X"', "Screwing", "http://a") + profile, "classify")
     assert graph["x"].attrs["level"] == "task"
 
 
@@ -125,7 +125,7 @@ def test_opc_ua_call_of_a_service_does_not_hide_that_it_is_one():
     text = applied('Activity x "X"', "OpcUaCall", SHIPPED) + (
         f'  Application b stereotype="MachineService" namespace="{SHIPPED}"\n    -> subject x\n'
     )
-    assert refined(text, "classify")[0]["x"].attrs["level"] == "machine service"
+    assert run_until(text, "classify")[0]["x"].attrs["level"] == "machine service"
 
 
 def test_level_of_the_nearest_general_classifier_is_inherited():
@@ -133,17 +133,17 @@ def test_level_of_the_nearest_general_classifier_is_inherited():
         applied('Class x "Machine"', "Machine", SHIPPED)
         + 'Class y "Robot"\n  -> specializes x\nClass z "Arm"\n  -> specializes y\n'
     )
-    graph, _ = refined(text, "classify")
+    graph, _ = run_until(text, "classify")
     assert [graph[id].attrs.get("level") for id in "xyz"] == ["machine"] * 3
 
 
 def test_role_that_a_front_end_gave_stays_without_a_stereotype():
-    assert refined('Class x "X" role="block"', "classify")[0]["x"].role == "block"
+    assert run_until('Class x "X" role="block"', "classify")[0]["x"].role == "block"
 
 
 def test_a_requirement_has_its_text_from_the_element_where_its_stereotype_says_none():
     """Enterprise Architect may tell the stereotype in one place and its tags in another."""
-    graph, _ = refined(
+    graph, _ = run_until(
         applied('Class x "X" tag.id="R1" tag.text="shall hold"', "Requirement", SPARX), "classify"
     )
     assert (graph["x"].attrs["req_id"], graph["x"].attrs["text"]) == ("R1", "shall hold")

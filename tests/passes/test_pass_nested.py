@@ -1,7 +1,7 @@
 """Conjugation through nested ports, flow ports of SysML 1.1, ends of any depth."""
 
 import pytest
-from passing import codes, refined
+from pass_runs import list_codes, run_until
 
 from sysmlc.ir.query import end_direction, flow_directions, is_boundary
 
@@ -43,7 +43,7 @@ SPECIFICATION = (
 )
 def test_the_direction_of_a_flow_port(type_, given, expected):
     port = f'Class gate "Gate"\n  Port port "port"\n    -> typed-by {type_}\n'
-    graph, _ = refined(SPECIFICATION + port + applied("FlowPort", "port", given), "ports")
+    graph, _ = run_until(SPECIFICATION + port + applied("FlowPort", "port", given), "ports")
     assert graph["port"].role == "flow port"
     assert graph["port"].attrs["direction"] == expected
 
@@ -65,7 +65,7 @@ TYPES = (
 def test_each_flow_property_is_turned_round_at_a_conjugated_port(conjugated):
     attribute = " conjugated=true" * conjugated
     port = f'Class gate "Gate"\n  Port port "port"{attribute}\n    -> typed-by data\n'
-    graph, _ = refined(TYPES + port, "ports")
+    graph, _ = run_until(TYPES + port, "ports")
     shown = {one.name: direction for one, direction in flow_directions(graph, graph["port"])}
     expected = {"id": "out", "ok": "in"} if conjugated else {"id": "in", "ok": "out"}
     assert shown == expected
@@ -87,7 +87,7 @@ def test_a_conjugated_port_turns_round_what_is_nested_in_it(outer, inner, expect
         '  Connector k "k"\n    -> end k.1\n    ConnectorEnd k.1\n'
         "      -> path port\n      -> role door.data\n"
     )
-    graph, _ = refined(model, "ports")
+    graph, _ = run_until(model, "ports")
     assert end_direction(graph, graph["k.1"]) == expected
     assert is_boundary(graph, graph["k.1"])
 
@@ -107,12 +107,12 @@ def connected(outer: str) -> str:
 
 
 def test_nested_ports_connect_when_conjugation_makes_them_fit():
-    assert "SM315" not in codes(refined(connected(" conjugated=true"), "flows")[1])
-    assert "SM315" in codes(refined(connected(""), "flows")[1])
+    assert "SM315" not in list_codes(run_until(connected(" conjugated=true"), "flows")[1])
+    assert "SM315" in list_codes(run_until(connected(""), "flows")[1])
 
 
 def test_a_part_on_the_way_makes_an_end_inner():
-    graph, _ = refined(connected(""), "flows")
+    graph, _ = run_until(connected(""), "flows")
     assert not is_boundary(graph, graph["k.1"])
     assert graph.targets(graph["k.1"], "path") == [graph["l"], graph["left.p"]]
 
@@ -128,6 +128,6 @@ def test_an_empty_conjugated_interface_block_has_the_directions_of_its_original(
         + applied(name, "two", 'tag.original="one"', indent=2)
         + 'Class gate "Gate"\n  Port port "port"\n    -> typed-by two\n'
     )
-    graph, _ = refined(model, "ports")
+    graph, _ = run_until(model, "ports")
     assert graph["port"].attrs["direction"] == "out"
     assert graph["two"].role == "interface block"

@@ -1,8 +1,8 @@
 """What overlays add to a model, entry by entry."""
 
 import pytest
-from overlaying import MODEL, PLANT, laid_over
-from passing import codes, lines
+from overlay_samples import MODEL, PLANT, laid_over
+from pass_runs import list_codes, list_diagnostics
 
 from sysmlc.ir import Edge, Kind
 from sysmlc.ir.query import component_name
@@ -21,7 +21,7 @@ def named(graph, name, kind=None):
 
 def flow_of(text, model=PLANT + MODEL, until="overlay"):
     graph, sink = laid_over(text, model=model, until=until)
-    assert codes(sink) == []
+    assert list_codes(sink) == []
     flow = graph.of_kind(Kind.ITEM_FLOW)[0]
     sides = [
         [one.id for one in graph.targets(flow, e)] for e in (Edge.FLOW_SOURCE, Edge.FLOW_TARGET)
@@ -34,7 +34,7 @@ def flow_of(text, model=PLANT + MODEL, until="overlay"):
 
 def test_a_new_item_type_is_a_block_in_a_package_of_its_own():
     graph, sink = laid_over(ITEMS + "  RFID_Tag: {domain: information, description: The id.}\n")
-    assert codes(sink) == []
+    assert list_codes(sink) == []
     pallet, tag = named(graph, "MiniPallet"), named(graph, "RFID_Tag")
     assert (pallet.kind, pallet.role, pallet.attrs["domain"]) == (Kind.CLASS, "block", "physical")
     assert tag.attrs["domain"] == "information"
@@ -49,14 +49,14 @@ def test_item_types_join_a_package_of_the_model():
 
 def test_an_item_type_of_the_model_gets_its_domain():
     graph, sink = laid_over("overlay: 1\nitems:\n  Plant/Tag: {domain: information}\n")
-    assert codes(sink) == []
+    assert list_codes(sink) == []
     assert graph["tag"].attrs["domain"] == "information"
 
 
 def test_the_domain_of_a_general_type_is_enough():
     text = ITEMS + "  HeavyPallet: {specializes: [MiniPallet]}\n"
     graph, sink = laid_over(text)
-    assert codes(sink) == []
+    assert list_codes(sink) == []
     heavy = named(graph, "HeavyPallet")
     assert graph.targets(heavy, Edge.SPECIALIZES) == [named(graph, "MiniPallet")]
 
@@ -108,7 +108,7 @@ def test_flows_give_ports_and_connectors_what_they_say():
     graph, sink = laid_over(f"{FLOW}{{item: MiniPallet, to: sw}}\n", until="flows")
     assert graph["s-out"].attrs["direction"] == "out"
     assert graph["l1"].attrs["domain"] == "physical"
-    assert codes(sink) == ["SM300"]
+    assert list_codes(sink) == ["SM300"]
 
 
 def test_the_author_directs_and_types_ports():
@@ -145,7 +145,7 @@ def test_different_items_over_ports_of_one_interface_block_are_no_fault():
         items
         + "{item: MiniPallet, to: sw}\n  Plant/Gate/loop:\n    flows: [{item: Tag2, to: p_sIn}]\n"
     )
-    assert {"SM311", "SM316", "SM317"}.isdisjoint(codes(laid_over(text, until="flows")[1]))
+    assert {"SM311", "SM316", "SM317"}.isdisjoint(list_codes(laid_over(text, until="flows")[1]))
 
 
 # -- operations and behaviours -----------------------------------------------------------------
@@ -158,7 +158,7 @@ def test_an_operation_has_its_parameters_in_order():
         "        - {name: id, type: String, direction: return}\n"
     )
     graph, sink = laid_over(text)
-    assert codes(sink) == []
+    assert list_codes(sink) == []
     operation = named(graph, "readId")
     assert graph.owner(operation) is graph["gate"]
     shown = [(one.name, one.attrs.get("direction")) for one in graph.owned(operation)]
@@ -171,7 +171,7 @@ def test_a_method_gives_its_parameters_to_an_operation_without():
     text = GATE + "    operations:\n      handle: {method: gate.uml#Gate::Handle}\n"
     text += GETS_IN
     graph, sink = laid_over(text, until="behaviours")
-    assert "SM404" not in codes(sink)
+    assert "SM404" not in list_codes(sink)
     operation = named(graph, "handle", Kind.OPERATION)
     assert graph.targets(operation, Edge.METHOD) == [graph["handle"]]
     assert [one.name for one in graph.owned(operation)] == ["pallet"]
@@ -180,7 +180,7 @@ def test_a_method_gives_its_parameters_to_an_operation_without():
 
 def test_a_behaviour_becomes_the_classifier_behaviour_of_the_block():
     graph, sink = laid_over(HANDLED + GETS_IN)
-    assert codes(sink) == []
+    assert list_codes(sink) == []
     assert graph.targets(graph["gate"], Edge.CLASSIFIER_BEHAVIOR) == [graph["handle"]]
     assert component_name(graph, graph["handle"]) == "Plant::Gate"
 
@@ -189,7 +189,7 @@ def test_a_state_machine_is_a_behaviour_too():
     machine = 'Package m "M" @gate.uml:9\n  StateMachine states "States" @gate.uml:10\n'
     text = GATE + "    behavior: gate.uml#M::States\n"
     graph, sink = laid_over(text, model=PLANT + machine)
-    assert codes(sink) == []
+    assert list_codes(sink) == []
     assert graph.targets(graph["gate"], Edge.CLASSIFIER_BEHAVIOR) == [graph["states"]]
 
 
@@ -238,7 +238,7 @@ def test_a_default_is_a_value_of_its_type(type_, good, bad):
     for default, expected in ((good, []), (bad, ["SM637"])):
         value = f"{{type: {type_}, default: {default}}}"
         text = f"overlay: 1\nblocks:\n  Plant/Switch: {{values: {{v: {value}}}}}\n"
-        assert codes(laid_over(text, model=PLANT + ENUMERATION)[1]) == expected
+        assert list_codes(laid_over(text, model=PLANT + ENUMERATION)[1]) == expected
 
 
 def test_of_many_lost_entries_the_first_are_answered_with_the_nearest_name():
@@ -252,7 +252,7 @@ def test_a_call_means_an_operation_of_the_block_or_of_a_part():
     graph, sink = laid_over(
         HANDLED + "  Plant/Switch: {operations: {getIn: }}\n", until="behaviours"
     )
-    assert "SM400" not in codes(sink)
+    assert "SM400" not in list_codes(sink)
     assert graph.targets(graph["call"], Edge.CALLS) == [named(graph, "getIn", Kind.OPERATION)]
 
 
@@ -263,7 +263,7 @@ def test_a_part_that_inherits_the_operation_has_it_too():
         + "  Plant/Switch: {specializes: [Plant/Stopper]}\n"
     )
     graph, sink = laid_over(text)
-    assert codes(sink) == []
+    assert list_codes(sink) == []
     assert graph.targets(graph["call"], Edge.CALLS) == [named(graph, "getIn", Kind.OPERATION)]
 
 
@@ -275,7 +275,7 @@ def test_a_call_that_nothing_answers_is_reported_once_with_the_nearest_name():
         "this name"
     ]
     assert found[0].help.endswith("did you mean 'getInn'?")
-    assert "SM400" not in codes(sink)
+    assert "SM400" not in list_codes(sink)
 
 
 def test_calls_of_the_overlay_count_before_names():
@@ -283,7 +283,7 @@ def test_calls_of_the_overlay_count_before_names():
         "    calls: {getIn: sw/open}\n  Plant/Switch: {operations: {open: , getIn: }}\n"
     )
     graph, sink = laid_over(text)
-    assert codes(sink) == []
+    assert list_codes(sink) == []
     called = graph.targets(graph["call"], Edge.CALLS)
     assert [graph.qualified_name(one) for one in called] == ["Plant::Switch::open"]
 
@@ -291,7 +291,7 @@ def test_calls_of_the_overlay_count_before_names():
 def test_values_are_what_guards_can_name():
     text = GATE + "    values: {bayIsFree: {type: Boolean, default: true}}\n"
     graph, sink = laid_over(text)
-    assert codes(sink) == []
+    assert list_codes(sink) == []
     value = named(graph, "bayIsFree")
     assert (value.role, value.attrs["default"], graph.owner(value)) == (
         "value",
@@ -303,7 +303,7 @@ def test_values_are_what_guards_can_name():
 def test_an_allocation_is_drawn_from_one_element_to_the_other():
     text = "overlay: 1\nallocations:\n- {from: Gate/Handle, to: Plant/Gate/sw}\n"
     graph, sink = laid_over(text, until="classify")
-    assert codes(sink) == []
+    assert list_codes(sink) == []
     assert graph.targets(graph["handle"], Edge.ALLOCATED_TO) == [graph["sw"]]
 
 
@@ -334,21 +334,21 @@ def test_a_block_is_named_by_id_path_or_qualified_name_of_it_or_its_instance(key
     graph, sink = laid_over(
         f"overlay: 1\nblocks:\n  {key}: {{operations: {{stamp: }}}}\n", model=PLANT_OF_AML
     )
-    assert codes(sink) == []
+    assert list_codes(sink) == []
     assert graph.owner(named(graph, "stamp")) is graph["own"]
 
 
 def test_an_interface_that_an_instance_repeats_is_the_port_of_the_class():
     key = "'{7B0C9D64-0000-4A3B-9F00-2B7D9A3C1E11}'"
     graph, sink = laid_over(f"overlay: 1\nports:\n  {key}: {{direction: in}}\n", model=PLANT_OF_AML)
-    assert codes(sink) == []
+    assert list_codes(sink) == []
     assert graph["own.p"].attrs["direction"] == "in"
 
 
 def test_a_key_whose_id_is_gone_falls_back_to_its_path_and_says_so():
     text = "overlay: 1\nports:\n  old-id: {path: Plant/Switch/p_swIn, direction: in}\n"
     _, sink = laid_over(text)
-    assert lines(sink) == [
+    assert list_diagnostics(sink) == [
         "SM325 info: no element has the id 'old-id' any more; 'Plant/Switch/p_swIn' is used instead"
     ]
     assert next(iter(sink)).help == "if that is the intended element, write 'w-in' as the key"
@@ -357,7 +357,7 @@ def test_a_key_whose_id_is_gone_falls_back_to_its_path_and_says_so():
 def test_the_id_counts_when_the_path_leads_elsewhere():
     text = "overlay: 1\nports:\n  s-in: {path: Plant/Stopper/p_sOut, direction: in}\n"
     graph, sink = laid_over(text)
-    assert lines(sink) == [
+    assert list_diagnostics(sink) == [
         "SM340 warning: the id 's-in' now belongs to 'Plant/Stopper/p_sIn', not to "
         "'Plant/Stopper/p_sOut'"
     ]
@@ -367,7 +367,7 @@ def test_the_id_counts_when_the_path_leads_elsewhere():
 @pytest.mark.parametrize("path", ["Plant/Stopper/p_sIn", "Plant/Stopper/gone"])
 def test_a_path_that_leads_to_the_same_or_nowhere_is_fine_beside_an_id(path):
     _, sink = laid_over(f"overlay: 1\nports:\n  s-in: {{path: {path}, direction: in}}\n")
-    assert codes(sink) == []
+    assert list_codes(sink) == []
 
 
 def test_an_entry_that_matches_nothing_is_told_with_its_place_and_the_nearest_name():
@@ -384,13 +384,13 @@ def test_an_entry_that_matches_nothing_is_told_with_its_place_and_the_nearest_na
 
 def test_overlays_share_the_items_that_both_name():
     graph, sink = laid_over(f"{FLOW}{{item: MiniPallet, to: sw}}\n", ITEMS)
-    assert codes(sink) == []
+    assert list_codes(sink) == []
     assert len([one for one in graph if one.name == "MiniPallet"]) == 1
 
 
 def test_overlays_that_disagree_are_told():
     _, sink = laid_over(ITEMS, ITEMS.replace("physical", "information"))
-    assert lines(sink) == [
+    assert list_diagnostics(sink) == [
         "SM339 warning: the overlay gives 'MiniPallet' the domain information, the model physical"
     ]
 

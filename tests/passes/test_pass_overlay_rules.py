@@ -1,8 +1,8 @@
 """Each rule about overlays: an overlay that has the fault, and one that nearly has it."""
 
 import pytest
-from overlaying import laid_over
-from passing import codes
+from overlay_samples import laid_over
+from pass_runs import list_codes
 
 from sysmlc.driver import load_full_catalogue
 
@@ -12,8 +12,8 @@ RULES = [rule for rule in load_full_catalogue().values() if int(rule.code[2:]) i
 
 @pytest.mark.parametrize("rule", RULES, ids=lambda rule: rule.name)
 def test_rule_reports_its_wrong_overlay_and_not_its_right_one(rule):
-    assert rule.code in codes(laid_over(rule.read_page().wrong)[1])
-    assert rule.code not in codes(laid_over(rule.read_page().right)[1])
+    assert rule.code in list_codes(laid_over(rule.read_page().wrong)[1])
+    assert rule.code not in list_codes(laid_over(rule.read_page().right)[1])
 
 
 @pytest.mark.parametrize("rule", RULES, ids=lambda rule: rule.name)

@@ -1,7 +1,7 @@
 """Pass ``resolve``: where references lead, and what stands in for what is not there."""
 
 import pytest
-from passing import codes, lines, refined
+from pass_runs import list_codes, list_diagnostics, run_until
 
 from sysmlc.ir import Edge, Kind
 from sysmlc.ir.text import print_text
@@ -43,10 +43,10 @@ def pointing(target: str, kind: str = "Class", name: str = "", edge: str = "type
 
 @pytest.mark.parametrize(("href", "kind", "path", "name"), PRIMITIVES)
 def test_primitives_of_all_dialects_are_one_data_type_each(href, kind, path, name):
-    graph, sink = refined(pointing(href, kind, path), "resolve")
+    graph, sink = run_until(pointing(href, kind, path), "resolve")
     type_ = graph.target(graph["p"], Edge.TYPED_BY)
     assert (type_.kind, type_.name, type_.subkind) == (Kind.DATA_TYPE, name, "primitive")
-    assert codes(sink) == []
+    assert list_codes(sink) == []
 
 
 @pytest.mark.parametrize(
@@ -61,10 +61,10 @@ def test_primitives_of_all_dialects_are_one_data_type_each(href, kind, path, nam
     ],
 )
 def test_what_is_new_in_a_standard_library_stands_in_without_complaint(href, name):
-    graph, sink = refined(pointing(href, edge="references"), "resolve")
+    graph, sink = run_until(pointing(href, edge="references"), "resolve")
     stub = graph.target(graph["p"], Edge.REFERENCES)
     assert (stub.name, stub.attrs["external"], stub.attrs["href"]) == (name, True, href)
-    assert codes(sink) == []
+    assert list_codes(sink) == []
 
 
 @pytest.mark.parametrize(
@@ -76,8 +76,8 @@ def test_what_is_new_in_a_standard_library_stands_in_without_complaint(href, nam
     ],
 )  # fmt: skip
 def test_what_no_version_of_a_standard_library_has_is_told(href, count, name):
-    _, sink = refined(pointing(href, "DataType"), "resolve")
-    assert lines(sink) == [
+    _, sink = run_until(pointing(href, "DataType"), "resolve")
+    assert list_diagnostics(sink) == [
         f"SM153 warning: the built-in description of '{href.partition('#')[0]}' lacks {count} "
         f"of the elements that the model uses"
     ]
@@ -87,16 +87,16 @@ def test_what_no_version_of_a_standard_library_has_is_told(href, count, name):
 
 def test_a_type_of_magicdraws_profile_with_its_name_is_no_finding():
     text = pointing("UML_Standard_Profile.mdzip#_9_0_2_91a0295_1_2_3", "DataType", "Date")
-    _, sink = refined(text, "resolve")
-    assert codes(sink) == []
+    _, sink = run_until(text, "resolve")
+    assert list_codes(sink) == []
 
 
 def test_a_stub_keeps_the_qualified_name_that_the_reference_shows():
     text = pointing("lib.mdzip#_19_0_4_25dc056a_1", name="Company::Robots::Arm")
-    graph, _ = refined(text, "resolve")
+    graph, _ = run_until(text, "resolve")
     stub = graph.target(graph["p"], Edge.TYPED_BY)
     assert (stub.name, stub.attrs["qualified_name"]) == ("Arm", "Company::Robots::Arm")
-    plain, _ = refined(pointing("lib.mdzip#_19_0_4_25dc056a_1", name="Arm"), "resolve")
+    plain, _ = run_until(pointing("lib.mdzip#_19_0_4_25dc056a_1", name="Arm"), "resolve")
     assert "qualified_name" not in plain.target(plain["p"], Edge.TYPED_BY).attrs
 
 
@@ -105,8 +105,8 @@ def test_absent_library_is_one_warning_that_lists_what_it_takes_down():
         'Property q "q"\n  ?> typed-by "lib.uml#b" Class\n'
         'Property r "r"\n  ?> typed-by "lib.uml#a" Class\n'
     )
-    graph, sink = refined(text, "resolve")
-    assert lines(sink) == [
+    graph, sink = run_until(text, "resolve")
+    assert list_diagnostics(sink) == [
         "SM152 warning: 'lib.uml' is not part of the compile unit; its elements (2) are known "
         "by name only"
     ]
@@ -121,8 +121,8 @@ def test_absent_library_is_one_warning_that_lists_what_it_takes_down():
 )
 def test_file_of_the_unit_is_found_by_its_path_or_its_name(target):
     text = pointing(target) + 'Class x "X" @n/b.uml:1\n'
-    graph, sink = refined(text, "resolve")
-    assert (graph.target(graph["p"], Edge.TYPED_BY).id, codes(sink)) == ("x", [])
+    graph, sink = run_until(text, "resolve")
+    assert (graph.target(graph["p"], Edge.TYPED_BY).id, list_codes(sink)) == ("x", [])
 
 
 def test_of_two_files_of_one_name_the_one_beside_is_meant():
@@ -130,18 +130,18 @@ def test_of_two_files_of_one_name_the_one_beside_is_meant():
         pointing("b.uml#x")
         + 'Class n/b.uml#x "far" @n/b.uml:1\nClass m/b.uml#x "near" @m/b.uml:1\n'
     )
-    graph, _ = refined(text, "resolve")
+    graph, _ = run_until(text, "resolve")
     assert graph.target(graph["p"], Edge.TYPED_BY).name == "near"
 
 
 def test_short_id_in_an_unknown_file_is_not_mistaken_for_one_of_the_unit():
-    graph, sink = refined(pointing("lib.uml#_0") + "Class _0 @n/b.uml:1\n", "resolve")
+    graph, sink = run_until(pointing("lib.uml#_0") + "Class _0 @n/b.uml:1\n", "resolve")
     assert graph.target(graph["p"], Edge.TYPED_BY).attrs["href"] == "lib.uml#_0"
-    assert codes(sink) == ["SM152"]
+    assert list_codes(sink) == ["SM152"]
 
 
 def test_missing_element_of_a_file_of_the_unit_is_an_error_at_the_reference():
-    graph, sink = refined(pointing("b.uml#y") + "Class x @b.uml:1\n", "resolve")
+    graph, sink = run_until(pointing("b.uml#y") + "Class x @b.uml:1\n", "resolve")
     (found,) = sink
     assert (found.rule.code, found.subject.place.file, found.subject.id) == (
         "SM150",
@@ -154,7 +154,7 @@ def test_missing_element_of_a_file_of_the_unit_is_an_error_at_the_reference():
 
 def test_what_follows_from_a_broken_reference_is_not_reported():
     text = 'Class gate "Gate"\n  Port gate.in "in" direction="in"\n    ?> typed-by nowhere Class\n'
-    assert codes(refined(text, "ports")[1]) == ["SM150"]
+    assert list_codes(run_until(text, "ports")[1]) == ["SM150"]
 
 
 def test_files_in_another_order_give_the_same_edges_and_stand_ins():
@@ -162,7 +162,7 @@ def test_files_in_another_order_give_the_same_edges_and_stand_ins():
         pointing("lib.uml#a", name="A"),
         'Class c "C" @b.uml:1\n  ?> specializes m/a.uml#p Class\n',
     )
-    one, other = (refined(text, "resolve")[0] for text in (first + second, second + first))
+    one, other = (run_until(text, "resolve")[0] for text in (first + second, second + first))
     assert sorted(print_text(one).splitlines()) == sorted(print_text(other).splitlines())
 
 
@@ -172,10 +172,10 @@ def test_ids_in_attributes_become_ids_of_the_graph():
         'Structured c clauses=[[["t"], ["gone"]]] @a.uml:2\nAction t @a.uml:3\n'
         "Activity b.uml#isFree @b.uml:1\n"
     )
-    graph, sink = refined(text, "resolve")
+    graph, sink = run_until(text, "resolve")
     assert graph["d"].attrs["decision_input"] == "b.uml#isFree"
     assert graph["c"].attrs["clauses"] == ((("t",), ()),)
-    assert codes(sink) == ["SM151"]
+    assert list_codes(sink) == ["SM151"]
 
 
 @pytest.mark.parametrize(
@@ -189,16 +189,16 @@ def test_ids_in_attributes_become_ids_of_the_graph():
     ],
 )
 def test_an_attribute_that_names_what_does_not_exist_is_told(holder, attribute):
-    graph, sink = refined(f'{holder} {attribute}="gone"\n', "resolve")
-    assert (codes(sink), graph["x"].attrs.get(attribute)) == (["SM151"], None)
-    _, sink = refined(f'{holder} {attribute}="x"\n', "resolve")
-    assert codes(sink) == []
+    graph, sink = run_until(f'{holder} {attribute}="gone"\n', "resolve")
+    assert (list_codes(sink), graph["x"].attrs.get(attribute)) == (["SM151"], None)
+    _, sink = run_until(f'{holder} {attribute}="x"\n', "resolve")
+    assert list_codes(sink) == []
 
 
 def test_a_long_list_that_leads_nowhere_is_one_finding():
     text = 'Class gate "Gate"\n  Operation open "open"\n' + "    ?> method x{} Activity\n" * 6
     numbered = text.format(*range(6))
-    graph, sink = refined(numbered, "resolve")
+    graph, sink = run_until(numbered, "resolve")
     (found,) = sink
     assert found.message == "'method' of 'Gate::open' leads to 'x0' and 5 more that do not exist"
     assert graph["open"].attrs["unresolved"] == ("method",)
@@ -215,6 +215,6 @@ Activity pull "Pull in"
     ?> flow-target raise Action
     ?> flow-target lower Action
 """
-    graph, sink = refined(text, "resolve")
+    graph, sink = run_until(text, "resolve")
     assert [target.id for target in graph.targets(graph["go"], Edge.FLOW_TARGET)] == ["raise"]
-    assert codes(sink) == ["SM167"]
+    assert list_codes(sink) == ["SM167"]

@@ -1,7 +1,7 @@
 """Each rule of the structural passes whose examples are graphs: one has the fault, one nearly."""
 
 import pytest
-from passing import STRUCTURAL, codes, refined
+from pass_runs import STRUCTURAL, list_codes, run_until
 
 from sysmlc.diagnostics import catalogue
 from sysmlc.passes import pipeline
@@ -28,13 +28,15 @@ RULES = [
 
 @pytest.mark.parametrize(("pass_name", "rule"), RULES, ids=lambda x: getattr(x, "name", x))
 def test_rule_reports_its_wrong_model_and_not_its_right_one(pass_name, rule):
-    assert rule.code in codes(refined(rule.read_page().wrong, pass_name)[1])
-    assert rule.code not in codes(refined(rule.read_page().right, pass_name)[1])
+    assert rule.code in list_codes(run_until(rule.read_page().wrong, pass_name)[1])
+    assert rule.code not in list_codes(run_until(rule.read_page().right, pass_name)[1])
 
 
 @pytest.mark.parametrize(("pass_name", "rule"), RULES, ids=lambda x: getattr(x, "name", x))
 def test_right_model_is_right_in_every_way(pass_name, rule):
-    found = [one for one in refined(rule.read_page().right, pass_name)[1] if one.severity != "info"]
+    found = [
+        one for one in run_until(rule.read_page().right, pass_name)[1] if one.severity != "info"
+    ]
     assert found == []
 
 

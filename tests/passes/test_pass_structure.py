@@ -3,7 +3,7 @@
 import sys
 
 import pytest
-from passing import codes, lines, refined
+from pass_runs import list_codes, list_diagnostics, run_until
 
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Edge, Element, Graph, Kind
@@ -18,7 +18,7 @@ def names(graph, id):
 
 
 def test_circle_with_a_general_outside_still_inherits_from_there():
-    graph, sink = refined(
+    graph, sink = run_until(
         """\
 Class base "Base"
   Property base.id "id"
@@ -31,16 +31,16 @@ Class b "B"
         "inherit",
     )
     assert (names(graph, "a"), names(graph, "b")) == (["id"], ["x"])
-    assert lines(sink) == ["SM200 error: 'A' specialises itself: 'A', 'B', 'A'"]
+    assert list_diagnostics(sink) == ["SM200 error: 'A' specialises itself: 'A', 'B', 'A'"]
 
 
 def test_classifier_that_specialises_itself_is_a_circle():
-    _, sink = refined('Class a "A"\n  -> specializes a\n', "inherit")
-    assert codes(sink) == ["SM200"]
+    _, sink = run_until('Class a "A"\n  -> specializes a\n', "inherit")
+    assert list_codes(sink) == ["SM200"]
 
 
 def test_redefinition_of_a_stranger_hides_nothing():
-    graph, sink = refined(
+    graph, sink = run_until(
         """\
 Class a "A"
   Property a.x "x"
@@ -60,11 +60,11 @@ Class d "D"
     )
     assert names(graph, "b") == ["y", "z"]
     assert names(graph, "d") == ["y", "x"]
-    assert codes(sink) == ["SM202"]
+    assert list_codes(sink) == ["SM202"]
 
 
 def test_type_from_outside_the_unit_may_be_narrower():
-    _, sink = refined(
+    _, sink = run_until(
         """\
 Class out "Out" external=true href="lib.uml#out"
 Class in "In"
@@ -79,11 +79,11 @@ Class b "B"
 """,
         "inherit",
     )
-    assert codes(sink) == []
+    assert list_codes(sink) == []
 
 
 def test_ends_that_an_association_owns_are_not_its_features():
-    graph, _ = refined(
+    graph, _ = run_until(
         """\
 Association a "A"
   -> end e
@@ -155,7 +155,7 @@ Class gate "Gate"
     ],
 )
 def test_direction_from_flow_properties(flowing, more, expected):
-    graph, _ = refined(TRACK.format(direction=flowing, more=more), "ports")
+    graph, _ = run_until(TRACK.format(direction=flowing, more=more), "ports")
     assert graph["port"].attrs["direction"] == expected
 
 
@@ -177,13 +177,13 @@ def test_direction_from_parameters(parameters, more, expected):
         f'    Application a stereotype="DirectedFeature" tag.{more or "x=1"}\n      -> subject op\n'
     )
     text += 'Class gate "Gate"\n  Port port "port"\n    -> typed-by i\n'
-    graph, sink = refined(text, "ports")
+    graph, sink = run_until(text, "ports")
     assert graph["port"].attrs.get("direction") == expected
-    assert ("SM300" in codes(sink)) is (expected is None)
+    assert ("SM300" in list_codes(sink)) is (expected is None)
 
 
 def test_inherited_flow_properties_count():
-    graph, _ = refined(
+    graph, _ = run_until(
         """\
 Class base "Base"
   FlowProperty base.p "p" direction="out"
@@ -204,7 +204,7 @@ def test_conjugated_interface_block_turns_its_original_round_unless_it_says_more
     text += 'Class back "~Track"\n'
     text += f'  FlowProperty back.p "p" direction="{own}"\n' if own else ""
     text += '  Application a stereotype="ConjugatedInterfaceBlock" tag.original="track"\n'
-    graph, _ = refined(text + "    -> subject back\n", "ports")
+    graph, _ = run_until(text + "    -> subject back\n", "ports")
     assert graph["port"].attrs["direction"] == expected
 
 
@@ -215,7 +215,7 @@ def test_undirected_ports_are_counted_for_each_block():
         for block, count in (("A", 1), ("B", 10))
     )
     listed = ", ".join(f"'p{n}'" for n in range(8))
-    assert lines(refined(text, "ports")[1]) == [
+    assert list_diagnostics(run_until(text, "ports")[1]) == [
         "SM300 info: ports of 'A' without a direction (1): 'p0'",
         f"SM300 info: ports of 'B' without a direction (10): {listed} and 2 more",
     ]
@@ -264,20 +264,20 @@ def flow(source: str, target: str) -> str:
     ],
 )
 def test_directions_of_assembly_and_delegation_connectors(ends, found):
-    assert codes(refined(LINE + connector("c", *ends), "flows")[1]) == found
+    assert list_codes(run_until(LINE + connector("c", *ends), "flows")[1]) == found
 
 
 @pytest.mark.parametrize(("ends", "found"), [(("feed", "in"), []), (("in", "feed"), ["SM310"] * 2)])
 def test_what_enters_a_block_goes_on_to_its_part(ends, found):
     text = LINE + connector("c", "feed", "a.in") + flow(*ends)
-    assert codes(refined(text, "flows")[1]) == found
+    assert list_codes(run_until(text, "flows")[1]) == found
 
 
 def test_item_flow_that_two_connectors_could_realise_is_left_alone():
     text = LINE + connector("c", "a.out", "b.in") + connector("d", "b.out", "a.in")
-    graph, _ = refined(text + flow("out", "in"), "flows")
+    graph, _ = run_until(text + flow("out", "in"), "flows")
     assert graph.targets(graph["f"], Edge.REALIZING) == []
-    one, _ = refined(LINE + connector("c", "a.out", "b.in") + flow("out", "in"), "flows")
+    one, _ = run_until(LINE + connector("c", "a.out", "b.in") + flow("out", "in"), "flows")
     assert [found.id for found in one.targets(one["f"], Edge.REALIZING)] == ["c"]
 
 
@@ -288,7 +288,7 @@ def test_domain_may_be_a_tagged_value_of_a_general_classifier():
     text = text.replace(
         'Class pallet "Pallet"\n', 'Class pallet "Pallet"\n  -> specializes solid\n'
     )
-    graph, _ = refined(text, "flows")
+    graph, _ = run_until(text, "flows")
     assert [graph[id].attrs["domain"] for id in ("f", "c")] == ["physical"] * 2
 
 
@@ -316,7 +316,7 @@ Activity act "Act"
 """
     for number, (direction, subkind) in enumerate(pins):
         text += f'    Pin pin{number} direction="{direction}" subkind="{subkind}"\n'
-    assert codes(refined(text, "behaviours")[1]) == found
+    assert list_codes(run_until(text, "behaviours")[1]) == found
 
 
 def test_call_that_leaves_the_unit_is_not_judged():
@@ -327,11 +327,11 @@ Activity act "Act"
   Action lost "lost" subkind="call-operation"
     ?> calls gone Operation
 """
-    assert codes(refined(text, "behaviours")[1]) == ["SM150", "SM152"]
+    assert list_codes(run_until(text, "behaviours")[1]) == ["SM150", "SM152"]
 
 
 def test_components_have_the_names_of_the_design():
-    graph, _ = refined(
+    graph, _ = run_until(
         """\
 Package line "Line"
   Class gate "Gate"
@@ -362,7 +362,7 @@ def plants(port):
     ports = "".join(port.format(n=n, file=file) for n, file in enumerate("a" * 10 + "b"))
     documents = "".join(f'Document {f} "{f}" subkind="caex" @{f}.aml:0\n' for f in "ab")
     directed = 'Class d "D" @a.aml:98\n  Port d.p "p" direction="in" @a.aml:99\n    -> typed-by c\n'
-    _, sink = refined(f'{documents}Class c "C" @a.aml:97\n{ports}{directed}', "ports")
+    _, sink = run_until(f'{documents}Class c "C" @a.aml:97\n{ports}{directed}', "ports")
     return [f"{diagnostic.rule.code}: {diagnostic.message}" for diagnostic in sink], [
         one.subject.id for one in sink
     ]

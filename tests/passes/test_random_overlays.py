@@ -5,8 +5,8 @@ from random import Random
 
 from hypothesis import given
 from hypothesis import strategies as st
-from overlaying import MODEL, PLANT, overlay_of
-from structures import structures
+from overlay_samples import MODEL, PLANT, overlay_of
+from random_structures import structures
 
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Graph

@@ -4,7 +4,7 @@ import json
 
 import pytest
 from jsonschema import Draft202012Validator
-from passing import codes, refined
+from pass_runs import list_codes, run_until
 
 from sysmlc.ir import Edge, Kind
 from sysmlc.passes.resolve.libraries import Libraries, load_libraries, read_names
@@ -38,44 +38,44 @@ def stereotype(*generals: str) -> str:
 
 @pytest.mark.parametrize("href", BLOCK)
 def test_block_is_one_element_in_every_dialect(href):
-    graph, sink = refined(stereotype(href), "resolve")
+    graph, sink = run_until(stereotype(href), "resolve")
     block = graph.target(graph["station"], Edge.SPECIALIZES)
     assert (block.kind, graph.qualified_name(block)) == (Kind.STEREOTYPE, "SysML::Blocks::Block")
     assert block.attrs["href"] == "http://www.omg.org/spec/SysML/20181001/SysML.xmi#Blocks.Block"
     assert block.attrs["external"]
     assert block.attrs["library"]
     assert [graph.qualified_name(c) for c in graph.targets(block, Edge.EXTENDS)] == ["UML::Class"]
-    assert codes(sink) == []
+    assert list_codes(sink) == []
 
 
 @pytest.mark.parametrize("href", BLOCK)
 def test_what_specialises_block_is_a_block(href):
-    graph, sink = refined(stereotype(href), "classify")
+    graph, sink = run_until(stereotype(href), "classify")
     assert graph["gate"].role == "block"
     assert graph["app"].attrs["lineage"] == ("Station", "Block")
-    assert codes(sink) == []
+    assert list_codes(sink) == []
 
 
 def test_generals_of_the_library_count():
     own = "SysML%20Profile.mdzip#_17_0_3_17530432_1320213059640_259248_2362"
-    graph, _ = refined(stereotype(own), "classify")
+    graph, _ = run_until(stereotype(own), "classify")
     assert graph["gate"].role == "interface block"
     assert graph["app"].attrs["lineage"] == ("Station", "InterfaceBlock", "Block")
     part = (
         "MD_customization_for_SysML.mdzip#_15_0_be00301_1199377756297_348405_2678",
         "BlockProperty",
     )
-    graph, _ = refined(stereotype(part[0]), "classify")
+    graph, _ = run_until(stereotype(part[0]), "classify")
     assert graph["app"].attrs["lineage"] == ("Station", "PartProperty", "BlockProperty")
 
 
 def test_a_stereotype_that_only_is_called_block_is_none():
-    graph, _ = refined(stereotype("company.profile.uml#_companys_own_Block_000001"), "classify")
+    graph, _ = run_until(stereotype("company.profile.uml#_companys_own_Block_000001"), "classify")
     assert graph["gate"].role == ""
 
 
 def test_dialects_in_one_unit_share_the_stand_in():
-    graph, _ = refined(stereotype(*BLOCK), "resolve")
+    graph, _ = run_until(stereotype(*BLOCK), "resolve")
     assert len(graph.targets(graph["station"], Edge.SPECIALIZES)) == 1
     assert [e.name for e in graph.of_kind(Kind.STEREOTYPE)] == ["Station", "Block"]
 
@@ -105,15 +105,15 @@ def test_dialects_in_one_unit_share_the_stand_in():
 )  # fmt: skip
 def test_stand_ins_know_kind_and_qualified_name(href, kind, name):
     text = f'Property p "p" @m/a.uml:1\n  ?> references "{href}" Class\n'
-    graph, sink = refined(text, "resolve")
+    graph, sink = run_until(text, "resolve")
     found = graph.target(graph["p"], Edge.REFERENCES)
     assert (found.kind, graph.qualified_name(found)) == (kind, name)
-    assert codes(sink) == []
+    assert list_codes(sink) == []
 
 
 def test_an_applied_package_of_sysml_is_a_profile():
     href = "pathmap://SysML16_PROFILES/SysML.profile.uml#SysML.package_packagedElement_Blocks"
-    graph, _ = refined(f'Package m "M"\n  ?> applies "{href}" Profile\n', "resolve")
+    graph, _ = run_until(f'Package m "M"\n  ?> applies "{href}" Profile\n', "resolve")
     assert graph.target(graph["m"], Edge.APPLIES).kind is Kind.PROFILE
 
 

@@ -1,7 +1,7 @@
 """Allocation in activities and of definitions."""
 
 import pytest
-from passing import again, refined
+from pass_runs import print_after_second_run, run_until
 
 from sysmlc.ir import Edge
 from sysmlc.ir.query import allocated_from, allocated_to
@@ -45,18 +45,18 @@ Dependency d subkind="abstraction"
     ("node", "expected"), [("pick", ["arm"]), ("place", ["arm"]), ("look", []), ("start", [])]
 )
 def test_actions_in_an_allocate_partition_go_to_what_it_represents(node, expected):
-    graph, _ = refined(LANES, "classify")
+    graph, _ = run_until(LANES, "classify")
     assert [one.id for one in graph.targets(graph[node], Edge.ALLOCATED_TO)] == expected
 
 
 def test_a_second_run_changes_nothing():
-    graph, _ = refined(LANES, "classify")
+    graph, _ = run_until(LANES, "classify")
     once = print_text(graph)
-    assert again(graph, "classify") == once
+    assert print_after_second_run(graph, "classify") == once
 
 
 def test_an_allocation_of_a_definition_holds_for_its_usages():
-    graph, _ = refined(LANES + DEFINITION, "classify")
+    graph, _ = run_until(LANES + DEFINITION, "classify")
     assert [one.id for one in allocated_to(graph, graph["place"])] == ["arm", "robot"]
     assert [one.id for one in allocated_to(graph, graph["move"])] == ["robot"]
     assert [one.id for one in allocated_to(graph, graph["look"])] == []
@@ -68,5 +68,5 @@ def test_the_tags_of_sysml_1_2_say_the_same(way):
     here, there = ("pick", "arm") if way == "allocatedTo" else ("arm", "pick")
     tags = f'  Application b stereotype="Allocated" {SYSML} tag.{way}="{there}"\n'
     text = LANES.replace("AllocateActivityPartition", "Other") + tags + f"    -> subject {here}\n"
-    graph, _ = refined(text, "classify")
+    graph, _ = run_until(text, "classify")
     assert graph.targets(graph["pick"], Edge.ALLOCATED_TO) == [graph["arm"]]

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 from lxml import etree
-from passing import again, codes, refined
+from pass_runs import list_codes, print_after_second_run, run_until
 
 from sysmlc.ir.text import print_text
 from sysmlc.passes.classify import tags, vocabulary
@@ -219,7 +219,7 @@ def about(text: str, id: str) -> str:
 @pytest.mark.parametrize("name", CASES)
 def test_what_a_stereotype_says_comes_out(name):
     element, given, expected = CASES[name]
-    graph, _ = refined(PLACES + applied(element, name, given), "classify")
+    graph, _ = run_until(PLACES + applied(element, name, given), "classify")
     shown = about(print_text(graph), "x")
     parts = re.findall(r'-> \S+(?: \w+)+|[\w]+=(?:"[^"]*"|\[[^]]*\]|\w+)', expected)
     assert parts
@@ -231,7 +231,7 @@ def test_a_relation_has_its_role_and_its_edge(name):
     role, edge = RELATIONS[name]
     ends = "  -> client run\n  -> supplier gate\n"
     model = applied(f'Dependency x "X"\n{ends}'.rstrip("\n"), name).replace("x\n", "x\n", 1)
-    graph, _ = refined(PLACES + model, "classify")
+    graph, _ = run_until(PLACES + model, "classify")
     text = print_text(graph)
     assert f'role="{role}"' in about(text, "x")
     assert f"-> {edge} gate" in about(text, "run")
@@ -244,7 +244,7 @@ def test_the_cases_cover_the_table():
 
 @pytest.mark.parametrize(("name", "found"), [("Blok", ["SM211"]), ("Block", []), ("Sensor", [])])
 def test_a_name_that_sysml_does_not_have_is_told(name, found):
-    assert codes(refined(applied('Class x "X"', name), "classify")[1]) == found
+    assert list_codes(run_until(applied('Class x "X"', name), "classify")[1]) == found
 
 
 def test_a_second_run_changes_nothing():
@@ -252,22 +252,22 @@ def test_a_second_run_changes_nothing():
         applied(f"{c[0]} ".replace(" x ", f" x{i} "), n, c[1])
         for i, (n, c) in enumerate(CASES.items())
     )
-    graph, _ = refined(PLACES + "".join(rows), "classify")
+    graph, _ = run_until(PLACES + "".join(rows), "classify")
     once = print_text(graph)
-    assert again(graph, "classify") == once
+    assert print_after_second_run(graph, "classify") == once
 
 
 def test_tags_that_lead_nowhere_or_to_the_element_itself_give_nothing():
     for given in ('tag.principal="gone"', 'tag.principal="x"', 'tag.principal=""'):
         model = PLACES + applied('Property x "X"', "AdjunctProperty", given)
-        graph, sink = refined(model, "classify")
+        graph, sink = run_until(model, "classify")
         assert "references" not in about(print_text(graph), "x")
-        assert codes(sink) == []
+        assert list_codes(sink) == []
 
 
 def test_a_tag_typed_by_a_stereotype_leads_to_what_has_it():
     view = applied('Class point "Point"', "Viewpoint") + applied(
         'Class x "X"', "View", 'tag.viewpoint="point.s"'
     )
-    graph, _ = refined(view, "classify")
+    graph, _ = run_until(view, "classify")
     assert "-> realizes point" in about(print_text(graph), "x")

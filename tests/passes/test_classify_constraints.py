@@ -1,7 +1,7 @@
 """Constraint properties, parameters and bindings, as Papyrus and MagicDraw have them."""
 
 import pytest
-from passing import codes, lines, refined
+from pass_runs import list_codes, list_diagnostics, run_until
 
 from sysmlc.ir import Edge
 
@@ -22,12 +22,14 @@ LAW = (
 
 @pytest.mark.parametrize("kind", ["Property", "Port"])
 def test_a_connector_at_a_parameter_binds_without_its_stereotype(kind):
-    graph, sink = refined(LAW.format(kind=kind), "flows")
+    graph, sink = run_until(LAW.format(kind=kind), "flows")
     assert graph["law.m"].role == "constraint parameter"
     assert graph["crane.law"].role == "constraint property"
     assert graph["k"].role == "binding connector"
     assert graph.targets(graph["crane.mass"], Edge.BINDS) == [graph["law.m"]]
-    assert lines(sink) == ["SM218 info: parameters of constraint 'Crane::law' are not bound: 'f'"]
+    assert list_diagnostics(sink) == [
+        "SM218 info: parameters of constraint 'Crane::law' are not bound: 'f'"
+    ]
 
 
 def test_a_connector_between_parts_binds_nothing():
@@ -37,14 +39,14 @@ def test_a_connector_between_parts_binds_nothing():
         '  Connector k "k"\n    -> end k.1 k.2\n'
         "    ConnectorEnd k.1\n      -> role one\n    ConnectorEnd k.2\n      -> role two\n"
     )
-    graph, _ = refined(text, "classify")
+    graph, _ = run_until(text, "classify")
     assert graph["k"].role == ""
     assert list(graph.edges(Edge.BINDS)) == []
 
 
 def test_a_binding_of_another_usage_leaves_this_one_open():
     text = LAW.format(kind="Property") + ('  Property crane.law2 "law2"\n    -> typed-by law\n')
-    found = [line for line in lines(refined(text, "classify")[1]) if "law2" in line]
+    found = [line for line in list_diagnostics(run_until(text, "classify")[1]) if "law2" in line]
     assert found == ["SM218 info: parameters of constraint 'Crane::law2' are not bound: 'f', 'm'"]
 
 
@@ -56,5 +58,5 @@ def test_equal_names_of_units_are_equal_units():
         '  Property x "x" role="value"\n    -> typed-by a\n    -> binds y\n'
         '  Property y "y" role="value"\n    -> typed-by b\n'
     )
-    assert "SM219" not in codes(refined(text, "classify")[1])
-    assert "SM219" in codes(refined(text.replace('b.u "kg"', 'b.u "g"'), "classify")[1])
+    assert "SM219" not in list_codes(run_until(text, "classify")[1])
+    assert "SM219" in list_codes(run_until(text.replace('b.u "kg"', 'b.u "g"'), "classify")[1])

@@ -1,7 +1,7 @@
 """Directions and aggregations that UML does not have: reported, and not in the graph any more."""
 
 import pytest
-from passing import refined
+from pass_runs import run_until
 
 
 @pytest.mark.parametrize(
@@ -13,7 +13,7 @@ from passing import refined
     ],
 )
 def test_what_is_no_literal_counts_as_none(element, attribute):
-    graph, (found,) = refined(f"{element}\n", "classify")
+    graph, (found,) = run_until(f"{element}\n", "classify")
     assert (found.rule.code, found.severity) == ("SM220", "warning")
     assert found.message.startswith(f"the {attribute} of 'x' is ")
     assert attribute not in graph["x"].attrs
@@ -24,13 +24,13 @@ def test_a_flow_property_has_its_default_instead():
         'Property x "x"\n  Application a stereotype="FlowProperty" tag.direction="sideways" '
         'namespace="http://www.omg.org/spec/SysML/20120401/SysML"\n    -> subject x\n'
     )
-    graph, (found,) = refined(flow, "classify")
+    graph, (found,) = run_until(flow, "classify")
     assert (found.rule.code, graph["x"].attrs["direction"]) == ("SM220", "inout")
 
 
 @pytest.mark.parametrize("value", ["in", "inout", "out", "return"])
 def test_literals_stay(value):
-    graph, sink = refined(f'Parameter x "x" direction="{value}"\n', "classify")
+    graph, sink = run_until(f'Parameter x "x" direction="{value}"\n', "classify")
     assert (list(sink), graph["x"].attrs["direction"]) == ([], value)
 
 
@@ -43,7 +43,7 @@ FLOW_PORT = (
 
 @pytest.mark.parametrize("value", ["sideways", "return", "In"])
 def test_a_flow_port_with_a_direction_that_does_not_exist_has_the_default(value):
-    graph, (found,) = refined(FLOW_PORT.format(value), "ports")
+    graph, (found,) = run_until(FLOW_PORT.format(value), "ports")
     assert (found.rule.code, found.subject.id) == ("SM220", "x")
     assert found.message.endswith(f"is '{value}', which is not one of in, out, inout")
     assert graph["x"].attrs["direction"] == "inout"
@@ -51,5 +51,5 @@ def test_a_flow_port_with_a_direction_that_does_not_exist_has_the_default(value)
 
 @pytest.mark.parametrize("value", ["in", "out", "inout"])
 def test_a_flow_port_has_the_direction_that_its_stereotype_gives(value):
-    graph, sink = refined(FLOW_PORT.format(value), "ports")
+    graph, sink = run_until(FLOW_PORT.format(value), "ports")
     assert (list(sink), graph["x"].attrs["direction"]) == ([], value)
